@@ -1,0 +1,43 @@
+# Two commands matter: `make run` and `make test`. Both make the environment first.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+
+.PHONY: run setup test lint bench lock clean
+
+run: setup
+	$(BIN)/hil run acceptance --out out/acceptance
+
+setup: $(STAMP)
+
+$(BIN)/uv: requirements/tool.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed: make PYTHON=python3.12 …")'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements/tool.txt
+	@touch $@
+
+$(STAMP): $(BIN)/uv requirements/all.txt pyproject.toml
+	VIRTUAL_ENV=$(VENV) $(BIN)/uv pip install --quiet --require-hashes -r requirements/all.txt
+	VIRTUAL_ENV=$(VENV) $(BIN)/uv pip install --quiet --no-deps --no-build-isolation -e .
+	@touch $(STAMP)
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/lint-imports
+	$(BIN)/mypy
+
+test: lint
+	$(BIN)/python -m pytest -n 2
+
+bench: setup
+	$(BIN)/python -m benchmarks
+
+# Pins every dependency with hashes and without addresses of package indexes.
+lock: $(BIN)/uv
+	printf 'uv==%s\n' "$$($(BIN)/uv --version | cut -d' ' -f2)" | $(BIN)/uv pip compile --quiet --no-header --universal --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/tool.txt -
+	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
+
+clean:
+	rm -rf $(VENV) out

@@ -1,0 +1,100 @@
+"""What an effect is: the one object that simulation, model files, diagnosis, docs and reports read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from hil.core.errors import BadInputError
+
+
+class Stage(Enum):
+    """Where along the way from torque request to recorded channel an effect enters."""
+
+    TORQUE_PATH = "torque path"
+    SHAFT = "drive shafts"
+    ROTOR = "rotor"
+    HOUSING = "housing"
+    TYRE = "tyre and road"
+    LOAD = "load"
+    SENSOR = "sensor"
+    MODEL = "model"
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number of an effect: unit in SI, and the open interval in which it makes sense."""
+
+    name: str
+    unit: str
+    lower: float
+    upper: float
+    meaning: str
+    optional: bool = False
+    default: float = 0.0
+
+
+@dataclass(frozen=True)
+class Effect:
+    """One physical effect (docs/reference/effects.md).
+
+    `text_parameters` are parameters whose value is a name (a channel, a model parameter).
+    `needs` lists the model kinds that the effect can be added to.
+    """
+
+    id: str
+    title: str
+    stage: Stage
+    summary: str
+    signature: str
+    shown_by: str
+    parameters: tuple[Parameter, ...]
+    text_parameters: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ("rigid", "two_inertia", "three_inertia")
+
+    def check(self, values: Mapping[str, object], where: str) -> dict[str, float | str]:
+        """Return `values` complete with defaults.
+
+        Raises:
+            BadInputError: an unknown or missing key, not a number, or out of the parameter's bounds.
+        """
+        known = {p.name for p in self.parameters} | set(self.text_parameters)
+        for key in values:
+            if key not in known:
+                raise BadInputError(
+                    f"effect '{self.id}' has no parameter '{key}'",
+                    where=where,
+                    fix=f"it has: {', '.join(sorted(known))}",
+                )
+        complete: dict[str, float | str] = {}
+        for name in self.text_parameters:
+            text = values.get(name)
+            if not isinstance(text, str) or not text:
+                raise BadInputError(f"effect '{self.id}' needs '{name}', a name", where=where)
+            complete[name] = text
+        for parameter in self.parameters:
+            complete[parameter.name] = self._number(parameter, values.get(parameter.name), where)
+        return complete
+
+    def _number(self, parameter: Parameter, value: object, where: str) -> float:
+        if value is None and parameter.optional:
+            return parameter.default
+        if value is None:
+            raise BadInputError(
+                f"effect '{self.id}' needs '{parameter.name}' ({parameter.unit})", where=where
+            )
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            raise BadInputError(
+                f"effect '{self.id}': '{parameter.name}' is {value!r}, not a finite number",
+                where=where,
+                fix=f"give a plain number in {parameter.unit or 'no unit'}",
+            )
+        if not parameter.lower <= value <= parameter.upper:
+            raise BadInputError(
+                f"effect '{self.id}': '{parameter.name}' = {value:g} {parameter.unit} is out of range",
+                where=where,
+                fix=f"it lies from {parameter.lower:g} to {parameter.upper:g} {parameter.unit}",
+            )
+        return float(value)

@@ -1,0 +1,15 @@
+"""Nothing is missing: a parameter of the model has the wrong value."""
+
+from hil.core.effects._effect import Effect, Parameter, Stage
+
+EFFECT = Effect(
+    id="parameter_mismatch",
+    title="Parameter mismatch",
+    stage=Stage.MODEL,
+    summary="Nothing is missing: a parameter of the model has the wrong value.",
+    signature="The gap follows the model's own sensitivity to that parameter.",
+    shown_by="The test that identified the parameter.",
+    parameters=(Parameter("value", "parameter's", -1e12, 1e12, "the right value"),),
+    text_parameters=("parameter",),
+    needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+)

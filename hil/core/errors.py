@@ -1,0 +1,42 @@
+"""What can go wrong, in the words of the person who has to act on it."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+
+class HilError(Exception):
+    """An error that tells what happened, where, and what to do about it.
+
+    `exit_code` is the process exit code of docs/reference/commands.md.
+    """
+
+    exit_code: ClassVar[int] = 3
+
+    def __init__(self, what: str, *, where: str = "", fix: str = "") -> None:
+        self.what = what
+        self.where = where
+        self.fix = fix
+        super().__init__(what)
+
+    def __str__(self) -> str:
+        text = f"{self.where}: {self.what}" if self.where else self.what
+        return f"{text}\n  {self.fix}" if self.fix else text
+
+
+class BadInputError(HilError):
+    """A file, a key or an argument that cannot be used (exit code 2)."""
+
+    exit_code = 2
+
+
+class BenchError(HilError):
+    """The bench or the service failed (exit code 3)."""
+
+    exit_code = 3
+
+
+class InterruptError(HilError):
+    """The operator stopped the run (exit code 130)."""
+
+    exit_code = 130

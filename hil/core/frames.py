@@ -1,0 +1,21 @@
+"""A block of CAN frames as one numpy array: nothing is done per frame that can be done per block."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+#: time_s: seconds on the bench clock · id: CAN identifier · flags: see below · length: bytes used of data
+#: data: the payload as a little-endian 64-bit number (byte 0 of the frame is the lowest)
+FRAME = np.dtype([("time_s", "<f8"), ("id", "<u4"), ("flags", "u1"), ("length", "u1"), ("data", "<u8")])
+
+EXTENDED = 1
+SENT_BY_HOST = 2
+ERROR_FRAME = 4
+
+FrameBlock = npt.NDArray[np.void]
+
+
+def empty_block() -> FrameBlock:
+    """A block without frames."""
+    return np.zeros(0, FRAME)

@@ -1,0 +1,259 @@
+"""Model files (docs/reference/models.md): a plant's equations by kind, its parameters, its effects."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
+from hil.core.errors import BadInputError
+from hil.core.files import read_text, write_atomically
+
+# name: (unit, may be zero)
+_PARAMETER = {
+    "motor_inertia": ("kg m2", False),
+    "gear_ratio": ("motor speed / wheel speed", False),
+    "shaft_stiffness": ("N m/rad", False),
+    "shaft_damping": ("N m s/rad", True),
+    "wheel_inertia": ("kg m2", False),
+    "tyre_stiffness": ("N m/rad", False),
+    "tyre_damping": ("N m s/rad", True),
+    "vehicle_inertia": ("kg m2", False),
+    "viscous_drag": ("N m s/rad", True),
+    "torque_delay": ("s", True),
+}
+_KINDS: dict[str, tuple[str, ...]] = {
+    "rigid": ("motor_inertia", "gear_ratio", "vehicle_inertia", "viscous_drag", "torque_delay"),
+    "two_inertia": (
+        "motor_inertia",
+        "gear_ratio",
+        "shaft_stiffness",
+        "shaft_damping",
+        "vehicle_inertia",
+        "torque_delay",
+    ),
+    "three_inertia": (
+        "motor_inertia",
+        "gear_ratio",
+        "shaft_stiffness",
+        "shaft_damping",
+        "wheel_inertia",
+        "tyre_stiffness",
+        "tyre_damping",
+        "vehicle_inertia",
+        "torque_delay",
+    ),
+    "transfer_function": (),
+}
+_LARGEST_DELAY_S = 1.0
+
+
+@dataclass(frozen=True)
+class TransferFunction:
+    """numerator/denominator in descending powers of s, times exp(-delay_s·s)."""
+
+    numerator: tuple[float, ...]
+    denominator: tuple[float, ...]
+    delay_s: float = 0.0
+
+    def response(self, frequency_hz: np.ndarray) -> np.ndarray:
+        """Complex response at `frequency_hz` (any shape), dead time included."""
+        s = 2j * np.pi * np.asarray(frequency_hz, dtype=float)
+        ratio = np.polyval(self.numerator, s) / np.polyval(self.denominator, s)
+        return np.asarray(ratio * np.exp(-self.delay_s * s))
+
+
+@dataclass(frozen=True)
+class EffectUse:
+    """An effect of the registry with its values, as a model carries it."""
+
+    id: str
+    values: dict[str, float | str]
+
+
+@dataclass(frozen=True)
+class Model:
+    """A plant model; the input is `motor_torque_ref_nm`, the outputs are `OUTPUTS`."""
+
+    kind: str
+    parameters: dict[str, float] = field(default_factory=dict)
+    effects: tuple[EffectUse, ...] = ()
+    transfer_functions: dict[str, TransferFunction] = field(default_factory=dict)
+    meta: dict[str, Any] = field(default_factory=dict)
+
+    def with_parameters(self, **changes: float) -> Model:
+        """The same model with other parameter values."""
+        return Model(
+            self.kind, self.parameters | changes, self.effects, self.transfer_functions, dict(self.meta)
+        )
+
+    def with_effects(self, *effects: EffectUse) -> Model:
+        """The same model with `effects` in place of its own."""
+        return Model(self.kind, dict(self.parameters), effects, self.transfer_functions, dict(self.meta))
+
+
+def parameter_names(kind: str) -> tuple[str, ...]:
+    """Names of the parameters that a model of `kind` has, in file order."""
+    return _KINDS[kind]
+
+
+def parameter_unit(name: str) -> str:
+    """Unit of a model parameter, for people."""
+    return _PARAMETER[name][0]
+
+
+def load_model(path: Path) -> Model:
+    """Read a model file.
+
+    Raises:
+        BadInputError: not readable, not TOML, or a key that is unknown, missing or not physical.
+    """
+    text = read_text(path)
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise BadInputError(f"not a TOML file: {error}", where=str(path)) from error
+    return model_from_dict(data, str(path))
+
+
+def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
+    """Check the contents of a model file; `where` names it in messages."""
+    _no_others(data, ("kind", "parameters", "effects", "transfer_functions", "meta"), "", where)
+    kind = data.get("kind")
+    if kind not in _KINDS:
+        raise BadInputError(f"kind is {kind!r}", where=where, fix=f"kind is one of: {', '.join(_KINDS)}")
+    functions = _functions(data.get("transfer_functions"), kind, where)
+    meta = data.get("meta", {})
+    if not isinstance(meta, dict):
+        raise BadInputError("[meta] is not a table", where=where)
+    parameters = _parameters(data.get("parameters", {}), kind, where)
+    effects = _effects(data.get("effects", []), kind, where)
+    return Model(kind, parameters, effects, functions, meta)
+
+
+def save_model(model: Model, path: Path) -> None:
+    """Write a model file that `load_model` reads back to the same model."""
+    write_atomically(path, model_to_toml(model))
+
+
+def model_to_toml(model: Model) -> str:
+    """The text of a model file."""
+    data: dict[str, Any] = {"kind": model.kind}
+    if model.parameters:
+        data["parameters"] = dict(model.parameters)
+    if model.transfer_functions:
+        data["transfer_functions"] = {
+            name: {"numerator": list(f.numerator), "denominator": list(f.denominator), "delay": f.delay_s}
+            for name, f in model.transfer_functions.items()
+        }
+    if model.effects:
+        data["effects"] = [{"id": use.id, **use.values} for use in model.effects]
+    if model.meta:
+        data["meta"] = model.meta
+    return tomli_w.dumps(data)
+
+
+def _no_others(table: Mapping[str, Any], known: tuple[str, ...], prefix: str, where: str) -> None:
+    for key in table:
+        if key not in known:
+            raise BadInputError(
+                f"unknown key '{prefix}{key}'", where=where, fix=f"known here: {', '.join(known) or 'none'}"
+            )
+
+
+def _parameters(table: Any, kind: str, where: str) -> dict[str, float]:
+    if not isinstance(table, dict):
+        raise BadInputError("[parameters] is not a table", where=where)
+    names = _KINDS[kind]
+    _no_others(table, names, "parameters.", where)
+    checked = {}
+    for name in names:
+        unit, may_be_zero = _PARAMETER[name]
+        if name not in table:
+            raise BadInputError(f"parameters.{name} ({unit}) is missing", where=where)
+        value = _finite(table[name], f"parameters.{name}", unit, where)
+        if value < 0 or (value == 0 and not may_be_zero):
+            raise BadInputError(
+                f"parameters.{name} = {value:g} {unit}",
+                where=where,
+                fix="it must be positive" if not may_be_zero else "it must not be negative",
+            )
+        if name == "torque_delay" and value > _LARGEST_DELAY_S:
+            raise BadInputError(
+                f"parameters.torque_delay = {value:g} s",
+                where=where,
+                fix="is it in milliseconds? Give seconds",
+            )
+        checked[name] = value
+    return checked
+
+
+def _finite(value: Any, key: str, unit: str, where: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise BadInputError(
+            f"{key} is {value!r}, not a finite number", where=where, fix=f"give a plain number in {unit}"
+        )
+    return float(value)
+
+
+def _effects(entries: Any, kind: str, where: str) -> tuple[EffectUse, ...]:
+    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
+        raise BadInputError("effects must be written as [[effects]] tables", where=where)
+    uses = []
+    for number, entry in enumerate(entries, 1):
+        place = f"{where}: effects[{number}]"
+        effect = EFFECTS.get(entry.get("id", ""))
+        if effect is None:
+            raise BadInputError(
+                f"unknown effect id {entry.get('id')!r}", where=place, fix=f"known: {', '.join(EFFECTS)}"
+            )
+        if kind not in effect.needs:
+            raise BadInputError(
+                f"'{effect.id}' cannot be added to a '{kind}' model",
+                where=place,
+                fix=f"it needs: {', '.join(effect.needs)}",
+            )
+        values = {key: value for key, value in entry.items() if key != "id"}
+        uses.append(EffectUse(effect.id, effect.check(values, place)))
+    return tuple(uses)
+
+
+def _functions(table: Any, kind: str, where: str) -> dict[str, TransferFunction]:
+    if kind != "transfer_function":
+        if table is not None:
+            raise BadInputError(f"a '{kind}' model has no [transfer_functions]", where=where)
+        return {}
+    if not isinstance(table, dict) or not table:
+        raise BadInputError(
+            "[transfer_functions.motor_speed_rad_s] or another output is missing", where=where
+        )
+    _no_others(table, OUTPUTS, "transfer_functions.", where)
+    return {name: _function(entry, f"transfer_functions.{name}", where) for name, entry in table.items()}
+
+
+def _function(entry: Any, key: str, where: str) -> TransferFunction:
+    if not isinstance(entry, dict):
+        raise BadInputError(f"{key} is not a table", where=where)
+    _no_others(entry, ("numerator", "denominator", "delay"), f"{key}.", where)
+    polynomials = {}
+    for part in ("numerator", "denominator"):
+        values = entry.get(part)
+        if not isinstance(values, list) or not values:
+            raise BadInputError(f"{key}.{part} is missing: a list, descending powers of s", where=where)
+        polynomials[part] = tuple(_finite(v, f"{key}.{part}", "SI units", where) for v in values)
+    if polynomials["denominator"][0] == 0:
+        raise BadInputError(f"{key}.denominator starts with 0", where=where)
+    if len(polynomials["numerator"]) > len(polynomials["denominator"]):
+        raise BadInputError(f"{key} is improper: its numerator has the higher order", where=where)
+    delay = _finite(entry.get("delay", 0.0), f"{key}.delay", "s", where)
+    if not 0 <= delay <= _LARGEST_DELAY_S:
+        raise BadInputError(f"{key}.delay = {delay:g} s", where=where, fix="give seconds, from 0 to 1")
+    return TransferFunction(polynomials["numerator"], polynomials["denominator"], delay)

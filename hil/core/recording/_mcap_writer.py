@@ -1,0 +1,106 @@
+"""Writes the native recording: raw frames and decoded channels in one MCAP, as the run goes on."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+from mcap.writer import CompressionType, Writer
+
+from hil.core.errors import BenchError
+from hil.core.frames import FrameBlock
+from hil.core.recording import _schema
+
+CHANNELS_TOPIC = "/channels"
+EVENTS_TOPIC = "/events"
+FRAMES_TOPIC = "/can/"
+_CHUNK_BYTES = 256 * 1024  # about a second of a bench: what a crash can cost
+_EVENT_SCHEMA = {
+    "type": "object",
+    "properties": {"time_s": {"type": "number"}, "kind": {"type": "string"}, "text": {"type": "string"}},
+}
+
+
+class RecordingWriter:
+    """Streams a run to `path`. Everything added before a crash can be read again.
+
+    A disk that fills up raises BenchError from any method that writes.
+    """
+
+    def __init__(self, path: Path, channel_names: list[str], buses: list[str]) -> None:
+        self.path = path
+        self._sequence = 0
+        try:
+            self._file = path.open("wb", buffering=0)
+            self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+            self._writer.start(profile="", library="eaxle-hil")
+            self._register(channel_names, buses)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def _register(self, channel_names: list[str], buses: list[str]) -> None:
+        writer = self._writer
+        channels = writer.register_schema(
+            _schema.CHANNELS_TYPE, "protobuf", _schema.channels_schema(channel_names)
+        )
+        frames = writer.register_schema(_schema.FRAMES_TYPE, "protobuf", _schema.frames_schema())
+        events = writer.register_schema("hil.Event", "jsonschema", json.dumps(_EVENT_SCHEMA).encode())
+        self._channels = writer.register_channel(CHANNELS_TOPIC, "protobuf", channels)
+        self._events = writer.register_channel(EVENTS_TOPIC, "json", events)
+        self._frames = {bus: writer.register_channel(FRAMES_TOPIC + bus, "protobuf", frames) for bus in buses}
+
+    def add_frames(self, bus: str, block: FrameBlock) -> None:
+        """Add the frames of one bus, as they came."""
+        if len(block):
+            self._add(self._frames[bus], float(block["time_s"][-1]), _schema.encode_frames(block))
+
+    def add_rows(self, rows: npt.NDArray[np.float64]) -> None:
+        """Add decoded samples (samples x channels; the first column is `time_s`)."""
+        for time_s, message in zip(rows[:, 0].tolist(), _schema.encode_rows(rows), strict=True):
+            self._add(self._channels, time_s, message.tobytes())
+
+    def add_event(self, time_s: float, kind: str, text: str) -> None:
+        """Add one event of the run."""
+        message = json.dumps({"time_s": round(time_s, 6), "kind": kind, "text": text}).encode()
+        self._add(self._events, time_s, message)
+
+    def attach(self, name: str, content: bytes, media_type: str = "text/plain") -> None:
+        """Store a file with the data."""
+        try:
+            self._writer.add_attachment(0, 0, name, media_type, content)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def describe(self, name: str, table: Mapping[str, str]) -> None:
+        """Store a named table of text."""
+        try:
+            self._writer.add_metadata(name, dict(table))
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def close(self) -> None:
+        """Finish the file; it can be read without this, but then the last second may be missing."""
+        try:
+            self._writer.finish()
+        except OSError as error:
+            raise self._failed(error) from error
+        finally:
+            self._file.close()
+
+    def _add(self, channel: int, time_s: float, message: bytes) -> None:
+        stamp = round(time_s * 1e9)
+        self._sequence += 1
+        try:
+            self._writer.add_message(channel, stamp, message, stamp, self._sequence)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def _failed(self, error: OSError) -> BenchError:
+        return BenchError(
+            f"the recording cannot be written: {error.strerror or error}",
+            where=str(self.path),
+            fix="make room on the disk, or choose another place with --out",
+        )

@@ -1,0 +1,124 @@
+"""A recording in memory: channels over time, and what was stored with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.errors import BadInputError
+
+Array = npt.NDArray[np.float64]
+
+#: Largest share of NaN or infinite cells in a required channel.
+LARGEST_MISSING_SHARE = 0.01
+
+
+@dataclass
+class Event:
+    """Something that happened during a run."""
+
+    time_s: float
+    kind: str
+    text: str
+
+
+@dataclass
+class Recording:
+    """Channels over `time_s`, all of one length.
+
+    `attachments` are files stored with the data (plan, bench, controllers, model, run.json);
+    `metadata` are named tables of text (versions, hashes, who and what);
+    `notes` tell what reading had to mend (a cut file, dropped cells).
+    """
+
+    channels: dict[str, Array]
+    source: Path
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    attachments: dict[str, bytes] = field(default_factory=dict)
+    events: list[Event] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def __getitem__(self, name: str) -> Array:
+        """The channel `name`; BadInputError names it when the recording has none."""
+        try:
+            return self.channels[name]
+        except KeyError:
+            raise BadInputError(
+                f"has no channel '{name}'",
+                where=str(self.source),
+                fix=f"it has: {', '.join(self.channels) or 'none'}",
+            ) from None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.channels
+
+    @property
+    def time_s(self) -> Array:
+        """Time stamps in seconds, increasing."""
+        return self[TIME]
+
+    @property
+    def sample_time_s(self) -> float:
+        """Median distance of time stamps in seconds."""
+        return float(np.median(np.diff(self.time_s)))
+
+    def between(self, start_s: float, end_s: float) -> Recording:
+        """The samples with start_s <= time_s <= end_s (half a sample of grace on both ends)."""
+        grace = 0.5 * self.sample_time_s
+        inside = (self.time_s >= start_s - grace) & (self.time_s <= end_s + grace)
+        cut = {name: values[inside] for name, values in self.channels.items()}
+        return Recording(cut, self.source, self.metadata, self.attachments, self.events, list(self.notes))
+
+
+def checked(recording: Recording, *, least_samples: int = 2) -> Recording:
+    """Refuse what no command can use; mend small gaps in cells and say so in `notes`.
+
+    Raises:
+        BadInputError: a required channel is missing, time runs backwards or stands still, too many
+            missing cells, or too few samples.
+    """
+    where = str(recording.source)
+    for name in (TIME, INPUT):
+        recording[name]
+    if not any(name in recording for name in OUTPUTS):
+        raise BadInputError(
+            f"has none of the output channels {', '.join(OUTPUTS)}", where=where, fix="record at least one"
+        )
+    time = recording.time_s
+    if len(time) < least_samples:
+        raise BadInputError(f"has {len(time)} samples, {least_samples} are needed", where=where)
+    if not np.all(np.isfinite(time)):
+        row = int(np.flatnonzero(~np.isfinite(time))[0])
+        raise BadInputError(f"'{TIME}' is not finite", where=f"{where}: sample {row + 1}")
+    backwards = np.flatnonzero(np.diff(time) <= 0)
+    if backwards.size:
+        row = int(backwards[0]) + 1
+        raise BadInputError(
+            f"'{TIME}' does not increase: {time[row]:g} s follows {time[row - 1]:g} s",
+            where=f"{where}: sample {row + 1} (line {row + 2} of a CSV)",
+        )
+    for name in (INPUT, *OUTPUTS):
+        if name in recording:
+            _mend(recording, name)
+    return recording
+
+
+def _mend(recording: Recording, name: str) -> None:
+    values = recording[name]
+    missing = ~np.isfinite(values)
+    if not missing.any():
+        return
+    share = float(np.mean(missing))
+    if share > LARGEST_MISSING_SHARE:
+        row = int(np.flatnonzero(missing)[0])
+        raise BadInputError(
+            f"{share:.1%} of '{name}' is NaN or infinite, {LARGEST_MISSING_SHARE:.0%} is allowed",
+            where=f"{recording.source}: first at sample {row + 1} (line {row + 2} of a CSV)",
+        )
+    time = recording.time_s
+    recording.channels[name] = np.interp(time, time[~missing], values[~missing])
+    recording.notes.append(f"{int(missing.sum())} missing cells of '{name}' were interpolated")
