@@ -1,1 +1,1 @@
-"""."""
+"""Hardware-in-the-loop bench service for electric axles."""

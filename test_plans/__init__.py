@@ -1,1 +1,33 @@
-"""."""
+"""Test plans: what a plan is, the stimuli it plays, the metrics and criteria it is judged by."""
+
+from test_plans.conductor import Array, Conductor, PlannedSegment, Quantity
+from test_plans.criteria import Criterion
+from test_plans.judging import judge
+from test_plans.loading import library_plans, load_plan, plan_from_text
+from test_plans.metrics import METRICS, Metric, NoValueError
+from test_plans.pace import Outlook, Pace
+from test_plans.plan import Plan, estimate_duration_s
+from test_plans.schema import plan_schema
+from test_plans.steps import STEPS, Step
+
+__all__ = [
+    "METRICS",
+    "STEPS",
+    "Array",
+    "Conductor",
+    "Criterion",
+    "Metric",
+    "NoValueError",
+    "Outlook",
+    "Pace",
+    "Plan",
+    "PlannedSegment",
+    "Quantity",
+    "Step",
+    "estimate_duration_s",
+    "judge",
+    "library_plans",
+    "load_plan",
+    "plan_from_text",
+    "plan_schema",
+]

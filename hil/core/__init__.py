@@ -1,1 +1,1 @@
-"""."""
+"""The words of the project: channels, units, models, recordings, errors. Knows nothing above it."""

@@ -44,7 +44,8 @@ class Lead(_Table):
     @property
     def gain(self) -> float:
         """Factor that makes the gain one at DC, at the lead frequency or at high frequency."""
-        return {"dc": 1.0, "centre": self.alpha**0.5, "high_frequency": self.alpha}[self.normalisation]
+        exponent = {"dc": 0.0, "centre": 0.5, "high_frequency": 1.0}[self.normalisation]
+        return float(self.alpha**exponent)
 
 
 class Notch(_Table):

@@ -34,7 +34,7 @@ class RecordingWriter:
         self.path = path
         self._sequence = 0
         try:
-            self._file = path.open("wb", buffering=0)
+            self._file = path.open("wb")
             self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
             self._writer.start(profile="", library="eaxle-hil")
             self._register(channel_names, buses)

@@ -1,0 +1,1 @@
+"""Bench files, and the DBC, EDS and model files that they name."""

@@ -1,0 +1,178 @@
+"""The RC-S style dynamometers of an axle, as one device. The RC-S's own protocol would live here too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from drivers.dyno._canopen import LoopNetwork
+from drivers.dyno._node import ENABLED, FAULT, HEARTBEAT_LOST_S, READY, SWITCH_ON_DISABLED, SWITCHED_ON, DynoNode
+from drivers.loop import BusLoop
+from drivers.measurement import Binding
+from drivers.wire import Wire
+from hil.core.errors import BenchError
+
+SPEED_MODE, VEHICLE_MODE = 3, -1
+_SHUTDOWN, _SWITCH_ON, _ENABLE, _DISABLE_VOLTAGE, _FAULT_RESET = 0x06, 0x07, 0x0F, 0x00, 0x80
+_HOST_HEARTBEAT_S = 0.05
+_HOST_SILENCE_MS = 200
+_NODE_HEARTBEAT_MS = 100
+_SYNC_PERIOD_US = 1000
+_SYNC_PRODUCER = 1 << 30
+_STATE_TIMEOUT_S = 0.5
+_ACCELERATION_UNIT_RAD_S2 = 1e-4
+
+
+@dataclass(frozen=True)
+class VehicleParameters:
+    """What the dynos' vehicle model is told; None leaves the value that the controller has."""
+
+    wheel_radius_m: float = 0.33
+    slip: float = 0.0
+    inertia_kg_m2: float | None = None
+    rolling_nm: float | None = None
+    aero_nms2_rad2: float | None = None
+
+
+@dataclass(frozen=True)
+class DynoNodes:
+    """Node ids on the bus; the host takes part as a node whose heartbeat the dynos watch."""
+
+    rear_left: int = 3
+    rear_right: int = 4
+    idle: dict[str, int] = field(default_factory=dict)
+    host: int = 127
+
+
+class DynoDriver:
+    """Rear left and right dynamometer together; front ones are watched and left idle."""
+
+    def __init__(
+        self, loop: BusLoop, wire: Wire, eds: Path, nodes: DynoNodes, vehicle: VehicleParameters
+    ) -> None:
+        self._loop, self._wire, self._host = loop, wire, nodes.host
+        self.vehicle = vehicle
+        network = LoopNetwork(loop, wire)
+        make = lambda name, node_id: DynoNode(network, wire.name, node_id, name, eds)  # noqa: E731
+        self.left, self.right = make("rear left", nodes.rear_left), make("rear right", nodes.rear_right)
+        self.rear = (self.left, self.right)
+        self.idle = [make(name, node_id) for name, node_id in nodes.idle.items()]
+        loop.on_block(self._take_block)
+
+    @property
+    def bindings(self) -> list[Binding]:
+        """Where the dynos' channels lie on their bus."""
+        return [*self.left.bindings("left"), *self.right.bindings("right")]
+
+    def start(self) -> None:
+        """Bring the nodes to operation: supervision, SYNC, vehicle model. The drives stay without torque.
+
+        Raises:
+            BenchError: a node is missing, does not answer or refuses a value.
+        """
+        self._loop.every(_HOST_HEARTBEAT_S, self._beat)
+        everyone = [*self.rear, *self.idle]
+        self._loop.wait_for(lambda: all(n.last_heartbeat_s > -np.inf for n in everyone), 3.0)
+        missing = [f"{n.name} (node {n.id})" for n in everyone if n.last_heartbeat_s == -np.inf]
+        if missing:
+            raise BenchError(
+                f"no heartbeat from {', '.join(missing)}",
+                where=f"bus '{self._wire.name}'",
+                fix="switch the dyno controller on, check node ids in the bench file",
+            )
+        for node in self.rear:
+            node.write(0x1017, 0, _NODE_HEARTBEAT_MS, "heartbeat time")
+            node.write(0x1016, 1, self._host << 16 | _HOST_SILENCE_MS, "watch on the host's heartbeat")
+            self._write_vehicle(node)
+        self.left.write(0x1006, 0, _SYNC_PERIOD_US, "SYNC period")
+        self.left.write(0x1005, 0, _SYNC_PRODUCER | 0x80, "SYNC producer")
+        for node in self.rear:
+            node.nmt("OPERATIONAL")
+        alive = self._loop.wait_for(lambda: all(n.last_seen_s > -np.inf for n in self.rear), _STATE_TIMEOUT_S)
+        if not alive:
+            raise BenchError("the rear dynos send no measured values", where=f"bus '{self._wire.name}'")
+
+    def enable(self, acceleration_rad_s2: float) -> None:
+        """Switch both drives on in speed mode at their present speed.
+
+        Raises:
+            BenchError: a drive does not reach 'operation enabled'.
+        """
+        for node in self.rear:
+            node.write(0x6083, 0, round(acceleration_rad_s2 / _ACCELERATION_UNIT_RAD_S2), "acceleration")
+            node.write(0x6060, 0, SPEED_MODE, "mode of operation")
+            node.set_speed(node.wheel_speed_rad_s)
+        if any(n.in_state(FAULT) for n in self.rear):
+            self._all(_FAULT_RESET, SWITCH_ON_DISABLED)
+        self._all(_SHUTDOWN, READY)
+        self._all(_SWITCH_ON, SWITCHED_ON)
+        self._all(_ENABLE, ENABLED)
+
+    def hold_speed(self, speed_rad_s: float) -> None:
+        """Ramp both wheels to a speed (rad/s) and hold it there; returns at once."""
+        for node in self.rear:
+            node.write(0x6060, 0, SPEED_MODE, "mode of operation")
+            node.set_speed(speed_rad_s)
+            node.command(_ENABLE)
+
+    def release_vehicle(self, initial_speed_m_s: float) -> None:
+        """Simulate the vehicle from now on, starting at a speed in m/s."""
+        self.left.write(0x2000, 6, initial_speed_m_s, "initial vehicle speed")
+        for node in self.rear:
+            node.write(0x6060, 0, VEHICLE_MODE, "mode of operation")
+
+    @property
+    def wheel_speed_rad_s(self) -> float:
+        """Mean of both wheels, newest value."""
+        return 0.5 * (self.left.wheel_speed_rad_s + self.right.wheel_speed_rad_s)
+
+    def disable(self) -> None:
+        """Tell both drives to give no torque; returns at once."""
+        for node in self.rear:
+            node.command(_DISABLE_VOLTAGE)
+
+    def is_off(self) -> bool:
+        """Whether both drives say that they give no torque, and say so now."""
+        return all(n.in_state(SWITCH_ON_DISABLED) or n.in_state(FAULT) for n in self.rear)
+
+    def troubles(self) -> list[str]:
+        """What is wrong now: faults, lost heartbeats, emergencies since the start."""
+        now_s = self._loop.clock.now_s()
+        found = []
+        for node in [*self.rear, *self.idle]:
+            if now_s - node.last_heartbeat_s > HEARTBEAT_LOST_S:
+                found.append(f"{node.name}: heartbeat lost")
+            found += [f"{node.name}: {text}" for text in node.emergencies]
+        found += [f"{node.name}: drive in fault" for node in self.rear if node.in_state(FAULT)]
+        return found
+
+    def _all(self, controlword: int, state: int) -> None:
+        for node in self.rear:
+            node.command(controlword)
+        reached = self._loop.wait_for(lambda: all(n.in_state(state) for n in self.rear), _STATE_TIMEOUT_S)
+        if not reached:
+            states = ", ".join(f"{n.name} is in '{n.state}'" for n in self.rear)
+            raise BenchError(
+                f"controlword 0x{controlword:02X} did not bring the drives along: {states}",
+                where=f"bus '{self._wire.name}'",
+                fix="reset the dyno controller and look at its fault list",
+            )
+
+    def _write_vehicle(self, node: DynoNode) -> None:
+        v = self.vehicle
+        values = (v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2, v.slip, v.wheel_radius_m)
+        names = ("vehicle inertia", "rolling resistance", "aerodynamic resistance", "slip", "wheel radius")
+        for subindex, (value, name) in enumerate(zip(values, names, strict=True), 1):
+            if value is not None:
+                node.write(0x2000, subindex, value, name)
+
+    def _beat(self) -> None:
+        self._wire.send(0x700 + self._host, b"\x05")
+
+    def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
+        if bus == self._wire.name:
+            for node in self.rear:
+                node.take_block(block)

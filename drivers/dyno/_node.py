@@ -1,0 +1,153 @@
+"""One dynamometer: CANopen node and CiA 402 drive."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import canopen
+import numpy as np
+import numpy.typing as npt
+
+from drivers.dyno._canopen import LoopNetwork, LoopNode
+from drivers.measurement import Binding
+from hil.core.errors import BadInputError, BenchError
+from hil.core.frames import SENT_BY_HOST
+from hil.core.pdo import layout_of_pdo
+
+# CiA 402: statusword bits 6, 5, 3, 2, 1, 0
+STATE_MASK = 0x6F
+SWITCH_ON_DISABLED, READY, SWITCHED_ON, ENABLED, FAULT = 0x40, 0x21, 0x23, 0x27, 0x08
+_STATE_NAMES = {
+    SWITCH_ON_DISABLED: "switch on disabled",
+    READY: "ready to switch on",
+    SWITCHED_ON: "switched on",
+    ENABLED: "operation enabled",
+    0x07: "quick stop active",
+    FAULT: "fault",
+}
+_FRESH_S = 0.05
+HEARTBEAT_LOST_S = 0.35
+
+
+class DynoNode:
+    """Access to one node; `status` and `velocity` follow its PDOs."""
+
+    def __init__(self, network: LoopNetwork, bus: str, node_id: int, name: str, eds: Path) -> None:
+        self.id, self.name, self.bus = node_id, name, bus
+        self._network = network
+        self._node: Any = LoopNode(node_id, _dictionary(eds, node_id))
+        network.add_node(self._node)
+        dictionary = self._node.object_dictionary
+        self._command = layout_of_pdo(dictionary, 0x1600, 0x200 + node_id)
+        self._values = layout_of_pdo(dictionary, 0x1A00, 0x180 + node_id)
+        self._status = layout_of_pdo(dictionary, 0x1A01, 0x280 + node_id)
+        self._target_speed = 0.0
+        self.emergencies: list[str] = []
+        self.last_heartbeat_s = -math.inf
+        self.last_seen_s = -math.inf
+        self.status = 0
+        self.wheel_speed_rad_s = math.nan
+        self._node.nmt.add_heartbeat_callback(self._take_heartbeat)
+        self._node.emcy.add_callback(self._take_emergency)
+
+    def bindings(self, side: str) -> list[Binding]:
+        """Where this node's channels lie; `side` is left or right."""
+        values, status = self._values, self._status
+        found = [
+            Binding(self.bus, values.id, values.signals["Wheel speed"], f"wheel_speed_{side}_rad_s"),
+            Binding(self.bus, values.id, values.signals["Shaft torque"], f"shaft_torque_{side}_nm"),
+            Binding(self.bus, status.id, status.signals["Torque actual value"], f"dyno_torque_{side}_nm"),
+        ]
+        if side == "left":
+            found.append(Binding(self.bus, status.id, status.signals["Vehicle speed"], "vehicle_speed_m_s"))
+        return found
+
+    @property
+    def state(self) -> str:
+        """State of the drive in the words of CiA 402."""
+        return _STATE_NAMES.get(self.status & STATE_MASK, f"0x{self.status:04X}")
+
+    def in_state(self, bits: int) -> bool:
+        """Whether the drive says now that it is in this state."""
+        fresh = self._network.loop.clock.now_s() - self.last_seen_s < _FRESH_S
+        return fresh and self.status & STATE_MASK == bits
+
+    def write(self, index: int, subindex: int, value: float, what: str) -> None:
+        """Write an object by SDO and read it back.
+
+        Raises:
+            BenchError: no answer, a refusal, or another value than was written.
+        """
+        entry = self._node.sdo[index] if subindex == 0 else self._node.sdo[index][subindex]
+        try:
+            entry.raw = value
+            answer = entry.raw
+        except canopen.SdoCommunicationError as error:
+            raise BenchError(
+                f"no answer while {what} was written", where=self._where, fix="is it powered and on this bus?"
+            ) from error
+        except canopen.SdoAbortedError as error:
+            raise BenchError(f"refused {what} = {value:g}: {error}", where=self._where) from error
+        sent = float(np.float32(value)) if isinstance(answer, float) else value
+        if answer != sent:
+            raise BenchError(f"{what} reads back as {answer:g}, {value:g} was written", where=self._where)
+
+    def number(self, index: int) -> float:
+        """Value of an object, read by SDO.
+
+        Raises:
+            BenchError: no answer.
+        """
+        try:
+            return float(self._node.sdo[index].raw)
+        except canopen.SdoError as error:
+            raise BenchError(f"object 0x{index:04X} cannot be read: {error}", where=self._where) from error
+
+    def set_speed(self, speed_rad_s: float) -> None:
+        """Remember the speed that the next command carries."""
+        self._target_speed = speed_rad_s
+
+    def command(self, controlword: int) -> None:
+        """Send controlword and target speed by PDO."""
+        payload = self._command.encode(
+            **{"Controlword": float(controlword), "Target velocity": self._target_speed}
+        )
+        self._network.send_message(self._command.id, int(payload[0]).to_bytes(8, "little"))
+
+    def nmt(self, state: str) -> None:
+        """Ask for an NMT state."""
+        self._node.nmt.state = state
+
+    def take_block(self, block: npt.NDArray[np.void]) -> None:
+        """Follow the newest PDOs of a block of this bus."""
+        received = block[(block["flags"] & SENT_BY_HOST) == 0]
+        status = received[received["id"] == self._status.id]
+        if len(status):
+            self.status = self._status.signals["Statusword"].raw(int(status["data"][-1]))
+            self.last_seen_s = float(status["time_s"][-1])
+        values = received[received["id"] == self._values.id]
+        if len(values):
+            self.wheel_speed_rad_s = self._values.signals["Wheel speed"].value(int(values["data"][-1]))
+
+    @property
+    def _where(self) -> str:
+        return f"dyno '{self.name}' (node {self.id})"
+
+    def _take_heartbeat(self, state: int) -> None:
+        del state
+        self.last_heartbeat_s = self._network.loop.clock.now_s()
+
+    def _take_emergency(self, error: Any) -> None:
+        if error.code & 0xFF00:
+            self.emergencies.append(f"EMCY 0x{error.code:04X} {error.get_desc()}".strip())
+
+
+def _dictionary(path: Path, node_id: int) -> Any:
+    try:
+        return canopen.import_od(str(path), node_id)
+    except OSError as error:
+        raise BadInputError(error.strerror or str(error), where=str(path), fix="check [dyno] eds") from error
+    except Exception as error:
+        raise BadInputError(f"not an EDS file: {error}", where=str(path)) from error

@@ -1,0 +1,127 @@
+"""The one loop that every driver waits in: it keeps heartbeats going and hands out what comes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from drivers.wire import Wire
+from hil.core.clock import Clock
+from hil.core.errors import InterruptError
+from hil.core.frames import ERROR_FRAME, SENT_BY_HOST, FrameBlock
+
+TICK_S = 0.001
+_DRAIN_EVERY = 10
+_STANDARD_IDS = 2048
+
+FrameCallback = Callable[[int, bytes, float], None]
+BlockCallback = Callable[[str, FrameBlock], None]
+
+
+class BusLoop:
+    """Steps through time in 1 ms ticks on the thread of its caller.
+
+    - `every`: duties such as heartbeats; they run in every step, whoever waits.
+    - `on_frame`: callbacks for seldom frames (SDO, heartbeat, EMCY, parameter replies).
+    - `on_block`: callbacks for everything, in blocks of at most 10 ms.
+    - `stop_requested`: set by a signal handler; the next step raises InterruptError, unless `shielded`.
+    """
+
+    def __init__(self, clock: Clock, wires: list[Wire]) -> None:
+        self.clock = clock
+        self.wires = wires
+        self.stop_requested = False
+        self.shielded = False
+        self.latest_lag_s = 0.0
+        self._next_s = clock.now_s()
+        self._ticks = 0
+        self._duties: list[_Duty] = []
+        self._callbacks: dict[str, dict[int, FrameCallback]] = {wire.name: {} for wire in wires}
+        self._wanted = {wire.name: np.zeros(_STANDARD_IDS, bool) for wire in wires}
+        self._block_callbacks: list[BlockCallback] = []
+
+    def every(self, period_s: float, duty: Callable[[], None]) -> None:
+        """Call `duty` every `period_s` of the clock, from now on."""
+        self._duties.append(_Duty(period_s, self.clock.now_s(), duty))
+
+    def on_frame(self, wire: Wire, frame_id: int, callback: FrameCallback) -> None:
+        """Call `callback(id, data, time_s)` for each received frame with this identifier."""
+        self._callbacks[wire.name][frame_id] = callback
+        self._wanted[wire.name][frame_id] = True
+
+    def on_block(self, callback: BlockCallback) -> None:
+        """Call `callback(bus, block)` for everything sent and received."""
+        self._block_callbacks.append(callback)
+
+    def step(self) -> None:
+        """Wait for the next tick; do what is due.
+
+        Raises:
+            InterruptError: the operator asked to stop.
+            BenchError: a bus failed.
+        """
+        self._wait_for_tick()
+        if self._ticks % _DRAIN_EVERY == 0:
+            self.drain()
+
+    def run_for(self, duration_s: float) -> None:
+        """Step for a while."""
+        for _ in range(round(duration_s / TICK_S)):
+            self.step()
+
+    def wait_for(self, condition: Callable[[], bool], timeout_s: float) -> bool:
+        """Step until `condition` holds; False if it does not within `timeout_s`."""
+        for _ in range(max(1, round(timeout_s / TICK_S))):
+            if condition():
+                return True
+            self._wait_for_tick()
+            self.drain()
+        return condition()
+
+    def drain(self) -> None:
+        """Take what has come on every bus and hand it out."""
+        for wire in self.wires:
+            block = wire.drain()
+            if not len(block):
+                continue
+            for callback in self._block_callbacks:
+                callback(wire.name, block)
+            self._dispatch(wire.name, block)
+
+    def _wait_for_tick(self) -> None:
+        if self.stop_requested and not self.shielded:
+            self.stop_requested = False
+            raise InterruptError("stopped by the operator")
+        self._next_s += TICK_S
+        self.clock.sleep_until(self._next_s)
+        now_s = self.clock.now_s()
+        self.latest_lag_s = now_s - self._next_s
+        if self.latest_lag_s > 10 * TICK_S:
+            self._next_s = now_s  # do not chase lost time: devices time out by themselves
+        self._ticks += 1
+        for duty in self._duties:
+            duty.run_if_due(now_s)
+
+    def _dispatch(self, name: str, block: FrameBlock) -> None:
+        ids = block["id"]
+        mask = self._wanted[name][ids % _STANDARD_IDS]
+        if not mask.any():
+            return
+        for frame in block[mask]:
+            if frame["flags"] & (SENT_BY_HOST | ERROR_FRAME):
+                continue
+            callback = self._callbacks[name].get(int(frame["id"]))
+            if callback is not None:
+                data = int(frame["data"]).to_bytes(8, "little")[: int(frame["length"])]
+                callback(int(frame["id"]), data, float(frame["time_s"]))
+
+
+class _Duty:
+    def __init__(self, period_s: float, now_s: float, run: Callable[[], None]) -> None:
+        self._period_s, self._due_s, self._run = period_s, now_s, run
+
+    def run_if_due(self, now_s: float) -> None:
+        if now_s >= self._due_s - 0.5 * TICK_S:
+            self._due_s = max(self._due_s + self._period_s, now_s)
+            self._run()

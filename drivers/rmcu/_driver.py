@@ -1,0 +1,185 @@
+"""Talks to the Rear Motor Control Unit; every frame and every name comes from the DBC."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import cantools
+import numpy as np
+import numpy.typing as npt
+
+from drivers.loop import BusLoop
+from drivers.measurement import Binding
+from drivers.rmcu._parameters import parameters_of
+from drivers.wire import Wire
+from hil.core.checksum import crc8_many
+from hil.core.controller import Controller
+from hil.core.errors import BadInputError, BenchError
+from hil.core.signals import FrameLayout, layout_of
+
+MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
+_COUNTER_VALUES = 16
+_REPLY_TIMEOUT_S = 0.2
+_WRITE, _APPLY = 1, 2
+_NEEDED = {
+    "RMCU_Request": ("Counter", "Mode", "TorqueRequest", "Crc"),
+    "RMCU_Status": ("MotorSpeed", "MotorTorqueRef", "MotorTorque"),
+    "RMCU_Control": ("DrivingTorqueRef", "DrivingTorqueEst", "State", "RequestFault"),
+    "RMCU_ParameterWrite": ("Command", "Index", "Value"),
+    "RMCU_ParameterReply": ("Command", "Result", "Index", "Value"),
+    "RCS_Vehicle": ("VehicleSpeed",),
+}
+
+
+class RmcuDriver:
+    """Requests, parameters and state of the RMCU.
+
+    Raises:
+        BadInputError: the DBC lacks a message or signal that is needed.
+    """
+
+    def __init__(self, loop: BusLoop, wire: Wire, dbc: Path) -> None:
+        self._loop, self._wire = loop, wire
+        self._layouts, self._texts = _read_dbc(dbc)
+        self._request = self._layouts["RMCU_Request"]
+        self._reply = self._layouts["RMCU_ParameterReply"]
+        self._counter = 0
+        self._answer: int | None = None
+        self.state = ""
+        self.fault = ""
+        self.torque_ref_nm = math.nan
+        self.last_seen_s = -math.inf
+        loop.on_frame(wire, self._reply.id, self._take_reply)
+        loop.on_block(self._take_block)
+
+    @property
+    def bindings(self) -> list[Binding]:
+        """Where the RMCU's channels lie on its bus; the first is the master of the time base."""
+        status, control = self._layouts["RMCU_Status"], self._layouts["RMCU_Control"]
+        bus = self._wire.name
+        return [
+            Binding(bus, status.id, status.signals["MotorSpeed"], "motor_speed_rad_s"),
+            Binding(bus, status.id, status.signals["MotorTorqueRef"], "motor_torque_ref_nm"),
+            Binding(bus, status.id, status.signals["MotorTorque"], "motor_torque_nm"),
+            Binding(bus, control.id, control.signals["DrivingTorqueRef"], "driving_torque_ref_nm"),
+            Binding(bus, control.id, control.signals["DrivingTorqueEst"], "driving_torque_est_nm"),
+        ]
+
+    def requests(self, mode: str, values_nm: npt.NDArray[np.float64]) -> list[bytes]:
+        """Payloads of consecutive request frames (N m), with counter and CRC, to be sent one each tick."""
+        counters = (self._counter + np.arange(len(values_nm))) % _COUNTER_VALUES
+        self._counter = (self._counter + len(values_nm)) % _COUNTER_VALUES
+        payloads = self._request.encode(Counter=counters, Mode=MODES[mode], TorqueRequest=values_nm)
+        payloads |= self._request.signals["Crc"].encode(crc8_many(self._request.id, payloads))
+        raw = np.ascontiguousarray(payloads, "<u8").tobytes()
+        return [raw[i : i + 8] for i in range(0, len(raw), 8)]
+
+    def send(self, payload: bytes) -> None:
+        """Send one payload made by `requests`."""
+        self._wire.send(self._request.id, payload)
+
+    def request_off(self) -> None:
+        """Ask for torque off, now."""
+        self.send(self.requests("off", np.zeros(1))[0])
+
+    def is_off(self) -> bool:
+        """Whether the RMCU says that it gives no torque, and says so now."""
+        fresh = self._loop.clock.now_s() - self.last_seen_s < 0.05
+        return fresh and self.state == "off" and self.torque_ref_nm == 0.0
+
+    def write_controller(self, controller: Controller) -> None:
+        """Write every parameter, read each back, apply.
+
+        Raises:
+            BenchError: no reply, a value that did not arrive as sent, or a refusal.
+        """
+        for name, value in parameters_of(controller).items():
+            self._write(name, value)
+        self._transact(_APPLY, 0, 0.0, "apply")
+
+    def _write(self, name: str, value: float) -> None:
+        index = self._texts["Index"].get(name)
+        if index is None:
+            raise BadInputError(
+                f"the RMCU's DBC has no parameter '{name}'", fix="use a DBC that fits this controller"
+            )
+        answer = self._transact(_WRITE, index, value, name)
+        if answer != float(np.float32(value)):
+            raise BenchError(f"parameter '{name}' reads back as {answer:g}, {value:g} was sent", where="RMCU")
+
+    def _transact(self, command: int, index: int, value: float, name: str) -> float:
+        layout = self._layouts["RMCU_ParameterWrite"]
+        payload = layout.encode(Command=command, Index=index, Value=value)
+        self._answer = None
+        self._wire.send(layout.id, int(payload[0]).to_bytes(8, "little"))
+        if not self._loop.wait_for(lambda: self._answer is not None, _REPLY_TIMEOUT_S) or self._answer is None:
+            raise BenchError(
+                f"no reply to parameter '{name}' within {_REPLY_TIMEOUT_S:g} s",
+                where="RMCU",
+                fix="is the RMCU powered and on this bus?",
+            )
+        signals = self._reply.signals
+        result = signals["Result"].raw(self._answer)
+        if result != 0:
+            reasons = {number: text for text, number in self._texts["Result"].items()}
+            raise BenchError(
+                f"refused parameter '{name}' = {value:g}: {reasons.get(result, result)}", where="RMCU"
+            )
+        return signals["Value"].value(self._answer)
+
+    def _take_reply(self, frame_id: int, data: bytes, time_s: float) -> None:
+        del frame_id, time_s
+        self._answer = int.from_bytes(data, "little")
+
+    def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
+        if bus != self._wire.name:
+            return
+        ids = block["id"]
+        control = np.flatnonzero(ids == self._layouts["RMCU_Control"].id)
+        status = np.flatnonzero(ids == self._layouts["RMCU_Status"].id)
+        if not control.size or not status.size:
+            return
+        last = block[control[-1]]
+        signals = self._layouts["RMCU_Control"].signals
+        payload = int(last["data"])
+        self.last_seen_s = float(last["time_s"])
+        self.state = self._state_names.get(signals["State"].raw(payload), "?")
+        self.fault = self._fault_names.get(signals["RequestFault"].raw(payload), "?")
+        torque = self._layouts["RMCU_Status"].signals["MotorTorqueRef"]
+        self.torque_ref_nm = torque.value(int(block["data"][status[-1]]))
+
+    @property
+    def _state_names(self) -> dict[int, str]:
+        return {number: text for text, number in self._texts["State"].items()}
+
+    @property
+    def _fault_names(self) -> dict[int, str]:
+        return {number: text for text, number in self._texts["RequestFault"].items()}
+
+
+def _read_dbc(path: Path) -> tuple[dict[str, FrameLayout], dict[str, dict[str, int]]]:
+    """Layouts of the messages, and the value tables (text to number) of their signals."""
+    try:
+        database: Any = cantools.database.load_file(str(path))
+    except OSError as error:
+        raise BadInputError(error.strerror or str(error), where=str(path), fix="check [rmcu] dbc") from error
+    except Exception as error:
+        raise BadInputError(f"not a DBC file: {error}", where=str(path)) from error
+    layouts: dict[str, FrameLayout] = {}
+    texts: dict[str, dict[str, int]] = {}
+    for name, needed in _NEEDED.items():
+        try:
+            message = database.get_message_by_name(name)
+        except KeyError:
+            raise BadInputError(f"has no message '{name}'", where=str(path), fix="use the RMCU's DBC") from None
+        present = {signal.name: signal for signal in message.signals}
+        for signal in needed:
+            if signal not in present:
+                raise BadInputError(f"message '{name}' has no signal '{signal}'", where=str(path))
+        for signal in message.signals:
+            if signal.choices:
+                texts[signal.name] = {str(text): int(number) for number, text in signal.choices.items()}
+        layouts[name] = layout_of(message)
+    return layouts, texts

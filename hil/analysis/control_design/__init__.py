@@ -1,0 +1,73 @@
+"""Controllers from models, the paper's way, and how well they hold."""
+
+from hil.analysis.control_design._design import (
+    Design,
+    DesignSpec,
+    Loop,
+    Robustness,
+    design,
+    measured_loop,
+)
+from hil.analysis.control_design._discretise import DiscreteFilter, tustin
+from hil.analysis.control_design._laws import (
+    Normalisation,
+    feed_forward,
+    feedback_functions,
+    lead,
+    lead_function,
+    notch_function,
+    observer_filter,
+    pole_assignment,
+    speed_filter,
+)
+from hil.analysis.control_design._loop import (
+    COMFORT_BAND_HZ,
+    Margins,
+    encirclements,
+    feedback_response,
+    hold_response,
+    loop_grid,
+    margins,
+)
+from hil.analysis.control_design._optimize import MarginLimits, Objective, Optimum, optimize
+from hil.analysis.control_design._plant import DesignPlant, design_plant, resonance_hz
+from hil.analysis.control_design._trade_off import TradeOff, trade_off
+from hil.analysis.control_design._uncertainty import PlantSet, possible_plants
+
+__all__ = [
+    "COMFORT_BAND_HZ",
+    "Design",
+    "DesignPlant",
+    "DesignSpec",
+    "DiscreteFilter",
+    "Loop",
+    "MarginLimits",
+    "Margins",
+    "Normalisation",
+    "Objective",
+    "Optimum",
+    "PlantSet",
+    "Robustness",
+    "TradeOff",
+    "design",
+    "design_plant",
+    "encirclements",
+    "feed_forward",
+    "feedback_functions",
+    "feedback_response",
+    "hold_response",
+    "lead",
+    "lead_function",
+    "loop_grid",
+    "margins",
+    "measured_loop",
+    "notch_function",
+    "observer_filter",
+    "optimize",
+    "pole_assignment",
+    "possible_plants",
+    "resonance_hz",
+    "speed_filter",
+    "trade_off",
+    "tustin",
+]

@@ -1,0 +1,358 @@
+"""A controller for a model: gains, filters, loops and what they keep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.control_design._laws import (
+    Normalisation,
+    feed_forward,
+    feedback_functions,
+    lead,
+    observer_filter,
+    pole_assignment,
+    speed_filter,
+)
+from hil.analysis.control_design._discretise import DiscreteFilter, tustin
+from hil.analysis.control_design._loop import (
+    Margins,
+    feedback_response,
+    hold_response,
+    loop_grid,
+    margins,
+)
+from hil.analysis.control_design._optimize import MarginLimits, Objective, Optimum, optimize
+from hil.analysis.control_design._plant import DesignPlant, design_plant
+from hil.analysis.control_design._trade_off import TradeOff, trade_off
+from hil.analysis.control_design._uncertainty import PlantSet, possible_plants
+from hil.analysis.frequency_response import FrequencyResponse
+from hil.analysis.identification import fit_chain
+from hil.core.channels import OUTPUTS
+from hil.core.controller import Controller, Dfc, Dfo, Lead, Notch, Wsc
+from hil.core.errors import BadInputError
+from hil.core.model import Model, TransferFunction
+
+Array = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+Stabilisation = Literal["phase", "gain"]
+
+
+@dataclass(frozen=True)
+class DesignSpec:
+    """What the designer chooses; defaults are the paper's (Table 1, sections 3.2 and 4.2)."""
+
+    stabilisation: Stabilisation = "phase"
+    pole_rad_s: float = 0.3
+    lead_deg: float = 36.0
+    lead_hz: float = 40.0
+    normalisation: Normalisation = "high_frequency"
+    notch_hz: float | None = None
+    notch_width: float = 2.0
+    notch_depth: float = 0.08
+    inertia_kg_m2: float | None = None
+    gear_ratio: float | None = None
+    wheel_inertia_kg_m2: float | None = None
+    torque_limit_nm: float = 195.0
+    sample_time_s: float = 0.001
+    speed_filter_time_s: float = 0.05
+    feed_forward_time_s: float = 0.05
+    observer_time_s: float = 1 / 125.6
+    dfc_integral_gain: float = 0.001
+    wheel_radius_m: float = 0.33
+    optimise: bool = False
+    objective: Objective = "max"
+    limits: MarginLimits = field(default_factory=MarginLimits)
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """One open loop on the design's grid, as the RMCU closes it (sampled, held) and as in continuous time."""
+
+    name: str
+    sampled: ComplexArray
+    continuous: ComplexArray
+    margins: Margins
+    continuous_margins: Margins
+
+
+@dataclass(frozen=True)
+class Robustness:
+    """The worst over all possible plants, as sampled."""
+
+    source: str
+    stable_share: float
+    sensitivity_peak: float
+    comfort_peak: float
+    gain_margin_db: float
+    phase_margin_deg: float
+    delay_margin_s: float
+
+
+@dataclass(frozen=True)
+class Design:
+    """The controller and the evidence for it.
+
+    `loops` are, in this order: plant alone, PI, phase (PI and lead), gain (PI and notch), all on the
+    grid `frequency_hz`; `chosen` names the one that the controller closes. `discrete` holds the RMCU's
+    filters by name.
+    """
+
+    controller: Controller
+    plant: DesignPlant
+    spec: DesignSpec
+    frequency_hz: Array
+    loops: tuple[Loop, ...]
+    chosen: str
+    trade_off: TradeOff
+    robustness: Robustness
+    plants: PlantSet
+    optimum: Optimum | None
+    discrete: dict[str, DiscreteFilter]
+    notes: tuple[str, ...]
+
+    def loop(self, name: str) -> Loop:
+        """One of the loops; KeyError if there is none of that name."""
+        for loop in self.loops:
+            if loop.name == name:
+                return loop
+        raise KeyError(name)
+
+
+def design(model: Model, spec: DesignSpec, *, progress: Callable[[str], None] = lambda _: None) -> Design:
+    """Design the wheel speed control, its filters, and judge them.
+
+    Raises:
+        BadInputError: the model lacks an output, a resonance or an inertia; values out of range; with
+            `optimise`, no controller keeps the limits.
+    """
+    _check(spec)
+    plant = design_plant(model)
+    motor = plant.functions[OUTPUTS[0]]
+    notes = list(plant.notes)
+    inertia = spec.inertia_kg_m2 or plant.inertia_kg_m2
+    origin_poles = 2 if motor.denominator[-1] == 0 else 1
+    frequency = loop_grid(spec.sample_time_s)
+    hold = hold_response(frequency, spec.sample_time_s)
+    coarse = loop_grid(spec.sample_time_s, 700)
+    plants = possible_plants(model, motor, coarse)
+    held = plants.responses * hold_response(coarse, spec.sample_time_s)
+    optimum = None
+    if spec.optimise:
+        optimum = optimize(
+            coarse,
+            held,
+            inertia,
+            spec.sample_time_s,
+            limits=spec.limits,
+            objective=spec.objective,
+            origin_poles=origin_poles,
+            progress=progress,
+        )
+        spec = replace(
+            spec,
+            lead_deg=optimum.angle_deg,
+            lead_hz=optimum.frequency_hz,
+            pole_rad_s=optimum.pole_rad_s,
+            normalisation=optimum.normalisation,
+        )
+    progress("loops and margins")
+    gains = pole_assignment(inertia, spec.pole_rad_s)
+    wscs = _speed_controls(spec, gains, plant.resonance_hz)
+    response = motor.response(frequency)
+    loops = [_loop("plant", (), frequency, response, hold, spec.sample_time_s, origin_poles - 1)]
+    for name, wsc in wscs.items():
+        blocks = feedback_functions(wsc)
+        loops.append(_loop(name, blocks, frequency, response, hold, spec.sample_time_s, origin_poles))
+    chart = trade_off(
+        frequency,
+        loops[1].sampled,
+        plant.resonance_hz,
+        spec.normalisation,
+        spec.sample_time_s,
+        origin_poles=origin_poles,
+    )
+    wsc = wscs[spec.stabilisation]
+    controller = _controller(model, spec, plant, wsc, notes)
+    blocks = feedback_functions(wsc)
+    robust = _robustness(coarse, held, blocks, spec.sample_time_s, origin_poles, plants.source)
+    chosen = next(loop for loop in loops if loop.name == spec.stabilisation)
+    if not chosen.margins.stable:
+        notes.append("the closed loop is UNSTABLE on this model: do not load this controller")
+    return Design(
+        controller,
+        plant,
+        spec,
+        frequency,
+        tuple(loops),
+        spec.stabilisation,
+        chart,
+        robust,
+        plants,
+        optimum,
+        _discrete(controller, plant),
+        tuple(notes),
+    )
+
+
+def measured_loop(design: Design, frf: FrequencyResponse) -> dict[str, ComplexArray]:
+    """The loops at the measured frequencies: measured motor speed response times controller and hold.
+
+    Raises:
+        BadInputError: the measurement has no motor speed.
+    """
+    if OUTPUTS[0] not in frf.outputs:
+        raise BadInputError(f"the frequency response has no '{OUTPUTS[0]}'")
+    step = design.spec.sample_time_s
+    measured = frf.of(OUTPUTS[0]) * hold_response(frf.frequency_hz, step)
+    gains = (design.controller.wsc.proportional_gain, design.controller.wsc.integral_gain)
+    found = {"plant": measured}
+    for name, wsc in _speed_controls(design.spec, gains, design.plant.resonance_hz).items():
+        found[name] = measured * feedback_response(feedback_functions(wsc), frf.frequency_hz, step)
+    return found
+
+
+def _check(spec: DesignSpec) -> None:
+    positive: dict[str, Any] = {
+        "--pole": abs(spec.pole_rad_s),
+        "--sample-time": spec.sample_time_s,
+        "--torque-limit": spec.torque_limit_nm,
+        "--inertia": spec.inertia_kg_m2,
+        "--gear-ratio": spec.gear_ratio,
+        "--wheel-inertia": spec.wheel_inertia_kg_m2,
+        "--notch-hz": spec.notch_hz,
+    }
+    for option, value in positive.items():
+        if value is not None and not (np.isfinite(value) and value > 0):
+            raise BadInputError(f"{option} is {value:g}", fix="give a positive number")
+    if spec.optimise and spec.stabilisation == "gain":
+        raise BadInputError("--optimize searches a lead", fix="leave out --notch-hz")
+
+
+def _speed_controls(spec: DesignSpec, gains: tuple[float, float], resonance_hz: float) -> dict[str, Wsc]:
+    pi = Wsc(
+        proportional_gain=gains[0], integral_gain=gains[1], filter_time_constant_s=spec.speed_filter_time_s
+    )
+    notch = Notch(
+        frequency_hz=spec.notch_hz or resonance_hz, width=spec.notch_width, depth=spec.notch_depth
+    )
+    part: Lead = lead(spec.lead_deg, spec.lead_hz, spec.normalisation)
+    return {
+        "pi": pi,
+        "phase": pi.model_copy(update={"lead": part}),
+        "gain": pi.model_copy(update={"notch": notch}),
+    }
+
+
+def _loop(
+    name: str,
+    blocks: tuple[TransferFunction, ...],
+    frequency: Array,
+    response: ComplexArray,
+    hold: ComplexArray,
+    step: float,
+    origin_poles: int,
+) -> Loop:
+    sampled = response * hold * feedback_response(blocks, frequency, step)
+    continuous = response * feedback_response(blocks, frequency, None)
+    return Loop(
+        name,
+        sampled,
+        continuous,
+        margins(frequency, sampled, origin_poles),
+        margins(frequency, continuous, origin_poles),
+    )
+
+
+def _robustness(
+    frequency: Array,
+    plants: ComplexArray,
+    blocks: tuple[TransferFunction, ...],
+    step: float,
+    origin_poles: int,
+    source: str,
+) -> Robustness:
+    control = feedback_response(blocks, frequency, step)
+    every = [margins(frequency, plant * control, origin_poles) for plant in plants]
+    return Robustness(
+        source,
+        float(np.mean([m.stable for m in every])),
+        max(m.sensitivity_peak for m in every),
+        max(m.comfort_peak for m in every),
+        min(m.gain_margin_db for m in every),
+        min(m.phase_margin_deg for m in every),
+        min(m.delay_margin_s for m in every),
+    )
+
+
+def _controller(
+    model: Model, spec: DesignSpec, plant: DesignPlant, wsc: Wsc, notes: list[str]
+) -> Controller:
+    return Controller(
+        name=spec.name or spec.stabilisation,
+        sample_time_s=spec.sample_time_s,
+        torque_limit_nm=spec.torque_limit_nm,
+        dfc=Dfc(
+            integral_gain=spec.dfc_integral_gain,
+            feedforward_time_constant_s=spec.feed_forward_time_s,
+            wheel_radius_m=spec.wheel_radius_m,
+        ),
+        wsc=wsc,
+        dfo=Dfo(
+            time_constant_s=spec.observer_time_s,
+            gear_ratio=spec.gear_ratio or plant.gear_ratio,
+            wheel_inertia_kg_m2=_wheel_inertia(model, spec, plant, notes),
+        ),
+        plant=plant.filters,
+    )
+
+
+def _wheel_inertia(model: Model, spec: DesignSpec, plant: DesignPlant, notes: list[str]) -> float:
+    """J_l of (9): wheels and dyno rotors; given, in the model, or read from a chain fitted to it."""
+    known = spec.wheel_inertia_kg_m2 or model.parameters.get("wheel_inertia")
+    if known is not None:
+        return float(known)
+    chain = model.meta.get("chain")
+    if isinstance(chain, dict) and isinstance(chain.get("wheel_inertia"), int | float):
+        return float(chain["wheel_inertia"])
+    if model.kind != "transfer_function":
+        raise BadInputError(
+            f"a '{model.kind}' model does not tell the wheels' inertia apart from the vehicle's",
+            fix="give --wheel-inertia (wheels and dyno rotors, kg m2)",
+        )
+    frequency = np.geomspace(0.05, 30.0, 200)
+    response = np.array([plant.functions[name].response(frequency) for name in OUTPUTS])
+    nothing = np.zeros(response.shape)
+    exact = FrequencyResponse(
+        frequency, OUTPUTS, response, nothing + 1, nothing, nothing, nothing, 1, "model"
+    )
+    fitted = fit_chain(exact, "three_inertia", torque_delay_s=max(plant.delay_s, 1e-5))
+    value = fitted.model.parameters["wheel_inertia"]
+    notes.append(
+        f"the observer's wheel inertia {value:.4g} kg m2 comes from a three-inertia chain fitted to the model"
+    )
+    return value
+
+
+def _discrete(controller: Controller, plant: DesignPlant) -> dict[str, DiscreteFilter]:
+    filters = controller.plant
+    function = {
+        "motor": TransferFunction(filters.motor_speed, filters.denominator),
+        "wheel": TransferFunction(filters.wheel_speed, filters.denominator),
+        "shaft": TransferFunction(filters.shaft_torque, filters.denominator),
+    }
+    blocks = {
+        "speed_filter": speed_filter(
+            function["motor"], function["wheel"], controller.wsc.filter_time_constant_s
+        ),
+        "feed_forward": feed_forward(function["shaft"], controller.dfc.feedforward_time_constant_s),
+        "observer_filter": observer_filter(controller.dfo.time_constant_s),
+    }
+    names = ("pi", "lead" if controller.wsc.lead else "notch")
+    blocks |= dict(zip(names, feedback_functions(controller.wsc), strict=True))
+    return {name: tustin(block, controller.sample_time_s) for name, block in blocks.items()}

@@ -1,0 +1,159 @@
+"""The plant as the RMCU may use it: its filters invert numerators, so those must be invertible."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.identification import transfer_functions_of
+from hil.core.channels import OUTPUTS
+from hil.core.controller import LARGEST_ORDER, Plant
+from hil.core.errors import BadInputError
+from hil.core.model import Model, TransferFunction
+
+Array = npt.NDArray[np.float64]
+
+_LEAST_DAMPING = 0.02
+_FAR_ZERO_HZ = 200.0
+
+
+@dataclass(frozen=True)
+class DesignPlant:
+    """What a design starts from.
+
+    Attributes:
+        functions: the model's transfer functions, dead time included.
+        filters: the same for the RMCU, every numerator that is inverted made invertible.
+        delay_s: dead time.
+        resonance_hz: frequency of the least damped pole pair.
+        inertia_kg_m2: J_l/N² + J_m seen by the motor at low frequency.
+        gear_ratio: motor speed over wheel speed at low frequency.
+        notes: what was changed, and why.
+    """
+
+    functions: dict[str, TransferFunction]
+    filters: Plant
+    delay_s: float
+    resonance_hz: float
+    inertia_kg_m2: float
+    gear_ratio: float
+    notes: tuple[str, ...]
+
+
+def design_plant(model: Model) -> DesignPlant:
+    """Prepare a model of any kind for control design.
+
+    Raises:
+        BadInputError: an output is missing, the functions do not share one denominator, the order is
+            beyond the RMCU's, the plant is unstable or has no oscillating pole pair.
+    """
+    functions, notes = transfer_functions_of(model)
+    missing = [name for name in OUTPUTS if name not in functions]
+    if missing:
+        raise BadInputError(
+            f"the model has no '{missing[0]}'", fix="the controller needs all three outputs: record them all"
+        )
+    motor, wheel, shaft = (functions[name] for name in OUTPUTS)
+    lead = motor.denominator[0]
+    denominator = np.array(motor.denominator) / lead
+    if len(denominator) > LARGEST_ORDER + 1:
+        raise BadInputError(f"order {len(denominator) - 1} is beyond the RMCU's {LARGEST_ORDER}")
+    poles = np.roots(denominator)
+    if np.any(poles.real > 1e-6 * np.max(np.abs(poles))):
+        raise BadInputError("the plant is unstable", fix="identify it again")
+    numerators = [np.trim_zeros(np.array(functions[n].numerator) / functions[n].denominator[0], "f") for n in OUTPUTS]
+    changes = list(notes)
+    numerators[1] = _invertible(numerators[1], len(numerators[0]) - 1, "wheel speed", "(17)", changes)
+    numerators[2] = _invertible(numerators[2], len(denominator) - 1, "shaft torque", "(18)", changes)
+    filters = Plant(
+        denominator=tuple(float(c) for c in denominator),
+        motor_speed=tuple(float(c) for c in numerators[0]),
+        wheel_speed=tuple(float(c) for c in numerators[1]),
+        shaft_torque=tuple(float(c) for c in numerators[2]),
+    )
+    return DesignPlant(
+        functions,
+        filters,
+        motor.delay_s,
+        resonance_hz(denominator),
+        _low_frequency_inertia(motor),
+        _ratio(motor, wheel),
+        tuple(changes),
+    )
+
+
+def resonance_hz(denominator: Array) -> float:
+    """Natural frequency |p|/2π of the least damped complex pole pair.
+
+    Raises:
+        BadInputError: no pole pair oscillates.
+    """
+    poles = np.roots(denominator)
+    oscillating = poles[poles.imag > 1e-9 * np.max(np.abs(poles))]
+    if not oscillating.size:
+        raise BadInputError(
+            "the plant has no resonance", fix="a rigid model needs no phase stabilisation; use a larger chain"
+        )
+    damping = -oscillating.real / np.abs(oscillating)
+    return float(np.abs(oscillating[np.argmin(damping)]) / (2 * np.pi))
+
+
+def _invertible(numerator: Array, dividend: int, name: str, equation: str, notes: list[str]) -> Array:
+    """A numerator that can stand in a stable, proper filter; `dividend` is the order above it.
+
+    Zeros in the right half plane are mirrored into the left: the gain stays as it is at every
+    frequency, the phase of the inverse is then not exact. Zeros near the imaginary axis get a damping
+    ratio of 0.02, or the filter would ring. Missing order is made up by real zeros far above the band.
+    """
+    origin = len(numerator) - len(np.trim_zeros(numerator, "b"))
+    zeros = np.roots(numerator[: len(numerator) - origin])
+    moved = zeros.copy()
+    right = zeros.real > 0
+    moved[right] = -zeros[right].conj()
+    if right.any():
+        places = ", ".join(f"{abs(z) / (2 * np.pi):.3g} Hz" for z in zeros[right & (zeros.imag >= 0)])
+        notes.append(
+            f"{name} has zeros in the right half plane ({places}): an inverse would be unstable, so they are "
+            f"mirrored in the filter {equation}; its gain is exact, its phase is not"
+        )
+    damping = -moved.real / np.maximum(np.abs(moved), 1e-300)
+    ringing = damping < _LEAST_DAMPING
+    moved[ringing] = np.abs(moved[ringing]) * (
+        -_LEAST_DAMPING + 1j * np.sign(moved[ringing].imag) * np.sqrt(1 - _LEAST_DAMPING**2)
+    )
+    if ringing.any():
+        notes.append(
+            f"zeros of {name} with hardly any damping get a damping ratio of {_LEAST_DAMPING:g} "
+            f"in the filter {equation}"
+        )
+    if right.any() or ringing.any():
+        numerator = np.append(abs(numerator[0]) * np.real(np.poly(moved)), np.zeros(origin))
+    lacking = dividend - 1 - (len(numerator) - 1)
+    for _ in range(max(lacking, 0)):
+        numerator = np.polymul(numerator, [1 / (2 * np.pi * _FAR_ZERO_HZ), 1.0])
+    if lacking > 0:
+        notes.append(
+            f"the filter {equation} would be improper: {lacking} zeros at {_FAR_ZERO_HZ:g} Hz are added to {name}"
+        )
+    return numerator
+
+
+def _low_frequency_inertia(motor: TransferFunction) -> float:
+    """1/(s·G(s)) as s → 0 for an integrating plant; with drag, from the highest coefficients that count.
+
+    With a real pole p near the origin in place of the integrator, G ≈ 1/(J (s - p)) there.
+    """
+    denominator = np.array(motor.denominator)
+    if denominator[-1] == 0:
+        return float(denominator[-2] / motor.numerator[-1])
+    slow = np.roots(denominator)
+    slowest = slow[np.argmin(np.abs(slow))]
+    return float(denominator[-1] / (-slowest.real * motor.numerator[-1]))
+
+
+def _ratio(motor: TransferFunction, wheel: TransferFunction) -> float:
+    return float(
+        motor.numerator[-1] / wheel.numerator[-1] * (wheel.denominator[0] / motor.denominator[0])
+    )

@@ -1,0 +1,177 @@
+"""One experiment: a stretch of a recording on even time stamps, ready for a Fourier transform."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from pydantic import ValidationError
+from scipy.interpolate import CubicSpline
+
+from hil.analysis.frequency_response._quality import UnfitDataError
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.errors import BadInputError
+from hil.core.recording import Recording
+from hil.core.result import RunResult, Segment
+
+Array = npt.NDArray[np.float64]
+
+REFERENCE = "driving_torque_ref_nm"
+EXCITING_KINDS = ("chirp", "multisine")
+_RMCU_SAMPLE_TIME_S = 0.001
+_JITTER_IGNORED = 0.02  # of a sample: what rounding to 1 µs does at 1 kHz is far below
+_LARGEST_LOST_SHARE = 0.01
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Input and outputs at even time steps.
+
+    Attributes:
+        name: file and segment, for messages.
+        sample_time_s: time step.
+        input: N samples of the input.
+        outputs: O x N samples, in the order of `output_names`.
+        reference: N samples of the loop's reference, where recorded.
+        hold_s: how long the real input keeps a value (zero-order hold of the RMCU).
+        kind: 'chirp', 'multisine', or '' where unknown.
+    """
+
+    name: str
+    sample_time_s: float
+    input: Array
+    outputs: Array
+    output_names: tuple[str, ...]
+    reference: Array | None = None
+    hold_s: float = 0.0
+    kind: str = ""
+    notes: tuple[str, ...] = ()
+
+    @property
+    def duration_s(self) -> float:
+        """Length in seconds."""
+        return len(self.input) * self.sample_time_s
+
+
+def segments_of(recording: Recording) -> tuple[Segment, ...]:
+    """Segments of the run that made the recording; none for data of another tool."""
+    raw = recording.attachments.get("run.json")
+    if raw is None:
+        return ()
+    try:
+        return RunResult.model_validate(json.loads(raw)).segments
+    except (ValidationError, ValueError) as error:
+        raise BadInputError(f"its run.json cannot be read: {error}", where=str(recording.source)) from error
+
+
+def experiments_of(
+    recording: Recording,
+    *,
+    segments: Sequence[str] = (),
+    input_channel: str = INPUT,
+    to_hz: float = 30.0,
+    hold_s: float | None = None,
+) -> list[Experiment]:
+    """Cut a recording into experiments.
+
+    Without `segments`, each chirp or multisine segment of the run is one experiment; a recording
+    without segments is one experiment as a whole.
+
+    Args:
+        recording: the data.
+        segments: ids of the run's segments to use instead.
+        input_channel: the channel that excites.
+        to_hz: highest frequency of interest; decides whether gaps in time matter.
+        hold_s: how long the input keeps a value; default: the sample time, at most the RMCU's 1 ms.
+
+    Raises:
+        BadInputError: an unknown segment, no exciting segment, a missing channel.
+        UnfitDataError: time stamps too uneven to resample.
+    """
+    known = segments_of(recording)
+    chosen = _choose(known, segments, str(recording.source))
+    if not chosen:
+        return [_experiment(recording, str(recording.source), "", input_channel, to_hz, hold_s)]
+    return [
+        _experiment(
+            recording.between(part.start_s, part.end_s),
+            f"{recording.source}: segment {part.id}",
+            part.kind,
+            input_channel,
+            to_hz,
+            hold_s,
+        )
+        for part in chosen
+    ]
+
+
+def _choose(known: Sequence[Segment], wanted: Sequence[str], where: str) -> list[Segment]:
+    for name in wanted:
+        if name not in {part.id for part in known}:
+            ids = ", ".join(part.id for part in known) or "none"
+            raise BadInputError(f"has no segment '{name}'", where=where, fix=f"its segments: {ids}")
+    if wanted:
+        return [part for part in known if part.id in wanted]
+    exciting = [part for part in known if part.kind in EXCITING_KINDS]
+    if known and not exciting:
+        raise BadInputError(
+            "none of its segments is a chirp or a multisine",
+            where=where,
+            fix=f"choose with --segment, or run an identification plan; segments: "
+            f"{', '.join(part.id for part in known)}",
+        )
+    return exciting
+
+
+def _experiment(
+    recording: Recording, name: str, kind: str, input_channel: str, to_hz: float, hold_s: float | None
+) -> Experiment:
+    outputs = tuple(output for output in OUTPUTS if output in recording)
+    names = [input_channel, *outputs]
+    if REFERENCE in recording and np.all(np.isfinite(recording[REFERENCE])):
+        names.append(REFERENCE)
+    raw = np.array([recording[channel] for channel in names])
+    if raw.shape[1] < 2:
+        raise UnfitDataError("too_short", f"has {raw.shape[1]} samples", where=name)
+    values, step, notes = _even(recording[TIME], raw, to_hz, name)
+    return Experiment(
+        name,
+        step,
+        values[0],
+        values[1 : 1 + len(outputs)],
+        outputs,
+        values[-1] if REFERENCE in names else None,
+        min(step, _RMCU_SAMPLE_TIME_S) if hold_s is None else hold_s,
+        kind,
+        tuple(recording.notes) + notes,
+    )
+
+
+def _even(time: Array, values: Array, to_hz: float, where: str) -> tuple[Array, float, tuple[str, ...]]:
+    """Values on even time stamps, the step, and a note if they had to be resampled."""
+    steps = np.diff(time)
+    step = float(np.median(steps))
+    mean = float(time[-1] - time[0]) / (len(time) - 1)
+    ideal = time[0] + mean * np.arange(len(time))
+    if np.max(np.abs(time - ideal)) <= _JITTER_IGNORED * mean:
+        return values, mean, ()
+    lost = float(np.sum(steps[steps > 1 / (4 * to_hz)])) / float(time[-1] - time[0])
+    if lost > _LARGEST_LOST_SHARE:
+        raise UnfitDataError(
+            "uneven_time",
+            f"{lost:.1%} of the time lies in gaps longer than {250 / to_hz:.3g} ms (a quarter period at "
+            f"{to_hz:g} Hz; longest {np.max(steps):.3g} s near {time[int(np.argmax(steps))]:.6g} s), "
+            f"{_LARGEST_LOST_SHARE:.0%} is allowed",
+            where=where,
+            fix="record without gaps, or lower --to-hz",
+        )
+    grid = np.arange(time[0], time[-1] + 0.5 * step, step)
+    grid = grid[grid <= time[-1]]
+    note = (
+        f"time stamps are uneven (steps of {np.min(steps) * 1e3:.3g} to {np.max(steps) * 1e3:.3g} ms): "
+        f"resampled to {step * 1e3:.4g} ms with a cubic spline"
+    )
+    return CubicSpline(time, values, axis=1)(grid), step, (note,)

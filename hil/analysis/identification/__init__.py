@@ -1,0 +1,46 @@
+"""Models from frequency responses: rational functions with dead time, and driveline chains."""
+
+from hil.analysis.identification._chain import (
+    CHAINS,
+    chain_polynomials,
+    chain_response,
+    transfer_functions_of,
+)
+from hil.analysis.identification._chain_fit import (
+    TOLERANCE_DB,
+    TOLERANCE_DEG,
+    ChainChoice,
+    ChainFit,
+    Misfit,
+    choose_chain,
+    fit_chain,
+)
+from hil.analysis.identification._fit import Fit, expected_deviation, fit
+from hil.analysis.identification._modal import Modes, Structure
+from hil.analysis.identification._order import ORDERS, Candidate, OrderChoice, choose_order
+from hil.analysis.identification._table import fit_of, model_of
+
+__all__ = [
+    "CHAINS",
+    "ORDERS",
+    "TOLERANCE_DB",
+    "TOLERANCE_DEG",
+    "Candidate",
+    "ChainChoice",
+    "ChainFit",
+    "Fit",
+    "Misfit",
+    "Modes",
+    "OrderChoice",
+    "Structure",
+    "chain_polynomials",
+    "chain_response",
+    "choose_chain",
+    "choose_order",
+    "expected_deviation",
+    "fit",
+    "fit_of",
+    "fit_chain",
+    "model_of",
+    "transfer_functions_of",
+]

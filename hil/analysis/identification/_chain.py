@@ -1,0 +1,122 @@
+"""Driveline chains in closed form: rotor, gear, shafts, and what hangs on them.
+
+Equations of motion, wheel side except the rotor (N gear ratio, T the torque after the dead time):
+
+    J_m dω_m/dt = T - drag·ω_m - T_s/N                              rotor
+    dT_s/dt = k (ω_m/N - ω_l) + d d(ω_m/N - ω_l)/dt                  shafts
+    J_w dω_l/dt = T_s - T_t                                          wheel and dyno rotor
+    dT_t/dt = k_t (ω_l - ω_v) + d_t d(ω_l - ω_v)/dt                  tyre and road
+    J_v dω_v/dt = T_t                                                vehicle
+
+`two_inertia` has no wheel and tyre: J_v dω_l/dt = T_s. `rigid` has no shafts either: ω_l = ω_m/N and
+T_s = J_v dω_l/dt is the torque that the load needs; only it has drag.
+
+With C = d s + k and T_s/ω_l = s P/Q (P = J_v, Q = 1 for two inertias; P = J_w(J_v s² + D) + J_v D,
+Q = J_v s² + D, D = d_t s + k_t for three), M = s²P + CQ and Δ = s (J_m M + C P/N²):
+
+    ω_m/T = M/Δ,   ω_l/T = C Q/(N Δ),   T_s/T = s C P/(N Δ)
+
+For three inertias the orders are 4, 3, 4 over 5, as in the paper's (14)-(16).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.channels import OUTPUTS
+from hil.core.errors import BadInputError
+from hil.core.model import Model, TransferFunction
+
+Array = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+CHAINS = ("rigid", "two_inertia", "three_inertia")
+
+
+def chain_polynomials(kind: str, parameters: Mapping[str, float]) -> tuple[dict[str, Array], Array]:
+    """Numerators by output and their denominator, descending powers of s, without the dead time.
+
+    The pole at the origin is an exact 0 at the end of the denominator (without drag), and the zero of
+    T_s that cancels it an exact 0 at the end of its numerator.
+    """
+    rotor, ratio = parameters["motor_inertia"], parameters["gear_ratio"]
+    load = parameters["vehicle_inertia"]
+    if kind == "rigid":
+        drag = parameters["viscous_drag"]
+        denominator = np.array([rotor + load / ratio**2, drag])
+        numerators = (np.array([1.0]), np.array([1 / ratio]), np.array([load / ratio, 0.0]))
+        return dict(zip(OUTPUTS, numerators, strict=True)), denominator
+    shaft = np.array([parameters["shaft_damping"], parameters["shaft_stiffness"]])
+    p, q = np.array([load]), np.array([1.0])
+    if kind == "three_inertia":
+        tyre = np.array([parameters["tyre_damping"], parameters["tyre_stiffness"]])
+        q = np.polyadd([load, 0.0, 0.0], tyre)
+        p = np.polyadd(parameters["wheel_inertia"] * q, load * tyre)
+    m = np.polyadd(np.concatenate([p, [0.0, 0.0]]), np.polymul(shaft, q))
+    free = np.polyadd(rotor * m, np.polymul(shaft, p) / ratio**2)
+    numerators = (m, np.polymul(shaft, q) / ratio, np.append(np.polymul(shaft, p) / ratio, 0.0))
+    trimmed = [np.trim_zeros(numerator, "f") for numerator in numerators]
+    return dict(zip(OUTPUTS, trimmed, strict=True)), np.append(free, 0.0)
+
+
+def chain_response(kind: str, parameters: Mapping[str, float], frequency_hz: Array) -> ComplexArray:
+    """Responses (3 x F, in the order of `OUTPUTS`) of a chain, dead time included."""
+    s = 2j * np.pi * np.asarray(frequency_hz, dtype=float)
+    rotor, ratio, load = (parameters[k] for k in ("motor_inertia", "gear_ratio", "vehicle_inertia"))
+    delay = np.exp(-parameters["torque_delay"] * s)
+    if kind == "rigid":
+        speed = delay / ((rotor + load / ratio**2) * s + parameters["viscous_drag"])
+        return np.stack([speed, speed / ratio, load * s * speed / ratio])
+    shaft = parameters["shaft_damping"] * s + parameters["shaft_stiffness"]
+    p: ComplexArray | float = load
+    q: ComplexArray | float = 1.0
+    if kind == "three_inertia":
+        tyre = parameters["tyre_damping"] * s + parameters["tyre_stiffness"]
+        q = load * s * s + tyre
+        p = parameters["wheel_inertia"] * q + load * tyre
+    m = s * s * p + shaft * q
+    common = delay / (s * (rotor * m + shaft * p / ratio**2))
+    return np.stack([m * common, shaft * q / ratio * common, s * shaft * p / ratio * common])
+
+
+def transfer_functions_of(model: Model) -> tuple[dict[str, TransferFunction], tuple[str, ...]]:
+    """Transfer functions of any model, and notes on what they leave out.
+
+    A chain is converted by the formulas above; its effects are nonlinear or disturbances and are left
+    out, with a note.
+
+    Raises:
+        BadInputError: the functions do not share one denominator and one dead time.
+    """
+    notes = []
+    if model.effects:
+        names = ", ".join(use.id for use in model.effects)
+        notes.append(f"the model's effects are left out of the linear design: {names}")
+    if model.kind != "transfer_function":
+        numerators, denominator = chain_polynomials(model.kind, model.parameters)
+        lead = denominator[0]
+        delay = model.parameters["torque_delay"]
+        functions = {
+            name: TransferFunction(
+                tuple(float(c) for c in numerator / lead), tuple(float(c) for c in denominator / lead), delay
+            )
+            for name, numerator in numerators.items()
+        }
+        return functions, tuple(notes)
+    functions = dict(model.transfer_functions)
+    first = next(iter(functions.values()))
+    for name, function in functions.items():
+        same = len(function.denominator) == len(first.denominator) and np.allclose(
+            np.divide(function.denominator, function.denominator[0]),
+            np.divide(first.denominator, first.denominator[0]),
+            rtol=1e-9,
+        )
+        if not same or abs(function.delay_s - first.delay_s) > 1e-9:
+            raise BadInputError(
+                f"'{name}' has another denominator or dead time than the first output",
+                fix="identify all outputs together: hil identify writes one common denominator",
+            )
+    return functions, tuple(notes)

@@ -1,0 +1,142 @@
+"""Where a signal lies in a CAN frame, and its physical value, for whole blocks of frames at once.
+
+Layouts come from a DBC (cantools) or from the PDO mapping of an EDS (canopen); both ends of the wire use
+this class, and tests hold it against cantools frame by frame.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.compiled import compiled
+
+if TYPE_CHECKING:
+    from cantools.database.can import Message
+
+Payloads = npt.NDArray[np.uint64]
+
+
+@dataclass(frozen=True)
+class Signal:
+    """`length` bits from bit `shift` of the payload, read as a little-endian 64-bit number.
+
+    Big-endian signals lie at `shift` of the byte-reversed payload. Physical value = raw·scale + offset.
+    """
+
+    name: str
+    shift: int
+    length: int
+    signed: bool = False
+    scale: float = 1.0
+    offset: float = 0.0
+    unit: str = ""
+    is_float: bool = False
+    big_endian: bool = False
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Smallest and largest physical value that fits."""
+        if self.is_float:
+            return (-np.inf, np.inf)
+        ends = [count * self.scale + self.offset for count in self._counts]
+        return (min(ends), max(ends))
+
+    def raw(self, payload: int) -> int:
+        """Unsigned raw value in one payload."""
+        word = int.from_bytes(payload.to_bytes(8, "little"), "big") if self.big_endian else payload
+        return (word >> self.shift) & ((1 << self.length) - 1)
+
+    def value(self, payload: int) -> float:
+        """Physical value in one payload."""
+        raw = self.raw(payload)
+        if self.is_float:
+            return float(struct.unpack("<f" if self.length == 32 else "<d", raw.to_bytes(self.length // 8, "little"))[0])
+        if self.signed and raw >> (self.length - 1):
+            raw -= 1 << self.length
+        return raw * self.scale + self.offset
+
+    def decode(self, payloads: Payloads) -> npt.NDArray[np.float64]:
+        """Physical values of many payloads, shape as given."""
+        words = payloads.byteswap() if self.big_endian else payloads
+        raw = (words >> np.uint64(self.shift)) & np.uint64((1 << self.length) - 1)
+        if self.is_float:
+            bits = raw.astype(np.uint32) if self.length == 32 else raw
+            return np.asarray(bits.view(np.float32 if self.length == 32 else np.float64), dtype=float)
+        if self.signed:
+            up = np.uint64(64 - self.length)
+            return (raw << up).view(np.int64).__rshift__(np.int64(64 - self.length)) * self.scale + self.offset
+        return raw * self.scale + self.offset
+
+    def encode(self, values: npt.ArrayLike) -> Payloads:
+        """Payloads with only this signal set, rounded to its resolution and clipped to its range."""
+        physical = np.atleast_1d(np.asarray(values, dtype=float))
+        if self.is_float:
+            kind, bits = (np.float32, np.uint32) if self.length == 32 else (np.float64, np.uint64)
+            words = np.asarray(physical, kind).view(bits).astype(np.uint64) << np.uint64(self.shift)
+        else:
+            words = np.empty(len(physical), np.uint64)
+            low, high = self._counts
+            _pack(physical, self.scale, self.offset, low, high, self.shift, self.length, words)
+        return words.byteswap() if self.big_endian else words
+
+    @cached_property
+    def _counts(self) -> tuple[float, float]:
+        low = -(1 << (self.length - 1)) if self.signed else 0
+        return float(low), float(low + (1 << self.length) - 1)
+
+
+@compiled
+def _pack(values, scale, offset, low, high, shift, length, words):  # type: ignore[no-untyped-def]
+    mask = np.uint64((1 << length) - 1)
+    for i in range(values.shape[0]):
+        count = min(max(np.rint((values[i] - offset) / scale), low), high)
+        words[i] = (np.uint64(np.int64(count)) & mask) << np.uint64(shift)
+
+
+@dataclass(frozen=True)
+class FrameLayout:
+    """A frame with its identifier, payload length in bytes and signals."""
+
+    name: str
+    id: int
+    length: int
+    signals: dict[str, Signal]
+
+    def decode(self, payloads: Payloads) -> dict[str, npt.NDArray[np.float64]]:
+        """Physical values of every signal."""
+        return {name: signal.decode(payloads) for name, signal in self.signals.items()}
+
+    def encode(self, **values: npt.ArrayLike) -> Payloads:
+        """Payloads, shape (n,), from physical values (numbers or shape (n,)); other signals are zero."""
+        payloads = np.zeros(1, np.uint64)
+        for name, value in values.items():
+            payloads = payloads | self.signals[name].encode(value)
+        return payloads
+
+
+def layout_of(message: Message) -> FrameLayout:
+    """Layout of a message from a DBC."""
+    signals = {}
+    for s in message.signals:
+        shift = s.start
+        if s.byte_order == "big_endian":
+            msb_first = 8 * (s.start // 8) + (7 - s.start % 8)  # position counted from the frame's first bit
+            shift = 64 - msb_first - s.length
+        signals[s.name] = Signal(
+            s.name,
+            shift,
+            s.length,
+            s.is_signed,
+            float(s.scale),
+            float(s.offset),
+            s.unit or "",
+            s.is_float,
+            s.byte_order == "big_endian",
+        )
+    return FrameLayout(message.name, message.frame_id, message.length, signals)

@@ -1,0 +1,137 @@
+"""Carries out what a plan's steps ask for, tick by tick, on an open bench."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from drivers import TICK_S
+from hil.core.controller import Controller, load_controller
+from hil.core.errors import BenchError
+from hil.core.result import Segment
+from hil.engine.bench import Bench
+from hil.engine.preflight import Rehearsal
+from hil.engine.recorder import Recorder
+from test_plans import Array, PlannedSegment, Quantity
+
+_SPEED_TOLERANCE_RAD_S = 0.5
+_SPEED_GRACE_S = 5.0
+_RELEASE_S = 0.2  # torque is taken away over this time after a stretch of samples
+
+
+class BenchConductor:
+    """The engine's side of `test_plans.Conductor`."""
+
+    sample_time_s = TICK_S
+
+    def __init__(self, bench: Bench, recorder: Recorder, ask: Callable[[str], None]) -> None:
+        self._bench, self._recorder, self._ask = bench, recorder, ask
+        self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
+        self._controller: Controller | None = None
+        self._speed_m_s = 0.0
+        self.segments: list[Segment] = []
+        self.controllers: dict[str, str] = {}
+
+    def set_controller(self, file: Path) -> None:
+        """Write a controller to the RMCU (torque off) and read it back."""
+        self._check.set_controller(file)
+        controller = load_controller(file)
+        self._bench.rmcu.write_controller(controller)
+        self._controller = controller
+        self.controllers[file.stem] = file.read_text("utf-8")
+        self._event("controller", f"{controller.name} ({controller.stabilization} stabilization) written, read back")
+
+    def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
+        """Ramp to a speed and hold it."""
+        self._check.hold_speed(speed_m_s, duration_s)
+        dyno, loop = self._bench.dyno, self._bench.loop
+        target = speed_m_s / self._bench.file.vehicle.wheel_radius_m
+        ramp_s = abs(target - dyno.wheel_speed_rad_s) * self._bench.file.vehicle.wheel_radius_m
+        ramp_s /= self._bench.file.dyno.speed_ramp_m_s2
+        dyno.hold_speed(target)
+        loop.run_for(ramp_s)
+        reached = loop.wait_for(
+            lambda: abs(dyno.wheel_speed_rad_s - target) < _SPEED_TOLERANCE_RAD_S, _SPEED_GRACE_S
+        )
+        if not reached:
+            raise BenchError(
+                f"the wheels turn at {dyno.wheel_speed_rad_s:.2f} rad/s, {target:.2f} rad/s was asked for",
+                where="dynos",
+                fix="look at the dyno controller's torque limit",
+            )
+        self._speed_m_s = speed_m_s
+        self._event("speed", f"dynos hold {speed_m_s * 3.6:.1f} km/h")
+        loop.run_for(duration_s)
+
+    def release_vehicle(self) -> None:
+        """Let the dynos simulate the vehicle."""
+        self._bench.dyno.release_vehicle(self._speed_m_s)
+        self._event("speed", "dynos simulate the vehicle")
+
+    def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
+        """Request the samples one each tick, then take the torque away and switch it off."""
+        self._check.play(quantity, samples_nm, segment)
+        rmcu, loop = self._bench.rmcu, self._bench.loop
+        tail = np.linspace(samples_nm[-1], 0.0, round(_RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
+        start_s = loop.clock.now_s()
+        if segment:
+            self._begin(segment, start_s, len(samples_nm))
+        for payload in rmcu.requests(quantity, np.concatenate([samples_nm, tail])):
+            rmcu.send(payload)
+            loop.step()
+        if rmcu.state == "fault":
+            raise BenchError(f"the RMCU went to fault: {rmcu.fault}", where="RMCU", fix="see the recording's events")
+        self._switch_off()
+
+    def coast(self, duration_s: float) -> None:
+        """No motor torque for a while."""
+        self._switch_off()
+        self._bench.loop.run_for(duration_s)
+
+    def wait(self, duration_s: float) -> None:
+        """Let time pass."""
+        self._bench.loop.run_for(duration_s)
+
+    def prompt(self, text: str) -> None:
+        """Ask the operator; the loop stands still meanwhile, so the RMCU is off and the dynos hold."""
+        self._switch_off()
+        self._event("prompt", text)
+        self._ask(text)
+
+    def ramp_down(self, duration_s: float) -> None:
+        """Torque off, then the dynos bring the wheels to standstill."""
+        self._switch_off()
+        self.hold_speed(0.0, duration_s)
+
+    def _begin(self, planned: PlannedSegment, clock_s: float, samples: int) -> None:
+        start_s = self._recorder.recording_time(clock_s)
+        end_s = start_s + min(planned.end_s, samples * TICK_S)
+        self.segments.append(
+            Segment(
+                id=planned.id,
+                kind=planned.kind,
+                start_s=start_s,
+                step_s=round(start_s + planned.step_s, 6),
+                end_s=round(end_s, 6),
+                controller=self._controller.stabilization
+                if self._controller and planned.quantity == "driving_torque"
+                else "",
+                initial_speed_km_h=round(self._speed_m_s * 3.6, 6),
+                reference_before=planned.reference_before,
+                reference_after=planned.reference_after,
+            )
+        )
+        self._event("segment", f"{planned.id} begins")
+
+    def _switch_off(self) -> None:
+        rmcu, loop = self._bench.rmcu, self._bench.loop
+        rmcu.request_off()
+        if not loop.wait_for(rmcu.is_off, 0.1):
+            rmcu.request_off()  # one lost frame must not end a run
+            if not loop.wait_for(rmcu.is_off, 0.1):
+                raise BenchError(f"the RMCU does not switch off (state {rmcu.state})", where="RMCU")
+
+    def _event(self, kind: str, text: str) -> None:
+        self._recorder.event(self._bench.loop.clock.now_s(), kind, text)

@@ -1,0 +1,109 @@
+"""What is looked at before a bench is touched: dates, controllers, requests against limits, disk."""
+
+from __future__ import annotations
+
+import datetime
+import shutil
+from pathlib import Path
+
+import numpy as np
+
+from hil.core.controller import load_controller
+from hil.core.errors import BadInputError
+from hil.engine.bench_file import BenchFile
+from test_plans import Array, Plan, PlannedSegment, Quantity, estimate_duration_s
+
+_BYTES_PER_SECOND = 120_000  # measured: a recording's size for each second of bench time, with room to spare
+
+
+def preflight(plan: Plan, bench: BenchFile, out: Path, today: datetime.date) -> None:
+    """Refuse a run that could not end well.
+
+    Raises:
+        BadInputError: expired calibration, a controller file that cannot be used, a request beyond the
+            bench's limits, or too little room on the disk.
+    """
+    for sensor, valid_until in bench.calibration.items():
+        if valid_until < today:
+            raise BadInputError(
+                f"the calibration of '{sensor}' ran out on {valid_until.isoformat()}",
+                where=str(bench.source),
+                fix="have it calibrated and enter the new date under [calibration]",
+            )
+    rehearsal = Rehearsal(bench)
+    for step in (*plan.steps, *plan.finally_):
+        step.carry_out(rehearsal)
+    needed = int(estimate_duration_s(plan) * _BYTES_PER_SECOND)
+    free = shutil.disk_usage(out).free
+    if free < needed:
+        raise BadInputError(
+            f"{free / 1e6:.0f} MB are free, the recording may need {needed / 1e6:.0f} MB",
+            where=str(out),
+            fix="make room, or choose another place with --out",
+        )
+
+
+class Rehearsal:
+    """A `Conductor` that only compares what is asked for with the bench's limits."""
+
+    sample_time_s = 0.001
+
+    def __init__(self, bench: BenchFile) -> None:
+        self._bench = bench
+        self._has_controller = False
+        self.torque_limit_nm = bench.limits.motor_torque_nm
+
+    def set_controller(self, file: Path) -> None:
+        """The file must be readable and within the torque limit."""
+        controller = load_controller(file)
+        limit = self._bench.limits.motor_torque_nm
+        if controller.torque_limit_nm > limit:
+            raise BadInputError(
+                f"torque_limit_nm = {controller.torque_limit_nm:g} is above the bench's {limit:g} N m",
+                where=str(file),
+                fix="lower it; a bench's limits cannot be raised from a plan",
+            )
+        self._has_controller = True
+
+    def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
+        """The speed must be within the limit."""
+        del duration_s
+        limit = self._bench.limits.vehicle_speed_m_s
+        if abs(speed_m_s) > limit:
+            raise BadInputError(
+                f"hold_speed asks for {speed_m_s * 3.6:g} km/h, the bench allows {limit * 3.6:g} km/h",
+                where="plan",
+                fix="lower speed_km_h; a bench's limits cannot be raised from a plan",
+            )
+
+    def release_vehicle(self) -> None:
+        """Nothing to compare."""
+
+    def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
+        """The request must be within the limit; driving torque needs a controller."""
+        limits = self._bench.limits
+        limit = limits.motor_torque_nm if quantity == "motor_torque" else limits.driving_torque_nm
+        largest = float(np.max(np.abs(samples_nm)))
+        name = f"plan, segment '{segment.id}'" if segment else "plan"
+        if largest > limit:
+            raise BadInputError(
+                f"asks for {largest:g} N m of {quantity.replace('_', ' ')}, the bench allows {limit:g} N m",
+                where=name,
+                fix="lower the amplitude; a bench's limits cannot be raised from a plan",
+            )
+        if quantity == "driving_torque" and not self._has_controller:
+            raise BadInputError(
+                "asks for driving torque before any set_controller step", where=name, fix="set a controller first"
+            )
+
+    def coast(self, duration_s: float) -> None:
+        """Nothing to compare."""
+
+    def wait(self, duration_s: float) -> None:
+        """Nothing to compare."""
+
+    def prompt(self, text: str) -> None:
+        """Nothing to compare."""
+
+    def ramp_down(self, duration_s: float) -> None:
+        """Nothing to compare."""

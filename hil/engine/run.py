@@ -1,0 +1,257 @@
+"""A run from pre-flight to the closed recording, and what happens when something goes wrong on the way."""
+
+from __future__ import annotations
+
+import contextlib
+import datetime
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+
+from drivers import TICK_S, BusLoop
+from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
+from hil.core.files import make_directory
+from hil.core.model import Model, model_to_toml
+from hil.core.recording import Recording
+from hil.core.result import CriterionResult, RunResult, SafeState, Verdict
+from hil.engine.bench import Bench, open_bench
+from hil.engine.bench_file import BenchFile
+from hil.engine.conductor import BenchConductor
+from hil.engine.limits import LimitWatch
+from hil.engine.preflight import preflight
+from hil.engine.provenance import hashes, versions
+from hil.engine.recorder import Recorder
+from hil.engine.safety import reach_safe_state
+from test_plans import Plan, estimate_duration_s, judge
+
+RECORDING = "recording.mcap"
+_PROGRESS_S = 0.5
+_LISTEN_S = 0.2
+
+Progress = Callable[[float, str], None]
+
+
+@dataclass
+class RunOutcome:
+    """How a run ended; `error` is what stopped it, if anything did."""
+
+    result: RunResult
+    recording: Path
+    error: HilError | None
+    largest: dict[str, float]
+
+
+@dataclass
+class RunRequest:
+    """A run to be carried out."""
+
+    plan: Plan
+    bench: BenchFile
+    out: Path
+    model: Model | None = None
+    operator: str = ""
+    ask: Callable[[str], None] = lambda text: None
+    progress: Progress = lambda share, text: None
+
+
+def run_plan(request: RunRequest) -> RunOutcome:
+    """Carry out a plan on a bench and write its recording.
+
+    The order of events is described in docs/reference/order-of-events.md.
+
+    Raises:
+        BadInputError: before anything was moved: plan, bench or place cannot be used.
+        BenchError: before anything was moved: the bench does not come up.
+    """
+    make_directory(request.out)
+    preflight(request.plan, request.bench, request.out, datetime.datetime.now(datetime.UTC).date())
+    with open_bench(request.bench, model=request.model) as bench, _stop_signals(bench.loop):
+        return _Run(request, bench).carry_out()
+
+
+class _Run:
+    def __init__(self, request: RunRequest, bench: Bench) -> None:
+        self._request, self._bench = request, bench
+        self._bindings = [*bench.rmcu.bindings, *bench.dyno.bindings]
+        self._error: HilError | None = None
+        self._unsafe: list[str] = []
+        self._armed = False
+        self._started_at = datetime.datetime.now(datetime.UTC)
+
+    def carry_out(self) -> RunOutcome:
+        request, bench = self._request, self._bench
+        buses = [wire.name for wire in bench.loop.wires]
+        self._recorder = Recorder(request.out / RECORDING, self._bindings, buses, TICK_S)
+        self._watch = LimitWatch(self._bindings, request.bench.limits, TICK_S)
+        self._conductor = BenchConductor(bench, self._recorder, request.ask)
+        bench.loop.on_block(self._recorder.take)
+        bench.loop.on_block(self._watch.take)
+        started = time.perf_counter()
+        try:
+            self._come_up()
+            started = time.perf_counter()
+            self._begin_s = bench.loop.clock.now_s()
+            self._steps()
+        except HilError as error:
+            self._fail(error)
+        except Exception as error:  # a fault of ours must leave a safe bench and say what it was
+            self._fail(BenchError(f"internal error: {type(error).__name__}: {error}", fix="please report it"))
+        finally:
+            # Also when the interpreter itself is going down: nobody may be left with torque on.
+            bench.loop.shielded = True
+            self._unsafe = reach_safe_state(bench) if self._armed else []
+        return self._finish(time.perf_counter() - started)
+
+    def _come_up(self) -> None:
+        bench = self._bench
+        self._begin_s = bench.loop.clock.now_s()
+        bench.loop.run_for(_LISTEN_S)
+        if bench.rmcu.state == "":
+            raise BenchError("the RMCU sends no status", where="RMCU", fix="is it powered and on this bus?")
+        bench.dyno.start()
+        self._recorder.event(bench.loop.clock.now_s(), "preflight", "RMCU and dynos answer")
+        self._armed = True  # from here on the safe state is owed, whatever happens
+        ramp = self._request.bench.dyno.speed_ramp_m_s2 / self._request.bench.vehicle.wheel_radius_m
+        bench.rmcu.request_off()
+        bench.dyno.enable(ramp)
+        self._watch.active = True
+        bench.loop.every(0.05, self._supervise)
+        bench.loop.every(_PROGRESS_S, self._show_progress)
+        self._expected_s = estimate_duration_s(self._request.plan)
+        self._recorder.event(bench.loop.clock.now_s(), "arm", "drives enabled")
+
+    def _steps(self) -> None:
+        plan, conductor = self._request.plan, self._conductor
+        try:
+            for step in plan.steps:
+                step.carry_out(conductor)
+        except (InterruptError, BadInputError) as error:
+            # The bench is well: torque off, then the plan's own end steps, undisturbed.
+            self._fail(error)
+            self._bench.loop.shielded = True
+            self._bench.rmcu.request_off()
+        for step in plan.finally_:
+            step.carry_out(conductor)
+
+    def _supervise(self) -> None:
+        troubles = self._bench.dyno.troubles()
+        if troubles and not self._bench.loop.shielded:
+            raise BenchError("; ".join(troubles), where="dynos", fix="look at the dyno controller")
+
+    def _show_progress(self) -> None:
+        passed_s = self._bench.loop.clock.now_s() - self._begin_s
+        segments = self._conductor.segments
+        text = segments[-1].id if segments else "coming up"
+        self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
+
+    def _fail(self, error: HilError) -> None:
+        if self._error is None:
+            self._error = error
+            kind = "interrupt" if isinstance(error, InterruptError) else "failure"
+            self._try_event(kind, str(error).replace("\n", " "))
+
+    def _try_event(self, kind: str, text: str) -> None:
+        with contextlib.suppress(HilError):  # a full disk is already being reported
+            self._recorder.event(self._bench.loop.clock.now_s(), kind, text)
+
+    def _finish(self, wall_s: float) -> RunOutcome:
+        request, loop = self._request, self._bench.loop
+        safe: SafeState = "not_needed"
+        if self._armed:
+            safe = "not_confirmed" if self._unsafe else "confirmed"
+            self._try_event("safe_state", "; ".join(self._unsafe) or "confirmed by RMCU and dynos")
+        if self._unsafe and not isinstance(self._error, BenchError):
+            self._error = BenchError(
+                "; ".join(self._unsafe), where="safe state", fix="cut the drives' power before you go near"
+            )
+        bench_time_s = loop.clock.now_s() - self._begin_s
+        recording = self._recording()
+        criteria: tuple[CriterionResult, ...] = ()
+        if recording is not None:
+            criteria = judge(request.plan, recording, self._conductor.segments)
+        result = RunResult(
+            verdict=_verdict(criteria, self._error),
+            plan=request.plan.name,
+            bench=request.bench.name,
+            real_time_factor=round(bench_time_s / max(wall_s, 1e-9), 2),
+            bench_time_s=round(bench_time_s, 3),
+            safe_state=safe,
+            criteria=criteria,
+            segments=tuple(self._conductor.segments),
+            reason=str(self._error) if self._error else "",
+        )
+        try:
+            self._store(result)
+        except HilError as error:
+            self._error = self._error or error
+        largest = dict(self._watch.largest)
+        return RunOutcome(result, request.out / RECORDING, self._error, largest)
+
+    def _recording(self) -> Recording | None:
+        try:
+            return self._recorder.finish_rows()
+        except HilError as error:
+            self._fail(error)
+            return None
+
+    def _store(self, result: RunResult) -> None:
+        request, writer = self._request, self._recorder.writer
+        attachments = {
+            "plan.yaml": request.plan.text.encode(),
+            "bench.toml": request.bench.text.encode(),
+            "run.json": result.model_dump_json(indent=1).encode(),
+        }
+        if self._bench.model is not None:
+            attachments["model.toml"] = model_to_toml(self._bench.model).encode()
+        for name, text in self._conductor.controllers.items():
+            attachments[f"controller/{name}.toml"] = text.encode()
+        for name, content in attachments.items():
+            writer.attach(name, content)
+        operator = request.operator or request.bench.operator
+        writer.describe(
+            "run",
+            {
+                "plan": request.plan.name,
+                "title": request.plan.title,
+                "bench": request.bench.title or request.bench.name,
+                "operator": operator,
+                "started_at": self._started_at.isoformat(timespec="seconds"),
+                "simulated": str(self._bench.simulated).lower(),
+            },
+        )
+        writer.describe("dut", request.bench.dut)
+        writer.describe("versions", versions())
+        writer.describe("hashes", hashes(attachments))
+        dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
+        writer.describe("calibration", dates)
+        writer.close()
+
+
+def _verdict(criteria: tuple[CriterionResult, ...], error: HilError | None) -> Verdict:
+    verdicts = {c.verdict for c in criteria}
+    if error is not None or "error" in verdicts:
+        return "error"
+    return "fail" if "fail" in verdicts else "pass"
+
+
+@contextlib.contextmanager
+def _stop_signals(loop: BusLoop) -> Iterator[None]:
+    """Ctrl-C and SIGTERM ask the loop to stop at its next tick instead of killing the process."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def request_stop(number: int, frame: FrameType | None) -> None:
+        del number, frame
+        loop.stop_requested = True
+
+    previous = {number: signal.signal(number, request_stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)

@@ -1,0 +1,140 @@
+"""Plain figures of channels: over time and as spectra, for sweeps, for whole runs and foreign recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hil.core.channels import CHANNELS, INPUT, OUTPUTS, TIME
+from hil.core.recording import Recording
+from hil.core.result import Segment
+from reports import quantities
+from reports.figure import Band, Figure, Section, Trace
+from reports.labels import Label, channel_label, channel_unit
+from reports.spectrum import DESCRIPTION, amplitude_spectrum
+from reports.step_figures import controller_name
+from reports.stretch import cut, line
+
+_ROLES = ("gain", "phase", "third", "fourth")
+#: Channels that share axes.
+_PANELS: tuple[tuple[str, ...], ...] = (
+    ("motor_torque_ref_nm", "motor_torque_nm"),
+    ("motor_speed_rad_s",),
+    ("wheel_speed_rad_s", "wheel_speed_left_rad_s", "wheel_speed_right_rad_s"),
+    ("shaft_torque_nm", "shaft_torque_left_nm", "shaft_torque_right_nm"),
+    ("vehicle_speed_m_s",),
+    ("driving_torque_ref_nm", "driving_torque_est_nm"),
+    ("dyno_torque_ref_nm",),
+)
+_MOST_UNKNOWN_CHANNELS = 12
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Where figures are cut from, and how their ids begin."""
+
+    recording: Recording
+    id: str
+    start_s: float
+    end_s: float
+
+
+def sweep_section(recording: Recording, segment: Segment) -> Section:
+    """Input and outputs of a segment that is no step, over time and as spectra."""
+    where = _Stretch(recording, f"segment-{segment.id}", segment.start_s, segment.end_s)
+    names = (INPUT, *OUTPUTS)
+    over_time = [_time_figure(where, (name,)) for name in names]
+    spectra = [_spectrum_figure(where, name) for name in names]
+    missing = [n for n, figure in zip(names, over_time, strict=True) if figure is None]
+    controller = f", {controller_name(segment.controller).lower()}" if segment.controller else ""
+    text = (
+        f"{segment.kind.capitalize()}{controller}, "
+        f"{quantities.number(segment.start_s)} to {quantities.quantity(segment.end_s, 's')} of the recording."
+    )
+    return Section(
+        where.id,
+        f"Segment {segment.id}",
+        text,
+        tuple(figure for figure in (*over_time, *spectra) if figure is not None),
+        tuple(f"Not drawn: {channel_label(name).plain()} has too few values here." for name in missing),
+    )
+
+
+def overview_section(recording: Recording, segments: Sequence[Segment]) -> Section | None:
+    """The whole run in one wide figure with its segments shaded; None if there is nothing to draw."""
+    where = _whole(recording, "overview")
+    name = next((n for n in OUTPUTS if n in recording), INPUT)
+    bands = tuple(Band(s.start_s, s.end_s, s.id) for s in segments if s.end_s > s.start_s)
+    figure = _time_figure(where, (name,), bands) if where else None
+    if figure is None:
+        return None
+    return Section("overview", "The whole run", "", (figure,))
+
+
+def channels_section(recording: Recording) -> Section:
+    """Every channel over the whole recording, and spectra of the input and the outputs."""
+    where = _whole(recording, "channels")
+    if where is None:
+        return Section("channels", "Channels", "The recording has no samples to draw.", ())
+    unknown = [name for name in recording.channels if name not in CHANNELS]
+    drawn = unknown[:_MOST_UNKNOWN_CHANNELS]
+    panels = [*_PANELS, *((name,) for name in drawn)]
+    figures = [_time_figure(where, panel) for panel in panels]
+    figures += [_spectrum_figure(where, name) for name in (INPUT, *OUTPUTS)]
+    left_out = len(unknown) - len(drawn)
+    notes = (f"{left_out} further channels are in the table only.",) if left_out > 0 else ()
+    return Section("channels", "Channels", "", tuple(f for f in figures if f is not None), notes)
+
+
+def _whole(recording: Recording, section_id: str) -> _Stretch | None:
+    if TIME not in recording or len(recording.time_s) < 2:
+        return None
+    time = recording.time_s
+    return _Stretch(recording, section_id, float(time[0]), float(time[-1]))
+
+
+def _time_figure(where: _Stretch, names: Sequence[str], bands: tuple[Band, ...] = ()) -> Figure | None:
+    traces = [
+        line(where.recording, name, channel_label(name), role, start_s=where.start_s, end_s=where.end_s)
+        for name, role in zip(names, _ROLES, strict=False)
+    ]
+    drawn = tuple(trace for trace in traces if trace is not None)
+    if not drawn:
+        return None
+    label = drawn[0].label if len(drawn) == 1 else Label(channel_label(names[0]).text.split(",")[0])
+    title = Label(" and ".join(t.label.plain() for t in drawn)) if len(drawn) == 2 else label
+    return Figure(
+        id=f"{where.id}-{names[0]}",
+        title=title,
+        x_text="Time",
+        x_unit="s",
+        y_label=label,
+        y_unit=channel_unit(names[0]),
+        traces=drawn,
+        bands=bands,
+    )
+
+
+def _spectrum_figure(where: _Stretch, name: str) -> Figure | None:
+    found = cut(where.recording, name, where.start_s, where.end_s)
+    spectrum = amplitude_spectrum(*found) if found else None
+    if spectrum is None or not np.any(spectrum.amplitude > 0):
+        return None
+    label = channel_label(name)
+    top = float(spectrum.amplitude.max())
+    return Figure(
+        id=f"{where.id}-{name}-spectrum",
+        title=Label(f"Spectrum: {label.text.lower()}", label.symbol),
+        x_text="Frequency",
+        x_unit="Hz",
+        y_label=Label("Amplitude of", label.symbol) if label.symbol else Label("Amplitude"),
+        y_unit=channel_unit(name),
+        traces=(Trace(label, spectrum.frequency_hz, spectrum.amplitude, _ROLES[0]),),
+        x_range=(float(spectrum.frequency_hz[0]), float(spectrum.frequency_hz[-1])),
+        y_range=(top * 1e-5, top * 2),
+        logarithmic=True,
+        caption=f"{DESCRIPTION[0].upper()}{DESCRIPTION[1:]}; frequency lines "
+        f"{quantities.quantity(spectrum.resolution_hz, 'Hz', significant=2)} apart.",
+    )

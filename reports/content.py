@@ -1,0 +1,187 @@
+"""Everything a report says, formatted once, so that screen and paper cannot differ."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hil.core.channels import TIME
+from hil.core.recording import Recording
+from hil.core.result import RunResult
+from reports import provenance, quantities
+from reports.criteria import CriteriaTable, count_by_verdict, criteria_table
+from reports.figure import Section
+from reports.labels import channel_label, channel_unit
+from reports.provenance import ControllerTable, Fact, StoredFile
+from reports.sections import sections
+
+_HEADLINE = {"pass": "Passed", "fail": "Failed", "error": "Error"}
+_SAFE_STATE = {
+    "confirmed": "The bench confirmed its safe state after the run.",
+    "not_needed": "No safe state was needed.",
+    "not_confirmed": "The bench did not confirm its safe state after the run. Treat it as live: "
+    "isolate it before anyone goes near.",
+}
+
+
+@dataclass(frozen=True)
+class Banner:
+    """The verdict: `tone` is pass, fail, error or none; `alarm` is '' unless the bench may not be safe."""
+
+    tone: str
+    headline: str
+    sentences: tuple[str, ...]
+    alarm: str
+
+
+@dataclass(frozen=True)
+class EventRow:
+    """Something that happened, with its time in seconds."""
+
+    time: str
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True)
+class SegmentRow:
+    """One segment; times in seconds of the recording."""
+
+    id: str
+    kind: str
+    controller: str
+    speed: str
+    start: str
+    step: str
+    end: str
+
+
+@dataclass(frozen=True)
+class ChannelRow:
+    """Statistics of one channel over the whole recording."""
+
+    name: str
+    meaning: str
+    unit: str
+    lowest: str
+    mean: str
+    highest: str
+    deviation: str
+    missing: str
+
+
+@dataclass(frozen=True)
+class Content:
+    """A report without a form. `mark` names the recording at the foot of every page."""
+
+    title: str
+    simulated: bool
+    banner: Banner
+    run: tuple[Fact, ...]
+    dut: tuple[Fact, ...]
+    versions: tuple[Fact, ...]
+    calibration: tuple[Fact, ...]
+    files: tuple[StoredFile, ...]
+    source: str
+    sha256: str
+    mark: str
+    criteria: CriteriaTable | None
+    controllers: ControllerTable | None
+    segments: tuple[SegmentRow, ...]
+    channels: tuple[ChannelRow, ...]
+    events: tuple[EventRow, ...]
+    notes: tuple[str, ...]
+    sections: tuple[Section, ...]
+    started_at: str
+
+
+def content(recording: Recording, result: RunResult | None) -> Content:
+    """Gather what the recording and the result say; what they lack is left empty."""
+    run = recording.metadata.get("run", {})
+    sha256 = provenance.recording_hash(recording)
+    plan = result.plan if result else ""
+    title = run.get("title") or plan or recording.source.stem
+    started = run.get("started_at", "")
+    marks = (plan or recording.source.name, started, f"SHA-256 {sha256[:12]}" if sha256 else "")
+    return Content(
+        title=title,
+        simulated=provenance.simulated(recording),
+        banner=_banner(result),
+        run=provenance.run_facts(recording, result),
+        dut=provenance.table(recording, "dut"),
+        versions=provenance.table(recording, "versions"),
+        calibration=provenance.calibration_facts(recording),
+        files=provenance.stored_files(recording),
+        source=recording.source.name,
+        sha256=sha256,
+        mark=" · ".join(part for part in marks if part),
+        criteria=criteria_table(result) if result and result.criteria else None,
+        controllers=provenance.controller_table(recording),
+        segments=_segments(result),
+        channels=() if result else tuple(_channel(recording, n) for n in recording.channels if n != TIME),
+        events=tuple(
+            EventRow(quantities.number(e.time_s, 3), e.kind.replace("_", " "), e.text) for e in recording.events
+        ),
+        notes=tuple(recording.notes),
+        sections=tuple(sections(recording, result)),
+        started_at=started,
+    )
+
+
+def _banner(result: RunResult | None) -> Banner:
+    if result is None:
+        sentence = "The recording comes without a test plan or a result, so nothing is judged."
+        return Banner("none", "Recording, not judged", (sentence,), "")
+    unsafe = result.safe_state == "not_confirmed"
+    verdict = "error" if unsafe else result.verdict  # a run that may have left the bench live did not pass
+    counts = count_by_verdict(result.criteria)
+    total = len(result.criteria)
+    sentences = [result.reason] if result.reason else []
+    sentences.append(f"{counts['pass']} of {total} criteria passed." if total else "No criteria were judged.")
+    if counts["fail"]:
+        sentences.append(f"{counts['fail']} failed.")
+    if counts["error"]:
+        sentences.append(f"{counts['error']} could not be judged.")
+    if not unsafe:
+        sentences.append(_SAFE_STATE[result.safe_state])
+    alarm = _SAFE_STATE["not_confirmed"] if unsafe else ""
+    return Banner(verdict, _HEADLINE[verdict], tuple(sentences), alarm)
+
+
+def _segments(result: RunResult | None) -> tuple[SegmentRow, ...]:
+    return tuple(
+        SegmentRow(
+            id=segment.id,
+            kind=segment.kind,
+            controller=segment.controller or quantities.DASH,
+            speed=quantities.number(segment.initial_speed_km_h, significant=3),
+            start=quantities.number(segment.start_s, 3),
+            step=quantities.number(segment.step_s, 3) if segment.kind == "step" else quantities.DASH,
+            end=quantities.number(segment.end_s, 3),
+        )
+        for segment in (result.segments if result else ())
+    )
+
+
+def _channel(recording: Recording, name: str) -> ChannelRow:
+    values = recording[name]
+    finite = values[np.isfinite(values)]
+    low, mean, high, deviation = (
+        (float(finite.min()), float(finite.mean()), float(finite.max()), float(finite.std()))
+        if finite.size
+        else (np.nan,) * 4
+    )
+    decimals = quantities.decimals_for(low, high)
+    missing = 100.0 * (1 - finite.size / len(values)) if len(values) else 0.0
+    label = channel_label(name)
+    return ChannelRow(
+        name=name,
+        meaning="" if label.text == name else label.text,
+        unit=quantities.unit(channel_unit(name)),
+        lowest=quantities.number(low, decimals),
+        mean=quantities.number(mean, decimals),
+        highest=quantities.number(high, decimals),
+        deviation=quantities.number(deviation),
+        missing=quantities.quantity(missing, "%", significant=2) if missing else quantities.DASH,
+    )

@@ -1,0 +1,115 @@
+"""The criteria of a run as rows of a table, and the definitions that they share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from hil.core.result import CriterionResult, RunResult, Segment
+from reports import quantities
+from reports.step_figures import controller_name
+
+_MOST_DECIMALS = 9
+
+
+@dataclass(frozen=True)
+class CriterionRow:
+    """One criterion, formatted; `definition` is the number of its definition, 0 without one."""
+
+    id: str
+    title: str
+    value: str
+    unit: str
+    limit: str
+    margin: str
+    verdict: str
+    reason: str
+    definition: int
+
+
+@dataclass(frozen=True)
+class CriterionGroup:
+    """The criteria of one segment, or those that belong to none."""
+
+    title: str
+    rows: tuple[CriterionRow, ...]
+
+
+@dataclass(frozen=True)
+class CriteriaTable:
+    """All criteria in the plan's order, and their definitions numbered from 1."""
+
+    groups: tuple[CriterionGroup, ...]
+    definitions: tuple[str, ...]
+
+
+def criteria_table(result: RunResult) -> CriteriaTable:
+    """Rows by segment: the part of a criterion's id before the dot."""
+    definitions = list(dict.fromkeys(c.definition for c in result.criteria if c.definition))
+    segments = {segment.id: segment for segment in result.segments}
+    grouped: dict[str, list[CriterionRow]] = {}
+    for criterion in result.criteria:
+        title = _group_title(segments.get(criterion.id.partition(".")[0]))
+        number = definitions.index(criterion.definition) + 1 if criterion.definition else 0
+        grouped.setdefault(title, []).append(_row(criterion, number))
+    groups = tuple(CriterionGroup(title, tuple(rows)) for title, rows in grouped.items())
+    return CriteriaTable(groups, tuple(definitions))
+
+
+def count_by_verdict(criteria: Iterable[CriterionResult]) -> dict[str, int]:
+    """How many passed, failed and could not be judged."""
+    counts = {"pass": 0, "fail": 0, "error": 0}
+    for criterion in criteria:
+        counts[criterion.verdict] += 1
+    return counts
+
+
+def in_words(criterion: CriterionResult) -> str:
+    """One line: what was found against what was allowed; for messages."""
+    if criterion.reason:
+        return criterion.reason
+    decimals = _decimals(criterion)
+    value = quantities.quantity(criterion.value, criterion.unit, decimals)
+    limit = _limit(criterion, decimals)
+    return f"{value}, allowed is {limit}{quantities.THIN}{quantities.unit(criterion.unit)}".rstrip()
+
+
+def _group_title(segment: Segment | None) -> str:
+    if segment is None:
+        return "Whole run"
+    speed = quantities.quantity(segment.initial_speed_km_h, "km/h", significant=3)
+    name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
+    return f"{name}, {speed} ({segment.id})"
+
+
+def _row(criterion: CriterionResult, definition: int) -> CriterionRow:
+    decimals = _decimals(criterion)
+    return CriterionRow(
+        id=criterion.id,
+        title=criterion.title or criterion.id.rpartition(".")[2].replace("_", " ").capitalize(),
+        value=quantities.number(criterion.value, decimals),
+        unit=quantities.unit(criterion.unit),
+        limit=_limit(criterion, decimals),
+        margin=quantities.number(criterion.margin, decimals),
+        verdict=criterion.verdict,
+        reason=criterion.reason,
+        definition=definition,
+    )
+
+
+def _decimals(criterion: CriterionResult) -> int:
+    """Four digits of the largest number, and more where the margin would round to nothing."""
+    decimals = quantities.decimals_for(criterion.value, criterion.upper, criterion.lower)
+    margin = criterion.margin
+    while margin and abs(margin) < 10.0**-decimals and decimals < _MOST_DECIMALS:
+        decimals += 1
+    return decimals
+
+
+def _limit(criterion: CriterionResult, decimals: int) -> str:
+    lower, upper = (quantities.number(limit, decimals) for limit in (criterion.lower, criterion.upper))
+    if criterion.lower is not None and criterion.upper is not None:
+        return f"{lower} to {upper}"
+    if criterion.upper is not None:
+        return f"≤{quantities.THIN}{upper}"
+    return f"≥{quantities.THIN}{lower}" if criterion.lower is not None else quantities.DASH

@@ -1,0 +1,105 @@
+"""What a figure shows, in words and numbers; how it is drawn on screen or on paper is told elsewhere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from reports import quantities
+from reports.labels import Label
+
+Array = npt.NDArray[np.float64]
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One line: `x`, `y` are 1-D of one length; NaN in `y` is a gap. `role` names a tone of the style."""
+
+    label: Label
+    x: Array
+    y: Array
+    role: str
+    dash: str = "solid"
+
+
+@dataclass(frozen=True)
+class Band:
+    """A shaded stretch of the x axis; `beside` bands alternate in height so that their labels keep apart."""
+
+    start: float
+    end: float
+    label: str
+
+
+@dataclass(frozen=True)
+class Level:
+    """A horizontal line, such as a limit."""
+
+    value: float
+    label: str
+    role: str = "limit"
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One pair of axes. Ranges of None are chosen from the data."""
+
+    id: str
+    title: Label
+    x_text: str
+    x_unit: str
+    y_label: Label
+    y_unit: str
+    traces: tuple[Trace, ...]
+    bands: tuple[Band, ...] = ()
+    levels: tuple[Level, ...] = ()
+    x_range: Range | None = None
+    y_range: Range | None = None
+    logarithmic: bool = False
+    caption: str = ""
+    wide: bool = False
+
+    @property
+    def x_title(self) -> str:
+        """Axis title with unit."""
+        return f"{self.x_text} ({quantities.unit(self.x_unit)})" if self.x_unit else self.x_text
+
+    @property
+    def y_title(self) -> Label:
+        """Axis title with unit."""
+        tail = f" ({quantities.unit(self.y_unit)})" if self.y_unit else ""
+        return Label(self.y_label.text, self.y_label.symbol, self.y_label.tail + tail)
+
+    def alternative_text(self) -> str:
+        """What a reader who cannot see the figure should know."""
+        parts = [f"Line chart: {self.title.plain()} over {self.x_text.lower()}."]
+        for trace in self.traces:
+            shown = self._visible(trace)
+            if shown.size:
+                low = quantities.quantity(float(shown.min()), self.y_unit)
+                high = quantities.quantity(float(shown.max()), self.y_unit)
+                parts.append(f"{trace.label.plain()}: from {low} to {high}.")
+            else:
+                parts.append(f"{trace.label.plain()}: no values.")
+        parts += [f"{level.label} at {quantities.quantity(level.value, self.y_unit)}." for level in self.levels]
+        return " ".join(parts)
+
+    def _visible(self, trace: Trace) -> Array:
+        finite = np.isfinite(trace.y)
+        if self.x_range is not None:
+            finite &= (trace.x >= self.x_range[0]) & (trace.x <= self.x_range[1])
+        return trace.y[finite]
+
+
+@dataclass(frozen=True)
+class Section:
+    """Figures under one heading; `notes` say which figures could not be drawn, and why."""
+
+    id: str
+    title: str
+    text: str
+    figures: tuple[Figure, ...]
+    notes: tuple[str, ...] = ()

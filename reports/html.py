@@ -1,0 +1,99 @@
+"""The report for the screen: one HTML file with interactive figures that asks no network for anything."""
+
+from __future__ import annotations
+
+import json
+from importlib import resources
+from pathlib import Path
+
+from hil.core.files import write_atomically
+from hil.core.recording import Recording
+from hil.core.result import RunResult
+from reports import style
+from reports.content import Content, content
+from reports.criteria import CriterionRow
+from reports.plotly_figure import plotly_figure
+
+_LARGEST_INPUT_FILE = 200_000
+
+
+def write_html(recording: Recording, result: RunResult | None, path: Path) -> Path:
+    """Write the HTML report, whole or not at all; `result` is None for a recording without a plan.
+
+    Raises:
+        BadInputError: `path` cannot be written.
+    """
+    write_atomically(path, html_text(content(recording, result), input_texts(recording)))
+    return path
+
+
+def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
+    """The page; `texts` are the names and texts of the input files to show in it."""
+    import jinja2  # slow to import; only this form needs it
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("reports"),
+        autoescape=True,
+        trim_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    figures = {f.id: plotly_figure(f) for section in report.sections for f in section.figures}
+    return environment.get_template("report.html.j2").render(
+        c=report,
+        contents=_contents(report, bool(texts)),
+        unmet=_unmet(report),
+        texts=texts,
+        figures=_json_in_script(figures) if figures else "",
+        plotly=_plotly_js() if figures else "",
+        light=style.css_variables("light"),
+        dark=style.css_variables("dark"),
+        css=_template("report.css"),
+        js=_template("report.js"),
+    )
+
+
+def input_texts(recording: Recording) -> list[tuple[str, str]]:
+    """Attachments that are text of a readable length."""
+    found = []
+    for name, attached in recording.attachments.items():
+        if len(attached) > _LARGEST_INPUT_FILE:
+            continue
+        try:
+            found.append((name, attached.decode()))
+        except UnicodeDecodeError:
+            continue
+    return found
+
+
+def _contents(report: Content, has_texts: bool) -> list[tuple[str, str]]:
+    entries = [
+        ("verdict", "Verdict", True),
+        ("notes", "Notes", bool(report.notes)),
+        ("criteria", "Criteria", report.criteria is not None),
+        ("statistics", "Statistics", bool(report.channels)),
+        *((section.id, section.title, True) for section in report.sections),
+        ("provenance", "Provenance", True),
+        ("segments", "Segments", bool(report.segments)),
+        ("events", "Events", bool(report.events)),
+        ("inputs", "Input files", has_texts),
+    ]
+    return [(anchor, name) for anchor, name, present in entries if present]
+
+
+def _unmet(report: Content) -> list[CriterionRow]:
+    groups = report.criteria.groups if report.criteria else ()
+    return [row for group in groups for row in group.rows if row.verdict != "pass"]
+
+
+def _json_in_script(value: object) -> str:
+    """JSON that cannot end the script element that it stands in."""
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def _plotly_js() -> str:
+    return resources.files("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8")
+
+
+def _template(name: str) -> str:
+    return resources.files("reports").joinpath("templates", name).read_text(encoding="utf-8")

@@ -1,0 +1,92 @@
+"""The verdicts as JUnit XML, which every CI server reads."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+from hil.core.files import write_atomically
+from hil.core.recording import Recording
+from hil.core.result import CriterionResult, RunResult
+from reports.criteria import in_words
+
+#: What XML 1.0 cannot carry at all.
+_FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_PROPERTY_TABLES = ("run", "dut", "versions")
+
+
+def write_junit(recording: Recording, result: RunResult, path: Path) -> Path:
+    """Write the verdicts as JUnit XML, whole or not at all.
+
+    Raises:
+        BadInputError: `path` cannot be written.
+    """
+    write_atomically(path, junit_text(recording, result))
+    return path
+
+
+def junit_text(recording: Recording, result: RunResult) -> bytes:
+    """One test case for each criterion, one for the run itself and one for the bench's safe state."""
+    suite = ET.Element("testsuite", name=_clean(result.plan))
+    _properties(suite, recording, result)
+    for criterion in result.criteria:
+        _criterion(suite, criterion, result.plan)
+    run = _case(suite, result.plan, "run")
+    if result.verdict == "error":
+        _outcome(run, "error", result.reason or "the run did not come to its end")
+    safe = _case(suite, result.plan, "safe_state")
+    if result.safe_state == "not_confirmed":
+        _outcome(safe, "error", "the bench did not confirm its safe state after the run")
+    counts = {
+        "tests": len(suite.findall("testcase")),
+        "failures": len(suite.findall("testcase/failure")),
+        "errors": len(suite.findall("testcase/error")),
+    }
+    for element in (suite, root := ET.Element("testsuites")):
+        for name, count in counts.items():
+            element.set(name, str(count))
+        element.set("time", f"{result.bench_time_s:.3f}")
+    suite.set("skipped", "0")
+    started = recording.metadata.get("run", {}).get("started_at")
+    if started:
+        suite.set("timestamp", _clean(started))
+    root.append(suite)
+    ET.indent(root)
+    return bytes(ET.tostring(root, encoding="utf-8", xml_declaration=True)) + b"\n"
+
+
+def _properties(suite: ET.Element, recording: Recording, result: RunResult) -> None:
+    values = {
+        "plan": result.plan,
+        "bench": result.bench,
+        "verdict": result.verdict,
+        "safe_state": result.safe_state,
+        "real_time_factor": f"{result.real_time_factor:g}",
+    }
+    for table in _PROPERTY_TABLES:
+        values |= {f"{table}.{key}": text for key, text in recording.metadata.get(table, {}).items()}
+    properties = ET.SubElement(suite, "properties")
+    for name, value in values.items():
+        ET.SubElement(properties, "property", name=_clean(name), value=_clean(value))
+
+
+def _criterion(suite: ET.Element, criterion: CriterionResult, plan: str) -> None:
+    group, _, metric = criterion.id.rpartition(".")
+    case = _case(suite, f"{plan}.{group}" if group else plan, metric)
+    if criterion.verdict == "fail":
+        _outcome(case, "failure", in_words(criterion), criterion.definition)
+    elif criterion.verdict == "error":
+        _outcome(case, "error", in_words(criterion), criterion.definition)
+
+
+def _case(suite: ET.Element, classname: str, name: str) -> ET.Element:
+    return ET.SubElement(suite, "testcase", classname=_clean(classname), name=_clean(name), time="0")
+
+
+def _outcome(case: ET.Element, kind: str, message: str, text: str = "") -> None:
+    ET.SubElement(case, kind, message=_clean(message), type=kind).text = _clean(text) or None
+
+
+def _clean(text: str) -> str:
+    return _FORBIDDEN.sub("\ufffd", text)

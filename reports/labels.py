@@ -1,0 +1,83 @@
+"""Names of channels in figures, and their symbols as HTML and as Matplotlib's mathtext.
+
+A label's text may come from a user's file, so both forms escape it.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from typing import NamedTuple
+
+from hil.core.channels import CHANNELS
+
+_SHORT = {
+    "motor_torque_ref_nm": "Torque request",
+    "motor_torque_nm": "Motor torque",
+    "motor_speed_rad_s": "Motor speed",
+    "wheel_speed_rad_s": "Wheel speed",
+    "shaft_torque_nm": "Shaft torque",
+    "wheel_speed_left_rad_s": "Wheel speed, left",
+    "wheel_speed_right_rad_s": "Wheel speed, right",
+    "shaft_torque_left_nm": "Shaft torque, left",
+    "shaft_torque_right_nm": "Shaft torque, right",
+    "vehicle_speed_m_s": "Vehicle speed",
+    "driving_torque_ref_nm": "Driving torque, reference",
+    "driving_torque_est_nm": "Driving torque, estimate",
+    "dyno_torque_ref_nm": "Load torque",
+}
+_HAT = "\u0302"
+_SYMBOL = re.compile(r"(?P<base>[^_*]+)(?:_(?P<sub>[^*]+))?(?P<star>\*?)$")
+
+
+class Label(NamedTuple):
+    """Words, then a symbol of `hil.core.channels` such as 'ω_m' or 'rF_d*', then more words."""
+
+    text: str
+    symbol: str = ""
+    tail: str = ""
+
+    def as_html(self) -> str:
+        """Escaped HTML; Plotly reads this subset of HTML too."""
+        return self._join(html.escape(self.text), _symbol_html(self.symbol), html.escape(self.tail))
+
+    def as_mathtext(self) -> str:
+        """Matplotlib text: only the symbol is mathematics, a dollar in the words stays a dollar."""
+        words, tail = (part.replace("$", r"\$") for part in (self.text, self.tail))
+        return self._join(words, _symbol_mathtext(self.symbol), tail)
+
+    def plain(self) -> str:
+        """For alternative texts and documents without mathematics."""
+        return self._join(self.text, self.symbol, self.tail)
+
+    def _join(self, words: str, symbol: str, tail: str) -> str:
+        return " ".join(part for part in (words, symbol) if part) + tail
+
+
+def channel_label(name: str) -> Label:
+    """Short words and symbol of a channel; an unknown channel keeps its name."""
+    symbol = CHANNELS[name].symbol if name in CHANNELS else ""
+    return Label(_SHORT.get(name, name), symbol)
+
+
+def channel_unit(name: str) -> str:
+    """Unit of a known channel, else ''."""
+    return CHANNELS[name].unit if name in CHANNELS else ""
+
+
+def _symbol_html(symbol: str) -> str:
+    found = _SYMBOL.match(symbol)
+    if found is None:
+        return html.escape(symbol)
+    sub = f"<sub>{html.escape(found['sub'])}</sub>" if found["sub"] else ""
+    return f"<i>{html.escape(found['base'])}</i>{sub}{found['star']}"
+
+
+def _symbol_mathtext(symbol: str) -> str:
+    found = _SYMBOL.match(symbol)
+    if found is None:
+        return symbol.replace("$", r"\$")
+    base = re.sub(f"(.){_HAT}", r"\\hat{\1}", found["base"]).replace("ω", r"\omega ")
+    sub = rf"_\mathrm{{{found['sub']}}}" if found["sub"] else ""
+    star = "^{*}" if found["star"] else ""
+    return f"${base}{sub}{star}$"

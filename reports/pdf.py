@@ -1,0 +1,142 @@
+"""The report for signing: PDF/A-2b by Typst, from the same content as the page for the screen.
+
+Every text from a file reaches Typst as JSON data and is never parsed as markup.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import datetime
+import json
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from hil.core.files import write_atomically
+from hil.core.recording import Recording
+from hil.core.result import RunResult
+from reports import style
+from reports.content import Content, content
+from reports.figure import Figure
+from reports.svg_figure import svg_figure
+
+_STANDARD = "a-2b"
+_MOST_EVENTS = 200
+
+
+def write_pdf(recording: Recording, result: RunResult | None, path: Path) -> Path:
+    """Write the PDF/A report, whole or not at all; `result` is None for a recording without a plan.
+
+    Raises:
+        BadInputError: `path` cannot be written.
+    """
+    write_atomically(path, pdf_bytes(content(recording, result)))
+    return path
+
+
+def pdf_bytes(report: Content) -> bytes:
+    """The PDF; the same content gives the same bytes where the same fonts are at hand."""
+    data = _data(report)
+    known = _known_characters()
+    if all(map(known, _strings(data))):
+        return _compiled(data, report.started_at, system_fonts=False)
+    import typst
+
+    try:  # a script that the own fonts lack: the system may have it
+        return _compiled(data, report.started_at, system_fonts=True)
+    except typst.TypstError:  # PDF/A refuses a character without a glyph
+        return _compiled(_spelled_out(data, known), report.started_at, system_fonts=False)
+
+
+def _compiled(data: dict[str, Any], started_at: str, *, system_fonts: bool) -> bytes:
+    import typst
+
+    template = resources.files("reports").joinpath("templates/report.typ").read_bytes()
+    pdf = typst.compile(
+        template,
+        font_paths=[_font_directory()],
+        ignore_system_fonts=not system_fonts,
+        sys_inputs={"report": json.dumps(data, ensure_ascii=False)},
+        pdf_standards=[_STANDARD],
+        timestamp=_timestamp(started_at),
+    )
+    return bytes(pdf)
+
+
+def _data(report: Content) -> dict[str, Any]:
+    shown = {f.name: getattr(report, f.name) for f in dataclasses.fields(report) if f.name != "sections"}
+    data: dict[str, Any] = {
+        name: dataclasses.asdict(value) if dataclasses.is_dataclass(value) else value
+        for name, value in shown.items()
+    }
+    for name in ("run", "dut", "versions", "calibration", "files", "segments", "channels", "events"):
+        data[name] = [dataclasses.asdict(row) for row in shown[name]]
+    data["events_left_out"] = max(0, len(report.events) - _MOST_EVENTS)
+    data["events"] = data["events"][:_MOST_EVENTS]
+    data["sections"] = [
+        {
+            "title": section.title,
+            "text": section.text,
+            "notes": section.notes,
+            "figures": [_figure(figure) for figure in section.figures],
+        }
+        for section in report.sections
+    ]
+    data["colors"] = {name: tone.light for name, tone in style.SURFACE.items()}
+    data["width_mm"] = style.PAPER_WIDTH_MM
+    return data
+
+
+def _figure(figure: Figure) -> dict[str, Any]:
+    return {
+        "svg": svg_figure(figure).decode(),
+        "title": figure.title._asdict(),
+        "caption": figure.caption,
+        "alt": figure.alternative_text(),
+        "wide": figure.wide,
+    }
+
+
+def _timestamp(started_at: str) -> datetime.datetime:
+    """The document's date: the start of the run, so that a report made again is the same document."""
+    try:
+        moment = datetime.datetime.fromisoformat(started_at)
+    except ValueError:
+        return datetime.datetime.now(datetime.UTC).replace(microsecond=0)
+    return moment if moment.tzinfo else moment.replace(tzinfo=datetime.UTC)
+
+
+def _font_directory() -> Path:
+    """DejaVu, which comes with Matplotlib, so that words and figures share a typeface on every machine."""
+    import matplotlib as mpl
+
+    return Path(mpl.get_data_path()) / "fonts" / "ttf"
+
+
+def _known_characters() -> Callable[[str], bool]:
+    from matplotlib.ft2font import FT2Font
+
+    glyphs = FT2Font(_font_directory() / "DejaVuSans.ttf").get_charmap().keys() | {ord("\n")}
+    return lambda text: text.isascii() and text.isprintable() or all(ord(c) in glyphs for c in text)
+
+
+def _strings(value: object) -> list[str]:
+    if isinstance(value, str):
+        return [] if value.startswith("<?xml") else [value]
+    if isinstance(value, dict):
+        return [text for item in value.values() for text in _strings(item)]
+    if isinstance(value, list | tuple):
+        return [text for item in value for text in _strings(item)]
+    return []
+
+
+def _spelled_out(value: Any, known: Callable[[str], bool]) -> Any:
+    """The data with each character that has no glyph written as its code point, such as ‹U+8A66›."""
+    if isinstance(value, str):
+        return value if known(value) else "".join(c if known(c) else f"‹U+{ord(c):04X}›" for c in value)
+    if isinstance(value, dict):
+        return {key: _spelled_out(item, known) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_spelled_out(item, known) for item in value]
+    return value

@@ -1,0 +1,122 @@
+"""A figure as the JSON that plotly.js draws; colours are left to the page, which knows light from dark."""
+
+from __future__ import annotations
+
+import base64
+import html
+import math
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from reports import quantities, style
+from reports.envelope import envelope
+from reports.figure import Figure, Trace
+
+#: Share of the axes' height over which the labels of bands alternate.
+_BAND_LABEL_Y = 0.985
+
+
+def plotly_figure(figure: Figure) -> dict[str, Any]:
+    """`data` and `layout` for Plotly.newPlot; lines and shapes carry their role in `meta` or `name`."""
+    shapes, annotations = _bands(figure)
+    level_shapes, level_annotations = _levels(figure)
+    return {
+        "data": [_trace(trace, figure) for trace in figure.traces],
+        "layout": {
+            "xaxis": _axis(figure.x_title, figure.x_range, figure.logarithmic),
+            "yaxis": _axis(figure.y_title.as_html(), figure.y_range, figure.logarithmic),
+            "shapes": shapes + level_shapes,
+            "annotations": annotations + level_annotations,
+            "showlegend": len(figure.traces) > 1,
+        },
+    }
+
+
+def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
+    x, y = envelope(trace.x, trace.y, style.POINTS_ON_SCREEN)
+    unit = html.escape(quantities.unit(figure.y_unit))
+    x_unit = html.escape(quantities.unit(figure.x_unit))
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": trace.label.as_html(),
+        "meta": trace.role,
+        "x": _packed(x),
+        "y": _packed(y),
+        "line": {"width": style.LINE_WIDTH_PX, "dash": trace.dash},
+        "hovertemplate": f"%{{y:.4~g}}{quantities.THIN}{unit} at %{{x:.4~g}}{quantities.THIN}{x_unit}",
+    }
+
+
+def _packed(values: npt.NDArray[np.float64]) -> dict[str, str]:
+    """Single precision, as plotly.js reads it: a third of the size of decimal digits."""
+    return {"dtype": "f4", "bdata": base64.b64encode(values.astype("<f4").tobytes()).decode()}
+
+
+def _axis(title: str, shown: tuple[float, float] | None, logarithmic: bool) -> dict[str, Any]:
+    axis: dict[str, Any] = {"title": {"text": title}}
+    if logarithmic:
+        axis |= {"type": "log", "exponentformat": "power", "dtick": 1}
+        shown = (math.log10(shown[0]), math.log10(shown[1])) if shown else None
+    if shown:
+        axis["range"] = list(shown)
+    return axis
+
+
+def _bands(figure: Figure) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    shapes = [
+        {
+            "type": "rect",
+            "layer": "below",
+            "xref": "x",
+            "yref": "paper",
+            "x0": band.start,
+            "x1": band.end,
+            "y0": 0,
+            "y1": 1,
+            "line": {"width": 0},
+            "name": "band",
+        }
+        for band in figure.bands
+    ]
+    annotations = [
+        _annotation(band.label, "quiet")
+        | {
+            "xref": "x",
+            "yref": "paper",
+            "x": (band.start + band.end) / 2,
+            "y": _BAND_LABEL_Y,
+            "yanchor": "top",
+        }
+        for band in figure.bands
+    ]
+    return shapes, annotations
+
+
+def _levels(figure: Figure) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    shapes = [
+        {
+            "type": "line",
+            "xref": "paper",
+            "yref": "y",
+            "x0": 0,
+            "x1": 1,
+            "y0": level.value,
+            "y1": level.value,
+            "line": {"width": 1.4, "dash": "dash"},
+            "name": f"series-{level.role}",
+        }
+        for level in figure.levels
+    ]
+    annotations = [
+        _annotation(level.label, f"series-{level.role}")
+        | {"xref": "paper", "yref": "y", "x": 1, "y": level.value, "xanchor": "right", "yanchor": "bottom"}
+        for level in figure.levels
+    ]
+    return shapes, annotations
+
+
+def _annotation(text: str, tone: str) -> dict[str, Any]:
+    return {"text": html.escape(text), "showarrow": False, "font": {"size": 11}, "name": tone}

@@ -1,0 +1,165 @@
+"""Where a recording comes from: bench, device, versions, calibration, and whether its files are intact."""
+
+from __future__ import annotations
+
+import datetime
+import hashlib
+import math
+import tomllib
+from dataclasses import dataclass
+from typing import Any
+
+from hil.core.recording import Recording
+from hil.core.result import RunResult
+from reports import quantities
+
+_CONTROLLER = "controller/"
+_NOT_SHOWN = ("plant", "meta")
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A name with its value; `state` is '', 'good' or 'bad'."""
+
+    name: str
+    value: str
+    state: str = ""
+
+
+@dataclass(frozen=True)
+class StoredFile:
+    """An attachment with the hash it has now and what became of the hash it was stored with."""
+
+    name: str
+    size: str
+    sha256: str
+    check: str
+    state: str
+
+
+@dataclass(frozen=True)
+class ControllerTable:
+    """Parameters (rows) of the controllers (columns) as they were loaded."""
+
+    names: tuple[str, ...]
+    rows: tuple[tuple[str, tuple[str, ...]], ...]
+
+
+def table(recording: Recording, name: str) -> tuple[Fact, ...]:
+    """A metadata table as facts, in its own order."""
+    return tuple(Fact(key.replace("_", " "), value) for key, value in recording.metadata.get(name, {}).items())
+
+
+def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...]:
+    """Who, what, where and when."""
+    run = recording.metadata.get("run", {})
+    simulated = run.get("simulated", "").lower() == "true"
+    bench = run.get("bench") or (result.bench if result else "")
+    facts = [
+        Fact("Plan", run.get("plan") or (result.plan if result else "")),
+        Fact("Bench", f"{bench} (simulated)" if simulated else bench),
+        Fact("Operator", run.get("operator", "")),
+        Fact("Started", _moment(run.get("started_at", ""))),
+    ]
+    if result is not None:
+        facts += [
+            Fact("Time on the bench", quantities.quantity(result.bench_time_s, "s")),
+            Fact("Real-time factor", quantities.number(result.real_time_factor, significant=3)),
+        ]
+    elif len(recording.channels.get("time_s", ())) > 1:
+        span = float(recording.time_s[-1] - recording.time_s[0])
+        facts.append(Fact("Length", quantities.quantity(span, "s")))
+        facts.append(Fact("Samples", quantities.number(float(len(recording.time_s)), 0)))
+        facts.append(Fact("Sample time", quantities.quantity(recording.sample_time_s, "s", significant=3)))
+    return tuple(fact for fact in facts if fact.value)
+
+
+def simulated(recording: Recording) -> bool:
+    """True if the bench was a simulated one."""
+    return recording.metadata.get("run", {}).get("simulated", "").lower() == "true"
+
+
+def calibration_facts(recording: Recording) -> tuple[Fact, ...]:
+    """Until when each sensor's calibration is valid, judged at the start of the run."""
+    started = _date(recording.metadata.get("run", {}).get("started_at", ""))
+    facts = []
+    for sensor, until in recording.metadata.get("calibration", {}).items():
+        expires = _date(until)
+        if started is None or expires is None:
+            facts.append(Fact(sensor, until))
+        elif expires < started:
+            facts.append(Fact(sensor, f"{until}: expired before the run", "bad"))
+        else:
+            facts.append(Fact(sensor, until, "good"))
+    return tuple(facts)
+
+
+def stored_files(recording: Recording) -> tuple[StoredFile, ...]:
+    """Attachments, each hashed again and compared with the hash stored during the run."""
+    stored = recording.metadata.get("hashes", {})
+    files = []
+    for name, content in recording.attachments.items():
+        now = hashlib.sha256(content).hexdigest()
+        then = stored.get(name, "")
+        check = "matches" if then.lower() == now else "does not match" if then else "no stored hash"
+        state = {"matches": "good", "does not match": "bad"}.get(check, "")
+        files.append(StoredFile(name, quantities.file_size(len(content)), now, check, state))
+    for name in stored.keys() - recording.attachments.keys():
+        files.append(StoredFile(name, quantities.DASH, stored[name], "missing from the recording", "bad"))
+    return tuple(files)
+
+
+def recording_hash(recording: Recording) -> str:
+    """SHA-256 of the recording's file, '' if it cannot be read."""
+    try:
+        with recording.source.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError:
+        return ""
+
+
+def controller_table(recording: Recording) -> ControllerTable | None:
+    """Parameters of the attached controllers; None without any. A file that is no TOML is passed over."""
+    columns: dict[str, dict[str, str]] = {}
+    for name, content in recording.attachments.items():
+        if not name.startswith(_CONTROLLER):
+            continue
+        try:
+            values = tomllib.loads(content.decode())
+        except (UnicodeDecodeError, tomllib.TOMLDecodeError):
+            continue
+        columns[name.removeprefix(_CONTROLLER).removesuffix(".toml")] = dict(_flat(values))
+    keys = dict.fromkeys(key for column in columns.values() for key in column)
+    rows = tuple((key, tuple(c.get(key, quantities.DASH) for c in columns.values())) for key in keys)
+    return ControllerTable(tuple(columns), rows) if rows else None
+
+
+def _flat(values: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]:
+    pairs = []
+    for key, value in values.items():
+        if not prefix and key in _NOT_SHOWN:
+            continue
+        if isinstance(value, dict):
+            pairs += _flat(value, f"{prefix}{key}.")
+        elif isinstance(value, float) and math.isfinite(value):
+            pairs.append((prefix + key, quantities.number(value)))
+        else:
+            pairs.append((prefix + key, str(value)))
+    return pairs
+
+
+def _date(text: str) -> datetime.date | None:
+    try:
+        return datetime.date.fromisoformat(text.strip()[:10])
+    except ValueError:
+        return None
+
+
+def _moment(text: str) -> str:
+    """'2026-03-04T09:15:00+01:00' as '2026-03-04 09:15:00 +01:00'; another text as it is."""
+    try:
+        moment = datetime.datetime.fromisoformat(text)
+    except ValueError:
+        return text
+    zone = moment.strftime("%z")
+    return f"{moment:%Y-%m-%d %H:%M:%S} {zone[:3]}:{zone[3:5]}" if zone else f"{moment:%Y-%m-%d %H:%M:%S}"

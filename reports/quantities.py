@@ -1,0 +1,59 @@
+"""Numbers and units as people read them: significant digits, thin spaces, a true minus sign."""
+
+from __future__ import annotations
+
+import math
+
+THIN = "\u202f"  # narrow no-break space
+MINUS = "\u2212"
+DASH = "\u2013"
+_MOST_DECIMALS = 9
+
+
+def decimals_for(*values: float | None, significant: int = 4) -> int:
+    """Decimals that give the largest of `values` `significant` digits; None and NaN do not count."""
+    largest = max((abs(v) for v in values if v is not None and math.isfinite(v)), default=0.0)
+    if largest == 0.0:
+        return 0
+    return min(max(significant - 1 - math.floor(math.log10(largest)), 0), _MOST_DECIMALS)
+
+
+def number(value: float | None, decimals: int | None = None, significant: int = 4) -> str:
+    """`value` with `decimals`, or with `significant` digits; powers of ten for the very small and large."""
+    if value is None or math.isnan(value):
+        return DASH
+    if math.isinf(value):
+        return "∞" if value > 0 else f"{MINUS}∞"
+    size = abs(value)
+    if size and (size >= 1e7 or (size < 1e-4 and (decimals is None or decimals >= _MOST_DECIMALS))):
+        mantissa, exponent = f"{value:.{significant - 1}e}".split("e")
+        return f"{mantissa}{THIN}×{THIN}10{_superscript(int(exponent))}".replace("-", MINUS)
+    text = f"{value:,.{decimals_for(value, significant=significant) if decimals is None else decimals}f}"
+    if size < 10_000:
+        text = text.replace(",", "")
+    text = text.replace(",", THIN)
+    if text.startswith("-") and not text.strip("-0."):
+        text = text[1:]  # no negative zero
+    return text.replace("-", MINUS)
+
+
+def unit(text: str) -> str:
+    """A unit with narrow no-break spaces between its factors."""
+    return text.strip().replace(" ", THIN)
+
+
+def quantity(value: float | None, of: str, decimals: int | None = None, significant: int = 4) -> str:
+    """A number with its unit, kept together on one line."""
+    text = number(value, decimals, significant)
+    return f"{text}{THIN}{unit(of)}" if of and text != DASH else text
+
+
+def file_size(count: int) -> str:
+    """Bytes as B, kB or MB (powers of 1000)."""
+    if count < 1000:
+        return f"{count}{THIN}B"
+    return quantity(count / 1e3, "kB", significant=3) if count < 1e6 else quantity(count / 1e6, "MB")
+
+
+def _superscript(value: int) -> str:
+    return str(value).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))

@@ -1,0 +1,243 @@
+"""Step responses from one initial speed: the controllers laid over each other (the paper's Figs. 13 to 16)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from hil.core.recording import Recording
+from hil.core.result import CriterionResult, Segment
+from reports import quantities, style
+from reports.figure import Band, Figure, Level, Section, Trace
+from reports.labels import Label, channel_label, channel_unit
+from reports.spectrum import DESCRIPTION, amplitude_spectrum
+from reports.stretch import cut, line
+
+SPECTRUM_WINDOW_S = (4.0, 20.0)
+BAND_HZ = (8.0, 20.0)
+_FIRST_SECONDS = 2.0
+_SPECTRUM_TO_HZ = 30.0
+_SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
+_TIME = "Time from the step"
+_MOTOR_SPEED = "motor_speed_rad_s"
+_SHAFT_TORQUE = "shaft_torque_nm"
+
+Criteria = dict[str, CriterionResult]
+
+
+@dataclass(frozen=True)
+class Member:
+    """One segment of an overlay with its name and line style."""
+
+    segment: Segment
+    name: str
+    role: str
+    dash: str
+
+
+class _Plan(NamedTuple):
+    channel: str
+    draw: Callable[[], Figure | None]
+
+
+def step_section(recording: Recording, segments: list[Segment], criteria: Criteria) -> Section:
+    """Figures of `segments`, all steps from one initial speed; `criteria` by id give peaks and limits."""
+    speed = quantities.quantity(segments[0].initial_speed_km_h, "km/h", significant=3)
+    section_id = f"steps-{segments[0].initial_speed_km_h:g}kmh"
+    overlay = _Overlay(recording, members(segments), criteria, section_id)
+    plans = [
+        _Plan(_MOTOR_SPEED, overlay.motor_speed),
+        _Plan(_MOTOR_SPEED, overlay.motor_speed_spectrum),
+        _Plan(_SHAFT_TORQUE, overlay.shaft_torque),
+        _Plan(_SHAFT_TORQUE, overlay.shaft_torque_enlarged),
+        _Plan("driving_torque_est_nm", overlay.driving_torque),
+        _Plan("motor_torque_ref_nm", overlay.torque_request),
+    ]
+    drawn = [(plan, plan.draw()) for plan in plans]
+    figures = [figure for _, figure in drawn if figure is not None]
+    missing = dict.fromkeys(plan.channel for plan, figure in drawn if figure is None)
+    return Section(
+        section_id,
+        f"Steps from {speed}",
+        _text(segments),
+        tuple(figures),
+        tuple(f"Not drawn: {channel_label(name).plain()} has too few values here." for name in missing),
+    )
+
+
+def members(segments: list[Segment]) -> list[Member]:
+    """Names and line styles: one colour for each controller, one dash for each repeat of it."""
+    further = iter(style.FURTHER_ROLES * len(segments))
+    roles: dict[str, str] = {}
+    uses: dict[str, int] = {}
+    found = []
+    for segment in segments:
+        controller = segment.controller or segment.id
+        if controller not in roles:
+            roles[controller] = controller if controller in ("gain", "phase") else next(further)
+        repeat = uses[controller] = uses.get(controller, -1) + 1
+        name = f"{controller_name(controller)} ({segment.id})" if repeat else controller_name(controller)
+        found.append(Member(segment, name, roles[controller], style.DASHES[repeat % len(style.DASHES)]))
+    return found
+
+
+def controller_name(controller: str) -> str:
+    """'gain' and 'phase' in full; another controller's own name."""
+    return f"{controller.capitalize()} stabilization" if controller in ("gain", "phase") else controller
+
+
+def _text(segments: list[Segment]) -> str:
+    steps = dict.fromkeys((s.reference_before, s.reference_after) for s in segments)
+    sizes = ", ".join(
+        f"{quantities.number(before, significant=3)} to {quantities.quantity(after, 'N m', significant=3)}"
+        for before, after in steps
+        if before != after
+    )
+    names = ", ".join(segment.id for segment in segments)
+    return (f"Step of the driving torque reference: {sizes}. " if sizes else "") + f"Segments: {names}."
+
+
+class _Overlay:
+    def __init__(
+        self, recording: Recording, overlaid: list[Member], criteria: Criteria, section_id: str
+    ) -> None:
+        self._recording = recording
+        self._members = overlaid
+        self._criteria = criteria
+        self._id = section_id
+
+    def motor_speed(self) -> Figure | None:
+        return self._response("motor-speed", _MOTOR_SPEED)
+
+    def torque_request(self) -> Figure | None:
+        return self._response("torque-request", "motor_torque_ref_nm")
+
+    def shaft_torque(self) -> Figure | None:
+        return self._response("shaft-torque", _SHAFT_TORQUE, "peak_shaft_torque", "peak")
+
+    def shaft_torque_enlarged(self) -> Figure | None:
+        figure = self._response("shaft-torque-enlarged", _SHAFT_TORQUE, until_s=_FIRST_SECONDS)
+        if figure is None:
+            return None
+        label = channel_label(_SHAFT_TORQUE)
+        reference = self._reference(-0.1, _FIRST_SECONDS)
+        return replace(
+            figure,
+            title=Label(label.text, label.symbol, f", first {_FIRST_SECONDS:g}{quantities.THIN}s"),
+            traces=(*figure.traces, *reference),
+            levels=self._peak_limits(figure.traces),
+            x_range=(-0.1, _FIRST_SECONDS),
+        )
+
+    def driving_torque(self) -> Figure | None:
+        estimate = channel_label("driving_torque_est_nm")
+        figure = self._response("driving-torque", "driving_torque_est_nm")
+        if figure is None:
+            return None
+        traces = (*figure.traces, *self._reference(-1.0, np.inf))
+        title = Label("Driving torque, estimate", estimate.symbol, " and reference")
+        return replace(figure, title=title, y_label=Label("Driving torque"), traces=traces)
+
+    def motor_speed_spectrum(self) -> Figure | None:
+        label = channel_label(_MOTOR_SPEED)
+        traces = [
+            trace for member in self._members for trace in self._spectrum(member, _MOTOR_SPEED) if trace.x.size
+        ]
+        if not traces:
+            return None
+        scale = max(float(t.y[t.x >= _SLOW_HZ].max(initial=0.0)) for t in traces)
+        start, end = SPECTRUM_WINDOW_S
+        band = f"{BAND_HZ[0]:g}{quantities.DASH}{BAND_HZ[1]:g}{quantities.THIN}Hz"
+        return Figure(
+            id=f"{self._id}-motor-speed-spectrum",
+            title=Label("Spectrum of motor speed", label.symbol),
+            x_text="Frequency",
+            x_unit="Hz",
+            y_label=Label("Amplitude of", label.symbol),
+            y_unit=channel_unit(_MOTOR_SPEED),
+            traces=tuple(traces),
+            bands=(Band(*BAND_HZ, band),),
+            x_range=(0.0, _SPECTRUM_TO_HZ),
+            y_range=(0.0, 1.1 * scale) if scale > 0 else None,
+            caption=f"{DESCRIPTION[0].upper()}{DESCRIPTION[1:]}, {start:g} to {end:g}{quantities.THIN}s "
+            f"after the step. The scale is set by {_SLOW_HZ:g}{quantities.THIN}Hz and above.",
+        )
+
+    def _spectrum(self, member: Member, name: str) -> list[Trace]:
+        segment = member.segment
+        start, end = (segment.step_s + offset for offset in SPECTRUM_WINDOW_S)
+        found = cut(self._recording, name, start, min(end, segment.end_s))
+        spectrum = amplitude_spectrum(*found) if found else None
+        if spectrum is None:
+            return []
+        shown = spectrum.frequency_hz <= 2 * _SPECTRUM_TO_HZ
+        label = self._named(member, "band_energy_motor_speed", "band energy")
+        frequency, amplitude = spectrum.frequency_hz[shown], spectrum.amplitude[shown]
+        return [Trace(label, frequency, amplitude, member.role, member.dash)]
+
+    def _response(
+        self, suffix: str, channel: str, metric: str = "", word: str = "", until_s: float = np.inf
+    ) -> Figure | None:
+        traces = [self._line(channel, member, self._named(member, metric, word), until_s) for member in self._members]
+        drawn = tuple(trace for trace in traces if trace is not None)
+        if not drawn:
+            return None
+        label = channel_label(channel)
+        unit = channel_unit(channel)
+        return Figure(f"{self._id}-{suffix}", label, _TIME, "s", label, unit, drawn)
+
+    def _line(self, channel: str, member: Member, label: Label, until_s: float) -> Trace | None:
+        segment = member.segment
+        end = min(segment.end_s, segment.step_s + until_s)
+        return line(
+            self._recording,
+            channel,
+            label,
+            member.role,
+            start_s=segment.start_s,
+            end_s=end,
+            zero_s=segment.step_s,
+            dash=member.dash,
+        )
+
+    def _named(self, member: Member, metric: str, word: str) -> Label:
+        """The member's name and, where a criterion has it, its value: one number in table and figure."""
+        criterion = self._criteria.get(f"{member.segment.id}.{metric}")
+        if criterion is None or criterion.value is None:
+            return Label(member.name)
+        return Label(f"{member.name}, {word} {quantities.quantity(criterion.value, criterion.unit)}")
+
+    def _reference(self, from_s: float, until_s: float) -> list[Trace]:
+        """The reference of the first member that has one; a second one only if it steps differently."""
+        label = channel_label("driving_torque_ref_nm")
+        seen: dict[tuple[float, float], Trace] = {}
+        for member in self._members:
+            s = member.segment
+            key = (s.reference_before, s.reference_after)
+            trace = line(
+                self._recording,
+                "driving_torque_ref_nm",
+                Label("Reference", label.symbol),
+                "reference",
+                start_s=max(s.start_s, s.step_s + from_s),
+                end_s=min(s.end_s, s.step_s + until_s),
+                zero_s=s.step_s,
+                dash=style.DASHES[1 + len(seen) % 3],
+            )
+            if trace is not None and key not in seen:
+                seen[key] = trace
+        return list(seen.values())
+
+    def _peak_limits(self, traces: tuple[Trace, ...]) -> tuple[Level, ...]:
+        """Limits of the peak, where they lie near enough to the lines not to flatten them."""
+        highest = max(float(np.nanmax(trace.y)) for trace in traces)
+        uppers = (
+            self._criteria[key].upper
+            for key in (f"{m.segment.id}.peak_shaft_torque" for m in self._members)
+            if key in self._criteria
+        )
+        near = dict.fromkeys(u for u in uppers if u is not None and 0 < u <= 1.8 * highest)
+        return tuple(Level(u, f"Limit {quantities.quantity(u, 'N m')}") for u in near)

@@ -1,0 +1,97 @@
+"""The house style: the only place where colours, line widths and figure sizes are chosen.
+
+The series colours come from Okabe and Ito's palette, which the common kinds of colour blindness keep
+apart; each pair also differs in lightness, so that a print in grey can be read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Tone:
+    """One colour of the house, on paper and light screens (`light`) and on dark screens (`dark`)."""
+
+    light: str
+    dark: str
+
+
+#: Roles of lines in figures. A figure names roles, never colours.
+SERIES: dict[str, Tone] = {
+    "gain": Tone("#0072B2", "#56B4E9"),
+    "phase": Tone("#D55E00", "#F5A15B"),
+    "third": Tone("#00795A", "#3CCFA4"),
+    "fourth": Tone("#A8487F", "#DF93BC"),
+    "fifth": Tone("#7A6A00", "#E4D34A"),
+    "reference": Tone("#5B6673", "#A7B3C0"),
+    "limit": Tone("#A4161A", "#FF8A80"),
+}
+#: Roles for lines that are neither of the two controllers, in order of use.
+FURTHER_ROLES = ("third", "fourth", "fifth")
+
+#: Surfaces, text and verdicts.
+SURFACE: dict[str, Tone] = {
+    "page": Tone("#FFFFFF", "#14181D"),
+    "panel": Tone("#F4F6F8", "#1C2229"),
+    "ink": Tone("#1B2229", "#E6EBF0"),
+    "quiet": Tone("#55606C", "#A3AFBB"),
+    "rule": Tone("#D3D9DF", "#37414B"),
+    "grid": Tone("#E6EAEE", "#2A323B"),
+    "band": Tone("#F0E9D2", "#38341F"),
+    "link": Tone("#005A8F", "#7CC4F2"),
+    "pass": Tone("#00664A", "#4FD1A5"),
+    "fail": Tone("#A4161A", "#FF8A80"),
+    "error": Tone("#6B2C91", "#D3A4F0"),
+    "on-verdict": Tone("#FFFFFF", "#14181D"),
+}
+
+LINE_WIDTH_PX = 1.6
+DASHES = ("solid", "dash", "dot", "dashdot")
+#: Points kept of one line: an envelope of the lowest and highest value in each of half as many stretches.
+POINTS_ON_SCREEN = 2400
+POINTS_ON_PAPER = 1200
+#: A figure on paper: one column of an A4 page.
+PAPER_WIDTH_MM = 84.0
+PAPER_HEIGHT_MM = 62.0
+
+#: What Matplotlib is told, in points.
+PAPER: dict[str, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 6.6,
+    "mathtext.fontset": "dejavusans",
+    "axes.edgecolor": SURFACE["quiet"].light,
+    "axes.labelcolor": SURFACE["ink"].light,
+    "axes.linewidth": 0.5,
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.unicode_minus": True,
+    "grid.color": SURFACE["grid"].light,
+    "grid.linewidth": 0.5,
+    "lines.linewidth": 0.8,
+    "lines.solid_joinstyle": "round",
+    "xtick.color": SURFACE["quiet"].light,
+    "ytick.color": SURFACE["quiet"].light,
+    "xtick.labelcolor": SURFACE["ink"].light,
+    "ytick.labelcolor": SURFACE["ink"].light,
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "xtick.minor.size": 0.0,
+    "ytick.minor.size": 0.0,
+    "legend.frameon": False,
+    "legend.fontsize": 6.4,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "eaxle-hil",  # the same recording gives the same bytes
+    "path.simplify": False,  # lines come decimated
+}
+
+
+def css_variables(theme: str) -> str:
+    """Declarations of every colour as a custom property; `theme` is 'light' or 'dark'."""
+    series = {f"series-{role}": tone for role, tone in SERIES.items()}
+    return " ".join(f"--{name}: {getattr(tone, theme)};" for name, tone in (SURFACE | series).items())

@@ -1,0 +1,112 @@
+"""A figure on paper: SVG by Matplotlib, without its global state."""
+
+from __future__ import annotations
+
+import io
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from reports import style
+from reports.envelope import envelope
+from reports.figure import Figure
+from reports.labels import Label
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_MM_PER_INCH = 25.4
+_LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 13.0, 2.0, 9.5, 2.5
+_LEGEND_ROW_MM = 3.6
+_DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
+
+
+def svg_figure(figure: Figure) -> bytes:
+    """The figure in the house style for paper, half a text line wide, or a whole one if it is `wide`."""
+    import matplotlib as mpl  # slow to import; only paper needs it
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+    from matplotlib.figure import Figure as Canvas
+
+    width = style.PAPER_WIDTH_MM * (2.05 if figure.wide else 1.0)
+    height = style.PAPER_HEIGHT_MM
+    rows = len(figure.traces) if len(figure.traces) > 1 else 0
+    columns = 3 if figure.wide else 1
+    top = _TOP_MM + _LEGEND_ROW_MM * -(-rows // columns)
+    with mpl.rc_context(style.PAPER):
+        canvas = Canvas(figsize=(width / _MM_PER_INCH, height / _MM_PER_INCH))
+        FigureCanvasSVG(canvas)
+        box = (_LEFT_MM / width, _BOTTOM_MM / height, 1 - (_LEFT_MM + _RIGHT_MM) / width)
+        axes = canvas.add_axes((*box, 1 - (_BOTTOM_MM + top) / height))
+        _draw(axes, figure)
+        if rows:
+            canvas.legend(
+                loc="upper left",
+                bbox_to_anchor=(_LEFT_MM / width, 1.0),
+                ncols=columns,
+                borderaxespad=0.2,
+                borderpad=0.1,
+                labelspacing=0.25,
+                handlelength=1.8,
+            )
+        return _svg(canvas)
+
+
+def _draw(axes: Axes, figure: Figure) -> None:
+    for trace in figure.traces:
+        x, y = envelope(trace.x, trace.y, style.POINTS_ON_PAPER * (2 if figure.wide else 1))
+        color = style.SERIES[trace.role].light
+        axes.plot(x, y, _DASHES[trace.dash], color=color, label=trace.label.as_mathtext())
+    if figure.logarithmic:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+    axes.margins(x=0)
+    if figure.x_range:
+        axes.set_xlim(figure.x_range)
+    if figure.y_range:
+        axes.set_ylim(figure.y_range)
+    axes.set_xlabel(Label(figure.x_title).as_mathtext(), labelpad=2)
+    axes.set_ylabel(figure.y_title.as_mathtext(), labelpad=2)
+    _mark(axes, figure)
+
+
+def _mark(axes: Axes, figure: Figure) -> None:
+    ink, band_colour = style.SURFACE["quiet"].light, style.SURFACE["band"].light
+    for band in figure.bands:
+        axes.axvspan(band.start, band.end, color=band_colour, linewidth=0, zorder=0)
+        axes.text(
+            (band.start + band.end) / 2,
+            0.985,
+            Label(band.label).as_mathtext(),
+            transform=axes.get_xaxis_transform(),
+            ha="center",
+            va="top",
+            color=ink,
+            clip_on=True,
+        )
+    for level in figure.levels:
+        color = style.SERIES[level.role].light
+        axes.axhline(level.value, color=color, linewidth=0.8, linestyle="--")
+        axes.text(
+            0.995,
+            level.value,
+            Label(level.label).as_mathtext(),
+            transform=axes.get_yaxis_transform(),
+            ha="right",
+            va="bottom",
+            color=color,
+        )
+    low, high = axes.get_ylim()
+    if not (np.isfinite(low) and np.isfinite(high)):
+        axes.set_ylim(0, 1)
+
+
+def _svg(canvas: object) -> bytes:
+    from matplotlib.figure import Figure as Canvas
+
+    assert isinstance(canvas, Canvas)
+    out = io.BytesIO()
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # drawn as a box
+        canvas.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
+    return out.getvalue()

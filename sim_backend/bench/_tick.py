@@ -1,0 +1,129 @@
+"""One millisecond of the simulated bench, compiled: sensors, RMCU, drives, plant."""
+
+from __future__ import annotations
+
+import math
+
+from sim_backend.plant import _equations as E
+from sim_backend.plant import _kernel as K
+from sim_backend.plant import _slots as P
+from hil.core.compiled import compiled
+from sim_backend.rcs import _drive as D
+from sim_backend.rmcu import _memory as M
+from sim_backend.rmcu._control import control
+
+# Columns of a row: what the bench's frames tell of one sample
+(
+    MOTOR_SPEED,
+    TORQUE_REF,
+    TORQUE,
+    DRIVING_REF,
+    DRIVING_EST,
+    SATURATED,
+    CODE,
+    VEHICLE_SPEED,
+    WHEEL_LEFT,
+    WHEEL_RIGHT,
+    SHAFT_LEFT,
+    SHAFT_RIGHT,
+    LOAD_LEFT,
+    LOAD_RIGHT,
+    STATUS_LEFT,
+    STATUS_RIGHT,
+) = range(16)
+COLUMNS = 16
+SENSORS = 5  # motor speed, wheel left, wheel right, shaft left, shaft right
+SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = range(4)
+
+# Scalars of the world
+SLEWED, WAS_COUPLED, SLIP, RADIUS, V_HAT, LAST_TORQUE, INITIAL_SPEED, DRIVE_INERTIA = range(8)
+SCALARS = 8
+HISTORY = 2048
+
+
+@compiled
+def _sense(value, noise, sensor, past, k, dt):  # type: ignore[no-untyped-def]
+    """A sensor's reading: late, scaled, shifted, noisy, rounded."""
+    past[k % HISTORY] = value
+    late = min(sensor[SENSOR_DELAY] / dt, HISTORY - 2.0)
+    if late > 0.0:
+        whole = int(late)
+        part = late - whole
+        newer = past[max(k - whole, 0) % HISTORY]
+        older = past[max(k - whole - 1, 0) % HISTORY]
+        value = newer + part * (older - newer)
+    value = value * sensor[SENSOR_GAIN] + sensor[SENSOR_OFFSET] + noise
+    if sensor[SENSOR_STEP] > 0.0:
+        value = round(value / sensor[SENSOR_STEP]) * sensor[SENSOR_STEP]
+    return value
+
+
+@compiled
+def _couple(x, drives, w):  # type: ignore[no-untyped-def]
+    """Whether both drives simulate the vehicle; at the start the vehicle takes the wheel's speed."""
+    coupled = drives[0, D.MODE] == D.VEHICLE and drives[1, D.MODE] == D.VEHICLE
+    if coupled and w[WAS_COUPLED] == 0.0:
+        speed = x[E.WHEEL_SPEED]
+        wanted = w[INITIAL_SPEED] / w[RADIUS]
+        if abs(wanted - speed) < 1.0:
+            speed = wanted
+        x[E.VEHICLE_SPEED] = speed
+    for side in range(2):
+        if drives[side, D.MODE] != D.SPEED:
+            drives[side, D.RAMPED_SPEED] = x[E.WHEEL_SPEED]
+            drives[side, D.INTEGRATOR] = 0.0
+    w[WAS_COUPLED] = 1.0 if coupled else 0.0
+    return coupled
+
+
+@compiled
+def tick(k, x, p, w, torques, fir, drives, sensors, past, noise, mode, request, code, status, row):  # type: ignore[no-untyped-def]
+    """Sample k: fill `row` with what is measured and commanded at t_k, then move to t_k+1.
+
+    `fir` holds the RMCU's arrays (numerators, denominators, filter states, gains, states).
+    """
+    b, a, z, gains, states = fir
+    dt = gains[M.SAMPLE_TIME]
+    coupled = _couple(x, drives, w)
+    state = (x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9])
+    loads = 0.0
+    for side in range(2):
+        drive_load = D.load(drives[side], x[E.WHEEL_SPEED], 0.5 * w[DRIVE_INERTIA], dt)
+        row[LOAD_LEFT + side] = drive_load
+        loads += drive_load
+    truth = noise[SENSORS:]  # scratch room behind the noise
+    K.outputs(state, p, w[SLEWED], coupled, loads, truth)
+    if coupled:
+        row[LOAD_LEFT] = row[LOAD_RIGHT] = 0.5 * truth[K.OUT_LOAD]
+    row[MOTOR_SPEED] = _sense(truth[K.OUT_MOTOR_SPEED], noise[0], sensors[0], past[0], k, dt)
+    for side in range(2):
+        row[WHEEL_LEFT + side] = _sense(
+            truth[K.OUT_WHEEL_SPEED], noise[1 + side], sensors[1 + side], past[1 + side], k, dt
+        )
+        row[SHAFT_LEFT + side] = _sense(
+            0.5 * truth[K.OUT_SHAFT_TORQUE], noise[3 + side], sensors[3 + side], past[3 + side], k, dt
+        )
+    # V̂ reaches the RMCU in the dyno controller's frame, one sample late and with that frame's resolution.
+    v_hat = w[V_HAT]
+    w[V_HAT] = round((1.0 - w[SLIP]) * w[RADIUS] * x[E.VEHICLE_SPEED] * 1e5) * 1e-5
+    row[VEHICLE_SPEED] = w[V_HAT]
+    row[TORQUE] = truth[K.OUT_MOTOR_TORQUE]
+    torque = control(b, a, z, gains, states, mode, request, v_hat, row[MOTOR_SPEED], w[LAST_TORQUE])
+    w[LAST_TORQUE] = row[TORQUE]
+    row[TORQUE_REF] = torque
+    row[DRIVING_REF] = request if mode == M.DRIVING_FORCE else 0.0
+    row[DRIVING_EST] = states[M.ESTIMATE] if mode == M.DRIVING_FORCE else 0.0
+    row[SATURATED] = states[M.SATURATED]
+    row[CODE] = code
+    row[STATUS_LEFT] = status[0]
+    row[STATUS_RIGHT] = status[1]
+    torques[k % HISTORY] = torque
+    whole = int(math.floor(p[P.TORQUE_DELAY] / dt + 1e-9))
+    late = max(0.0, p[P.TORQUE_DELAY] - whole * dt)
+    if late < 1e-9 * dt:
+        late = 0.0
+    new = torques[(k - whole) % HISTORY]
+    old = torques[(k - whole - 1) % HISTORY]
+    state, w[SLEWED] = K.sample(state, p, w[SLEWED], old, new, late, dt, coupled, loads, 1e-4)
+    for i in range(E.STATES):
+        x[i] = state[i]

@@ -1,0 +1,247 @@
+"""The simulated bench: virtual time, two buses, the RMCU and four dynamometers around one plant."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import cantools
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.checksum import crc8_many
+from hil.core.errors import BadInputError
+from hil.core.frames import FrameBlock, empty_block
+from hil.core.signals import FrameLayout, layout_of
+from sim_backend.bench import _tick as T
+from sim_backend.bench._settings import SimulationSettings
+from sim_backend.bench._traffic import frame_time_s, interleaved, single
+from sim_backend.plant import _equations, _slots
+from sim_backend.rcs import DynoNode
+from sim_backend.rcs import _drive as drive
+from sim_backend.rmcu import RmcuNode
+
+RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
+TICK_S = 0.001
+_NOISE_BLOCK = 1000
+_LARGEST_BATCH = 4096
+_SYNC = FrameLayout("SYNC", 0x80, 0, {})
+_SENSED = ("motor_speed_rad_s", "wheel_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm", "shaft_torque_nm")
+
+
+class SimulatedBench:
+    """A bench whose time passes only while somebody waits for it. It is also the `Clock` of its users.
+
+    Frames that hosts send are delivered at the next sample; everything that the nodes send is kept until
+    `take` is called for its bus.
+    """
+
+    def __init__(self, settings: SimulationSettings) -> None:
+        if settings.model.kind == "transfer_function":
+            raise BadInputError(
+                "a 'transfer_function' model cannot be a simulated bench: it has no shaft to load",
+                fix="give a rigid, two_inertia or three_inertia model",
+            )
+        self.settings = settings
+        self._parameters = _slots.pack(settings.model)
+        self._random = np.random.default_rng(settings.seed)
+        self._samples = 0
+        self._now_s = 0.0
+        self._pending: dict[str, list[FrameBlock]] = {RMCU_BUS: [], DYNO_BUS: []}
+        self._inbox: list[tuple[str, int, bytes]] = []
+        self._rows = np.zeros((_LARGEST_BATCH, T.COLUMNS))
+        self._first_row = 0
+        self._make_state()
+        self._make_nodes()
+
+    # --- the clock ---
+
+    def now_s(self) -> float:
+        """Virtual time in seconds."""
+        return self._now_s
+
+    def sleep_until(self, time_s: float) -> None:
+        """Compute until virtual time is `time_s`."""
+        last = int((time_s + 1e-9) / TICK_S)
+        while self._samples < last:
+            self._tick()
+        self._now_s = max(self._now_s, time_s)
+
+    # --- the wire ---
+
+    def put(self, bus: str, frame_id: int, data: bytes) -> None:
+        """A host's frame: it reaches the nodes at the next sample."""
+        self._inbox.append((bus, frame_id, data))
+
+    def take(self, bus: str) -> FrameBlock:
+        """All frames that have appeared on `bus` until now and were not taken yet, in order of time."""
+        self._emit()
+        blocks = self._pending[bus]
+        if not blocks:
+            return empty_block()
+        self._pending[bus] = []
+        merged = blocks[0] if len(blocks) == 1 else np.concatenate(blocks)
+        if any(a["time_s"][-1] > b["time_s"][0] for a, b in pairwise(blocks)):
+            merged = merged[np.argsort(merged["time_s"], kind="stable")]
+        return merged
+
+    # --- construction ---
+
+    def _make_state(self) -> None:
+        p = self._parameters
+        self._x = np.zeros(_equations.STATES)
+        self._scalars = np.zeros(T.SCALARS)
+        self._scalars[T.RADIUS] = self.settings.wheel_radius_m
+        three = p[_slots.KIND] == _slots.THREE_INERTIA
+        self._scalars[T.DRIVE_INERTIA] = p[_slots.WHEEL_INERTIA if three else _slots.VEHICLE_INERTIA]
+        self._torques = np.zeros(T.HISTORY)
+        self._drives = np.zeros((2, drive.COLUMNS))
+        self._past = np.zeros((T.SENSORS, T.HISTORY))
+        self._status = np.zeros(2)
+        self._sensors = np.zeros((T.SENSORS, 4))
+        self._sensors[:, T.SENSOR_GAIN] = 1.0
+        for use in self.settings.model.effects:
+            for sensor, channel in enumerate(_SENSED):
+                if use.values.get("channel") == channel:
+                    self._apply_sensor_effect(sensor, use.id, use.values)
+        noise = self.settings.noise
+        self._noise_scale = np.array(
+            [noise.motor_speed_rad_s, *[noise.wheel_speed_rad_s] * 2, *[noise.shaft_torque_nm] * 2]
+        )
+        self._noise = np.zeros((_NOISE_BLOCK, T.SENSORS + 6))
+
+    def _apply_sensor_effect(self, sensor: int, effect: str, values: dict[str, float | str]) -> None:
+        row = self._sensors[sensor]
+        sides = 2.0 if _SENSED[sensor] == "shaft_torque_nm" else 1.0  # each side reads half of the sum
+        if effect == "sensor_gain":
+            row[T.SENSOR_GAIN] *= float(values["gain"])
+        elif effect == "sensor_offset":
+            row[T.SENSOR_OFFSET] += float(values["offset"]) / sides
+        elif effect == "sensor_quantization":
+            row[T.SENSOR_STEP] = float(values["step"]) / sides
+        elif effect == "channel_skew":
+            row[T.SENSOR_DELAY] = max(0.0, float(values["delay_s"]))
+
+    def _make_nodes(self) -> None:
+        s = self.settings
+        database = cantools.database.load_file(str(s.dbc))
+        self.rmcu = RmcuNode(database, lambda i, data: self._event(RMCU_BUS, i, data))  # type: ignore[arg-type]
+        self._vehicle = layout_of(database.get_message_by_name("RCS_Vehicle"))  # type: ignore[union-attr]
+        rows = {s.rear_left: self._drives[0], s.rear_right: self._drives[1]}
+        self.dynos = [
+            DynoNode(
+                node, s.eds, lambda i, data: self._event(DYNO_BUS, i, data), rows.get(node, np.zeros(drive.COLUMNS))
+            )
+            for node in (s.rear_left, s.rear_right, *s.idle)
+        ]
+        p = self._parameters
+        vehicle = (p[_slots.VEHICLE_INERTIA], p[_slots.ROLLING], p[_slots.AERO], 0.0, s.wheel_radius_m, 0.0)
+        for node in self.dynos:
+            for subindex, value in enumerate(vehicle, 1):
+                node.preset(0x2000, subindex, value)
+        m = self.rmcu.memory
+        m.gains[0] = TICK_S
+        self._firmware = (m.numerators, m.denominators, m.filter_states, m.gains, m.states)
+
+    # --- one sample ---
+
+    def _tick(self) -> None:
+        k = self._samples
+        time_s = k * TICK_S
+        if self._inbox:
+            self._deliver(time_s)
+        rmcu = self.rmcu
+        rmcu.vehicle_speed_is_fresh(time_s)
+        rmcu.supervise(time_s)
+        if k % 10 == 0:
+            for node in self.dynos:
+                node.pass_time(time_s)
+            self._status[0] = self.dynos[0].power.statusword
+            self._status[1] = self.dynos[1].power.statusword
+        if k % _NOISE_BLOCK == 0:
+            drawn = self._random.standard_normal((_NOISE_BLOCK, T.SENSORS))
+            self._noise[:, : T.SENSORS] = drawn * self._noise_scale
+        T.tick(
+            k,
+            self._x,
+            self._parameters,
+            self._scalars,
+            self._torques,
+            self._firmware,
+            self._drives,
+            self._sensors,
+            self._past,
+            self._noise[k % _NOISE_BLOCK],
+            rmcu.mode,
+            rmcu.request,
+            rmcu.code,
+            self._status,
+            self._rows[k - self._first_row],
+        )
+        self._samples = k + 1
+        self._now_s = self._samples * TICK_S
+        if self._samples - self._first_row == _LARGEST_BATCH:
+            self._emit()
+
+    def _deliver(self, time_s: float) -> None:
+        inbox, self._inbox = self._inbox, []
+        for bus, frame_id, data in inbox:
+            if bus == RMCU_BUS:
+                self.rmcu.receive(frame_id, int.from_bytes(data, "little"), time_s)
+            else:
+                self._emit()  # what the nodes send may change from here on
+                for node in self.dynos:
+                    node.receive(frame_id, data, time_s)
+                self._take_vehicle_model()
+
+    def _take_vehicle_model(self) -> None:
+        left = self.dynos[0]
+        inertia, rolling, aero, slip, radius, initial = (left.number(0x2000, i) for i in range(1, 7))
+        p = self._parameters
+        p[_slots.VEHICLE_INERTIA], p[_slots.ROLLING], p[_slots.AERO] = inertia, rolling, aero
+        w = self._scalars
+        w[T.SLIP], w[T.RADIUS], w[T.INITIAL_SPEED] = slip, radius, initial
+
+    def _event(self, bus: str, frame_id: int, data: bytes) -> None:
+        rate = self.settings.rmcu_bit_rate if bus == RMCU_BUS else self.settings.dyno_bit_rate
+        stamp = self._samples * TICK_S + 6 * frame_time_s(8, rate)
+        self._pending[bus].append(single(frame_id, data, stamp))
+
+    # --- frames of many samples ---
+
+    def _emit(self) -> None:
+        count = self._samples - self._first_row
+        if count == 0:
+            return
+        rows = self._rows[:count]
+        start_s = (self._first_row + np.arange(count)) * TICK_S
+        self._pending[RMCU_BUS].append(self._rmcu_frames(rows, start_s))
+        dyno = self._dyno_frames(rows)
+        if dyno:
+            self._pending[DYNO_BUS].append(interleaved(start_s, dyno, self.settings.dyno_bit_rate))
+        self._first_row = self._samples
+
+    def _rmcu_frames(
+        self, rows: npt.NDArray[np.float64], start_s: npt.NDArray[np.float64]
+    ) -> FrameBlock:
+        counter = self._first_row + np.arange(len(rows))
+        vehicle = self._vehicle.encode(VehicleSpeed=rows[:, T.VEHICLE_SPEED], Counter=counter % 16, Valid=1)
+        vehicle |= crc8_many(self._vehicle.id, vehicle) << np.uint64(56)
+        status = self.rmcu.frames(rows[:, : T.CODE + 1], self._first_row)
+        return interleaved(start_s, [(self._vehicle, vehicle), *status], self.settings.rmcu_bit_rate)
+
+    def _dyno_frames(
+        self, rows: npt.NDArray[np.float64]
+    ) -> list[tuple[FrameLayout, npt.NDArray[np.uint64]]]:
+        if not any(node.sync_period_s for node in self.dynos):
+            return []
+        messages = [(_SYNC, np.zeros(len(rows), np.uint64))]
+        for side, node in enumerate(self.dynos[:2]):
+            if node.operational:
+                values = {"Wheel speed": rows[:, T.WHEEL_LEFT + side], "Shaft torque": rows[:, T.SHAFT_LEFT + side]}
+                status = {
+                    "Statusword": rows[:, T.STATUS_LEFT + side],
+                    "Vehicle speed": rows[:, T.VEHICLE_SPEED],
+                    "Torque actual value": rows[:, T.LOAD_LEFT + side],
+                }
+                messages += [(node.values, node.values.encode(**values)), (node.status, node.status.encode(**status))]
+        return messages

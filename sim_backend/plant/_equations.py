@@ -1,0 +1,131 @@
+"""Equations of motion of the driveline, with every effect of the registry, for the compiled kernel.
+
+Chain (seed: three-inertia reading of (14)-(16)): rotor - gear N - half shafts - wheel and dyno rotor -
+tyre/road coupling - vehicle. The housing may turn on its bushes; the motor speed is rotor against housing.
+Wheel-side quantities are sums of both sides.
+"""
+
+from __future__ import annotations
+
+import math
+
+from hil.core.compiled import inlined
+
+from sim_backend.plant import _slots as P
+
+# Width of the smooth sign functions: small against any speed of interest, large enough for 0.1 ms steps.
+_FRICTION_WIDTH_RAD_S = 0.2
+_STRIBECK_WIDTH_RAD_S = 2.0
+_ROLLING_WIDTH_RAD_S = 0.05
+_TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel while the dyno leads
+
+# State vector
+ROTOR_SPEED, TWIST, WHEEL_SPEED, TYRE_TWIST, VEHICLE_SPEED, WHEEL_ANGLE, LAGGED, HOUSING_ANGLE, HOUSING_SPEED, SLIP = (
+    range(10)
+)
+STATES = 10
+
+
+@inlined
+def shaft_torque(x, p):  # type: ignore[no-untyped-def]
+    """T_s in N m from the state: stiffness (backlash, cubic), damping, hysteresis, wheel-order ripple."""
+    v = x[HOUSING_SPEED] + (x[ROTOR_SPEED] - x[HOUSING_SPEED]) / p[P.GEAR_RATIO] - x[WHEEL_SPEED]
+    e = x[TWIST]
+    gap = p[P.HALF_GAP]
+    if gap > 0.0:
+        if e > gap:
+            e -= gap
+            torque = max(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v)
+        elif e < -gap:
+            e += gap
+            torque = min(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v)
+        else:
+            e = 0.0
+            torque = 0.0
+    else:
+        torque = p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v
+    torque += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * x[SLIP]
+    if p[P.WHEEL_ORDER_AMPLITUDE] != 0.0:
+        torque += p[P.WHEEL_ORDER_AMPLITUDE] * math.sin(
+            p[P.WHEEL_ORDER] * x[WHEEL_ANGLE] + p[P.WHEEL_ORDER_PHASE]
+        )
+    return torque
+
+
+@inlined
+def rotor_losses(x, p):  # type: ignore[no-untyped-def]
+    """Friction, drag and ripple on the rotor in N m, against positive motion."""
+    speed = x[ROTOR_SPEED] - x[HOUSING_SPEED]
+    loss = p[P.DRAG] * speed + p[P.FRICTION_OFFSET]
+    if p[P.COULOMB] != 0.0 or p[P.STRIBECK] != 0.0:
+        ratio = speed / _STRIBECK_WIDTH_RAD_S
+        level = p[P.COULOMB] + p[P.STRIBECK] * math.exp(-ratio * ratio)
+        loss += level * math.tanh(speed / _FRICTION_WIDTH_RAD_S)
+    if p[P.MOTOR_ORDER_AMPLITUDE] != 0.0:
+        angle = p[P.GEAR_RATIO] * (x[TWIST] + x[WHEEL_ANGLE] - x[HOUSING_ANGLE])
+        loss -= p[P.MOTOR_ORDER_AMPLITUDE] * math.sin(p[P.MOTOR_ORDER] * angle + p[P.MOTOR_ORDER_PHASE])
+    return loss
+
+
+@inlined
+def running_resistance(speed, p):  # type: ignore[no-untyped-def]
+    """Load on the vehicle inertia in N m at a wheel-side speed in rad/s."""
+    if p[P.ROLLING] == 0.0 and p[P.AERO] == 0.0:
+        return 0.0
+    return p[P.ROLLING] * math.tanh(speed / _ROLLING_WIDTH_RAD_S) + p[P.AERO] * speed * abs(speed)
+
+
+@inlined
+def tyre_torque(x, p):  # type: ignore[no-untyped-def]
+    """Torque that the tyre/road coupling takes from the wheel, in N m."""
+    return p[P.TYRE_STIFFNESS] * x[TYRE_TWIST] + p[P.TYRE_DAMPING] * (x[WHEEL_SPEED] - x[VEHICLE_SPEED])
+
+
+@inlined
+def rigid_acceleration(x, p, torque, load):  # type: ignore[no-untyped-def]
+    """Rotor acceleration in rad/s² of the one-mass model, with a wheel-side load in N m."""
+    n = p[P.GEAR_RATIO]
+    inertia = p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / (n * n)
+    return (torque - rotor_losses(x, p) - load / n) / inertia
+
+
+@inlined
+def derivative(x, p, torque, coupled, load):  # type: ignore[no-untyped-def]
+    """dx/dt; `torque` acts on the rotor (before the lag), `load` on the wheel unless the vehicle is coupled."""
+    lagged = 0.0
+    if p[P.LAG] > 0.0:
+        lagged = (torque - x[LAGGED]) / p[P.LAG]
+        torque = x[LAGGED]
+    n = p[P.GEAR_RATIO]
+    relative = x[ROTOR_SPEED] - x[HOUSING_SPEED]
+    if p[P.KIND] == P.RIGID:
+        wheel_load = running_resistance(x[WHEEL_SPEED], p) if coupled else load
+        rotor = rigid_acceleration(x, p, torque, wheel_load)
+        return (rotor, 0.0, rotor / n, 0.0, rotor / n, x[WHEEL_SPEED], lagged, 0.0, 0.0, 0.0)
+    v = x[HOUSING_SPEED] + relative / n - x[WHEEL_SPEED]
+    shaft = shaft_torque(x, p)
+    loss = rotor_losses(x, p)
+    rotor = (torque - loss - shaft / n) / p[P.MOTOR_INERTIA]
+    housing = 0.0
+    if p[P.HOUSING_INERTIA] > 0.0:
+        reaction = loss - torque + shaft / n - shaft
+        bushes = p[P.MOUNT_STIFFNESS] * x[HOUSING_ANGLE] + p[P.MOUNT_DAMPING] * x[HOUSING_SPEED]
+        housing = (reaction - bushes) / p[P.HOUSING_INERTIA]
+    slip = 0.0
+    if p[P.HYSTERESIS_STIFFNESS] != 0.0:
+        ratio = x[SLIP] / p[P.HYSTERESIS_SLIP]
+        slip = v if ratio * v <= 0.0 else v * (1.0 - ratio * ratio)
+    if p[P.KIND] == P.TWO_INERTIA:
+        outside = running_resistance(x[WHEEL_SPEED], p) if coupled else load
+        wheel = (shaft - outside) / p[P.VEHICLE_INERTIA]
+        tyre, vehicle = 0.0, wheel
+    elif coupled:
+        road = tyre_torque(x, p)
+        wheel = (shaft - road) / p[P.WHEEL_INERTIA]
+        tyre = x[WHEEL_SPEED] - x[VEHICLE_SPEED]
+        vehicle = (road - running_resistance(x[VEHICLE_SPEED], p)) / p[P.VEHICLE_INERTIA]
+    else:
+        wheel = (shaft - load) / p[P.WHEEL_INERTIA]
+        tyre = -_TRACKING_RATE_1_S * x[TYRE_TWIST]
+        vehicle = wheel + _TRACKING_RATE_1_S * (x[WHEEL_SPEED] - x[VEHICLE_SPEED])
+    return (rotor, v, wheel, tyre, vehicle, x[WHEEL_SPEED], lagged, x[HOUSING_SPEED], housing, slip)

@@ -1,0 +1,155 @@
+"""The compiled integrator: classical Runge-Kutta at a fixed step, torque held between controller samples.
+
+Dead time is exact: the held torque switches at t_k + delay, and the step grid is laid so that the switch
+falls on a step's border.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import prange
+
+from sim_backend.plant import _equations as E
+from sim_backend.plant import _slots as P
+from hil.core.compiled import compiled, compiled_parallel, inlined
+
+# Columns of the kernel's output
+OUT_MOTOR_SPEED, OUT_WHEEL_SPEED, OUT_SHAFT_TORQUE, OUT_MOTOR_TORQUE, OUT_VEHICLE_SPEED, OUT_LOAD = range(6)
+OUTPUT_COLUMNS = 6
+
+
+@inlined
+def _moved(x, h, k):  # type: ignore[no-untyped-def]
+    return (
+        x[0] + h * k[0],
+        x[1] + h * k[1],
+        x[2] + h * k[2],
+        x[3] + h * k[3],
+        x[4] + h * k[4],
+        x[5] + h * k[5],
+        x[6] + h * k[6],
+        x[7] + h * k[7],
+        x[8] + h * k[8],
+        x[9] + h * k[9],
+    )
+
+
+@compiled
+def _steps(x, p, torque, coupled, load, duration, count):  # type: ignore[no-untyped-def]
+    """`count` Runge-Kutta steps over `duration` seconds with constant inputs."""
+    h = duration / count
+    for _ in range(count):
+        total = E.derivative(x, p, torque, coupled, load)
+        point = _moved(x, 0.5 * h, total)
+        for stage in range(2):
+            k = E.derivative(point, p, torque, coupled, load)
+            total = _moved(total, 2.0, k)
+            point = _moved(x, h if stage == 1 else 0.5 * h, k)
+        k = E.derivative(point, p, torque, coupled, load)
+        total = _moved(total, 1.0, k)
+        x = _moved(x, h / 6.0, total)
+    return x
+
+
+@inlined
+def shaped(torque, p):  # type: ignore[no-untyped-def]
+    """Dead band, then saturation: the parts of the torque path without memory."""
+    band = p[P.DEADBAND]
+    if band > 0.0:
+        torque = math.copysign(max(0.0, abs(torque) - band), torque)
+    return min(max(torque, -p[P.SATURATION]), p[P.SATURATION])
+
+
+@compiled
+def _hold(x, p, slewed, wanted, coupled, load, duration, longest_step):  # type: ignore[no-untyped-def]
+    """Advance with the wanted torque held; the slew limit, if any, moves once a step."""
+    count = max(1, math.ceil(duration / longest_step - 1e-9))
+    if p[P.RATE_LIMIT] == math.inf or slewed == wanted:
+        return _steps(x, p, wanted, coupled, load, duration, count), wanted
+    h = duration / count
+    for _ in range(count):
+        reach = p[P.RATE_LIMIT] * h
+        moved = slewed + min(max(wanted - slewed, -reach), reach)
+        x = _steps(x, p, 0.5 * (slewed + moved), coupled, load, h, 1)
+        slewed = moved
+    return x, slewed
+
+
+@compiled
+def sample(x, p, slewed, old, new, late, dt, coupled, load, longest_step):  # type: ignore[no-untyped-def]
+    """One controller sample: `old` torque acts for `late` seconds, then `new` until `dt`."""
+    if late > 0.0:
+        x, slewed = _hold(x, p, slewed, shaped(old, p), coupled, load, late, longest_step)
+    if late < dt:
+        x, slewed = _hold(x, p, slewed, shaped(new, p), coupled, load, dt - late, longest_step)
+    return x, slewed
+
+
+@compiled
+def outputs(x, p, slewed, coupled, load, row):  # type: ignore[no-untyped-def]
+    """Fill `row` with the measurable quantities of a state."""
+    acting = x[E.LAGGED] if p[P.LAG] > 0.0 else slewed
+    row[OUT_MOTOR_SPEED] = x[E.ROTOR_SPEED] - x[E.HOUSING_SPEED]
+    row[OUT_WHEEL_SPEED] = x[E.WHEEL_SPEED]
+    if p[P.KIND] == P.RIGID:
+        outside = E.running_resistance(x[E.WHEEL_SPEED], p) if coupled else load
+        wheel = E.rigid_acceleration(x, p, acting, outside) / p[P.GEAR_RATIO]
+        row[OUT_SHAFT_TORQUE] = p[P.VEHICLE_INERTIA] * wheel + outside
+    else:
+        row[OUT_SHAFT_TORQUE] = E.shaft_torque(x, p)
+    row[OUT_MOTOR_TORQUE] = acting
+    row[OUT_VEHICLE_SPEED] = x[E.VEHICLE_SPEED]
+    if coupled and p[P.KIND] == P.THREE_INERTIA:
+        row[OUT_LOAD] = E.tyre_torque(x, p)
+    elif coupled:
+        row[OUT_LOAD] = E.running_resistance(x[E.WHEEL_SPEED], p)
+    else:
+        row[OUT_LOAD] = load
+
+
+@compiled
+def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque):  # type: ignore[no-untyped-def]
+    """State that shows the given speeds (rad/s) and torques (N m), the road coupling at rest."""
+    twist = 0.0
+    if p[P.KIND] != P.RIGID:
+        twist = shaft_torque / p[P.SHAFT_STIFFNESS]
+        twist += math.copysign(p[P.HALF_GAP], twist) if twist != 0.0 else 0.0
+    tyre = 0.0
+    if p[P.KIND] == P.THREE_INERTIA:
+        tyre = shaft_torque / p[P.TYRE_STIFFNESS]
+    if p[P.KIND] == P.RIGID:
+        wheel_speed = motor_speed / p[P.GEAR_RATIO]
+    return (motor_speed, twist, wheel_speed, tyre, wheel_speed, 0.0, motor_torque, 0.0, 0.0, 0.0)
+
+
+@compiled
+def run(torque, dt, p, start, longest_step, out):  # type: ignore[no-untyped-def]
+    """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS); vehicle coupled.
+
+    `start` is [motor speed, wheel speed, shaft torque]; before the first sample the first torque acted.
+    """
+    whole = int(math.floor(p[P.TORQUE_DELAY] / dt + 1e-9))
+    late = max(0.0, p[P.TORQUE_DELAY] - whole * dt)
+    if late < 1e-9 * dt:
+        late = 0.0
+    slewed = shaped(torque[0], p)
+    x = initial_state(p, start[0], start[1], start[2], slewed)
+    for k in range(torque.shape[0]):
+        outputs(x, p, slewed, True, 0.0, out[k])
+        new = torque[max(k - whole, 0)]
+        old = torque[max(k - whole - 1, 0)]
+        x, slewed = sample(x, p, slewed, old, new, late, dt, True, 0.0, longest_step)
+
+
+@compiled_parallel
+def run_many(torque, dt, parameters, start, longest_step, out):  # type: ignore[no-untyped-def]
+    """`run` for every row of `parameters`, in parallel; `out` is sets x n x OUTPUT_COLUMNS."""
+    for index in prange(parameters.shape[0]):
+        run(torque, dt, parameters[index], start, longest_step, out[index])
+
+
+def empty_output(samples: int) -> np.ndarray:
+    """Room for the output of `run`."""
+    return np.empty((samples, OUTPUT_COLUMNS))

@@ -1,0 +1,166 @@
+"""One dynamometer as a CANopen node: NMT, heartbeat, SDO, PDO, EMCY. Written against the EDS."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import canopen
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.pdo import layout_of_pdo
+from sim_backend.rcs import _drive
+from sim_backend.rcs._power_states import PowerStates, State
+
+_OPERATIONAL = 5
+_MODES = {3: _drive.SPEED, 4: _drive.TORQUE, -1: _drive.VEHICLE}
+_EMCY_HEARTBEAT_LOST = 0x8130
+_SYNC_PRODUCER = 1 << 30
+
+
+class _Timer:
+    """A cyclic message in virtual time."""
+
+    def __init__(self, frame_id: int, data: bytes, period_s: float, start_s: float) -> None:
+        self.frame_id, self.data, self.period_s = frame_id, bytes(data), period_s
+        self.due_s = start_s + period_s
+
+    def stop(self) -> None:
+        self.period_s = float("inf")
+        self.due_s = float("inf")
+
+    def update(self, data: Any) -> None:
+        self.data = bytes(data)
+
+
+class _Network(canopen.Network):  # type: ignore[misc]
+    """canopen's services on the simulated wire; heartbeats run in virtual time."""
+
+    def __init__(self, send: Callable[[int, bytes], None]) -> None:
+        super().__init__()
+        self.time_s = 0.0
+        self.timers: list[_Timer] = []
+        self._deliver = send
+
+    def send_message(self, can_id: int, data: Any, remote: bool = False) -> None:
+        del remote
+        self._deliver(can_id, bytes(data))
+
+    def send_periodic(self, can_id: int, data: Any, period: float, remote: bool = False) -> _Timer:
+        del remote
+        timer = _Timer(can_id, bytes(data), period, self.time_s)
+        self.timers = [t for t in self.timers if t.due_s != float("inf")] + [timer]
+        return timer
+
+
+class DynoNode:
+    """A node and its drive; `row` is what the compiled drive law reads (`_drive` columns)."""
+
+    def __init__(
+        self, node_id: int, eds: Path, send: Callable[[int, bytes], None], row: npt.NDArray[np.float64]
+    ) -> None:
+        self.id = node_id
+        self.row = row
+        self.power = PowerStates()
+        self._network = _Network(send)
+        self._node: Any = canopen.LocalNode(node_id, str(eds))
+        self._dictionary = self._node.object_dictionary
+        self._node.associate_network(self._network)
+        self._node.add_write_callback(self._written)
+        self._node.nmt.send_command(0)  # boots: boot-up message, then pre-operational
+        self._node.nmt.send_command(128)
+        self._command = layout_of_pdo(self._dictionary, 0x1600, 0x200 + node_id)
+        self.values = layout_of_pdo(self._dictionary, 0x1A00, 0x180 + node_id)
+        self.status = layout_of_pdo(self._dictionary, 0x1A01, 0x280 + node_id)
+        self._host_heard_s = float("inf")
+        self._host_heartbeat, self._host_limit_s = -1, float("inf")
+        self._follow()
+
+    @property
+    def operational(self) -> bool:
+        """Whether NMT lets the node send PDOs."""
+        return bool(self._node.nmt._state == _OPERATIONAL)
+
+    @property
+    def sync_period_s(self) -> float:
+        """Period of the SYNC that this node gives; 0 if it gives none."""
+        produces = self.number(0x1005) & _SYNC_PRODUCER
+        return self.number(0x1006) * 1e-6 if produces else 0.0
+
+    def receive(self, frame_id: int, data: bytes, time_s: float) -> None:
+        """Take one frame from the bus."""
+        self._network.time_s = time_s
+        if frame_id == self._host_heartbeat:
+            self._host_heard_s = time_s
+            return
+        if frame_id == self._command.id:
+            if self.operational and len(data) == self._command.length:
+                self._take_command(int.from_bytes(data, "little"))
+        else:
+            self._network.notify(frame_id, bytearray(data), time_s)
+        self._follow()
+
+    def pass_time(self, time_s: float) -> None:
+        """Send heartbeats that are due; go to fault by itself when the host has fallen silent."""
+        self._network.time_s = time_s
+        for timer in self._network.timers:
+            if time_s >= timer.due_s:
+                timer.due_s += timer.period_s
+                self._network.send_message(timer.frame_id, timer.data)
+        silent = time_s - self._host_heard_s > self._host_limit_s
+        if silent and self.power.state is not State.FAULT:
+            if self.power.state is not State.SWITCH_ON_DISABLED:
+                self.power.fail()
+                self._node.emcy.send(_EMCY_HEARTBEAT_LOST, 0x11)
+                self._follow()
+            self._host_heard_s = float("inf")
+
+    def number(self, index: int, subindex: int = 0) -> Any:
+        """Present value of an object of the dictionary."""
+        entry = self._dictionary[index]
+        variable = entry if subindex == 0 and not hasattr(entry, "subindices") else entry[subindex]
+        return variable.decode_raw(self._node.get_data(index, subindex))
+
+    def show(self, index: int, value: int) -> None:
+        """Update a read-only object so that SDO reads see it."""
+        variable = self._dictionary[index]
+        self._node.data_store.setdefault(index, {})[0] = variable.encode_raw(value)
+
+    def preset(self, index: int, subindex: int, value: float) -> None:
+        """Value of an object before the host has written it."""
+        self._node.data_store.setdefault(index, {})[subindex] = struct.pack("<f", value)
+
+    def _take_command(self, payload: int) -> None:
+        signals = self._command.signals
+        self.row[_drive.TARGET_SPEED] = signals["Target velocity"].value(payload)
+        self.row[_drive.TARGET_TORQUE] = signals["Target torque"].value(payload)
+        self.power.command(signals["Controlword"].raw(payload))
+
+    def _written(self, index: int, subindex: int, od: Any, data: bytes) -> None:
+        del subindex
+        if index == 0x6040:
+            self.power.command(od.decode_raw(data))
+        elif index == 0x60FF:
+            self.row[_drive.TARGET_SPEED] = od.decode_raw(data) * od.factor
+        elif index == 0x6071:
+            self.row[_drive.TARGET_TORQUE] = od.decode_raw(data) * od.factor
+        elif index == 0x6060 and od.decode_raw(data) not in _MODES:
+            raise canopen.SdoAbortedError(0x06090030)
+
+    def _follow(self) -> None:
+        """Bring the drive in line with power state, mode of operation and heartbeat supervision."""
+        watch = self.number(0x1016, 1)
+        self._host_heartbeat = 0x700 + (watch >> 16 & 0x7F) if watch & 0xFFFF else -1
+        self._host_limit_s = (watch & 0xFFFF) * 1e-3 or float("inf")
+        mode = self.number(0x6060)
+        self.show(0x6061, mode)
+        self.show(0x6041, self.power.statusword)
+        self.row[_drive.ACCELERATION] = self.number(0x6083) * self._dictionary[0x6083].factor
+        enabled = self.power.state is State.OPERATION_ENABLED
+        wanted = _MODES.get(mode, _drive.FREE) if enabled else _drive.FREE
+        if self.power.state is State.QUICK_STOP_ACTIVE:
+            wanted, self.row[_drive.TARGET_SPEED] = _drive.SPEED, 0.0
+        self.row[_drive.MODE] = wanted

@@ -1,0 +1,5 @@
+"""The Rear Motor Control Unit, emulated: the whole of the paper's Fig. 3 behind its CAN frames."""
+
+from sim_backend.rmcu._node import REQUEST_TIMEOUT_S, RmcuNode
+
+__all__ = ["REQUEST_TIMEOUT_S", "RmcuNode"]

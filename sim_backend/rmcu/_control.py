@@ -1,0 +1,45 @@
+"""One control sample of the RMCU: Fig. 3 put together, with the torque limit and its anti-windup."""
+
+from __future__ import annotations
+
+from hil.core.compiled import compiled
+from sim_backend.rmcu import _memory as M
+from sim_backend.rmcu._driving_force_control import feedforward, wheel_speed_reference
+from sim_backend.rmcu._driving_force_observer import estimate
+from sim_backend.rmcu._filters import settle
+from sim_backend.rmcu._wheel_speed_control import motor_torque
+
+
+@compiled
+def enter(b, a, z, k, s, mode, v_hat, w_m, t_m):  # type: ignore[no-untyped-def]
+    """Bumpless start of a mode: every filter as if today's speed had always been."""
+    s[M.MODE] = mode
+    s[M.SLIP] = 0.0
+    s[M.INTEGRATOR] = 0.0
+    s[M.SATURATED] = 0.0
+    settle(b[M.FEEDFORWARD], a[M.FEEDFORWARD], z[M.FEEDFORWARD], 0.0)
+    settle(b[M.SPEED_FILTER], a[M.SPEED_FILTER], z[M.SPEED_FILTER], v_hat / k[M.RADIUS])
+    settle(b[M.STABILIZER], a[M.STABILIZER], z[M.STABILIZER], 0.0)
+    settle(b[M.OBSERVER_TORQUE], a[M.OBSERVER_TORQUE], z[M.OBSERVER_TORQUE], t_m)
+    settle(b[M.OBSERVER_SPEED], a[M.OBSERVER_SPEED], z[M.OBSERVER_SPEED], w_m)
+
+
+@compiled
+def control(b, a, z, k, s, mode, request, v_hat, w_m, t_m):  # type: ignore[no-untyped-def]
+    """T_m* in N m. `request`: motor torque in mode torque, rF_d* in mode driving_force."""
+    if mode != s[M.MODE]:
+        enter(b, a, z, k, s, mode, v_hat, w_m, t_m)
+    if mode == M.OFF or mode == M.FAULT:
+        s[M.SATURATED] = 0.0
+        return 0.0
+    limit = k[M.TORQUE_LIMIT]
+    torque = request
+    if mode == M.DRIVING_FORCE:
+        s[M.ESTIMATE] = estimate(b, a, z, t_m, w_m)
+        # Anti-windup by conditional integration: while the last torque was clipped, both integrators wait.
+        hold = s[M.SATURATED] != 0.0
+        wheel = wheel_speed_reference(k, s, request, s[M.ESTIMATE], v_hat, hold)
+        torque = feedforward(b, a, z, request) + motor_torque(b, a, z, k, s, wheel, w_m, hold)
+    clipped = min(max(torque, -limit), limit)
+    s[M.SATURATED] = 1.0 if clipped != torque else 0.0
+    return clipped

@@ -1,0 +1,56 @@
+"""DFC: driving force control, the blue part of the paper's Fig. 3."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.compiled import compiled
+from sim_backend.rmcu import _memory as M
+from sim_backend.rmcu._filters import step, tustin
+
+
+class DrivingForceControl:
+    """Feed-forward (18) and integral feedback with (1)(2).
+
+    Args:
+        k_i: K_i(DFC); tau_2: τ_2 in s; r: wheel radius in m; sigma: σ in m/s; slip_limit: largest |y|.
+        shaft_torque, denominator: T_s/T_m* (16) without its dead time, descending powers of s.
+    """
+
+    def __init__(
+        self,
+        k_i: float,
+        tau_2: float,
+        r: float,
+        sigma: float,
+        slip_limit: float,
+        shaft_torque: npt.ArrayLike,
+        denominator: npt.ArrayLike,
+        sample_time_s: float,
+    ) -> None:
+        self._gains = {M.K_I_DFC: k_i, M.RADIUS: r, M.SIGMA: sigma, M.SLIP_LIMIT: slip_limit}
+        # (18): G_FF = T_m*/T_s · 1/(τ_2 s + 1)
+        self._feedforward = tustin(denominator, np.polymul(shaft_torque, [tau_2, 1.0]), sample_time_s)
+
+    def load(self, memory: M.Memory) -> None:
+        """Put coefficients into the firmware's memory."""
+        memory.place(M.FEEDFORWARD, self._feedforward)
+        for index, value in self._gains.items():
+            memory.gains[index] = value
+
+
+@compiled
+def feedforward(b, a, z, reference):  # type: ignore[no-untyped-def]
+    """T_m(DFC)* in N m for rF_d* (18)."""
+    return step(b[M.FEEDFORWARD], a[M.FEEDFORWARD], z[M.FEEDFORWARD], reference)
+
+
+@compiled
+def wheel_speed_reference(k, s, reference, estimate, v_hat, hold):  # type: ignore[no-untyped-def]
+    """ω_l* in rad/s: y integrates the driving torque's error, (1) gives V*, (2) divides by r."""
+    if not hold:
+        y = s[M.SLIP] + k[M.K_I_DFC] * (reference - estimate) * k[M.SAMPLE_TIME]
+        s[M.SLIP] = min(max(y, -k[M.SLIP_LIMIT]), k[M.SLIP_LIMIT])
+    base = v_hat if v_hat >= k[M.SIGMA] else k[M.SIGMA]
+    return (v_hat + s[M.SLIP] * base) / k[M.RADIUS]

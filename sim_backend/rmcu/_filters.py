@@ -1,0 +1,68 @@
+"""Linear filters as the RMCU runs them: Tustin at the controller rate, transposed direct form II."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.signal import bilinear
+
+from hil.core.compiled import compiled
+
+Array = npt.NDArray[np.float64]
+LARGEST_ORDER = 8
+
+
+@dataclass(frozen=True)
+class Filter:
+    """Discrete filter; `numerator` and `denominator` have LARGEST_ORDER + 1 entries, a_0 = 1."""
+
+    numerator: Array
+    denominator: Array
+
+
+def tustin(numerator: npt.ArrayLike, denominator: npt.ArrayLike, sample_time_s: float) -> Filter:
+    """Discretise numerator/denominator (descending powers of s) by Tustin's rule, without prewarping.
+
+    Roots at s = 0 that stand above and below are cancelled first.
+
+    Raises:
+        ValueError: improper, of too high an order, or unstable.
+    """
+    above = np.trim_zeros(np.atleast_1d(np.asarray(numerator, dtype=float)), "f")
+    below = np.trim_zeros(np.atleast_1d(np.asarray(denominator, dtype=float)), "f")
+    while len(above) > 1 and len(below) > 1 and above[-1] == 0.0 and below[-1] == 0.0:
+        above, below = above[:-1], below[:-1]
+    if len(below) == 0 or len(above) > len(below) or len(below) > LARGEST_ORDER + 1:
+        raise ValueError(f"a filter of order {len(above) - 1} over {len(below) - 1} cannot be run")
+    if len(below) > 1 and np.max(np.roots(below).real) > 1e-9:
+        raise ValueError("the filter is unstable")
+    b, a = bilinear(above, below, 1.0 / sample_time_s)
+    padded = np.zeros((2, LARGEST_ORDER + 1))
+    padded[0, : len(b)], padded[1, : len(a)] = b, a
+    return Filter(padded[0] / a[0], padded[1] / a[0])
+
+
+@compiled
+def step(b, a, z, u):  # type: ignore[no-untyped-def]
+    """One sample: output for input `u`; the state `z` moves."""
+    y = b[0] * u + z[0]
+    for i in range(LARGEST_ORDER - 1):
+        z[i] = b[i + 1] * u + z[i + 1] - a[i + 1] * y
+    z[LARGEST_ORDER - 1] = b[LARGEST_ORDER] * u - a[LARGEST_ORDER] * y
+    return y
+
+
+@compiled
+def settle(b, a, z, u):  # type: ignore[no-untyped-def]
+    """Set the state as if the input had been `u` for ever."""
+    above = 0.0
+    below = 0.0
+    for i in range(LARGEST_ORDER + 1):
+        above += b[i]
+        below += a[i]
+    y = u * above / below if below != 0.0 else 0.0
+    for i in range(LARGEST_ORDER - 1, -1, -1):
+        later = z[i + 1] if i + 1 < LARGEST_ORDER else 0.0
+        z[i] = later + b[i + 1] * u - a[i + 1] * y

@@ -1,0 +1,157 @@
+"""The RMCU on its bus: request supervision, parameter service, status frames. Written against the DBC."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+from cantools.database.can import Database
+
+from hil.core.checksum import crc8, crc8_many
+from hil.core.signals import FrameLayout, layout_of
+from sim_backend.rmcu import _memory as M
+from sim_backend.rmcu import _parameters as parameters
+
+REQUEST_TIMEOUT_S = 0.05
+_COUNTER_VALUES = 16
+_NONE, _TIMEOUT, _COUNTER, _CRC, _VEHICLE_SPEED, _PARAMETERS = range(6)
+_READ, _WRITE, _APPLY = range(3)
+
+
+class RmcuNode:
+    """Receives frames, decides on the mode, and gives status frames; the control law runs compiled.
+
+    `mode` and `request` are what the control law uses in the next sample.
+    """
+
+    def __init__(self, database: Database, send: Callable[[int, bytes], None]) -> None:
+        self.memory = M.Memory()
+        self.mode = M.OFF
+        self.request = 0.0
+        self._send = send
+        self._request = layout_of(database.get_message_by_name("RMCU_Request"))
+        self._write = layout_of(database.get_message_by_name("RMCU_ParameterWrite"))
+        self._reply = layout_of(database.get_message_by_name("RMCU_ParameterReply"))
+        self._status = layout_of(database.get_message_by_name("RMCU_Status"))
+        self._control = layout_of(database.get_message_by_name("RMCU_Control"))
+        choices = database.get_message_by_name("RMCU_ParameterWrite").get_signal_by_name("Index").choices
+        self._names = {int(index): str(name) for index, name in (choices or {}).items() if int(index) > 0}
+        self._stored: dict[str, float] = {}
+        self._valid = False
+        self._fault = _NONE
+        self._counter: int | None = None
+        self._last_request_s = -1.0
+        self._last_vehicle_s = -1.0
+
+    @property
+    def identifiers(self) -> tuple[int, ...]:
+        """Frames that this node listens to."""
+        return (self._request.id, self._write.id)
+
+    def receive(self, frame_id: int, payload: int, time_s: float) -> None:
+        """Take one frame from the bus."""
+        if frame_id == self._request.id:
+            self._take_request(payload, time_s)
+        elif frame_id == self._write.id:
+            self._serve(payload)
+
+    def supervise(self, time_s: float) -> None:
+        """Drop to fault, torque zero, when what the mode needs has become old."""
+        if self.mode in (M.OFF, M.FAULT):
+            return
+        if time_s - self._last_request_s > REQUEST_TIMEOUT_S:
+            self._fail(_TIMEOUT)
+        elif self.mode == M.DRIVING_FORCE and time_s - self._last_vehicle_s > REQUEST_TIMEOUT_S:
+            self._fail(_VEHICLE_SPEED)
+
+    def frames(self, rows: npt.NDArray[np.float64], first_counter: int) -> list[tuple[FrameLayout, npt.NDArray[np.uint64]]]:
+        """Status frames of many samples; `rows`: motor speed, T_m*, T_m, rF_d*, rF̂_d, saturated, state+fault·16."""
+        status = self._status.encode(
+            MotorSpeed=rows[:, 0], MotorTorqueRef=rows[:, 1], MotorTorque=rows[:, 2]
+        )
+        code = rows[:, 6].astype(np.int64)
+        control = self._control.encode(
+            DrivingTorqueRef=rows[:, 3],
+            DrivingTorqueEst=rows[:, 4],
+            Saturated=rows[:, 5],
+            State=code & 15,
+            RequestFault=(code >> 4) & 15,
+            ParametersValid=(code >> 8) & 1,
+            Counter=(first_counter + np.arange(len(rows))) % _COUNTER_VALUES,
+        )
+        control |= crc8_many(self._control.id, control) << np.uint64(56)
+        return [(self._status, status), (self._control, control)]
+
+    @property
+    def code(self) -> int:
+        """State, request fault and parameter validity in one number, for `frames`."""
+        return self.mode | self._fault << 4 | int(self._valid) << 8
+
+    def _take_request(self, payload: int, time_s: float) -> None:
+        signals = self._request.signals
+        if signals["Crc"].raw(payload) != crc8(self._request.id, payload):
+            self._fault = _CRC if self._fault == _NONE else self._fault
+            return
+        counter = signals["Counter"].raw(payload)
+        expected = None if self._counter is None else (self._counter + 1) % _COUNTER_VALUES
+        self._counter = counter
+        if expected is not None and counter != expected:
+            self._fault = _COUNTER if self._fault == _NONE else self._fault
+            return
+        self._last_request_s = time_s
+        self._change_mode(signals["Mode"].raw(payload), time_s)
+        self.request = signals["TorqueRequest"].value(payload) if self.mode in (1, 2) else 0.0
+
+    def _change_mode(self, wanted: int, time_s: float) -> None:
+        if wanted == M.OFF:
+            self.mode, self._fault = M.OFF, _NONE
+        elif self.mode == M.FAULT or wanted > M.DRIVING_FORCE:
+            return  # a fault stays until the bench has asked for 'off'
+        elif wanted == M.DRIVING_FORCE and not self._valid:
+            self._fail(_PARAMETERS)
+        elif wanted == M.DRIVING_FORCE and time_s - self._last_vehicle_s > REQUEST_TIMEOUT_S:
+            self._fail(_VEHICLE_SPEED)
+        else:
+            self.mode = wanted
+            if self._fault in (_CRC, _COUNTER):
+                self._fault = _NONE
+
+    def _fail(self, fault: int) -> None:
+        self.mode, self.request, self._fault = M.FAULT, 0.0, fault
+
+    def vehicle_speed_is_fresh(self, time_s: float) -> None:
+        """The dyno controller's cyclic vehicle speed arrived at `time_s`."""
+        self._last_vehicle_s = time_s
+
+    def _serve(self, payload: int) -> None:
+        signals = self._write.signals
+        command, index = signals["Command"].raw(payload), signals["Index"].raw(payload)
+        value = signals["Value"].value(payload)
+        name = self._names.get(index)
+        result = parameters.OK
+        if command == _APPLY:
+            result = self._apply()
+        elif name is None:
+            result = parameters.UNKNOWN_INDEX
+        elif command == _WRITE:
+            result = self._store(name, value)
+        answer = self._stored.get(name, float("nan")) if name else float(result)
+        reply = self._reply.encode(Command=command, Result=result, Index=index, Value=answer)
+        self._send(self._reply.id, int(reply[0]).to_bytes(8, "little"))
+
+    def _store(self, name: str, value: float) -> int:
+        if self.mode != M.OFF:
+            return parameters.NOT_OFF
+        if not parameters.in_range(name, value):
+            return parameters.OUT_OF_RANGE
+        self._stored[name] = value
+        self._valid = False
+        return parameters.OK
+
+    def _apply(self) -> int:
+        if self.mode != M.OFF:
+            return parameters.NOT_OFF
+        result = parameters.build(self._stored, self.memory)
+        self._valid = result == parameters.OK
+        return result

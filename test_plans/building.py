@@ -1,0 +1,101 @@
+"""From a part of a YAML document to a checked object, with messages that name line and key."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NoReturn, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from hil.core.errors import BadInputError
+from test_plans.registry import did_you_mean
+from test_plans.yaml_document import Document, KeyPath
+
+M = TypeVar("M", bound=BaseModel)
+
+
+class Strict(BaseModel):
+    """Base of everything in a plan: immutable, no unknown keys, no conversions, finite numbers."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+def build(
+    model: type[M],
+    values: Mapping[str, Any],
+    document: Document,
+    path: KeyPath,
+    context: object = None,
+) -> M:
+    """Make a `model` of `values`, which stand at `path` of the document.
+
+    Raises:
+        BadInputError: names file, line and key of the first wrong value, and what would be right.
+    """
+    try:
+        return model.model_validate(dict(values), context=context)
+    except ValidationError as error:
+        _refuse(model, error, document, path)
+
+
+def mapping_at(value: object, document: Document, path: KeyPath, example: str) -> dict[str, Any]:
+    """`value` if it is a mapping, else BadInputError."""
+    if not isinstance(value, dict):
+        raise BadInputError(
+            f"{brief(value)} stands where keys and values are needed",
+            where=document.place(path),
+            fix=f"write: {example}",
+        )
+    return value
+
+
+def list_at(value: object, document: Document, path: KeyPath, example: str) -> list[Any]:
+    """`value` if it is a list, else BadInputError."""
+    if not isinstance(value, list):
+        raise BadInputError(
+            f"{brief(value)} stands where a list is needed",
+            where=document.place(path),
+            fix=f"begin each entry with a dash: {example}",
+        )
+    return value
+
+
+def brief(value: object) -> str:
+    """`value` as a message shows it, on one short line."""
+    if isinstance(value, dict | list):
+        return "a mapping" if isinstance(value, dict) else "a list"
+    if value is None:
+        return "nothing"
+    shown = repr(value)
+    return shown if len(shown) <= 60 else f"{shown[:57]}..."
+
+
+def key_names(model: type[BaseModel]) -> list[str]:
+    """The keys of `model` as they are written in YAML."""
+    return [field.alias or name for name, field in model.model_fields.items()]
+
+
+def _refuse(model: type[BaseModel], error: ValidationError, document: Document, path: KeyPath) -> NoReturn:
+    # An unknown key is told first: it is often the misspelling of the key that is missing.
+    first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
+    where = document.place((*path, *first["loc"]))
+    key = str(first["loc"][0]) if first["loc"] else ""
+    meaning = _meaning(model, key)
+    match first["type"]:
+        case "extra_forbidden":
+            what, fix = f"unknown key {key!r}", did_you_mean(key, key_names(model))
+        case "missing":
+            what, fix = f"the key '{key}' is missing", f"{key}: {meaning}" if meaning else ""
+        case "value_error" | "assertion_error":
+            what, fix = str(first["ctx"]["error"]), ""
+        case _:
+            message = first["msg"].removeprefix("Input ")
+            what, fix = f"{brief(first['input'])} {message}", f"{key}: {meaning}" if meaning else ""
+    raise BadInputError(what, where=where, fix=fix) from error
+
+
+def _meaning(model: type[BaseModel], key: str) -> str:
+    for name, field in model.model_fields.items():
+        if key in (name, field.alias):
+            return field.description or ""
+    return ""

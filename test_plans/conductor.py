@@ -1,0 +1,70 @@
+"""What a step may ask of a bench: the one interface between plans and the engine."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Quantity = Literal["motor_torque", "driving_torque"]
+
+
+@dataclass(frozen=True)
+class PlannedSegment:
+    """A named stretch of samples, before it has a place in a recording.
+
+    `step_s` and `end_s` are seconds from the first sample of the stretch; `reference_before` and
+    `reference_after` are values of `quantity` in N m, before and after the step.
+    """
+
+    id: str
+    kind: str
+    step_s: float
+    reference_before: float
+    reference_after: float
+    quantity: Quantity = "driving_torque"
+    end_s: float = math.inf
+
+
+class Conductor(Protocol):
+    """Carries out what steps ask for; the engine implements it. Every call blocks until done."""
+
+    #: Distance of the samples given to `play`, seconds.
+    sample_time_s: float
+
+    def set_controller(self, file: Path) -> None:
+        """Write a controller file's parameters to the RMCU and read them back."""
+        ...
+
+    def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
+        """Ramp the dynos to a vehicle speed and hold it; `duration_s` counts from when it is reached."""
+        ...
+
+    def release_vehicle(self) -> None:
+        """From now on the dynos simulate the vehicle, from the present speed."""
+        ...
+
+    def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
+        """Request `samples_nm` (N m, one-dimensional, held for `sample_time_s` each), as a segment."""
+        ...
+
+    def coast(self, duration_s: float) -> None:
+        """Request zero torque."""
+        ...
+
+    def wait(self, duration_s: float) -> None:
+        """Leave everything as it is."""
+        ...
+
+    def prompt(self, text: str) -> None:
+        """Show `text` to the operator and wait for the answer."""
+        ...
+
+    def ramp_down(self, duration_s: float) -> None:
+        """Bring torque and speed to zero."""
+        ...

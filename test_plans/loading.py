@@ -1,0 +1,185 @@
+"""From YAML to a plan, with messages that name file, line and key."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from hil.core.errors import BadInputError
+from hil.core.files import read_text
+from test_plans.building import brief, build, list_at, mapping_at
+from test_plans.criteria import EXAMPLE as CRITERION_EXAMPLE
+from test_plans.criteria import Criterion, criterion_at
+from test_plans.plan import Plan, PlanKeys, estimate_duration_s
+from test_plans.registry import did_you_mean
+from test_plans.steps import STEPS, FileSearch, Step
+from test_plans.yaml_document import Document, KeyPath, read_yaml
+
+LIBRARY = Path(__file__).parent / "library"
+LONGEST_PLAN_S = 24 * 3600.0
+
+_STEP_EXAMPLE = "- wait: {duration_s: 1}"
+_KEYS = (*PlanKeys.model_fields, "steps", "finally", "criteria")
+
+
+def library_plans() -> tuple[str, ...]:
+    """Names of the built-in plans."""
+    return tuple(sorted(path.stem for path in LIBRARY.glob("*.yaml")))
+
+
+def load_plan(name_or_path: str | Path) -> Plan:
+    """Read a plan from a file, or a built-in one by its name.
+
+    Raises:
+        BadInputError: no such plan, or what is wrong with it: file, line, key, and what to do.
+    """
+    path = _path_of(name_or_path)
+    return plan_from_text(read_text(path), str(path), path.parent)
+
+
+def plan_from_text(text: str, where: str, base_dir: Path, *, files_required: bool = True) -> Plan:
+    """Check the text of a plan; `where` names it in messages.
+
+    Relative controller files are looked for in `base_dir`, then among the built-in ones. With
+    `files_required` false they are not looked for: for a plan that was carried out long ago.
+
+    Raises:
+        BadInputError: file, line, key, and what to do.
+    """
+    return _Reader(read_yaml(text, where), base_dir, files_required).plan(text)
+
+
+class _Reader:
+    """Walks through one document."""
+
+    def __init__(self, document: Document, base_dir: Path, files_required: bool) -> None:
+        self._document = document
+        self._files = FileSearch((base_dir, LIBRARY / "controllers"), files_required)
+
+    def plan(self, text: str) -> Plan:
+        document = self._document
+        content = mapping_at(document.value, document, (), "name: my_plan, then steps:")
+        for key in content:
+            if key not in _KEYS:
+                raise BadInputError(
+                    f"unknown key {key!r}", where=document.place((key,)), fix=did_you_mean(key, _KEYS)
+                )
+        keys = build(PlanKeys, {k: v for k, v in content.items() if k in PlanKeys.model_fields}, document, ())
+        if not content.get("steps"):
+            raise BadInputError(
+                "a plan needs at least one step",
+                where=document.place(("steps",)),
+                fix=f"write under steps: {_STEP_EXAMPLE}",
+            )
+        steps = self._steps(content["steps"], ("steps",))
+        end_steps = self._steps(_or_empty(content, "finally"), ("finally",))
+        self._refuse_segments_at_the_end(end_steps)
+        self._refuse_same_segments(steps)
+        plan = Plan(
+            **keys.model_dump(), steps=steps, finally_=end_steps, text=text, source=Path(document.where)
+        )
+        self._refuse_endless(plan)
+        return plan.model_copy(update={"criteria": self._criteria(_or_empty(content, "criteria"), plan)})
+
+    def _steps(self, value: object, path: KeyPath) -> tuple[Step, ...]:
+        entries = list_at(value, self._document, path, _STEP_EXAMPLE)
+        return tuple(self._step(entry, (*path, index)) for index, entry in enumerate(entries))
+
+    def _step(self, value: object, path: KeyPath) -> Step:
+        document = self._document
+        entry = mapping_at(value, document, path, _STEP_EXAMPLE)
+        if len(entry) != 1:
+            raise BadInputError(
+                f"a step has one key, its kind; this has {len(entry)}: {', '.join(map(repr, entry))}",
+                where=document.place(path),
+                fix=f"indent the step's own keys below its kind, or write: {_STEP_EXAMPLE}",
+            )
+        kind, content = next(iter(entry.items()))
+        here = (*path, kind)
+        step_class = STEPS.find(kind)
+        if step_class is None:
+            raise BadInputError(
+                f"unknown kind of step {kind!r}", where=document.place(here), fix=STEPS.suggestion(kind)
+            )
+        values: dict[str, Any] = mapping_at(
+            {} if content is None else content, document, here, f"- {kind}: {{key: value}}"
+        )
+        nested = {key: self._steps(values[key], (*here, key)) for key in step_class.nested if key in values}
+        return build(step_class, values | nested, document, here, self._files)
+
+    def _criteria(self, value: object, plan: Plan) -> tuple[Criterion, ...]:
+        document = self._document
+        segments = {segment.id: segment for segment in plan.segments}
+        seen: dict[str, int] = {}
+        criteria = []
+        for index, entry in enumerate(list_at(value, document, ("criteria",), f"- {CRITERION_EXAMPLE}")):
+            criterion = criterion_at(entry, document, ("criteria", index), segments)
+            if criterion.id in seen:
+                raise BadInputError(
+                    f"the criterion '{criterion.id}' stands twice, as number {seen[criterion.id]} too",
+                    where=document.place(("criteria", index)),
+                    fix="give one of them an 'id' of its own",
+                )
+            seen[criterion.id] = index + 1
+            criteria.append(criterion)
+        return tuple(criteria)
+
+    def _refuse_same_segments(self, steps: tuple[Step, ...]) -> None:
+        seen: set[str] = set()
+        for index, id_ in _ids(steps):
+            if id_ in seen:
+                raise BadInputError(
+                    f"two steps produce a segment '{id_}'",
+                    where=self._document.place(("steps", index)),
+                    fix="give one of them another name",
+                )
+            seen.add(id_)
+
+    def _refuse_segments_at_the_end(self, steps: tuple[Step, ...]) -> None:
+        for index, id_ in _ids(steps):
+            raise BadInputError(
+                f"the segment '{id_}' would not be judged in 'finally'",
+                where=self._document.place(("finally", index)),
+                fix="move the step to 'steps'; 'finally' is for coming to rest",
+            )
+
+    def _refuse_endless(self, plan: Plan) -> None:
+        duration = estimate_duration_s(plan)
+        if duration > LONGEST_PLAN_S:
+            raise BadInputError(
+                f"would take {duration / 3600:.1f} h, at most {LONGEST_PLAN_S / 3600:g} h are carried out",
+                where=self._document.place(("steps",)),
+                fix="make several plans of it",
+            )
+
+
+def _or_empty(content: dict[str, Any], key: str) -> object:
+    value = content.get(key)
+    return [] if value is None else value
+
+
+def _ids(steps: tuple[Step, ...]) -> Iterator[tuple[int, str]]:
+    for index, step in enumerate(steps):
+        for segment in step.segments():
+            yield index, segment.id
+
+
+def _path_of(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or _is_file(path):
+        return path
+    names = library_plans()
+    if path.name in names:
+        return LIBRARY / f"{path.name}.yaml"
+    raise BadInputError(
+        f"there is no plan {brief(path.name)}, neither a file nor a built-in plan",
+        fix=f"{did_you_mean(path.name, names)}; a file's name ends in .yaml",
+    )
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False

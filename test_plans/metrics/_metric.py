@@ -1,0 +1,60 @@
+"""What every metric has in common."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import Annotated, ClassVar
+
+from pydantic import AfterValidator, Field
+
+from hil.core.channels import CHANNELS, TIME
+from hil.core.recording import Recording
+from hil.core.result import Segment
+from test_plans.building import Strict
+from test_plans.conductor import PlannedSegment
+from test_plans.registry import did_you_mean
+
+_NAMES = [name for name in CHANNELS if name != TIME]
+
+
+def _known(channel: str) -> str:
+    if channel not in _NAMES:
+        raise ValueError(f"unknown channel {channel!r}; {did_you_mean(channel, _NAMES)}")
+    return channel
+
+
+ChannelName = Annotated[str, AfterValidator(_known), Field(json_schema_extra={"enum": [*_NAMES]})]
+"""A channel of hil.core.channels other than time."""
+
+
+class NoValueError(Exception):
+    """The metric has no value for this segment; the message says why."""
+
+
+class Metric(Strict, ABC):
+    """One number of one segment; the fields are its parameters, keys of a criterion in YAML."""
+
+    name: ClassVar[str]
+
+    @property
+    @abstractmethod
+    def unit(self) -> str:
+        """Unit of the value."""
+
+    @property
+    @abstractmethod
+    def definition(self) -> str:
+        """How the value is computed, with these parameters; printed in reports."""
+
+    @abstractmethod
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """The value.
+
+        Raises:
+            NoValueError: samples are missing, or the segment is too short.
+            BadInputError: the recording has no such channel.
+        """
+
+    def objection(self, segment: PlannedSegment) -> str:  # noqa: ARG002 - most have none
+        """Why the metric cannot have a value in a segment that is planned so; empty if it can."""
+        return ""

@@ -1,0 +1,112 @@
+"""Cutting a channel to a window after the step, and refusing what would give a wrong number."""
+
+from __future__ import annotations
+
+from typing import Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from hil.core.channels import CHANNELS
+from hil.core.recording import Recording
+from hil.core.result import Segment
+from test_plans.conductor import Array, PlannedSegment
+from test_plans.metrics._metric import ChannelName, Metric, NoValueError
+
+#: A longer pause between samples could hide a peak. 10 ms is a block of bus time.
+LARGEST_GAP_S = 0.01
+
+
+class WindowMetric(Metric):
+    """A metric of one channel from `from_s` to `to_s` after the step."""
+
+    channel: ChannelName = Field(description="name of a channel, e.g. shaft_torque_nm")
+    from_s: float = Field(default=0.0, ge=0, description="begin of the window, s after the step")
+    to_s: float | None = Field(
+        default=None, gt=0, description="end of the window, s after the step; else the segment's"
+    )
+
+    @model_validator(mode="after")
+    def _window_is_forward(self) -> Self:
+        if self.to_s is not None and self.to_s <= self.from_s:
+            raise ValueError(f"to_s = {self.to_s:g} is not after from_s = {self.from_s:g}")
+        return self
+
+    @property
+    def unit(self) -> str:
+        """The channel's unit."""
+        return CHANNELS[self.channel].unit
+
+    @property
+    def window(self) -> str:
+        """The window in words."""
+        start = "the step" if self.from_s == 0 else f"{self.from_s:g} s after the step"
+        end = "the end of the segment" if self.to_s is None else f"{self.to_s:g} s after the step"
+        return f"from {start} until {end}"
+
+    @property
+    def subject(self) -> str:
+        """The channel in words."""
+        return f"{self.channel} ({CHANNELS[self.channel].symbol})"
+
+    def objection(self, segment: PlannedSegment) -> str:
+        """The segment is planned to end before the window does."""
+        length = segment.end_s - segment.step_s
+        needed = self.from_s if self.to_s is None else self.to_s
+        if needed > length + 1e-9:
+            return f"the window reaches to {needed:g} s after the step, the segment to {length:g} s"
+        return ""
+
+    def bounds_s(self, segment: Segment) -> tuple[float, float]:
+        """Begin and end of the window on the recording's time."""
+        end = segment.end_s if self.to_s is None else segment.step_s + self.to_s
+        return segment.step_s + self.from_s, end
+
+    def samples(self, recording: Recording, segment: Segment) -> tuple[Array, Array]:
+        """Time stamps and values in the window, both ends included.
+
+        Raises:
+            NoValueError: the segment is too short, or samples are missing.
+        """
+        return cut(recording, segment, self.channel, *self.bounds_s(segment))
+
+
+def cut(
+    recording: Recording, segment: Segment, channel: str, start_s: float, end_s: float
+) -> tuple[Array, Array]:
+    """Time stamps and values of `channel` with start_s <= time <= end_s, complete.
+
+    Raises:
+        NoValueError: the segment or the recording is too short, or samples are missing or not finite.
+    """
+    values, time = recording[channel], recording.time_s
+    if len(time) < 2:
+        raise NoValueError(f"the recording has {len(time)} samples")
+    spacing = recording.sample_time_s
+    # The last sample of a stretch lies one sample time before its end; half a sample is for jitter.
+    grace = 1.5 * spacing
+    if end_s > segment.end_s + grace:
+        raise NoValueError(
+            f"the segment ends {segment.end_s - segment.step_s:.3g} s after the step, "
+            f"the window needs {end_s - segment.step_s:.3g} s"
+        )
+    if end_s - start_s < spacing:
+        raise NoValueError("the window is empty")
+    inside = (time >= start_s - 0.5 * spacing) & (time <= end_s + 0.5 * spacing)
+    time, values = time[inside], values[inside]
+    if len(time) < 2 or time[0] > start_s + grace or time[-1] < end_s - grace:
+        raise NoValueError(f"the recording does not cover the window from {start_s:.3f} s to {end_s:.3f} s")
+    missing = int(np.count_nonzero(~np.isfinite(values)))
+    if missing:
+        raise NoValueError(f"{missing} of {len(values)} samples of {channel} are missing in the window")
+    gaps = np.diff(time)
+    widest = int(np.argmax(gaps))
+    if gaps[widest] > max(LARGEST_GAP_S, grace):
+        raise NoValueError(f"the recording has a gap of {gaps[widest]:.3g} s at {time[widest]:.3f} s")
+    return time, values
+
+
+def evenly(time: Array, values: Array) -> tuple[float, Array]:
+    """Sample time in seconds, and the values on an even grid of as many samples (linear interpolation)."""
+    grid = np.linspace(time[0], time[-1], len(time))
+    return float((time[-1] - time[0]) / (len(time) - 1)), np.interp(grid, time, values)

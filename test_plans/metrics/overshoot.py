@@ -1,0 +1,105 @@
+"""Overshoot: how far a response to an upward step goes beyond the reference."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from hil.core.recording import Recording
+from hil.core.result import Segment
+from test_plans.conductor import PlannedSegment
+from test_plans.metrics import _reference
+from test_plans.metrics._metric import ChannelName, NoValueError
+from test_plans.metrics._window import WindowMetric
+
+
+class Overshoot(WindowMetric):
+    """Peak minus the reference, not below zero."""
+
+    name: ClassVar[str] = "overshoot"
+    reference: float | None = Field(
+        default=None,
+        description="value that the channel should reach, in its unit; else the step's value after",
+    )
+
+    @property
+    def definition(self) -> str:
+        """Peak minus reference."""
+        return (
+            f"Peak minus reference, not below 0. Peak: largest value of {self.subject} {self.window}. "
+            f"Reference: {self._reference_in_words}."
+        )
+
+    @property
+    def _reference_in_words(self) -> str:
+        return "value after the step" if self.reference is None else f"{self.reference:g} {super().unit}"
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """The excess in the channel's unit."""
+        if segment.reference_after < segment.reference_before:
+            raise NoValueError("overshoot is defined for upward steps, this one goes down")
+        _, values = self.samples(recording, segment)
+        return max(0.0, float(np.max(values)) - _reference.reference(segment, self.reference))
+
+    def objection(self, segment: PlannedSegment) -> str:
+        """A downward step, no step, or one of another torque than the channel's."""
+        if segment.reference_after < segment.reference_before:
+            return "overshoot is defined for upward steps, this one goes down"
+        if self.reference is None:
+            objection = _reference.no_step(segment, "reference") or _reference.not_comparable(
+                segment, self.channel, "reference"
+            )
+            if objection:
+                return objection
+        return super().objection(segment)
+
+
+class OvershootShaftTorque(Overshoot):
+    """Overshoot of T_s over the driving torque asked for."""
+
+    name: ClassVar[str] = "overshoot_shaft_torque"
+    channel: ChannelName = "shaft_torque_nm"
+
+
+class OvershootPercent(Overshoot):
+    """Overshoot in percent of the step's size."""
+
+    name: ClassVar[str] = "overshoot_percent"
+    step_size: float | None = Field(
+        default=None, gt=0, description="what is 100 %, in the channel's unit; else the step's magnitude"
+    )
+
+    @property
+    def unit(self) -> str:
+        """Percent."""
+        return "%"
+
+    @property
+    def definition(self) -> str:
+        """Overshoot over step size."""
+        size = "the step's size" if self.step_size is None else f"{self.step_size:g}"
+        return f"{super().definition} In percent of {size}."
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """The excess in percent."""
+        size = _reference.step_size(segment, self.step_size)
+        return 100 * super().compute(recording, segment) / size
+
+    def objection(self, segment: PlannedSegment) -> str:
+        """Also when the step's size is not the channel's."""
+        if self.step_size is None:
+            objection = _reference.no_step(segment, "step_size") or _reference.not_comparable(
+                segment, self.channel, "step_size"
+            )
+            if objection:
+                return objection
+        return super().objection(segment)
+
+
+class OvershootPercentShaftTorque(OvershootPercent):
+    """Overshoot of T_s in percent of the step of driving torque."""
+
+    name: ClassVar[str] = "overshoot_percent_shaft_torque"
+    channel: ChannelName = "shaft_torque_nm"

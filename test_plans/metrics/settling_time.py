@@ -1,0 +1,104 @@
+"""Settling time: when the response stays within a band around where it ends."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+from scipy import signal
+
+from hil.core.recording import Recording
+from hil.core.result import Segment
+from test_plans.conductor import Array, PlannedSegment
+from test_plans.metrics import _reference
+from test_plans.metrics._metric import ChannelName, NoValueError
+from test_plans.metrics._window import WindowMetric, cut, evenly
+
+_FILTER_ORDER = 2
+
+
+class SettlingTime(WindowMetric):
+    """Time from the step until the channel, low-pass filtered, stays within the band for good.
+
+    The band lies around the filtered channel's mean over the last `mean_s` of the window. A channel that
+    is outside at the end of the window has not settled: its settling time is the window's length. The
+    filter runs forward and backward over the whole segment, so that it delays nothing.
+    """
+
+    name: ClassVar[str] = "settling_time"
+    band_percent: float = Field(
+        default=5.0, gt=0, le=100, description="half width of the band, % of the step's size"
+    )
+    mean_s: float = Field(default=2.0, gt=0, description="length of the mean at the window's end, s")
+    low_pass_hz: float = Field(default=50.0, gt=0, description="corner frequency of the low-pass filter, Hz")
+    step_size: float | None = Field(
+        default=None, gt=0, description="what is 100 %, in the channel's unit; else the step's magnitude"
+    )
+
+    @property
+    def unit(self) -> str:
+        """Seconds."""
+        return "s"
+
+    @property
+    def definition(self) -> str:
+        """When the response stays within the band."""
+        size = "the step's size" if self.step_size is None else f"{self.step_size:g}"
+        return (
+            f"Time from the step after which {self.subject} stays within ±{self.band_percent:g} % of {size} "
+            f"around its mean over the last {self.mean_s:g} s, {self.window}. The channel is low-pass "
+            f"filtered at {self.low_pass_hz:g} Hz (Butterworth, order {_FILTER_ORDER}, forward and "
+            "backward). If it does not settle: the length of the window."
+        )
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """Seconds after the step."""
+        half_width = self.band_percent / 100 * _reference.step_size(segment, self.step_size)
+        start, end = self.bounds_s(segment)
+        if end - start <= self.mean_s:
+            raise NoValueError(
+                f"the window is {end - start:.3g} s long, the mean alone takes {self.mean_s:g} s"
+            )
+        time, values = cut(recording, segment, self.channel, min(segment.start_s, start), end)
+        spacing, even = evenly(time, values)
+        grid = time[0] + spacing * np.arange(len(even))
+        window = grid >= start - 0.5 * spacing
+        grid, smooth = grid[window], self._filtered(even, spacing)[window]
+        final = np.mean(smooth[grid > end - self.mean_s])
+        outside = np.flatnonzero(np.abs(smooth - final) > half_width)
+        if not outside.size:
+            return self.from_s
+        settled = min(int(outside[-1]) + 1, len(grid) - 1)
+        return float(max(0.0, grid[settled] - segment.step_s))
+
+    def objection(self, segment: PlannedSegment) -> str:
+        """No step, one of another torque than the channel's, or no room for the mean."""
+        if self.step_size is None:
+            objection = _reference.no_step(segment, "step_size") or _reference.not_comparable(
+                segment, self.channel, "step_size"
+            )
+            if objection:
+                return objection
+        length = (segment.end_s - segment.step_s if self.to_s is None else self.to_s) - self.from_s
+        if length <= self.mean_s:
+            return f"the window is {length:g} s long, the mean alone takes {self.mean_s:g} s"
+        return super().objection(segment)
+
+    def _filtered(self, values: Array, spacing_s: float) -> Array:
+        if 2 * self.low_pass_hz * spacing_s >= 1:
+            raise NoValueError(
+                f"a low-pass at {self.low_pass_hz:g} Hz needs more than {2 * self.low_pass_hz:g} samples a "
+                f"second, the recording has {1 / spacing_s:.4g}"
+            )
+        sections = signal.butter(_FILTER_ORDER, self.low_pass_hz, fs=1 / spacing_s, output="sos")
+        # Padding by a few time constants lets the filter start and end at rest.
+        padding = min(len(values) - 1, int(np.ceil(1 / (self.low_pass_hz * spacing_s))))
+        return np.asarray(signal.sosfiltfilt(sections, values, padlen=padding), dtype=float)
+
+
+class SettlingShaftTorque(SettlingTime):
+    """Settling time of T_s."""
+
+    name: ClassVar[str] = "settling_shaft_torque"
+    channel: ChannelName = "shaft_torque_nm"

@@ -1,0 +1,55 @@
+"""What a plan is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from test_plans.building import Strict
+from test_plans.conductor import PlannedSegment
+from test_plans.criteria import Criterion
+from test_plans.pace import Pace
+from test_plans.steps import Step
+
+
+class PlanKeys(Strict):
+    """The keys of a plan that are plain text."""
+
+    name: str = Field(
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$",
+        description="letters, digits, _, - and ., at most 64: what results are filed under",
+    )
+    title: str = Field(default="", max_length=200, description="what the report is headed with")
+    description: str = Field(default="", max_length=10_000, description="what the plan is for")
+
+
+class Plan(PlanKeys):
+    """A checked plan; `text` is its YAML as read from `source`.
+
+    `finally_` (in YAML: `finally`) are the steps that are carried out at the end, whatever happened.
+    """
+
+    steps: tuple[Step, ...] = Field(min_length=1)
+    finally_: tuple[Step, ...] = ()
+    criteria: tuple[Criterion, ...] = ()
+    text: str
+    source: Path
+
+    @property
+    def segments(self) -> tuple[PlannedSegment, ...]:
+        """The segments that the plan will produce, in order."""
+        return tuple(segment for step in self.steps for segment in step.segments())
+
+
+def estimate_duration_s(plan: Plan, pace: Pace | None = None) -> float:
+    """Bench time of a whole run in seconds, begun at standstill, operator prompts not counted.
+
+    Without `pace`, a bench of default pace is assumed. Running resistance is left out.
+    """
+    pace = pace or Pace()
+    total, speed = 0.0, 0.0
+    for step in (*plan.steps, *plan.finally_):
+        duration, speed = step.outlook(speed, pace)
+        total += duration
+    return total

@@ -1,0 +1,54 @@
+"""Kinds of steps, by name: one file a kind; other packages add theirs by entry point `hil.steps`."""
+
+from test_plans.registry import Registry
+from test_plans.steps._excitation import Excitation
+from test_plans.steps._step import SAMPLE_TIME_S, Step
+from test_plans.steps.chirp import Chirp
+from test_plans.steps.coast import Coast
+from test_plans.steps.hold_speed import HoldSpeed
+from test_plans.steps.multisine import Multisine
+from test_plans.steps.operator_prompt import OperatorPrompt
+from test_plans.steps.ramp import Ramp
+from test_plans.steps.ramp_down import RampDown
+from test_plans.steps.repeat import Repeat
+from test_plans.steps.set_controller import FileSearch, SetController
+from test_plans.steps.stairs import Stairs
+from test_plans.steps.step import TorqueStep
+from test_plans.steps.wait import Wait
+
+_OWN: tuple[type[Step], ...] = (
+    SetController,
+    HoldSpeed,
+    TorqueStep,
+    Chirp,
+    Multisine,
+    Ramp,
+    Stairs,
+    Wait,
+    Coast,
+    OperatorPrompt,
+    Repeat,
+    RampDown,
+)
+
+STEPS: Registry[Step] = Registry("step", "hil.steps", Step, [(step.kind, step) for step in _OWN])  # type: ignore[type-abstract]
+
+__all__ = [
+    "SAMPLE_TIME_S",
+    "STEPS",
+    "Chirp",
+    "Coast",
+    "Excitation",
+    "FileSearch",
+    "HoldSpeed",
+    "Multisine",
+    "OperatorPrompt",
+    "Ramp",
+    "RampDown",
+    "Repeat",
+    "SetController",
+    "Stairs",
+    "Step",
+    "TorqueStep",
+    "Wait",
+]

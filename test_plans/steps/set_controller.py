@@ -1,0 +1,61 @@
+"""`set_controller`: which controller file the RMCU uses from now on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+from pydantic import Field, ValidationInfo, field_validator
+
+from hil.core.controller import load_controller
+from hil.core.errors import BadInputError
+from test_plans.conductor import Conductor
+from test_plans.pace import Outlook, Pace
+from test_plans.steps._step import Step
+
+
+@dataclass(frozen=True)
+class FileSearch:
+    """Where relative paths in a plan are looked for; `required` is false for a plan of the past."""
+
+    directories: tuple[Path, ...]
+    required: bool = True
+
+
+class SetController(Step):
+    """Load a controller file into the RMCU; `file` is absolute or relative to where it was found from."""
+
+    kind: ClassVar[str] = "set_controller"
+    file: Path = Field(strict=False, description="controller file (TOML), relative to the plan or built in")
+
+    @field_validator("file", mode="after")
+    @classmethod
+    def _found_and_valid(cls, file: Path, info: ValidationInfo) -> Path:
+        search = info.context
+        if not isinstance(search, FileSearch) or not search.required:
+            return file
+        places = [directory / file for directory in search.directories]
+        found = next((place for place in places if _is_file(place)), None)
+        if found is None:
+            raise ValueError(f"no such file: {', '.join(str(place) for place in places)}")
+        try:
+            load_controller(found)
+        except BadInputError as error:
+            raise ValueError(f"the controller file cannot be used: {error}") from error
+        return found
+
+    def carry_out(self, conductor: Conductor) -> None:
+        """Hand the file over."""
+        conductor.set_controller(self.file)
+
+    def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:  # noqa: ARG002 - not on the dynos
+        """Next to no time."""
+        return Outlook(0.0, speed_m_s)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # a name that is too long, or has a NUL in it
+        return False

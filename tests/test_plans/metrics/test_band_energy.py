@@ -1,0 +1,77 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from test_plans import Array
+from test_plans.metrics import BandEnergy, BandEnergyMotorSpeed, NoValueError
+from tests.test_plans.signals import STEP, recording_of, time_axis
+
+METRIC = BandEnergyMotorSpeed()
+
+
+def sine(time_s: Array, amplitude: float, frequency_hz: float, phase: float = 0.0) -> Array:
+    return np.asarray(amplitude * np.sin(2 * np.pi * frequency_hz * time_s + phase))
+
+
+def energy(speed: Array, time_s: Array | None = None) -> float:
+    time = time_axis() if time_s is None else time_s
+    return METRIC.compute(recording_of(time, motor_speed_rad_s=speed), STEP)
+
+
+@given(st.floats(0.01, 100.0), st.floats(8.3, 19.7), st.floats(0.0, 6.3))
+def test_a_sine_within_the_band_gives_half_its_amplitude_squared(a: float, f: float, phase: float) -> None:
+    assert energy(sine(time_axis(), a, f, phase)) == pytest.approx(a**2 / 2, rel=2e-3)
+
+
+def test_sines_add_up_and_those_outside_do_not_count() -> None:
+    time = time_axis()
+    inside = sine(time, 0.5, 10.6) + sine(time, 0.3, 15.0)
+    outside = sine(time, 2.0, 5.0) + sine(time, 2.0, 25.0)
+    assert energy(inside + outside) == pytest.approx((0.5**2 + 0.3**2) / 2, rel=2e-3)
+
+
+def test_both_edges_are_included() -> None:
+    # 16 s of 1 kHz are 16001 samples: lines lie 0.0625 Hz apart, about, so take a window where they hit.
+    time = time_axis()
+    speed = sine(time, 1.0, 8.0, 0.4)
+    metric = BandEnergy(channel="motor_speed_rad_s", from_s=4.0, to_s=19.999, from_hz=8.0, to_hz=20.0)
+    recording = recording_of(time, motor_speed_rad_s=speed)
+    # A Hann-windowed sine on a line has 2/3 of its energy there and 1/6 on either side.
+    assert metric.compute(recording, STEP) == pytest.approx(0.5 * (2 / 3 + 1 / 6), rel=1e-3)
+
+
+def test_a_linear_trend_does_not_count() -> None:
+    assert energy(1000.0 + 8.148 * time_axis()) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_jitter_and_slow_sampling_change_little() -> None:
+    jittered = time_axis() + 1e-4 * np.sin(np.arange(25_001))
+    assert energy(sine(jittered, 1.0, 12.0), jittered) == pytest.approx(0.5, rel=2e-3)
+    slow = time_axis(sample_time_s=0.01)
+    assert energy(sine(slow, 1.0, 12.0), slow) == pytest.approx(0.5, rel=2e-3)
+
+
+def test_what_lies_outside_of_the_window_does_not_count() -> None:
+    time = time_axis()
+    late = np.where(time - STEP.step_s < 3.99, sine(time, 5.0, 12.0), 0.0)
+    assert energy(late) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_unit_and_definition() -> None:
+    assert METRIC.unit == "(rad/s)²"
+    assert "from 4 s after the step until 20 s after the step" in METRIC.definition
+    assert "from 8 to 20 Hz" in METRIC.definition
+
+
+def test_no_value() -> None:
+    slow = time_axis(sample_time_s=0.04)
+    with pytest.raises(NoValueError, match="do not reach 20 Hz"):
+        energy(sine(slow, 1.0, 1.0), slow)
+    narrow = BandEnergy(channel="motor_speed_rad_s", from_s=0.0, to_s=1.0, from_hz=10.0, to_hz=11.0)
+    with pytest.raises(NoValueError, match="narrower than two spectral lines"):
+        narrow.compute(recording_of(time_axis(), motor_speed_rad_s=time_axis()), STEP)
+    with pytest.raises(ValueError, match="not above from_hz"):
+        BandEnergy(channel="motor_speed_rad_s", from_hz=10.0, to_hz=10.0)

@@ -1,0 +1,64 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from test_plans.metrics import NoValueError, SettlingShaftTorque, SettlingTime
+from tests.test_plans.signals import STEP, recording_of, second_order_step, time_axis
+
+
+@given(st.floats(0.2, 10.0))
+def test_a_first_order_response_settles_after_three_time_constants(rate: float) -> None:
+    time = time_axis()
+    torque = 326 * -np.expm1(-rate * np.maximum(time - STEP.step_s, 0))
+    # Around its mean over the last 2 s, which a slow response has not reached.
+    final = 326 * (1 - np.exp(-20 * rate) * (np.exp(2 * rate) - 1) / (2 * rate))
+    expected = -np.log((326 - final + 0.05 * 326) / 326) / rate
+    settling = SettlingShaftTorque().compute(recording_of(time, shaft_torque_nm=torque), STEP)
+    # The low-pass at 50 Hz rounds the corner at the step, and moves the crossing by a few samples.
+    assert settling == pytest.approx(expected, abs=0.003)
+
+
+def test_a_second_order_response_settles_at_its_last_crossing() -> None:
+    damping, frequency = 0.1, 2 * np.pi
+    time = time_axis(sample_time_s=0.0005)
+    torque = second_order_step(time, 326.0, damping, frequency)
+    outside = np.abs(torque - 326) > 0.05 * 326
+    expected = time[np.flatnonzero(outside)[-1]] - STEP.step_s
+    # The envelope exp(-ζωt) bounds it.
+    assert expected <= -np.log(0.05 * np.sqrt(1 - damping**2)) / (damping * frequency)
+    settling = SettlingShaftTorque().compute(recording_of(time, shaft_torque_nm=torque), STEP)
+    assert settling == pytest.approx(expected, abs=0.005)
+
+
+def test_ripple_above_the_corner_frequency_is_filtered_out() -> None:
+    time = time_axis()
+    torque = 326.0 * (time >= STEP.step_s) + 40 * np.sin(2 * np.pi * 250 * time)
+    assert SettlingShaftTorque().compute(recording_of(time, shaft_torque_nm=torque), STEP) < 0.05
+
+
+def test_what_does_not_settle_takes_the_whole_window() -> None:
+    time = time_axis()
+    recording = recording_of(time, shaft_torque_nm=326 + 40 * np.sin(2 * np.pi * 8 * time))
+    assert SettlingShaftTorque().compute(recording, STEP) == pytest.approx(20.0, abs=0.1)
+    assert SettlingTime(channel="shaft_torque_nm", band_percent=20).compute(recording, STEP) == 0.0
+
+
+def test_a_response_that_is_there_at_once() -> None:
+    time = time_axis()
+    recording = recording_of(time, shaft_torque_nm=np.full(len(time), 326.0))
+    assert SettlingShaftTorque().compute(recording, STEP) == 0.0
+
+
+def test_no_value() -> None:
+    time = time_axis()
+    recording = recording_of(time, shaft_torque_nm=np.zeros(len(time)))
+    with pytest.raises(NoValueError, match="the mean alone takes 2 s"):
+        SettlingShaftTorque().compute(recording, STEP.model_copy(update={"end_s": 4.5}))
+    with pytest.raises(NoValueError, match="no step"):
+        SettlingShaftTorque().compute(recording, STEP.model_copy(update={"reference_before": 326.0}))
+    slow = time_axis(sample_time_s=0.01)
+    with pytest.raises(NoValueError, match="needs more than 100 samples"):
+        SettlingShaftTorque().compute(recording_of(slow, shaft_torque_nm=np.zeros(len(slow))), STEP)

@@ -1,0 +1,23 @@
+from __future__ import annotations
+
+import pytest
+
+from hil.core.errors import BadInputError
+from test_plans import Pace
+from tests.test_plans.note_taker import NoteTaker
+from tests.test_plans.writing import step_of
+
+
+def test_carried_out_for_its_duration() -> None:
+    conductor = NoteTaker()
+    step = step_of("coast", duration_s=2.5)
+    step.carry_out(conductor)
+    assert conductor.calls == [("coast", 2.5)]
+    assert step.duration_s == 2.5
+    assert step.outlook(7.0, Pace()).speed_m_s == 7.0
+
+
+@pytest.mark.parametrize("duration", [-1, 3601, "2", None])
+def test_refused(duration: object) -> None:
+    with pytest.raises(BadInputError, match="duration_s"):
+        step_of("coast", duration_s=duration)

@@ -1,0 +1,25 @@
+from __future__ import annotations
+
+import pytest
+from numpy.testing import assert_array_equal
+
+from hil.core.errors import BadInputError
+from tests.test_plans.note_taker import NoteTaker
+from tests.test_plans.writing import step_of
+
+
+def test_metrics_of_stairs_look_at_the_last_step() -> None:
+    conductor = NoteTaker()
+    stairs = step_of("stairs", segment="up", quantity="driving_torque", levels_nm=[0, 50, 200], hold_s=4)
+    stairs.carry_out(conductor)
+    _, samples, segment = conductor.played[0]
+    assert_array_equal(samples[[0, 3999, 4000, 7999, 8000, 11999]], [0, 0, 50, 50, 200, 200])
+    assert segment is not None
+    assert (segment.step_s, segment.reference_before, segment.reference_after) == (8.0, 50.0, 200.0)
+    assert stairs.duration_s == 12.0
+
+
+@pytest.mark.parametrize("levels", [[], [1], [1, "2"], 3])
+def test_refused(levels: object) -> None:
+    with pytest.raises(BadInputError, match="levels_nm"):
+        step_of("stairs", quantity="driving_torque", levels_nm=levels, hold_s=4)
