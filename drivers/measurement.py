@@ -32,7 +32,8 @@ _BOTH_SIDES = (
     ("dyno_torque_ref_nm", "dyno_torque_left_nm", "dyno_torque_right_nm", True),
 )
 _NEAREST_WITHIN = 2.5  # sample times; beyond, a value is missing (NaN)
-_SETTLED_S = 0.005  # frames older than this have all arrived on every bus
+_SETTLED_S = 0.003  # frames older than this, before the newest of the slowest bus, have all arrived
+_GIVEN_UP_S = 0.1  # a stream that is silent for this long holds up nobody
 
 
 class SampleAssembler:
@@ -67,7 +68,9 @@ class SampleAssembler:
         master = self._waiting[self._master]
         count = len(master.stamps)
         if not everything:
-            count = int(np.searchsorted(master.stamps, master.newest_s - _SETTLED_S))
+            # The buses are drained one after the other: wait for the slowest, but not for a dead one.
+            oldest_s = min(max(s.newest_s, master.newest_s - _GIVEN_UP_S) for s in self._waiting.values())
+            count = int(np.searchsorted(master.stamps, oldest_s - _SETTLED_S))
         if count <= 0:
             return np.zeros((0, len(self.names)))
         stamps = master.stamps[:count]

@@ -28,12 +28,15 @@ class Recorder:
         self._chunks: list[npt.NDArray[np.float64]] = []
         self._flushed_s = -np.inf
         self.start_s: float | None = None
+        self._decoding = False
         self.events: list[Event] = []
 
     def take(self, bus: str, block: FrameBlock) -> None:
         """Record the frames of one bus."""
         latest_s = float(block["time_s"][-1])
         self.writer.add_frames(bus, block)
+        if not self._decoding:
+            return
         self._assembler.add(bus, block)
         if self.start_s is None and bus == self._master[0]:
             first = block[block["id"] == self._master[1]]
@@ -43,6 +46,10 @@ class Recorder:
         if latest_s - self._flushed_s > _FLUSH_S:
             self._flushed_s = latest_s
             self._write_rows()
+
+    def begin(self) -> None:
+        """Decode from the next frames on: every device is giving its channels now."""
+        self._decoding = True
 
     def event(self, clock_s: float, kind: str, text: str) -> None:
         """Record what happened at a time of the bench clock."""

@@ -113,6 +113,8 @@ class _Run:
         if bench.rmcu.state == "":
             raise BenchError("the RMCU sends no status", where="RMCU", fix="is it powered and on this bus?")
         bench.dyno.start()
+        self._recorder.begin()
+        bench.loop.run_for(_LISTEN_S)
         self._recorder.event(bench.loop.clock.now_s(), "preflight", "RMCU and dynos answer")
         self._armed = True  # from here on the safe state is owed, whatever happens
         ramp = self._request.bench.dyno.speed_ramp_m_s2 / self._request.bench.vehicle.wheel_radius_m

@@ -24,6 +24,7 @@ _ANGLES = (0.0, 12.0, 24.0, 36.0, 48.0, 60.0, 70.0)
 _FREQUENCIES = (10.0, 15.0, 22.0, 32.0, 45.0, 65.0, 100.0)
 _POLES = (0.1, 0.15, 0.22, 0.3, 0.45, 0.65, 1.0)
 _NORMALISATIONS: tuple[Normalisation, ...] = ("dc", "centre", "high_frequency")
+_VIOLATION_ALLOWED = 0.005
 _BOUNDS = ((0.0, 75.0), (8.0, 150.0), (0.05, 1.0))
 
 
@@ -84,28 +85,24 @@ def optimize(
     keep = limits or MarginLimits()
     search = _Search(frequency_hz, plants, inertia_kg_m2, sample_time_s, keep, objective, origin_poles)
     progress("grid")
-    starts = []
+    starts: list[tuple[float, tuple[float, float, float, Normalisation]]] = []
     for choice in itertools.product(_ANGLES, _FREQUENCIES, _POLES, _NORMALISATIONS):
         starts.append((search.penalised(choice[:3], choice[3], plants[:1], exact=False), choice))
     starts.sort(key=lambda start: start[0])
-    best: tuple[float, tuple[float, float, float], Normalisation] | None = None
+    found: list[tuple[float, tuple[float, float, float], Normalisation]] = []
     for normalisation in _NORMALISATIONS:
         progress(f"refining, normalised at {normalisation.replace('_', ' ')}")
         for value, choice in [s for s in starts if s[1][3] == normalisation][:2]:
-            if not np.isfinite(value):
-                continue
-            found = search.refine(choice[:3], normalisation)
-            if best is None or found[0] < best[0]:
-                best = (found[0], found[1], normalisation)
-    if best is None or search.violation(best[1], best[2]) > 1e-3:
-        raise BadInputError(
-            f"no lead keeps |S| <= {keep.sensitivity_peak:g}, {keep.gain_margin_db:g} dB, "
-            f"{keep.phase_margin_deg:g} degrees and {keep.delay_margin_s * 1e3:g} ms for all plants",
-            fix="relax the limits, or identify the plant more closely",
-        )
-    (angle, centre, pole), normalisation = best[1], best[2]
-    return Optimum(
-        angle, centre, pole, normalisation, search.value(best[1], normalisation, plants), search.evaluations
+            if np.isfinite(value):
+                found.append((*search.refine(choice[:3], normalisation), normalisation))
+    for _, choice, normalisation in sorted(found, key=lambda one: one[0]):
+        if search.violation(choice, normalisation) <= _VIOLATION_ALLOWED:
+            value = search.value(choice, normalisation, plants)
+            return Optimum(*choice, normalisation, value, search.evaluations)
+    raise BadInputError(
+        f"no lead keeps |S| <= {keep.sensitivity_peak:g}, {keep.gain_margin_db:g} dB, "
+        f"{keep.phase_margin_deg:g} degrees and {keep.delay_margin_s * 1e3:g} ms for all plants",
+        fix="relax the limits, or identify the plant more closely",
     )
 
 
@@ -169,7 +166,8 @@ class _Search:
         peak = float(np.max(1 / np.abs(1 + loops)))
         violation = max(0.0, peak / self._limits.sensitivity_peak - 1)
         if exact:
-            violation += self.violation(choice, normalisation, loops[:1])
+            # Margins of every plant would take seconds; |S| above bounds them all, a few show the rest.
+            violation += self.violation(choice, normalisation, loops[:: max(1, len(loops) // 6)])
         which = 0 if self._objective == "max" else 1
         worst = max(comfort(self._frequency_hz, 1 / np.abs(1 + loop))[which] for loop in loops)
         return worst + 10 * violation

@@ -22,7 +22,8 @@ from hil.analysis.frequency_response._result import Distortion, FrequencyRespons
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_SAME = 1e-3  # relative power of the difference of two periods that counts as none
+_LIKE = 0.97  # correlation of the input with itself one period later; fading in and out lowers it
+_REPEATED = 0.05  # of the rms: largest difference of two samples a period apart
 _EXCITED = 1e-2  # of the strongest line
 _SMOOTHED_LINES = 5
 
@@ -30,10 +31,13 @@ _SMOOTHED_LINES = 5
 def period_samples(input_: Array) -> int | None:
     """Length of the input's period in samples; None when it holds no two whole periods.
 
-    Samples before and after the motion of the input are ignored.
+    What lies before and after the periodic part (rest, fading in and out) does not matter.
     """
-    moving = _moving(input_)
-    values = input_[moving] - np.mean(input_[moving])
+    values = input_ - np.mean(input_)
+    changes = np.flatnonzero(np.diff(values) != 0)
+    if changes.size == 0:
+        return None
+    values = values[changes[0] : changes[-1] + 2]
     count = len(values)
     if count < 8:
         return None
@@ -46,16 +50,18 @@ def period_samples(input_: Array) -> int | None:
     below = np.flatnonzero(likeness < 0.5)
     if below.size == 0:
         return None
-    same = below[0] + np.flatnonzero(likeness[below[0] :] > 1 - _SAME)
+    same = below[0] + np.flatnonzero(likeness[below[0] :] > _LIKE)
     if same.size == 0:
         return None
     near = same[same < same[0] * 1.01 + 2]
-    return int(near[np.argmax(likeness[near])])
+    period = int(near[np.argmax(likeness[near])])
+    part = _periodic_part(input_, period)
+    return period if part.stop - part.start >= 2 * period else None
 
 
 def excited_lines(input_: Array, period: int, sample_time_s: float, from_hz: float, to_hz: float) -> int:
     """Number of excited harmonics between two frequencies."""
-    part = input_[_moving(input_)][:period]
+    part = input_[_periodic_part(input_, period)][:period]
     frequency = np.arange(period // 2 + 1) / (period * sample_time_s)
     inside = (frequency >= from_hz * (1 - 1e-9)) & (frequency <= to_hz * (1 + 1e-9))
     level = np.abs(fft.rfft(part - np.mean(part)))
@@ -119,28 +125,28 @@ def best_linear_approximation(
     )
 
 
-def _moving(values: Array) -> slice:
-    """From the first to the last change of the signal."""
-    changes = np.flatnonzero(np.diff(values) != 0)
-    if changes.size == 0:
-        return slice(0, 0)
-    return slice(int(changes[0]), int(changes[-1]) + 2)
+def _periodic_part(input_: Array, period: int) -> slice:
+    """The longest stretch over which the input repeats itself after `period` samples."""
+    difference = np.abs(input_[period:] - input_[:-period])
+    bad = np.flatnonzero(difference > _REPEATED * np.std(input_))
+    bounds = np.concatenate([[-1], bad, [len(difference)]])
+    longest = int(np.argmax(np.diff(bounds)))
+    return slice(int(bounds[longest]) + 1, int(bounds[longest + 1]) + period)
 
 
 def _periods(experiment: Experiment, period: int, harmonics: npt.NDArray[np.intp]) -> _Realisation:
     """Spectra (per line: half the amplitude) of input and differenced outputs, period by period."""
-    moving = _moving(experiment.input)
-    start = moving.start
-    available = len(experiment.input) - start
-    whole = min(available // period, (moving.stop - start + period // 50) // period)
+    repeating = _periodic_part(experiment.input, period)
+    whole = (repeating.stop - repeating.start) // period
     if whole < 2:
         raise UnfitDataError(
             "too_short",
-            f"holds {available / period:.2g} periods of {period * experiment.sample_time_s:.4g} s, 2 are needed",
+            f"its input repeats for {whole} whole periods of {period * experiment.sample_time_s:.4g} s, "
+            "2 are needed",
             where=experiment.name,
         )
     skipped = 1 if whole > 2 else 0
-    part = slice(start + skipped * period, start + whole * period)
+    part = slice(repeating.start + skipped * period, repeating.start + whole * period)
     rate = np.diff(experiment.outputs, axis=1, prepend=experiment.outputs[:, :1])[:, part]
     shape = (whole - skipped, period)
     u = fft.rfft(experiment.input[part].reshape(shape), axis=-1)[:, harmonics] / period

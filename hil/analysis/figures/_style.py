@@ -1,0 +1,74 @@
+"""The house style: one palette, units on every axis, the comfort band and the resonance marked."""
+
+from __future__ import annotations
+
+import io
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+#: Okabe & Ito's palette, told apart also by colour-blind readers.
+BLUE, VERMILLION, GREEN, BLACK = "#0072B2", "#D55E00", "#009E73", "#000000"
+ORANGE, SKY, PURPLE, GREY = "#E69F00", "#56B4E9", "#CC79A7", "#8A8A8A"
+BAND = "#F3EFD9"
+
+COMFORT_BAND_HZ = (8.0, 20.0)
+_DPI = 150
+_FONT = 9.0
+
+
+def new_figure(width_cm: float = 16.0, height_cm: float = 11.0) -> Figure:
+    """An empty figure with constrained layout and an Agg canvas; no state outside of it."""
+    figure = Figure(figsize=(width_cm / 2.54, height_cm / 2.54), layout="constrained", dpi=_DPI)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def style_axes(axes: Axes) -> None:
+    """Light grid behind the data, no box, small type."""
+    axes.grid(True, which="major", color="#D9D9D9", linewidth=0.6)
+    axes.grid(True, which="minor", color="#EEEEEE", linewidth=0.4)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(labelsize=_FONT, which="both")
+    for label in (axes.xaxis.label, axes.yaxis.label):
+        label.set_size(_FONT + 0.5)
+    axes.title.set_size(_FONT + 1.5)
+
+
+def frequency_axis(axes: Axes, low_hz: float, high_hz: float, *, label: bool = True) -> None:
+    """Logarithmic frequency with plain numbers (0.1, 1, 10) and the unit."""
+    axes.set_xscale("log")
+    axes.set_xlim(low_hz, high_hz)
+    axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+    if label:
+        axes.set_xlabel("Frequency in Hz")
+
+
+def mark_band(axes: Axes, resonance_hz: float | None, *, named: bool = True) -> None:
+    """Shade 8-20 Hz and mark the resonance."""
+    axes.axvspan(*COMFORT_BAND_HZ, color=BAND, zorder=0, linewidth=0, label="8-20 Hz" if named else None)
+    if resonance_hz is not None:
+        label = f"resonance {resonance_hz:.1f} Hz" if named else None
+        axes.axvline(resonance_hz, color=GREY, linewidth=0.9, linestyle=(0, (4, 2)), zorder=1, label=label)
+
+
+def legend(axes: Axes, **options: object) -> None:
+    """A legend without a box."""
+    axes.legend(**({"fontsize": _FONT - 1, "frameon": False, "handlelength": 1.8} | options))  # type: ignore[arg-type]
+
+
+def render(figure: Figure) -> dict[str, bytes]:
+    """The figure as 'png' and 'svg'; the same figure always gives the same bytes."""
+    pictures = {}
+    for kind, metadata in (("png", {"Software": None}), ("svg", {"Date": None, "Creator": None})):
+        buffer = io.BytesIO()
+        with mpl.rc_context({"svg.hashsalt": "hil"}):
+            figure.savefig(buffer, format=kind, dpi=_DPI, metadata=metadata)  # type: ignore[arg-type]
+        pictures[kind] = buffer.getvalue()
+    return pictures
