@@ -85,7 +85,9 @@ class SampleAssembler:
                 both = columns[left] + columns[right]
                 columns[name] = both if is_sum else 0.5 * both
         for stream in self._waiting.values():
-            stream.forget(stamps[-1] - _SETTLED_S if stream is not master else np.nextafter(stamps[-1], np.inf))
+            stream.forget(
+                stamps[-1] - _SETTLED_S if stream is not master else np.nextafter(stamps[-1], np.inf)
+            )
         return np.column_stack([columns[name] for name in self.names])
 
     def _sort_in(self) -> None:
@@ -100,8 +102,8 @@ class SampleAssembler:
 
     def _sample_times(self, stamps: Array) -> Array:
         previous = stamps[0] - self._sample_time_s if self._last_stamp_s is None else self._last_stamp_s
-        steps = np.maximum(1, np.rint(np.diff(stamps, prepend=previous) / self._sample_time_s)).astype(np.int64)
-        numbers = self._count + np.cumsum(steps)
+        steps = np.rint(np.diff(stamps, prepend=previous) / self._sample_time_s)
+        numbers = self._count + np.cumsum(np.maximum(1, steps).astype(np.int64))
         self._count, self._last_stamp_s = int(numbers[-1]), float(stamps[-1])
         return np.round((numbers - 1) * self._sample_time_s, 9)
 

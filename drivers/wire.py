@@ -34,9 +34,7 @@ class Wire:
             BenchError: the bus does not take it (unplugged, down, bus-off, queue full).
         """
         try:
-            self._bus.send(
-                can.Message(arbitration_id=frame_id, data=data, is_extended_id=False, check=False)
-            )
+            self._bus.send(can.Message(arbitration_id=frame_id, data=data, is_extended_id=False, check=False))
         except (can.CanError, OSError) as error:
             raise self._failed("sending", error) from error
         self._sent.append(

@@ -11,6 +11,8 @@ from reports.content import content
 from reports.html import html_text, input_texts, write_html
 from reports.junit import junit_text, write_junit
 from reports.pdf import pdf_bytes, write_pdf
+from reports.sections import sections
+from reports.svg_figure import svg_figure
 
 HTML, PDF, JUNIT = "report.html", "report.pdf", "junit.xml"
 
@@ -38,4 +40,18 @@ def write_reports(recording: Recording, result: RunResult | None, out: Path) -> 
     return {name: path for name, (path, _) in contents.items()}
 
 
-__all__ = ["write_html", "write_junit", "write_pdf", "write_reports"]
+def write_figures(recording: Recording, result: RunResult | None, out: Path) -> dict[str, Path]:
+    """Write every figure of the report as an SVG for paper into `out`; paths by the figures' ids.
+
+    Raises:
+        BadInputError: `out` cannot be written.
+    """
+    paths = {}
+    for section in sections(recording, result):
+        for figure in section.figures:
+            paths[figure.id] = out / f"{figure.id}.svg"
+            write_atomically(paths[figure.id], svg_figure(figure))
+    return paths
+
+
+__all__ = ["write_figures", "write_html", "write_junit", "write_pdf", "write_reports"]

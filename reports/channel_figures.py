@@ -11,7 +11,7 @@ from hil.core.channels import CHANNELS, INPUT, OUTPUTS, TIME
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from reports import quantities
-from reports.figure import Band, Figure, Section, Trace
+from reports.figure import Band, Figure, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
 from reports.spectrum import DESCRIPTION, amplitude_spectrum
 from reports.step_figures import controller_name
@@ -29,6 +29,7 @@ _PANELS: tuple[tuple[str, ...], ...] = (
     ("dyno_torque_ref_nm",),
 )
 _MOST_UNKNOWN_CHANNELS = 12
+_SPECTRUM_TO_HZ = 100.0
 
 
 @dataclass(frozen=True)
@@ -46,19 +47,20 @@ def sweep_section(recording: Recording, segment: Segment) -> Section:
     where = _Stretch(recording, f"segment-{segment.id}", segment.start_s, segment.end_s)
     names = (INPUT, *OUTPUTS)
     over_time = [_time_figure(where, (name,)) for name in names]
-    spectra = [_spectrum_figure(where, name) for name in names]
-    missing = [n for n, figure in zip(names, over_time, strict=True) if figure is None]
+    spectra = [_spectrum_figure(where, name, hann=False) for name in names]
+    missing = [channel_label(n) for n, figure in zip(names, over_time, strict=True) if figure is None]
     controller = f", {controller_name(segment.controller).lower()}" if segment.controller else ""
     text = (
         f"{segment.kind.capitalize()}{controller}, "
-        f"{quantities.number(segment.start_s)} to {quantities.quantity(segment.end_s, 's')} of the recording."
+        f"{quantities.nominal(round(segment.start_s, 3))} to {quantities.nominal(round(segment.end_s, 3), 's')} "
+        "of the recording."
     )
     return Section(
         where.id,
         f"Segment {segment.id}",
         text,
         tuple(figure for figure in (*over_time, *spectra) if figure is not None),
-        tuple(f"Not drawn: {channel_label(name).plain()} has too few values here." for name in missing),
+        not_drawn(missing),
     )
 
 
@@ -66,8 +68,11 @@ def overview_section(recording: Recording, segments: Sequence[Segment]) -> Secti
     """The whole run in one wide figure with its segments shaded; None if there is nothing to draw."""
     where = _whole(recording, "overview")
     name = next((n for n in OUTPUTS if n in recording), INPUT)
-    bands = tuple(Band(s.start_s, s.end_s, s.id) for s in segments if s.end_s > s.start_s)
-    figure = _time_figure(where, (name,), bands) if where else None
+    if where is None:
+        return None
+    clipped = [(max(s.start_s, where.start_s), min(s.end_s, where.end_s), s.id) for s in segments]
+    bands = tuple(Band(start, end, label) for start, end, label in clipped if end > start)
+    figure = _time_figure(where, (name,), bands)
     if figure is None:
         return None
     return Section("overview", "The whole run", "", (figure,))
@@ -117,13 +122,14 @@ def _time_figure(where: _Stretch, names: Sequence[str], bands: tuple[Band, ...] 
     )
 
 
-def _spectrum_figure(where: _Stretch, name: str) -> Figure | None:
+def _spectrum_figure(where: _Stretch, name: str, *, hann: bool = True) -> Figure | None:
     found = cut(where.recording, name, where.start_s, where.end_s)
-    spectrum = amplitude_spectrum(*found) if found else None
+    spectrum = amplitude_spectrum(*found, hann=hann) if found else None
     if spectrum is None or not np.any(spectrum.amplitude > 0):
         return None
     label = channel_label(name)
     top = float(spectrum.amplitude.max())
+    first, last = float(spectrum.frequency_hz[0]), float(spectrum.frequency_hz[-1])
     return Figure(
         id=f"{where.id}-{name}-spectrum",
         title=Label(f"Spectrum: {label.text.lower()}", label.symbol),
@@ -132,9 +138,9 @@ def _spectrum_figure(where: _Stretch, name: str) -> Figure | None:
         y_label=Label("Amplitude of", label.symbol) if label.symbol else Label("Amplitude"),
         y_unit=channel_unit(name),
         traces=(Trace(label, spectrum.frequency_hz, spectrum.amplitude, _ROLES[0]),),
-        x_range=(float(spectrum.frequency_hz[0]), float(spectrum.frequency_hz[-1])),
-        y_range=(top * 1e-5, top * 2),
+        x_range=(first, max(min(last, _SPECTRUM_TO_HZ), 2 * first)),
+        y_range=(top * 1e-4, top * 2),
         logarithmic=True,
-        caption=f"{DESCRIPTION[0].upper()}{DESCRIPTION[1:]}; frequency lines "
+        caption=f"{DESCRIPTION}, {'Hann window' if hann else 'no window'}; frequency lines "
         f"{quantities.quantity(spectrum.resolution_hz, 'Hz', significant=2)} apart.",
     )

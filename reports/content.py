@@ -10,7 +10,7 @@ from hil.core.channels import TIME
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from reports import provenance, quantities
-from reports.criteria import CriteriaTable, count_by_verdict, criteria_table
+from reports.criteria import CriteriaTable, CriterionRow, count_by_verdict, criteria_table
 from reports.figure import Section
 from reports.labels import channel_label, channel_unit
 from reports.provenance import ControllerTable, Fact, StoredFile
@@ -87,6 +87,7 @@ class Content:
     sha256: str
     mark: str
     criteria: CriteriaTable | None
+    warnings: tuple[str, ...]
     controllers: ControllerTable | None
     segments: tuple[SegmentRow, ...]
     channels: tuple[ChannelRow, ...]
@@ -94,6 +95,12 @@ class Content:
     notes: tuple[str, ...]
     sections: tuple[Section, ...]
     started_at: str
+
+    @property
+    def unmet(self) -> tuple[CriterionRow, ...]:
+        """Criteria that failed or could not be judged."""
+        groups = self.criteria.groups if self.criteria else ()
+        return tuple(row for group in groups for row in group.rows if row.verdict != "pass")
 
 
 def content(recording: Recording, result: RunResult | None) -> Content:
@@ -103,16 +110,18 @@ def content(recording: Recording, result: RunResult | None) -> Content:
     plan = result.plan if result else ""
     title = run.get("title") or plan or recording.source.stem
     started = run.get("started_at", "")
+    calibration, files = provenance.calibration_facts(recording), provenance.stored_files(recording)
     marks = (plan or recording.source.name, started, f"SHA-256 {sha256[:12]}" if sha256 else "")
     return Content(
         title=title,
         simulated=provenance.simulated(recording),
         banner=_banner(result),
         run=provenance.run_facts(recording, result),
-        dut=provenance.table(recording, "dut"),
+        dut=provenance.dut_facts(recording),
         versions=provenance.table(recording, "versions"),
-        calibration=provenance.calibration_facts(recording),
-        files=provenance.stored_files(recording),
+        calibration=calibration,
+        files=files,
+        warnings=_warnings(calibration, files),
         source=recording.source.name,
         sha256=sha256,
         mark=" · ".join(part for part in marks if part),
@@ -121,7 +130,8 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         segments=_segments(result),
         channels=() if result else tuple(_channel(recording, n) for n in recording.channels if n != TIME),
         events=tuple(
-            EventRow(quantities.number(e.time_s, 3), e.kind.replace("_", " "), e.text) for e in recording.events
+            EventRow(quantities.number(e.time_s, 3), e.kind.replace("_", " "), e.text)
+            for e in recording.events
         ),
         notes=tuple(recording.notes),
         sections=tuple(sections(recording, result)),
@@ -149,13 +159,21 @@ def _banner(result: RunResult | None) -> Banner:
     return Banner(verdict, _HEADLINE[verdict], tuple(sentences), alarm)
 
 
+def _warnings(calibration: tuple[Fact, ...], files: tuple[StoredFile, ...]) -> tuple[str, ...]:
+    """What a signer must know before the numbers."""
+    expired = [
+        f"{fact.name}: calibration valid until {fact.value}." for fact in calibration if fact.state == "bad"
+    ]
+    return (*expired, *(f"{file.name}: its hash {file.check}." for file in files if file.state == "bad"))
+
+
 def _segments(result: RunResult | None) -> tuple[SegmentRow, ...]:
     return tuple(
         SegmentRow(
             id=segment.id,
             kind=segment.kind,
             controller=segment.controller or quantities.DASH,
-            speed=quantities.number(segment.initial_speed_km_h, significant=3),
+            speed=quantities.nominal(segment.initial_speed_km_h),
             start=quantities.number(segment.start_s, 3),
             step=quantities.number(segment.step_s, 3) if segment.kind == "step" else quantities.DASH,
             end=quantities.number(segment.end_s, 3),

@@ -9,7 +9,7 @@ from hil.core.result import CriterionResult, RunResult, Segment
 from reports import quantities
 from reports.step_figures import controller_name
 
-_MOST_DECIMALS = 9
+_USUAL_DECIMALS, _MOST_DECIMALS = 4, 9
 
 
 @dataclass(frozen=True)
@@ -68,16 +68,15 @@ def in_words(criterion: CriterionResult) -> str:
     """One line: what was found against what was allowed; for messages."""
     if criterion.reason:
         return criterion.reason
-    decimals = _decimals(criterion)
-    value = quantities.quantity(criterion.value, criterion.unit, decimals)
-    limit = _limit(criterion, decimals)
+    value = quantities.quantity(criterion.value, criterion.unit, _decimals(criterion))
+    limit = _limit(criterion)
     return f"{value}, allowed is {limit}{quantities.THIN}{quantities.unit(criterion.unit)}".rstrip()
 
 
 def _group_title(segment: Segment | None) -> str:
     if segment is None:
         return "Whole run"
-    speed = quantities.quantity(segment.initial_speed_km_h, "km/h", significant=3)
+    speed = quantities.nominal(segment.initial_speed_km_h, "km/h")
     name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
     return f"{name}, {speed} ({segment.id})"
 
@@ -89,7 +88,7 @@ def _row(criterion: CriterionResult, definition: int) -> CriterionRow:
         title=criterion.title or criterion.id.rpartition(".")[2].replace("_", " ").capitalize(),
         value=quantities.number(criterion.value, decimals),
         unit=quantities.unit(criterion.unit),
-        limit=_limit(criterion, decimals),
+        limit=_limit(criterion),
         margin=quantities.number(criterion.margin, decimals),
         verdict=criterion.verdict,
         reason=criterion.reason,
@@ -98,16 +97,16 @@ def _row(criterion: CriterionResult, definition: int) -> CriterionRow:
 
 
 def _decimals(criterion: CriterionResult) -> int:
-    """Four digits of the largest number, and more where the margin would round to nothing."""
-    decimals = quantities.decimals_for(criterion.value, criterion.upper, criterion.lower)
+    """Four digits of the value, and more where the margin would round to nothing."""
+    decimals = min(quantities.decimals_for(criterion.value), _USUAL_DECIMALS)
     margin = criterion.margin
     while margin and abs(margin) < 10.0**-decimals and decimals < _MOST_DECIMALS:
         decimals += 1
     return decimals
 
 
-def _limit(criterion: CriterionResult, decimals: int) -> str:
-    lower, upper = (quantities.number(limit, decimals) for limit in (criterion.lower, criterion.upper))
+def _limit(criterion: CriterionResult) -> str:
+    lower, upper = quantities.nominal(criterion.lower), quantities.nominal(criterion.upper)
     if criterion.lower is not None and criterion.upper is not None:
         return f"{lower} to {upper}"
     if criterion.upper is not None:

@@ -22,11 +22,14 @@ def break_at_gaps(x: Array, y: Array) -> tuple[Array, Array]:
     return np.insert(x, gaps, (x[gaps - 1] + x[gaps]) / 2), np.insert(y, gaps, np.nan)
 
 
-def envelope(x: Array, y: Array, points: int) -> tuple[Array, Array]:
+def envelope(x: Array, y: Array, points: int, *, logarithmic: bool = False) -> tuple[Array, Array]:
     """At most about `points` of the samples of `y` over `x` (1-D, same length), peaks and gaps kept.
 
     Infinite values count as missing. A stretch without any finite value becomes one NaN: a gap.
+    With `logarithmic`, stretches are equally long on a logarithmic x axis; `x` is positive, `y` finite.
     """
+    if logarithmic and len(x) > points:
+        return _logarithmic(x, y, points)
     y = np.where(np.isfinite(y), y, np.nan)
     count = len(y)
     if count <= points:
@@ -41,4 +44,14 @@ def envelope(x: Array, y: Array, points: int) -> tuple[Array, Array]:
     highest = np.argmax(np.where(missing, -np.inf, table), axis=1)
     starts = np.arange(rows) * stretch
     kept = np.unique(np.concatenate([[0], starts + lowest, starts + highest, [count - 1]]))
+    return x[kept], y[kept]
+
+
+def _logarithmic(x: Array, y: Array, points: int) -> tuple[Array, Array]:
+    edges = np.geomspace(x[0], x[-1], max(points // 2, 1) + 1)
+    stretch = np.searchsorted(edges, x, "right")
+    by_height = np.lexsort((y, stretch))  # within each stretch from the lowest to the highest
+    last = np.flatnonzero(np.diff(stretch[by_height], append=stretch.max() + 1))
+    first = np.concatenate([[0], last[:-1] + 1])
+    kept = np.unique(np.concatenate([by_height[first], by_height[last]]))
     return x[kept], y[kept]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,7 @@ class Trace:
 
 @dataclass(frozen=True)
 class Band:
-    """A shaded stretch of the x axis; `beside` bands alternate in height so that their labels keep apart."""
+    """A shaded stretch of the x axis with its label at the top."""
 
     start: float
     end: float
@@ -84,7 +85,9 @@ class Figure:
                 parts.append(f"{trace.label.plain()}: from {low} to {high}.")
             else:
                 parts.append(f"{trace.label.plain()}: no values.")
-        parts += [f"{level.label} at {quantities.quantity(level.value, self.y_unit)}." for level in self.levels]
+        parts += [
+            f"{level.label} at {quantities.quantity(level.value, self.y_unit)}." for level in self.levels
+        ]
         return " ".join(parts)
 
     def _visible(self, trace: Trace) -> Array:
@@ -103,3 +106,9 @@ class Section:
     text: str
     figures: tuple[Figure, ...]
     notes: tuple[str, ...] = ()
+
+
+def not_drawn(labels: Iterable[Label]) -> tuple[str, ...]:
+    """The note of a section about what it lacks; empty if it lacks nothing."""
+    names = ", ".join(dict.fromkeys(label.plain() for label in labels))
+    return (f"Not drawn for want of values: {names}.",) if names else ()

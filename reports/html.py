@@ -11,7 +11,7 @@ from hil.core.recording import Recording
 from hil.core.result import RunResult
 from reports import style
 from reports.content import Content, content
-from reports.criteria import CriterionRow
+from reports.labels import sentence_html
 from reports.plotly_figure import plotly_figure
 
 _LARGEST_INPUT_FILE = 200_000
@@ -30,6 +30,7 @@ def write_html(recording: Recording, result: RunResult | None, path: Path) -> Pa
 def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
     """The page; `texts` are the names and texts of the input files to show in it."""
     import jinja2  # slow to import; only this form needs it
+    from markupsafe import Markup
 
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("reports"),
@@ -38,10 +39,10 @@ def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
         undefined=jinja2.StrictUndefined,
     )
     figures = {f.id: plotly_figure(f) for section in report.sections for f in section.figures}
+    environment.filters["sentence"] = lambda text: Markup(sentence_html(text))
     return environment.get_template("report.html.j2").render(
         c=report,
         contents=_contents(report, bool(texts)),
-        unmet=_unmet(report),
         texts=texts,
         figures=_json_in_script(figures) if figures else "",
         plotly=_plotly_js() if figures else "",
@@ -67,7 +68,7 @@ def input_texts(recording: Recording) -> list[tuple[str, str]]:
 
 def _contents(report: Content, has_texts: bool) -> list[tuple[str, str]]:
     entries = [
-        ("verdict", "Verdict", True),
+        ("verdict", "Summary" if report.banner.tone == "none" else "Verdict", True),
         ("notes", "Notes", bool(report.notes)),
         ("criteria", "Criteria", report.criteria is not None),
         ("statistics", "Statistics", bool(report.channels)),
@@ -78,11 +79,6 @@ def _contents(report: Content, has_texts: bool) -> list[tuple[str, str]]:
         ("inputs", "Input files", has_texts),
     ]
     return [(anchor, name) for anchor, name, present in entries if present]
-
-
-def _unmet(report: Content) -> list[CriterionRow]:
-    groups = report.criteria.groups if report.criteria else ()
-    return [row for group in groups for row in group.rows if row.verdict != "pass"]
 
 
 def _json_in_script(value: object) -> str:

@@ -26,6 +26,15 @@ _SHORT = {
     "driving_torque_est_nm": "Driving torque, estimate",
     "dyno_torque_ref_nm": "Load torque",
 }
+_KNOWN = re.compile(
+    r"(?<!\w)("
+    + "|".join(
+        re.escape(c.symbol)
+        for c in sorted(CHANNELS.values(), key=lambda c: -len(c.symbol))
+        if "_" in c.symbol
+    )
+    + r")(?!\w)"
+)
 _HAT = "\u0302"
 _SYMBOL = re.compile(r"(?P<base>[^_*]+)(?:_(?P<sub>[^*]+))?(?P<star>\*?)$")
 
@@ -58,6 +67,16 @@ def channel_label(name: str) -> Label:
     """Short words and symbol of a channel; an unknown channel keeps its name."""
     symbol = CHANNELS[name].symbol if name in CHANNELS else ""
     return Label(_SHORT.get(name, name), symbol)
+
+
+def pieces(text: str) -> list[tuple[str, bool]]:
+    """A sentence cut at the symbols of channels in it: (piece, whether it is a symbol)."""
+    return [(piece, number % 2 == 1) for number, piece in enumerate(_KNOWN.split(text)) if piece]
+
+
+def sentence_html(text: str) -> str:
+    """A sentence as escaped HTML with its symbols set as such."""
+    return "".join(_symbol_html(piece) if known else html.escape(piece) for piece, known in pieces(text))
 
 
 def channel_unit(name: str) -> str:

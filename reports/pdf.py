@@ -19,6 +19,7 @@ from hil.core.result import RunResult
 from reports import style
 from reports.content import Content, content
 from reports.figure import Figure
+from reports.labels import pieces
 from reports.svg_figure import svg_figure
 
 _STANDARD = "a-2b"
@@ -72,13 +73,16 @@ def _data(report: Content) -> dict[str, Any]:
     }
     for name in ("run", "dut", "versions", "calibration", "files", "segments", "channels", "events"):
         data[name] = [dataclasses.asdict(row) for row in shown[name]]
+    if report.criteria is not None:
+        data["definitions"] = [pieces(text) for text in report.criteria.definitions]
+    data["unmet"] = [dataclasses.asdict(row) for row in report.unmet]
     data["events_left_out"] = max(0, len(report.events) - _MOST_EVENTS)
     data["events"] = data["events"][:_MOST_EVENTS]
     data["sections"] = [
         {
             "title": section.title,
             "text": section.text,
-            "notes": section.notes,
+            "notes": [pieces(note) for note in section.notes],
             "figures": [_figure(figure) for figure in section.figures],
         }
         for section in report.sections

@@ -35,7 +35,7 @@ def plotly_figure(figure: Figure) -> dict[str, Any]:
 
 
 def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
-    x, y = envelope(trace.x, trace.y, style.POINTS_ON_SCREEN)
+    x, y = envelope(trace.x, trace.y, style.POINTS_ON_SCREEN, logarithmic=figure.logarithmic)
     unit = html.escape(quantities.unit(figure.y_unit))
     x_unit = html.escape(quantities.unit(figure.x_unit))
     return {
@@ -45,7 +45,7 @@ def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
         "meta": trace.role,
         "x": _packed(x),
         "y": _packed(y),
-        "line": {"width": style.LINE_WIDTH_PX, "dash": trace.dash},
+        "line": {"width": style.LINE_WIDTH_PX * style.WIDER.get(trace.role, 1.0), "dash": trace.dash},
         "hovertemplate": f"%{{y:.4~g}}{quantities.THIN}{unit} at %{{x:.4~g}}{quantities.THIN}{x_unit}",
     }
 

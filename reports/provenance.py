@@ -47,7 +47,12 @@ class ControllerTable:
 
 def table(recording: Recording, name: str) -> tuple[Fact, ...]:
     """A metadata table as facts, in its own order."""
-    return tuple(Fact(key.replace("_", " "), value) for key, value in recording.metadata.get(name, {}).items())
+    return tuple(Fact(key, value) for key, value in recording.metadata.get(name, {}).items())
+
+
+def dut_facts(recording: Recording) -> tuple[Fact, ...]:
+    """The device under test as the bench file describes it: 'gear_ratio' becomes 'Gear ratio'."""
+    return tuple(Fact(_words(fact.name), fact.value) for fact in table(recording, "dut"))
 
 
 def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...]:
@@ -63,14 +68,14 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
     ]
     if result is not None:
         facts += [
-            Fact("Time on the bench", quantities.quantity(result.bench_time_s, "s")),
+            Fact("Time on the bench", quantities.quantity(result.bench_time_s, "s", 1)),
             Fact("Real-time factor", quantities.number(result.real_time_factor, significant=3)),
         ]
     elif len(recording.channels.get("time_s", ())) > 1:
         span = float(recording.time_s[-1] - recording.time_s[0])
         facts.append(Fact("Length", quantities.quantity(span, "s")))
         facts.append(Fact("Samples", quantities.number(float(len(recording.time_s)), 0)))
-        facts.append(Fact("Sample time", quantities.quantity(recording.sample_time_s, "s", significant=3)))
+        facts.append(Fact("Sample time", quantities.nominal(float(f"{recording.sample_time_s:.4g}"), "s")))
     return tuple(fact for fact in facts if fact.value)
 
 
@@ -86,11 +91,11 @@ def calibration_facts(recording: Recording) -> tuple[Fact, ...]:
     for sensor, until in recording.metadata.get("calibration", {}).items():
         expires = _date(until)
         if started is None or expires is None:
-            facts.append(Fact(sensor, until))
+            facts.append(Fact(_words(sensor), until))
         elif expires < started:
-            facts.append(Fact(sensor, f"{until}: expired before the run", "bad"))
+            facts.append(Fact(_words(sensor), f"{until}, expired before the run", "bad"))
         else:
-            facts.append(Fact(sensor, until, "good"))
+            facts.append(Fact(_words(sensor), until, "good"))
     return tuple(facts)
 
 
@@ -105,7 +110,7 @@ def stored_files(recording: Recording) -> tuple[StoredFile, ...]:
         state = {"matches": "good", "does not match": "bad"}.get(check, "")
         files.append(StoredFile(name, quantities.file_size(len(content)), now, check, state))
     for name in stored.keys() - recording.attachments.keys():
-        files.append(StoredFile(name, quantities.DASH, stored[name], "missing from the recording", "bad"))
+        files.append(StoredFile(name, quantities.DASH, stored[name], "has no file in the recording", "bad"))
     return tuple(files)
 
 
@@ -142,10 +147,15 @@ def _flat(values: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]:
         if isinstance(value, dict):
             pairs += _flat(value, f"{prefix}{key}.")
         elif isinstance(value, float) and math.isfinite(value):
-            pairs.append((prefix + key, quantities.number(value)))
+            pairs.append((prefix + key, quantities.nominal(value)))
         else:
             pairs.append((prefix + key, str(value)))
     return pairs
+
+
+def _words(key: str) -> str:
+    text = key.replace("_", " ")
+    return text[:1].upper() + text[1:]
 
 
 def _date(text: str) -> datetime.date | None:

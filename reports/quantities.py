@@ -37,6 +37,15 @@ def number(value: float | None, decimals: int | None = None, significant: int = 
     return text.replace("-", MINUS)
 
 
+def nominal(value: float | None, of: str = "") -> str:
+    """A number that somebody chose (a limit, a speed, a parameter): as written, no digits added."""
+    if value is None or not math.isfinite(value):
+        return number(value)
+    digits = f"{value:.9g}"
+    text = number(value) if "e" in digits else number(value, len(digits.partition(".")[2]))
+    return f"{text}{THIN}{unit(of)}" if of else text
+
+
 def unit(text: str) -> str:
     """A unit with narrow no-break spaces between its factors."""
     return text.strip().replace(" ", THIN)

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-DESCRIPTION = "single-sided amplitude spectrum, linear trend removed, Hann window"
+DESCRIPTION = "Single-sided amplitude spectrum, linear trend removed"
 _LEAST_SAMPLES = 16
 _LARGEST_MISSING_SHARE = 0.05
 
@@ -27,9 +27,10 @@ class Spectrum:
         return float(self.frequency_hz[0])
 
 
-def amplitude_spectrum(time_s: Array, values: Array) -> Spectrum | None:
+def amplitude_spectrum(time_s: Array, values: Array, *, hann: bool = True) -> Spectrum | None:
     """Spectrum of `values` at `time_s` (1-D, same length); uneven samples are put on an even grid first.
 
+    `hann` suits steady parts of a signal; sweeps, which begin and end at rest, are taken without a window.
     None if there are fewer than 16 samples or more than 5 % of them are missing.
     """
     finite = np.isfinite(values) & np.isfinite(time_s)
@@ -47,7 +48,8 @@ def amplitude_spectrum(time_s: Array, values: Array) -> Spectrum | None:
     even = np.interp(grid, time_s, values)
     centred = grid - grid.mean()
     even = even - even.mean() - centred * (centred @ even) / (centred @ centred)
-    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(count) / count)  # periodic Hann
+    turn = 2 * np.pi * np.arange(count) / count
+    window = 0.5 - 0.5 * np.cos(turn) if hann else np.ones(count)
     amplitude = np.abs(np.fft.rfft(even * window)) * (2 / window.sum())
     frequency = np.fft.rfftfreq(count, span / (count - 1))
     return Spectrum(frequency[1:], amplitude[1:])

@@ -11,7 +11,7 @@ import numpy as np
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
 from reports import quantities, style
-from reports.figure import Band, Figure, Level, Section, Trace
+from reports.figure import Band, Figure, Level, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
 from reports.spectrum import DESCRIPTION, amplitude_spectrum
 from reports.stretch import cut, line
@@ -21,6 +21,7 @@ BAND_HZ = (8.0, 20.0)
 _FIRST_SECONDS = 2.0
 _SPECTRUM_TO_HZ = 30.0
 _SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
+_LONGEST_NAME = 26
 _TIME = "Time from the step"
 _MOTOR_SPEED = "motor_speed_rad_s"
 _SHAFT_TORQUE = "shaft_torque_nm"
@@ -45,7 +46,7 @@ class _Plan(NamedTuple):
 
 def step_section(recording: Recording, segments: list[Segment], criteria: Criteria) -> Section:
     """Figures of `segments`, all steps from one initial speed; `criteria` by id give peaks and limits."""
-    speed = quantities.quantity(segments[0].initial_speed_km_h, "km/h", significant=3)
+    speed = quantities.nominal(segments[0].initial_speed_km_h, "km/h")
     section_id = f"steps-{segments[0].initial_speed_km_h:g}kmh"
     overlay = _Overlay(recording, members(segments), criteria, section_id)
     plans = [
@@ -58,13 +59,12 @@ def step_section(recording: Recording, segments: list[Segment], criteria: Criter
     ]
     drawn = [(plan, plan.draw()) for plan in plans]
     figures = [figure for _, figure in drawn if figure is not None]
-    missing = dict.fromkeys(plan.channel for plan, figure in drawn if figure is None)
     return Section(
         section_id,
         f"Steps from {speed}",
         _text(segments),
         tuple(figures),
-        tuple(f"Not drawn: {channel_label(name).plain()} has too few values here." for name in missing),
+        not_drawn(channel_label(plan.channel) for plan, figure in drawn if figure is None),
     )
 
 
@@ -79,7 +79,8 @@ def members(segments: list[Segment]) -> list[Member]:
         if controller not in roles:
             roles[controller] = controller if controller in ("gain", "phase") else next(further)
         repeat = uses[controller] = uses.get(controller, -1) + 1
-        name = f"{controller_name(controller)} ({segment.id})" if repeat else controller_name(controller)
+        name = _shortened(controller_name(controller))
+        name = f"{name} ({_shortened(segment.id)})" if repeat else name
         found.append(Member(segment, name, roles[controller], style.DASHES[repeat % len(style.DASHES)]))
     return found
 
@@ -89,10 +90,14 @@ def controller_name(controller: str) -> str:
     return f"{controller.capitalize()} stabilization" if controller in ("gain", "phase") else controller
 
 
+def _shortened(name: str) -> str:
+    return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
+
+
 def _text(segments: list[Segment]) -> str:
     steps = dict.fromkeys((s.reference_before, s.reference_after) for s in segments)
     sizes = ", ".join(
-        f"{quantities.number(before, significant=3)} to {quantities.quantity(after, 'N m', significant=3)}"
+        f"{quantities.nominal(before)} to {quantities.nominal(after, 'N m')}"
         for before, after in steps
         if before != after
     )
@@ -144,7 +149,10 @@ class _Overlay:
     def motor_speed_spectrum(self) -> Figure | None:
         label = channel_label(_MOTOR_SPEED)
         traces = [
-            trace for member in self._members for trace in self._spectrum(member, _MOTOR_SPEED) if trace.x.size
+            trace
+            for member in self._members
+            for trace in self._spectrum(member, _MOTOR_SPEED)
+            if trace.x.size
         ]
         if not traces:
             return None
@@ -162,7 +170,7 @@ class _Overlay:
             bands=(Band(*BAND_HZ, band),),
             x_range=(0.0, _SPECTRUM_TO_HZ),
             y_range=(0.0, 1.1 * scale) if scale > 0 else None,
-            caption=f"{DESCRIPTION[0].upper()}{DESCRIPTION[1:]}, {start:g} to {end:g}{quantities.THIN}s "
+            caption=f"{DESCRIPTION}, Hann window, {start:g} to {end:g}{quantities.THIN}s "
             f"after the step. The scale is set by {_SLOW_HZ:g}{quantities.THIN}Hz and above.",
         )
 
@@ -181,7 +189,10 @@ class _Overlay:
     def _response(
         self, suffix: str, channel: str, metric: str = "", word: str = "", until_s: float = np.inf
     ) -> Figure | None:
-        traces = [self._line(channel, member, self._named(member, metric, word), until_s) for member in self._members]
+        traces = [
+            self._line(channel, member, self._named(member, metric, word), until_s)
+            for member in self._members
+        ]
         drawn = tuple(trace for trace in traces if trace is not None)
         if not drawn:
             return None
@@ -208,7 +219,9 @@ class _Overlay:
         criterion = self._criteria.get(f"{member.segment.id}.{metric}")
         if criterion is None or criterion.value is None:
             return Label(member.name)
-        return Label(f"{member.name}, {word} {quantities.quantity(criterion.value, criterion.unit)}")
+        return Label(
+            f"{member.name}, {word} {quantities.quantity(criterion.value, criterion.unit, significant=3)}"
+        )
 
     def _reference(self, from_s: float, until_s: float) -> list[Trace]:
         """The reference of the first member that has one; a second one only if it steps differently."""
@@ -234,10 +247,15 @@ class _Overlay:
     def _peak_limits(self, traces: tuple[Trace, ...]) -> tuple[Level, ...]:
         """Limits of the peak, where they lie near enough to the lines not to flatten them."""
         highest = max(float(np.nanmax(trace.y)) for trace in traces)
-        uppers = (
-            self._criteria[key].upper
-            for key in (f"{m.segment.id}.peak_shaft_torque" for m in self._members)
-            if key in self._criteria
+        near: dict[float, list[str]] = {}
+        for member in self._members:
+            criterion = self._criteria.get(f"{member.segment.id}.peak_shaft_torque")
+            if criterion and criterion.upper is not None and 0 < criterion.upper <= 1.8 * highest:
+                near.setdefault(criterion.upper, []).append(member.name)
+        return tuple(
+            Level(
+                upper,
+                f"Limit {quantities.nominal(upper, 'N m')}" + (f", {names[0]}" if len(near) > 1 else ""),
+            )
+            for upper, names in near.items()
         )
-        near = dict.fromkeys(u for u in uppers if u is not None and 0 < u <= 1.8 * highest)
-        return tuple(Level(u, f"Limit {quantities.quantity(u, 'N m')}") for u in near)

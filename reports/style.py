@@ -39,7 +39,7 @@ SURFACE: dict[str, Tone] = {
     "quiet": Tone("#55606C", "#A3AFBB"),
     "rule": Tone("#D3D9DF", "#37414B"),
     "grid": Tone("#E6EAEE", "#2A323B"),
-    "band": Tone("#F0E9D2", "#38341F"),
+    "band": Tone("#F6F0DC", "#332F1D"),
     "link": Tone("#005A8F", "#7CC4F2"),
     "pass": Tone("#00664A", "#4FD1A5"),
     "fail": Tone("#A4161A", "#FF8A80"),
@@ -47,14 +47,17 @@ SURFACE: dict[str, Tone] = {
     "on-verdict": Tone("#FFFFFF", "#14181D"),
 }
 
-LINE_WIDTH_PX = 1.6
+LINE_WIDTH_PX = 1.4
+#: Lines that come first are wider, so that one lying exactly under another still shows at its edges.
+WIDER = {"gain": 1.5}
 DASHES = ("solid", "dash", "dot", "dashdot")
 #: Points kept of one line: an envelope of the lowest and highest value in each of half as many stretches.
 POINTS_ON_SCREEN = 2400
 POINTS_ON_PAPER = 1200
 #: A figure on paper: one column of an A4 page.
 PAPER_WIDTH_MM = 84.0
-PAPER_HEIGHT_MM = 62.0
+PAPER_HEIGHT_MM = 52.0
+PAPER_WIDE_MM = (172.0, 42.0)
 
 #: What Matplotlib is told, in points.
 PAPER: dict[str, Any] = {
@@ -71,7 +74,7 @@ PAPER: dict[str, Any] = {
     "axes.unicode_minus": True,
     "grid.color": SURFACE["grid"].light,
     "grid.linewidth": 0.5,
-    "lines.linewidth": 0.8,
+    "lines.linewidth": 0.7,
     "lines.solid_joinstyle": "round",
     "xtick.color": SURFACE["quiet"].light,
     "ytick.color": SURFACE["quiet"].light,

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MM_PER_INCH = 25.4
-_LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 13.0, 2.0, 9.5, 2.5
-_LEGEND_ROW_MM = 3.6
+_LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
+_LEGEND_ROW_MM = 3.4
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
 
@@ -28,8 +28,8 @@ def svg_figure(figure: Figure) -> bytes:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
     from matplotlib.figure import Figure as Canvas
 
-    width = style.PAPER_WIDTH_MM * (2.05 if figure.wide else 1.0)
-    height = style.PAPER_HEIGHT_MM
+    narrow = (style.PAPER_WIDTH_MM, style.PAPER_HEIGHT_MM)
+    width, height = style.PAPER_WIDE_MM if figure.wide else narrow
     rows = len(figure.traces) if len(figure.traces) > 1 else 0
     columns = 3 if figure.wide else 1
     top = _TOP_MM + _LEGEND_ROW_MM * -(-rows // columns)
@@ -54,9 +54,11 @@ def svg_figure(figure: Figure) -> bytes:
 
 def _draw(axes: Axes, figure: Figure) -> None:
     for trace in figure.traces:
-        x, y = envelope(trace.x, trace.y, style.POINTS_ON_PAPER * (2 if figure.wide else 1))
+        points = style.POINTS_ON_PAPER * (2 if figure.wide else 1)
+        x, y = envelope(trace.x, trace.y, points, logarithmic=figure.logarithmic)
         color = style.SERIES[trace.role].light
-        axes.plot(x, y, _DASHES[trace.dash], color=color, label=trace.label.as_mathtext())
+        (drawn,) = axes.plot(x, y, _DASHES[trace.dash], color=color, label=trace.label.as_mathtext())
+        drawn.set_linewidth(drawn.get_linewidth() * style.WIDER.get(trace.role, 1.0))
     if figure.logarithmic:
         axes.set_xscale("log")
         axes.set_yscale("log")

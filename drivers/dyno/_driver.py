@@ -9,7 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.dyno._canopen import LoopNetwork
-from drivers.dyno._node import ENABLED, FAULT, HEARTBEAT_LOST_S, READY, SWITCH_ON_DISABLED, SWITCHED_ON, DynoNode
+from drivers.dyno._node import (
+    ENABLED,
+    FAULT,
+    HEARTBEAT_LOST_S,
+    READY,
+    SWITCH_ON_DISABLED,
+    SWITCHED_ON,
+    DynoNode,
+)
 from drivers.loop import BusLoop
 from drivers.measurement import Binding
 from drivers.wire import Wire
@@ -56,10 +64,10 @@ class DynoDriver:
         self._loop, self._wire, self._host = loop, wire, nodes.host
         self.vehicle = vehicle
         network = LoopNetwork(loop, wire)
-        make = lambda name, node_id: DynoNode(network, wire.name, node_id, name, eds)  # noqa: E731
-        self.left, self.right = make("rear left", nodes.rear_left), make("rear right", nodes.rear_right)
+        self.left = DynoNode(network, wire.name, nodes.rear_left, "rear left", eds)
+        self.right = DynoNode(network, wire.name, nodes.rear_right, "rear right", eds)
         self.rear = (self.left, self.right)
-        self.idle = [make(name, node_id) for name, node_id in nodes.idle.items()]
+        self.idle = [DynoNode(network, wire.name, i, name, eds) for name, i in nodes.idle.items()]
         loop.on_block(self._take_block)
 
     @property

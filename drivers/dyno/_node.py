@@ -13,7 +13,7 @@ import numpy.typing as npt
 from drivers.dyno._canopen import LoopNetwork, LoopNode
 from drivers.measurement import Binding
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import SENT_BY_HOST
+from hil.core.frames import newest
 from hil.core.pdo import layout_of_pdo
 
 # CiA 402: statusword bits 6, 5, 3, 2, 1, 0
@@ -122,14 +122,13 @@ class DynoNode:
 
     def take_block(self, block: npt.NDArray[np.void]) -> None:
         """Follow the newest PDOs of a block of this bus."""
-        received = block[(block["flags"] & SENT_BY_HOST) == 0]
-        status = received[received["id"] == self._status.id]
-        if len(status):
-            self.status = self._status.signals["Statusword"].raw(int(status["data"][-1]))
-            self.last_seen_s = float(status["time_s"][-1])
-        values = received[received["id"] == self._values.id]
-        if len(values):
-            self.wheel_speed_rad_s = self._values.signals["Wheel speed"].value(int(values["data"][-1]))
+        status = newest(block, self._status.id)
+        if status is not None:
+            self.last_seen_s = status[0]
+            self.status = self._status.signals["Statusword"].raw(status[1])
+        values = newest(block, self._values.id)
+        if values is not None:
+            self.wheel_speed_rad_s = self._values.signals["Wheel speed"].value(values[1])
 
     @property
     def _where(self) -> str:

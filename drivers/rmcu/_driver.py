@@ -17,6 +17,7 @@ from drivers.wire import Wire
 from hil.core.checksum import crc8_many
 from hil.core.controller import Controller
 from hil.core.errors import BadInputError, BenchError
+from hil.core.frames import newest
 from hil.core.signals import FrameLayout, layout_of
 
 MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
@@ -45,6 +46,8 @@ class RmcuDriver:
         self._layouts, self._texts = _read_dbc(dbc)
         self._request = self._layouts["RMCU_Request"]
         self._reply = self._layouts["RMCU_ParameterReply"]
+        self._state_names = {number: text for text, number in self._texts["State"].items()}
+        self._fault_names = {number: text for text, number in self._texts["RequestFault"].items()}
         self._counter = 0
         self._answer: int | None = None
         self.state = ""
@@ -114,7 +117,10 @@ class RmcuDriver:
         payload = layout.encode(Command=command, Index=index, Value=value)
         self._answer = None
         self._wire.send(layout.id, int(payload[0]).to_bytes(8, "little"))
-        if not self._loop.wait_for(lambda: self._answer is not None, _REPLY_TIMEOUT_S) or self._answer is None:
+        if (
+            not self._loop.wait_for(lambda: self._answer is not None, _REPLY_TIMEOUT_S)
+            or self._answer is None
+        ):
             raise BenchError(
                 f"no reply to parameter '{name}' within {_REPLY_TIMEOUT_S:g} s",
                 where="RMCU",
@@ -136,27 +142,15 @@ class RmcuDriver:
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus != self._wire.name:
             return
-        ids = block["id"]
-        control = np.flatnonzero(ids == self._layouts["RMCU_Control"].id)
-        status = np.flatnonzero(ids == self._layouts["RMCU_Status"].id)
-        if not control.size or not status.size:
+        control = newest(block, self._layouts["RMCU_Control"].id)
+        status = newest(block, self._layouts["RMCU_Status"].id)
+        if control is None or status is None:
             return
-        last = block[control[-1]]
         signals = self._layouts["RMCU_Control"].signals
-        payload = int(last["data"])
-        self.last_seen_s = float(last["time_s"])
+        self.last_seen_s, payload = control
         self.state = self._state_names.get(signals["State"].raw(payload), "?")
         self.fault = self._fault_names.get(signals["RequestFault"].raw(payload), "?")
-        torque = self._layouts["RMCU_Status"].signals["MotorTorqueRef"]
-        self.torque_ref_nm = torque.value(int(block["data"][status[-1]]))
-
-    @property
-    def _state_names(self) -> dict[int, str]:
-        return {number: text for text, number in self._texts["State"].items()}
-
-    @property
-    def _fault_names(self) -> dict[int, str]:
-        return {number: text for text, number in self._texts["RequestFault"].items()}
+        self.torque_ref_nm = self._layouts["RMCU_Status"].signals["MotorTorqueRef"].value(status[1])
 
 
 def _read_dbc(path: Path) -> tuple[dict[str, FrameLayout], dict[str, dict[str, int]]]:
@@ -173,7 +167,9 @@ def _read_dbc(path: Path) -> tuple[dict[str, FrameLayout], dict[str, dict[str, i
         try:
             message = database.get_message_by_name(name)
         except KeyError:
-            raise BadInputError(f"has no message '{name}'", where=str(path), fix="use the RMCU's DBC") from None
+            raise BadInputError(
+                f"has no message '{name}'", where=str(path), fix="use the RMCU's DBC"
+            ) from None
         present = {signal.name: signal for signal in message.signals}
         for signal in needed:
             if signal not in present:

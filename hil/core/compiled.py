@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from numba import njit
 
@@ -12,20 +12,16 @@ _F = TypeVar("_F", bound=Callable[..., object])
 _FAST = {"contract", "arcp", "reassoc", "nsz"}
 
 
-def compiled(function: _F) -> _F:
+def compiled(function: _F) -> Any:
     """Compile `function` with numba."""
-    return njit(cache=True, error_model="numpy", fastmath=_FAST)(function)  # type: ignore[no-any-return]
+    return njit(cache=True, error_model="numpy", fastmath=_FAST)(function)
 
 
-def inlined(function: _F) -> _F:
+def inlined(function: _F) -> Any:
     """Compile `function` into each of its callers."""
-    return njit(cache=True, error_model="numpy", fastmath=_FAST, inline="always")(  # type: ignore[no-any-return]
-        function
-    )
+    return njit(cache=True, error_model="numpy", fastmath=_FAST, inline="always")(function)
 
 
-def compiled_parallel(function: _F) -> _F:
+def compiled_parallel(function: _F) -> Any:
     """Compile `function` with its prange loops spread over threads."""
-    return njit(cache=True, error_model="numpy", fastmath=_FAST, parallel=True)(  # type: ignore[no-any-return]
-        function
-    )
+    return njit(cache=True, error_model="numpy", fastmath=_FAST, parallel=True)(function)

@@ -19,3 +19,12 @@ FrameBlock = npt.NDArray[np.void]
 def empty_block() -> FrameBlock:
     """A block without frames."""
     return np.zeros(0, FRAME)
+
+
+def newest(block: FrameBlock, frame_id: int) -> tuple[float, int] | None:
+    """Time and payload of the last received frame with this identifier; None if the block has none."""
+    ids = block["id"]
+    for index in range(len(ids) - 1, -1, -1):
+        if ids[index] == frame_id and not block["flags"][index] & SENT_BY_HOST:
+            return float(block["time_s"][index]), int(block["data"][index])
+    return None

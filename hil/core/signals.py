@@ -56,7 +56,11 @@ class Signal:
         """Physical value in one payload."""
         raw = self.raw(payload)
         if self.is_float:
-            return float(struct.unpack("<f" if self.length == 32 else "<d", raw.to_bytes(self.length // 8, "little"))[0])
+            return float(
+                struct.unpack("<f" if self.length == 32 else "<d", raw.to_bytes(self.length // 8, "little"))[
+                    0
+                ]
+            )
         if self.signed and raw >> (self.length - 1):
             raw -= 1 << self.length
         return raw * self.scale + self.offset
@@ -68,10 +72,11 @@ class Signal:
         if self.is_float:
             bits = raw.astype(np.uint32) if self.length == 32 else raw
             return np.asarray(bits.view(np.float32 if self.length == 32 else np.float64), dtype=float)
+        counts = raw.astype(np.float64)
         if self.signed:
             up = np.uint64(64 - self.length)
-            return (raw << up).view(np.int64).__rshift__(np.int64(64 - self.length)) * self.scale + self.offset
-        return raw * self.scale + self.offset
+            counts = ((raw << up).view(np.int64) >> np.int64(64 - self.length)).astype(np.float64)
+        return np.asarray(counts * self.scale + self.offset)
 
     def encode(self, values: npt.ArrayLike) -> Payloads:
         """Payloads with only this signal set, rounded to its resolution and clipped to its range."""
@@ -97,6 +102,16 @@ def _pack(values, scale, offset, low, high, shift, length, words):  # type: igno
     for i in range(values.shape[0]):
         count = min(max(np.rint((values[i] - offset) / scale), low), high)
         words[i] = (np.uint64(np.int64(count)) & mask) << np.uint64(shift)
+
+
+@compiled
+def swapped(word):  # type: ignore[no-untyped-def]
+    """A 64-bit payload with its bytes in reverse order, for compiled code."""
+    turned = np.uint64(0)
+    for _ in range(8):
+        turned = (turned << np.uint64(8)) | (word & np.uint64(0xFF))
+        word >>= np.uint64(8)
+    return turned
 
 
 @dataclass(frozen=True)

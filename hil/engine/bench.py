@@ -59,8 +59,8 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
     wires: dict[str, Wire] = {}
     try:
         for name, bus in file.buses.items():
-            wires[name] = Wire(name, _open(name, bus.interface, bus.channel, bus.bit_rate, bus.options), clock,
-                               epoch_offset_s=offset_s)  # fmt: skip
+            opened = _open(name, bus.interface, bus.channel, bus.bit_rate, bus.options)
+            wires[name] = Wire(name, opened, clock, epoch_offset_s=offset_s)
         loop = BusLoop(clock, list(wires.values()))
         v, d = file.vehicle, file.dyno
         vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)

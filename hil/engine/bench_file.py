@@ -133,12 +133,16 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
-        raise BadInputError(f"{key}: {first['msg']}", where=str(path), fix="see docs/how-to/bench-file.md") from error
+        raise BadInputError(
+            f"{key}: {first['msg']}", where=str(path), fix="see docs/how-to/bench-file.md"
+        ) from error
     base = path.resolve().parent
     for table in (bench.rmcu, bench.dyno):
         if table.bus not in bench.buses:
             raise BadInputError(
-                f"bus '{table.bus}' is not under [buses]", where=str(path), fix=f"known: {', '.join(bench.buses)}"
+                f"bus '{table.bus}' is not under [buses]",
+                where=str(path),
+                fix=f"known: {', '.join(bench.buses)}",
             )
     changes: dict[str, Any] = {
         "rmcu": bench.rmcu.model_copy(update={"dbc": base / bench.rmcu.dbc}),

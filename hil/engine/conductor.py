@@ -41,7 +41,9 @@ class BenchConductor:
         self._bench.rmcu.write_controller(controller)
         self._controller = controller
         self.controllers[file.stem] = file.read_text("utf-8")
-        self._event("controller", f"{controller.name} ({controller.stabilization} stabilization) written, read back")
+        self._event(
+            "controller", f"{controller.name} ({controller.stabilization} stabilization) written, read back"
+        )
 
     def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
         """Ramp to a speed and hold it."""
@@ -82,7 +84,9 @@ class BenchConductor:
             rmcu.send(payload)
             loop.step()
         if rmcu.state == "fault":
-            raise BenchError(f"the RMCU went to fault: {rmcu.fault}", where="RMCU", fix="see the recording's events")
+            raise BenchError(
+                f"the RMCU went to fault: {rmcu.fault}", where="RMCU", fix="see the recording's events"
+            )
         self._switch_off()
 
     def coast(self, duration_s: float) -> None:

@@ -6,8 +6,10 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers import Binding
+from hil.core.compiled import compiled
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock
+from hil.core.signals import swapped
 from hil.engine.bench_file import Limits
 
 _SILENCE_S = 0.1
@@ -32,13 +34,20 @@ class LimitWatch:
 
     def __init__(self, bindings: list[Binding], limits: Limits, sample_time_s: float) -> None:
         largest = limits_of_channels(limits)
-        self._watched = [(b, largest[b.channel]) for b in bindings if b.channel in largest]
+        self._watched = [b for b in bindings if b.channel in largest]
+        self._limits = np.array([largest[b.channel] for b in self._watched])
         self._allowed = max(1, round(limits.persistence_s / sample_time_s))
-        self._beyond = dict.fromkeys((b.channel for b, _ in self._watched), 0)
-        self._seen_s: dict[tuple[str, int], float] = {}
+        self._largest = np.zeros(len(self._watched))
+        self._beyond = np.zeros(len(self._watched), np.int64)
+        self._seen_s = np.full(len(self._watched), -np.inf)
+        self._tables = {bus: self._table(bus) for bus in {b.bus for b in self._watched}}
         self._latest_s = 0.0
         self.active = False
-        self.largest: dict[str, float] = dict.fromkeys(self._beyond, 0.0)
+
+    @property
+    def largest(self) -> dict[str, float]:
+        """Largest magnitude of each watched channel so far."""
+        return {b.channel: float(v) for b, v in zip(self._watched, self._largest, strict=True)}
 
     def take(self, bus: str, block: FrameBlock) -> None:
         """Look at the frames of one bus.
@@ -47,41 +56,68 @@ class LimitWatch:
             BenchError: a limit tripped, or frames stopped coming.
         """
         self._latest_s = max(self._latest_s, float(block["time_s"][-1]))
-        ids = block["id"]
-        payloads: dict[int, npt.NDArray[np.uint64]] = {}
-        for binding, limit in self._watched:
-            if binding.bus != bus:
-                continue
-            if binding.frame_id not in payloads:
-                payloads[binding.frame_id] = block["data"][ids == binding.frame_id]
-                if len(payloads[binding.frame_id]):
-                    self._seen_s[(bus, binding.frame_id)] = self._latest_s
-            if len(payloads[binding.frame_id]):
-                self._check(binding, limit, payloads[binding.frame_id])
-        if self.active:
-            self._check_silence()
-
-    def _check(self, binding: Binding, limit: float, payloads: npt.NDArray[np.uint64]) -> None:
-        magnitude = np.abs(binding.signal.decode(payloads))
-        largest = float(magnitude.max())
-        if largest > self.largest[binding.channel]:
-            self.largest[binding.channel] = largest
-        if largest <= limit:
-            self._beyond[binding.channel] = 0
+        if bus not in self._tables:
             return
-        for beyond in magnitude > limit:
-            self._beyond[binding.channel] = self._beyond[binding.channel] + 1 if beyond else 0
-            if self.active and self._beyond[binding.channel] > self._allowed:
-                unit = binding.signal.unit
-                raise BenchError(
-                    f"limit tripped: {binding.channel} reached {largest:.4g} {unit}, the limit is {limit:g} {unit}",
-                    where="bench limits",
-                    fix="lower the plan's torque or speed; the limit is in the bench file",
-                )
+        tripped = _scan(
+            block["id"],
+            block["time_s"],
+            block["data"],
+            *self._tables[bus],
+            self._limits,
+            self._allowed,
+            self._largest,
+            self._beyond,
+            self._seen_s,
+        )
+        if self.active and tripped >= 0:
+            self._trip(tripped)
+        if self.active and self._latest_s - self._seen_s.min() > _SILENCE_S:
+            silent = self._watched[int(np.argmin(self._seen_s))]
+            raise BenchError(
+                f"frame 0x{silent.frame_id:03X} ({silent.channel}) has stopped coming",
+                where=f"bus '{silent.bus}'",
+                fix="is the device powered?",
+            )
 
-    def _check_silence(self) -> None:
-        for (bus, frame_id), seen_s in self._seen_s.items():
-            if self._latest_s - seen_s > _SILENCE_S:
-                raise BenchError(
-                    f"frame 0x{frame_id:03X} has stopped coming", where=f"bus '{bus}'", fix="is the device powered?"
-                )
+    def _trip(self, index: int) -> None:
+        binding, limit = self._watched[index], self._limits[index]
+        unit = binding.signal.unit
+        raise BenchError(
+            f"limit tripped: {binding.channel} reached {self._largest[index]:.4g} {unit}, "
+            f"the limit is {limit:g} {unit}",
+            where="bench limits",
+            fix="lower the plan's torque or speed; the limit is in the bench file",
+        )
+
+    def _table(self, bus: str) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
+        """Index, frame id, shift, length, signed, big-endian; scale, offset: of the signals of a bus."""
+        entries = [(i, b) for i, b in enumerate(self._watched) if b.bus == bus]
+        places = [
+            (i, b.frame_id, b.signal.shift, b.signal.length, b.signal.signed, b.signal.big_endian)
+            for i, b in entries
+        ]
+        return np.array(places, np.int64), np.array([(b.signal.scale, b.signal.offset) for _, b in entries])
+
+
+@compiled
+def _scan(ids, times, payloads, places, scales, limits, allowed, largest, beyond, seen):  # type: ignore[no-untyped-def]
+    """Update largest values, samples beyond the limit and last times; index of a tripped signal or -1."""
+    tripped = -1
+    for frame in range(ids.shape[0]):
+        for entry in range(places.shape[0]):
+            index, frame_id, shift, length, signed, big_endian = places[entry]
+            if ids[frame] != frame_id:
+                continue
+            word = payloads[frame]
+            if big_endian:
+                word = swapped(word)
+            raw = np.int64((word >> np.uint64(shift)) & np.uint64((1 << length) - 1))
+            if signed and raw >> (length - 1):
+                raw -= 1 << length
+            value = abs(raw * scales[entry, 0] + scales[entry, 1])
+            seen[index] = times[frame]
+            largest[index] = max(largest[index], value)
+            beyond[index] = beyond[index] + 1 if value > limits[index] else 0
+            if beyond[index] > allowed:
+                tripped = index
+    return tripped

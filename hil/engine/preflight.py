@@ -93,7 +93,9 @@ class Rehearsal:
             )
         if quantity == "driving_torque" and not self._has_controller:
             raise BadInputError(
-                "asks for driving torque before any set_controller step", where=name, fix="set a controller first"
+                "asks for driving torque before any set_controller step",
+                where=name,
+                fix="set a controller first",
             )
 
     def coast(self, duration_s: float) -> None:

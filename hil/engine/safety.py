@@ -29,6 +29,11 @@ class Device:
         except HilError as error:
             self.failure = error.what
 
+    def complaint(self) -> str:
+        """What to tell when it did not become safe."""
+        reason = f": {self.failure}" if self.failure else ""
+        return f"{self.name} did not confirm its safe state within {self.deadline_s:g} s{reason}"
+
 
 def devices_of(bench: Bench) -> list[Device]:
     """The devices that can put torque on the axle."""
@@ -60,8 +65,4 @@ def reach_safe_state(bench: Bench) -> list[str]:
         tick += 1
         passed_s = bench.loop.clock.now_s() - start_s
         waiting = [d for d in waiting if not d.is_safe() and passed_s < d.deadline_s]
-    return [
-        f"{d.name} did not confirm its safe state within {d.deadline_s:g} s{': ' + d.failure if d.failure else ''}"
-        for d in devices
-        if not d.is_safe()
-    ]
+    return [d.complaint() for d in devices if not d.is_safe()]

@@ -2,7 +2,10 @@
 (() => {
   const figures = JSON.parse(document.getElementById("figure-data").textContent);
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
-  const config = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"] };
+  const config = {
+    responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+    showSendToCloud: false, plotlyServerURL: "", // measured data stays where the file is
+  };
 
   // The page knows the colours, so that they follow its light or dark surface.
   const tone = (name) => getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
@@ -24,11 +27,11 @@
     const layout = {
       ...figure.layout, ...size, shapes, annotations,
       autosize: !size, xaxis: axis(figure.layout.xaxis), yaxis: axis(figure.layout.yaxis),
-      font: { family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'Liberation Sans', sans-serif", size: size ? 9 : 12, color: ink },
+      font: { family: "-apple-system, 'Segoe UI', Roboto, 'Helvetica Neue', 'Noto Sans', 'Liberation Sans', sans-serif", size: size ? 9 : 12, color: ink },
       paper_bgcolor: tone("page"), plot_bgcolor: tone("page"), hovermode: "x unified",
       hoverlabel: { bgcolor: tone("panel"), bordercolor: tone("rule"), font: { color: ink }, namelength: -1 },
       legend: { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", entrywidthmode: "pixels", bgcolor: "rgba(0,0,0,0)" },
-      margin: { l: 56, r: 12, t: 8, b: 44 },
+      margin: { l: 56, r: size ? 12 : 40, t: 8, b: 44 },
       modebar: { bgcolor: "rgba(0,0,0,0)", color: tone("quiet"), activecolor: tone("link"), orientation: "v" },
     };
     return [data, layout];
@@ -52,7 +55,7 @@
   const millimetre = 96 / 25.4;
   window.addEventListener("beforeprint", () => ids.forEach((id) => {
     const wide = document.getElementById(id).closest("figure").classList.contains("wide");
-    draw(id, { width: (wide ? 180 : 87) * millimetre, height: 62 * millimetre });
+    draw(id, { width: (wide ? 180 : 87) * millimetre, height: 60 * millimetre });
   }));
   window.addEventListener("afterprint", () => ids.forEach((id) => { drawn.add(id); draw(id); }));
 })();

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
+from hil.core.compiled import compiled
 from sim_backend.plant import _equations as E
 from sim_backend.plant import _kernel as K
 from sim_backend.plant import _slots as P
-from hil.core.compiled import compiled
 from sim_backend.rcs import _drive as D
 from sim_backend.rmcu import _memory as M
 from sim_backend.rmcu._control import control
@@ -20,7 +20,11 @@ from sim_backend.rmcu._control import control
     DRIVING_REF,
     DRIVING_EST,
     SATURATED,
-    CODE,
+    STATE,
+    FAULT,
+    PARAMETERS_VALID,
+    COUNTER,
+    ALWAYS_ONE,
     VEHICLE_SPEED,
     WHEEL_LEFT,
     WHEEL_RIGHT,
@@ -30,8 +34,8 @@ from sim_backend.rmcu._control import control
     LOAD_RIGHT,
     STATUS_LEFT,
     STATUS_RIGHT,
-) = range(16)
-COLUMNS = 16
+) = range(20)
+COLUMNS = 20
 SENSORS = 5  # motor speed, wheel left, wheel right, shaft left, shaft right
 SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = range(4)
 
@@ -114,11 +118,15 @@ def tick(k, x, p, w, torques, fir, drives, sensors, past, noise, mode, request, 
     row[DRIVING_REF] = request if mode == M.DRIVING_FORCE else 0.0
     row[DRIVING_EST] = states[M.ESTIMATE] if mode == M.DRIVING_FORCE else 0.0
     row[SATURATED] = states[M.SATURATED]
-    row[CODE] = code
+    row[STATE] = code & 15
+    row[FAULT] = (code >> 4) & 15
+    row[PARAMETERS_VALID] = (code >> 8) & 1
+    row[COUNTER] = k % 16
+    row[ALWAYS_ONE] = 1.0
     row[STATUS_LEFT] = status[0]
     row[STATUS_RIGHT] = status[1]
     torques[k % HISTORY] = torque
-    whole = int(math.floor(p[P.TORQUE_DELAY] / dt + 1e-9))
+    whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     late = max(0.0, p[P.TORQUE_DELAY] - whole * dt)
     if late < 1e-9 * dt:
         late = 0.0

@@ -1,35 +1,67 @@
-"""The frames of the cyclic messages, made for many samples at once, with the times they take on the bus."""
+"""The cyclic frames of a bus, made for many samples at once, with the times they take on the wire."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.checksum import crc8_many
+from hil.core.compiled import compiled
 from hil.core.frames import FRAME, FrameBlock
 from hil.core.signals import FrameLayout
 
-Payloads = npt.NDArray[np.uint64]
+#: A frame with the column of a bench row that each of its signals shows.
+Shown = tuple[FrameLayout, dict[str, int]]
 
 
 def frame_time_s(length: int, bit_rate: int) -> float:
-    """Longest time of a standard data frame on the bus, with stuff bits and interframe space (ISO 11898-1)."""
+    """Longest time of a standard data frame on the bus, stuff bits included (ISO 11898-1)."""
     bits = 8 * length
     return (bits + 47 + (34 + bits - 1) // 4) / bit_rate
 
 
-def interleaved(
-    start_s: npt.NDArray[np.float64], messages: list[tuple[FrameLayout, Payloads]], bit_rate: int
-) -> FrameBlock:
-    """One block in the order of the bus: each sample's messages one after the other."""
-    block = np.zeros((len(start_s), len(messages)), FRAME)
-    busy_s = 0.0
-    for column, (layout, payloads) in enumerate(messages):
-        busy_s += frame_time_s(layout.length, bit_rate)
-        block["time_s"][:, column] = start_s + busy_s
-        block["id"][:, column] = layout.id
-        block["length"][:, column] = layout.length
-        block["data"][:, column] = payloads
-    return block.reshape(-1)
+class CyclicTraffic:
+    """All frames that appear once a sample on one bus, in their order; `crc` frames end in a checksum."""
+
+    def __init__(self, shown: list[Shown], bit_rate: int, crc: tuple[int, ...] = ()) -> None:
+        self._layouts = [layout for layout, _ in shown]
+        self._crc = [column for column, layout in enumerate(self._layouts) if layout.id in crc]
+        self._ends_s = np.cumsum([frame_time_s(layout.length, bit_rate) for layout in self._layouts])
+        places, numbers = [], []
+        for message, (layout, columns) in enumerate(shown):
+            for name, column in columns.items():
+                signal = layout.signals[name]
+                assert not signal.is_float
+                assert not signal.big_endian
+                low = -(1 << (signal.length - 1)) if signal.signed else 0
+                places.append((message, column, signal.shift, signal.length))
+                numbers.append((signal.scale, signal.offset, low, low + (1 << signal.length) - 1))
+        self._places = np.array(places, np.int64).reshape(-1, 4)
+        self._numbers = np.array(numbers, float).reshape(-1, 4)
+
+    def block(self, rows: npt.NDArray[np.float64], start_s: npt.NDArray[np.float64]) -> FrameBlock:
+        """Frames of the samples that began at `start_s`, in order of time."""
+        block = np.zeros((len(rows), len(self._layouts)), FRAME)
+        block["time_s"] = start_s[:, None] + self._ends_s
+        block["id"] = [layout.id for layout in self._layouts]
+        block["length"] = [layout.length for layout in self._layouts]
+        payloads = np.zeros((len(rows), len(self._layouts)), np.uint64)
+        _fill(rows, self._places, self._numbers, payloads)
+        for column in self._crc:
+            payloads[:, column] |= crc8_many(self._layouts[column].id, payloads[:, column]) << np.uint64(56)
+        block["data"] = payloads
+        return block.reshape(-1)
+
+
+@compiled
+def _fill(rows, places, numbers, payloads):  # type: ignore[no-untyped-def]
+    for entry in range(places.shape[0]):
+        message, column, shift, length = places[entry]
+        scale, offset, low, high = numbers[entry]
+        mask = np.uint64((1 << length) - 1)
+        for i in range(rows.shape[0]):
+            count = min(max(np.rint((rows[i, column] - offset) / scale), low), high)
+            payloads[i, message] |= (np.uint64(np.int64(count)) & mask) << np.uint64(shift)
 
 
 def single(frame_id: int, data: bytes, time_s: float) -> FrameBlock:

@@ -6,26 +6,31 @@ from itertools import pairwise
 
 import cantools
 import numpy as np
-import numpy.typing as npt
 
-from hil.core.checksum import crc8_many
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block
 from hil.core.signals import FrameLayout, layout_of
 from sim_backend.bench import _tick as T
 from sim_backend.bench._settings import SimulationSettings
-from sim_backend.bench._traffic import frame_time_s, interleaved, single
+from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s, single
 from sim_backend.plant import _equations, _slots
 from sim_backend.rcs import DynoNode
 from sim_backend.rcs import _drive as drive
-from sim_backend.rmcu import RmcuNode
+from sim_backend.rmcu import LARGEST_TORQUE_NM, RmcuNode
+from sim_backend.rmcu import _memory as memory
 
 RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
 TICK_S = 0.001
 _NOISE_BLOCK = 1000
 _LARGEST_BATCH = 4096
 _SYNC = FrameLayout("SYNC", 0x80, 0, {})
-_SENSED = ("motor_speed_rad_s", "wheel_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm", "shaft_torque_nm")
+_SENSED = (
+    "motor_speed_rad_s",
+    "wheel_speed_rad_s",
+    "wheel_speed_rad_s",
+    "shaft_torque_nm",
+    "shaft_torque_nm",
+)
 
 
 class SimulatedBench:
@@ -129,7 +134,10 @@ class SimulatedBench:
         rows = {s.rear_left: self._drives[0], s.rear_right: self._drives[1]}
         self.dynos = [
             DynoNode(
-                node, s.eds, lambda i, data: self._event(DYNO_BUS, i, data), rows.get(node, np.zeros(drive.COLUMNS))
+                node,
+                s.eds,
+                lambda i, data: self._event(DYNO_BUS, i, data),
+                rows.get(node, np.zeros(drive.COLUMNS)),
             )
             for node in (s.rear_left, s.rear_right, *s.idle)
         ]
@@ -138,8 +146,11 @@ class SimulatedBench:
         for node in self.dynos:
             for subindex, value in enumerate(vehicle, 1):
                 node.preset(0x2000, subindex, value)
+        self._rmcu_traffic = self._traffic_of_rmcu()
+        self._dyno_traffic = self._traffic_of_dynos()
         m = self.rmcu.memory
-        m.gains[0] = TICK_S
+        m.gains[memory.SAMPLE_TIME] = TICK_S
+        m.gains[memory.TORQUE_LIMIT] = LARGEST_TORQUE_NM  # until a controller sets its own
         self._firmware = (m.numerators, m.denominators, m.filter_states, m.gains, m.states)
 
     # --- one sample ---
@@ -192,6 +203,7 @@ class SimulatedBench:
                 for node in self.dynos:
                     node.receive(frame_id, data, time_s)
                 self._take_vehicle_model()
+                self._dyno_traffic = self._traffic_of_dynos()
 
     def _take_vehicle_model(self) -> None:
         left = self.dynos[0]
@@ -213,35 +225,47 @@ class SimulatedBench:
         if count == 0:
             return
         rows = self._rows[:count]
-        start_s = (self._first_row + np.arange(count)) * TICK_S
-        self._pending[RMCU_BUS].append(self._rmcu_frames(rows, start_s))
-        dyno = self._dyno_frames(rows)
-        if dyno:
-            self._pending[DYNO_BUS].append(interleaved(start_s, dyno, self.settings.dyno_bit_rate))
+        start_s = np.arange(self._first_row, self._samples, dtype=np.float64) * TICK_S
+        self._pending[RMCU_BUS].append(self._rmcu_traffic.block(rows, start_s))
+        if self._dyno_traffic:
+            self._pending[DYNO_BUS].append(self._dyno_traffic.block(rows, start_s))
         self._first_row = self._samples
 
-    def _rmcu_frames(
-        self, rows: npt.NDArray[np.float64], start_s: npt.NDArray[np.float64]
-    ) -> FrameBlock:
-        counter = self._first_row + np.arange(len(rows))
-        vehicle = self._vehicle.encode(VehicleSpeed=rows[:, T.VEHICLE_SPEED], Counter=counter % 16, Valid=1)
-        vehicle |= crc8_many(self._vehicle.id, vehicle) << np.uint64(56)
-        status = self.rmcu.frames(rows[:, : T.CODE + 1], self._first_row)
-        return interleaved(start_s, [(self._vehicle, vehicle), *status], self.settings.rmcu_bit_rate)
+    def _traffic_of_rmcu(self) -> CyclicTraffic:
+        """The RMCU's bus, with the vehicle speed that the dyno controller gives it."""
+        shown: list[Shown] = [
+            (self._vehicle, {"VehicleSpeed": T.VEHICLE_SPEED, "Counter": T.COUNTER, "Valid": T.ALWAYS_ONE}),
+            (
+                self.rmcu.status,
+                {"MotorSpeed": T.MOTOR_SPEED, "MotorTorqueRef": T.TORQUE_REF, "MotorTorque": T.TORQUE},
+            ),
+            (
+                self.rmcu.control,
+                {
+                    "DrivingTorqueRef": T.DRIVING_REF,
+                    "DrivingTorqueEst": T.DRIVING_EST,
+                    "State": T.STATE,
+                    "RequestFault": T.FAULT,
+                    "Saturated": T.SATURATED,
+                    "ParametersValid": T.PARAMETERS_VALID,
+                    "Counter": T.COUNTER,
+                },
+            ),
+        ]
+        return CyclicTraffic(shown, self.settings.rmcu_bit_rate, (self._vehicle.id, self.rmcu.control.id))
 
-    def _dyno_frames(
-        self, rows: npt.NDArray[np.float64]
-    ) -> list[tuple[FrameLayout, npt.NDArray[np.uint64]]]:
+    def _traffic_of_dynos(self) -> CyclicTraffic | None:
+        """What NMT and the SYNC producer let the dynos send now."""
         if not any(node.sync_period_s for node in self.dynos):
-            return []
-        messages = [(_SYNC, np.zeros(len(rows), np.uint64))]
+            return None
+        shown: list[Shown] = [(_SYNC, {})]
         for side, node in enumerate(self.dynos[:2]):
             if node.operational:
-                values = {"Wheel speed": rows[:, T.WHEEL_LEFT + side], "Shaft torque": rows[:, T.SHAFT_LEFT + side]}
+                values = {"Wheel speed": T.WHEEL_LEFT + side, "Shaft torque": T.SHAFT_LEFT + side}
                 status = {
-                    "Statusword": rows[:, T.STATUS_LEFT + side],
-                    "Vehicle speed": rows[:, T.VEHICLE_SPEED],
-                    "Torque actual value": rows[:, T.LOAD_LEFT + side],
+                    "Statusword": T.STATUS_LEFT + side,
+                    "Vehicle speed": T.VEHICLE_SPEED,
+                    "Torque actual value": T.LOAD_LEFT + side,
                 }
-                messages += [(node.values, node.values.encode(**values)), (node.status, node.status.encode(**status))]
-        return messages
+                shown += [(node.values, values), (node.status, status)]
+        return CyclicTraffic(shown, self.settings.dyno_bit_rate)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 
 from hil.core.compiled import inlined
-
 from sim_backend.plant import _slots as P
 
 # Width of the smooth sign functions: small against any speed of interest, large enough for 0.1 ms steps.
@@ -20,9 +19,18 @@ _ROLLING_WIDTH_RAD_S = 0.05
 _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel while the dyno leads
 
 # State vector
-ROTOR_SPEED, TWIST, WHEEL_SPEED, TYRE_TWIST, VEHICLE_SPEED, WHEEL_ANGLE, LAGGED, HOUSING_ANGLE, HOUSING_SPEED, SLIP = (
-    range(10)
-)
+(
+    ROTOR_SPEED,
+    TWIST,
+    WHEEL_SPEED,
+    TYRE_TWIST,
+    VEHICLE_SPEED,
+    WHEEL_ANGLE,
+    LAGGED,
+    HOUSING_ANGLE,
+    HOUSING_SPEED,
+    SLIP,
+) = range(10)
 STATES = 10
 
 
@@ -91,7 +99,7 @@ def rigid_acceleration(x, p, torque, load):  # type: ignore[no-untyped-def]
 
 @inlined
 def derivative(x, p, torque, coupled, load):  # type: ignore[no-untyped-def]
-    """dx/dt; `torque` acts on the rotor (before the lag), `load` on the wheel unless the vehicle is coupled."""
+    """dx/dt; `torque` acts on the rotor (before the lag), `load` on the wheel unless coupled."""
     lagged = 0.0
     if p[P.LAG] > 0.0:
         lagged = (torque - x[LAGGED]) / p[P.LAG]

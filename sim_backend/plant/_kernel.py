@@ -11,9 +11,9 @@ import math
 import numpy as np
 from numba import prange
 
+from hil.core.compiled import compiled, compiled_parallel, inlined
 from sim_backend.plant import _equations as E
 from sim_backend.plant import _slots as P
-from hil.core.compiled import compiled, compiled_parallel, inlined
 
 # Columns of the kernel's output
 OUT_MOTOR_SPEED, OUT_WHEEL_SPEED, OUT_SHAFT_TORQUE, OUT_MOTOR_TORQUE, OUT_VEHICLE_SPEED, OUT_LOAD = range(6)
@@ -130,7 +130,7 @@ def run(torque, dt, p, start, longest_step, out):  # type: ignore[no-untyped-def
 
     `start` is [motor speed, wheel speed, shaft torque]; before the first sample the first torque acted.
     """
-    whole = int(math.floor(p[P.TORQUE_DELAY] / dt + 1e-9))
+    whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     late = max(0.0, p[P.TORQUE_DELAY] - whole * dt)
     if late < 1e-9 * dt:
         late = 0.0

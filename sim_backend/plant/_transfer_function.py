@@ -9,8 +9,8 @@ import numpy.typing as npt
 from scipy.linalg import expm
 from scipy.signal import tf2ss
 
-from hil.core.model import TransferFunction
 from hil.core.compiled import compiled
+from hil.core.model import TransferFunction
 
 Array = npt.NDArray[np.float64]
 
@@ -27,7 +27,7 @@ def respond(function: TransferFunction, torque: Array, dt: float, start: float) 
     if len(denominator) == 1:
         return np.asarray(start + np.zeros_like(torque) + (numerator[-1] / denominator[-1]) * torque)
     a, b, c, d = (np.atleast_2d(m) for m in tf2ss(numerator, denominator))
-    whole = int(math.floor(function.delay_s / dt + 1e-9))
+    whole = math.floor(function.delay_s / dt + 1e-9)
     late = max(0.0, function.delay_s - whole * dt)
     step_old, step_new = _held(a, b, late), _held(a, b, dt - late)
     n = len(a)

@@ -17,7 +17,7 @@ _LARGEST_TORQUE_NM = 2000.0
 
 @compiled
 def load(drive, wheel_speed, inertia, dt):  # type: ignore[no-untyped-def]
-    """Braking torque of one side in N m (positive slows a positive speed); a coupled vehicle is the plant's."""
+    """Braking torque of one side in N m (positive slows a positive speed); a vehicle is the plant's."""
     if drive[MODE] == SPEED:
         reach = drive[ACCELERATION] * dt
         missing = drive[TARGET_SPEED] - drive[RAMPED_SPEED]

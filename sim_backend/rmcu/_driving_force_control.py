@@ -31,7 +31,9 @@ class DrivingForceControl:
     ) -> None:
         self._gains = {M.K_I_DFC: k_i, M.RADIUS: r, M.SIGMA: sigma, M.SLIP_LIMIT: slip_limit}
         # (18): G_FF = T_m*/T_s · 1/(τ_2 s + 1)
-        self._feedforward = tustin(denominator, np.polymul(shaft_torque, [tau_2, 1.0]), sample_time_s)
+        self._feedforward = tustin(
+            denominator, np.convolve(np.asarray(shaft_torque, dtype=float), [tau_2, 1.0]), sample_time_s
+        )
 
     def load(self, memory: M.Memory) -> None:
         """Put coefficients into the firmware's memory."""

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import numpy as np
-import numpy.typing as npt
 from cantools.database.can import Database
 
-from hil.core.checksum import crc8, crc8_many
-from hil.core.signals import FrameLayout, layout_of
+from hil.core.checksum import crc8
+from hil.core.signals import layout_of
 from sim_backend.rmcu import _memory as M
 from sim_backend.rmcu import _parameters as parameters
 
@@ -20,9 +18,10 @@ _READ, _WRITE, _APPLY = range(3)
 
 
 class RmcuNode:
-    """Receives frames, decides on the mode, and gives status frames; the control law runs compiled.
+    """Receives frames and decides on the mode; the control law runs compiled.
 
-    `mode` and `request` are what the control law uses in the next sample.
+    `mode` and `request` are what the control law uses in the next sample; `status` and `control` are the
+    layouts of the frames that show the outcome.
     """
 
     def __init__(self, database: Database, send: Callable[[int, bytes], None]) -> None:
@@ -33,8 +32,8 @@ class RmcuNode:
         self._request = layout_of(database.get_message_by_name("RMCU_Request"))
         self._write = layout_of(database.get_message_by_name("RMCU_ParameterWrite"))
         self._reply = layout_of(database.get_message_by_name("RMCU_ParameterReply"))
-        self._status = layout_of(database.get_message_by_name("RMCU_Status"))
-        self._control = layout_of(database.get_message_by_name("RMCU_Control"))
+        self.status = layout_of(database.get_message_by_name("RMCU_Status"))
+        self.control = layout_of(database.get_message_by_name("RMCU_Control"))
         choices = database.get_message_by_name("RMCU_ParameterWrite").get_signal_by_name("Index").choices
         self._names = {int(index): str(name) for index, name in (choices or {}).items() if int(index) > 0}
         self._stored: dict[str, float] = {}
@@ -65,27 +64,9 @@ class RmcuNode:
         elif self.mode == M.DRIVING_FORCE and time_s - self._last_vehicle_s > REQUEST_TIMEOUT_S:
             self._fail(_VEHICLE_SPEED)
 
-    def frames(self, rows: npt.NDArray[np.float64], first_counter: int) -> list[tuple[FrameLayout, npt.NDArray[np.uint64]]]:
-        """Status frames of many samples; `rows`: motor speed, T_m*, T_m, rF_d*, rF̂_d, saturated, state+fault·16."""
-        status = self._status.encode(
-            MotorSpeed=rows[:, 0], MotorTorqueRef=rows[:, 1], MotorTorque=rows[:, 2]
-        )
-        code = rows[:, 6].astype(np.int64)
-        control = self._control.encode(
-            DrivingTorqueRef=rows[:, 3],
-            DrivingTorqueEst=rows[:, 4],
-            Saturated=rows[:, 5],
-            State=code & 15,
-            RequestFault=(code >> 4) & 15,
-            ParametersValid=(code >> 8) & 1,
-            Counter=(first_counter + np.arange(len(rows))) % _COUNTER_VALUES,
-        )
-        control |= crc8_many(self._control.id, control) << np.uint64(56)
-        return [(self._status, status), (self._control, control)]
-
     @property
     def code(self) -> int:
-        """State, request fault and parameter validity in one number, for `frames`."""
+        """State, request fault and parameter validity in one number: state | fault << 4 | valid << 8."""
         return self.mode | self._fault << 4 | int(self._valid) << 8
 
     def _take_request(self, payload: int, time_s: float) -> None:

@@ -18,7 +18,9 @@ class SpeedFilter:
     def __init__(
         self, tau_1: float, motor_speed: npt.ArrayLike, wheel_speed: npt.ArrayLike, sample_time_s: float
     ) -> None:
-        self.filter = tustin(motor_speed, np.polymul(wheel_speed, [tau_1, 1.0]), sample_time_s)
+        self.filter = tustin(
+            motor_speed, np.convolve(np.asarray(wheel_speed, dtype=float), [tau_1, 1.0]), sample_time_s
+        )
 
 
 class PhaseLead:

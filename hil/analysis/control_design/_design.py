@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._laws import (
     Normalisation,
     feed_forward,
@@ -18,7 +19,6 @@ from hil.analysis.control_design._laws import (
     pole_assignment,
     speed_filter,
 )
-from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._loop import (
     Margins,
     feedback_response,
@@ -57,13 +57,15 @@ class DesignSpec:
     inertia_kg_m2: float | None = None
     gear_ratio: float | None = None
     wheel_inertia_kg_m2: float | None = None
-    torque_limit_nm: float = 195.0
+    torque_limit_nm: float = 150.0
     sample_time_s: float = 0.001
     speed_filter_time_s: float = 0.05
     feed_forward_time_s: float = 0.05
     observer_time_s: float = 1 / 125.6
     dfc_integral_gain: float = 0.001
     wheel_radius_m: float = 0.33
+    slip_floor_m_s: float = 1.0
+    slip_limit: float = 0.2
     optimise: bool = False
     objective: Objective = "max"
     limits: MarginLimits = field(default_factory=MarginLimits)
@@ -195,7 +197,7 @@ def design(model: Model, spec: DesignSpec, *, progress: Callable[[str], None] = 
         robust,
         plants,
         optimum,
-        _discrete(controller, plant),
+        _discrete(controller),
         tuple(notes),
     )
 
@@ -238,9 +240,7 @@ def _speed_controls(spec: DesignSpec, gains: tuple[float, float], resonance_hz: 
     pi = Wsc(
         proportional_gain=gains[0], integral_gain=gains[1], filter_time_constant_s=spec.speed_filter_time_s
     )
-    notch = Notch(
-        frequency_hz=spec.notch_hz or resonance_hz, width=spec.notch_width, depth=spec.notch_depth
-    )
+    notch = Notch(frequency_hz=spec.notch_hz or resonance_hz, width=spec.notch_width, depth=spec.notch_depth)
     part: Lead = lead(spec.lead_deg, spec.lead_hz, spec.normalisation)
     return {
         "pi": pi,
@@ -290,9 +290,7 @@ def _robustness(
     )
 
 
-def _controller(
-    model: Model, spec: DesignSpec, plant: DesignPlant, wsc: Wsc, notes: list[str]
-) -> Controller:
+def _controller(model: Model, spec: DesignSpec, plant: DesignPlant, wsc: Wsc, notes: list[str]) -> Controller:
     return Controller(
         name=spec.name or spec.stabilisation,
         sample_time_s=spec.sample_time_s,
@@ -301,6 +299,8 @@ def _controller(
             integral_gain=spec.dfc_integral_gain,
             feedforward_time_constant_s=spec.feed_forward_time_s,
             wheel_radius_m=spec.wheel_radius_m,
+            slip_floor_m_s=spec.slip_floor_m_s,
+            slip_limit=spec.slip_limit,
         ),
         wsc=wsc,
         dfo=Dfo(
@@ -339,7 +339,7 @@ def _wheel_inertia(model: Model, spec: DesignSpec, plant: DesignPlant, notes: li
     return value
 
 
-def _discrete(controller: Controller, plant: DesignPlant) -> dict[str, DiscreteFilter]:
+def _discrete(controller: Controller) -> dict[str, DiscreteFilter]:
     filters = controller.plant
     function = {
         "motor": TransferFunction(filters.motor_speed, filters.denominator),

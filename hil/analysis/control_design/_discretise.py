@@ -43,6 +43,4 @@ def tustin(function: TransferFunction, sample_time_s: float) -> DiscreteFilter:
     if len(np.trim_zeros(function.numerator, "f")) > len(np.trim_zeros(function.denominator, "f")):
         raise BadInputError("an improper function cannot be made discrete", fix="add a low pass to it")
     b, a = signal.bilinear(function.numerator, function.denominator, 1 / sample_time_s)
-    return DiscreteFilter(
-        tuple(float(v) for v in b / a[0]), tuple(float(v) for v in a / a[0]), sample_time_s
-    )
+    return DiscreteFilter(tuple(float(v) for v in b / a[0]), tuple(float(v) for v in a / a[0]), sample_time_s)

@@ -70,7 +70,9 @@ def feedback_functions(wsc: Wsc) -> tuple[TransferFunction, ...]:
     return tuple(blocks)
 
 
-def speed_filter(motor: TransferFunction, wheel: TransferFunction, time_constant_s: float) -> TransferFunction:
+def speed_filter(
+    motor: TransferFunction, wheel: TransferFunction, time_constant_s: float
+) -> TransferFunction:
     """G_WSC of (17): motor speed over wheel speed, times 1/(τ_1 s + 1); dead times cancel."""
     return _cancelled(motor.numerator, wheel.numerator, time_constant_s)
 

@@ -95,10 +95,11 @@ def optimize(
         for value, choice in [s for s in starts if s[1][3] == normalisation][:2]:
             if np.isfinite(value):
                 found.append((*search.refine(choice[:3], normalisation), normalisation))
-    for _, choice, normalisation in sorted(found, key=lambda one: one[0]):
-        if search.violation(choice, normalisation) <= _VIOLATION_ALLOWED:
-            value = search.value(choice, normalisation, plants)
-            return Optimum(*choice, normalisation, value, search.evaluations)
+    for _, refined, normalisation in sorted(found, key=lambda one: one[0]):
+        if search.violation(refined, normalisation) <= _VIOLATION_ALLOWED:
+            angle, centre, pole = refined
+            value = search.value(refined, normalisation, plants)
+            return Optimum(angle, centre, pole, normalisation, value, search.evaluations)
     raise BadInputError(
         f"no lead keeps |S| <= {keep.sensitivity_peak:g}, {keep.gain_margin_db:g} dB, "
         f"{keep.phase_margin_deg:g} degrees and {keep.delay_margin_s * 1e3:g} ms for all plants",
@@ -205,9 +206,13 @@ class _Search:
             return value if np.isfinite(value) else 1e3
 
         x0 = np.array([start[0], np.log(start[1]), np.log(start[2])])
-        simplex = np.vstack([x0, x0 + [6, 0, 0], x0 + [0, 0.2, 0], x0 + [0, 0, 0.2]])
-        options = {"initial_simplex": simplex, "xatol": 0.02, "fatol": 1e-5, "maxfev": 160}
-        solution = minimize(cost, x0, method="Nelder-Mead", options=options)
+        simplex = x0 + np.vstack([np.zeros(3), np.diag([6.0, 0.2, 0.2])])
+        solution = minimize(
+            cost,
+            x0,
+            method="Nelder-Mead",
+            options={"initial_simplex": simplex, "xatol": 0.02, "fatol": 1e-5, "maxfev": 160},
+        )
         return float(solution.fun), _inside(solution.x)
 
 

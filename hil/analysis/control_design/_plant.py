@@ -55,7 +55,7 @@ def design_plant(model: Model) -> DesignPlant:
         raise BadInputError(
             f"the model has no '{missing[0]}'", fix="the controller needs all three outputs: record them all"
         )
-    motor, wheel, shaft = (functions[name] for name in OUTPUTS)
+    motor, wheel = functions[OUTPUTS[0]], functions[OUTPUTS[1]]
     lead = motor.denominator[0]
     denominator = np.array(motor.denominator) / lead
     if len(denominator) > LARGEST_ORDER + 1:
@@ -63,7 +63,9 @@ def design_plant(model: Model) -> DesignPlant:
     poles = np.roots(denominator)
     if np.any(poles.real > 1e-6 * np.max(np.abs(poles))):
         raise BadInputError("the plant is unstable", fix="identify it again")
-    numerators = [np.trim_zeros(np.array(functions[n].numerator) / functions[n].denominator[0], "f") for n in OUTPUTS]
+    numerators = [
+        np.trim_zeros(np.array(functions[n].numerator) / functions[n].denominator[0], "f") for n in OUTPUTS
+    ]
     changes = list(notes)
     numerators[1] = _invertible(numerators[1], len(numerators[0]) - 1, "wheel speed", "(17)", changes)
     numerators[2] = _invertible(numerators[2], len(denominator) - 1, "shaft torque", "(18)", changes)
@@ -132,10 +134,11 @@ def _invertible(numerator: Array, dividend: int, name: str, equation: str, notes
         numerator = np.append(abs(numerator[0]) * np.real(np.poly(moved)), np.zeros(origin))
     lacking = dividend - 1 - (len(numerator) - 1)
     for _ in range(max(lacking, 0)):
-        numerator = np.polymul(numerator, [1 / (2 * np.pi * _FAR_ZERO_HZ), 1.0])
+        numerator = np.convolve(numerator, [1 / (2 * np.pi * _FAR_ZERO_HZ), 1.0])
     if lacking > 0:
         notes.append(
-            f"the filter {equation} would be improper: {lacking} zeros at {_FAR_ZERO_HZ:g} Hz are added to {name}"
+            f"the filter {equation} would be improper: {lacking} zeros at {_FAR_ZERO_HZ:g} Hz "
+            f"are added to {name}"
         )
     return numerator
 
@@ -154,6 +157,4 @@ def _low_frequency_inertia(motor: TransferFunction) -> float:
 
 
 def _ratio(motor: TransferFunction, wheel: TransferFunction) -> float:
-    return float(
-        motor.numerator[-1] / wheel.numerator[-1] * (wheel.denominator[0] / motor.denominator[0])
-    )
+    return float(motor.numerator[-1] / wheel.numerator[-1] * (wheel.denominator[0] / motor.denominator[0]))

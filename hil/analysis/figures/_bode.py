@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
-from matplotlib.ticker import MultipleLocator
+from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from hil.analysis.figures import _style as style
 from hil.analysis.frequency_response import FrequencyResponse
@@ -16,6 +17,7 @@ from hil.core.channels import CHANNELS, INPUT
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 _LOWEST = 1e-300
+_DOTS: dict[str, Any] = {"color": style.SKY, "markersize": 4.5, "markeredgewidth": 0, "alpha": 0.75}
 
 
 @dataclass(frozen=True)
@@ -52,26 +54,31 @@ def bode(
     gain.fill_between(
         frequency, _db(size * (1 - radius)), _db(size * (1 + radius)), color=style.SKY, alpha=0.4, linewidth=0
     )
-    gain.plot(frequency, _db(size), ".", color=style.BLUE, markersize=3, label="measured, 95 % band")
+    gain.plot(frequency, _db(size), "o", **_DOTS, label="measured, 95 % band")
     reference = _phase(curves[0].response)
     along = np.interp(np.log(frequency), np.log(curves[0].frequency_hz), reference)
     measured = along + np.degrees(np.angle(response * np.exp(-1j * np.radians(along))))
     turn = np.degrees(np.arcsin(radius))
-    phase.fill_between(
-        frequency, measured - turn, measured + turn, color=style.SKY, alpha=0.4, linewidth=0
-    )
-    phase.plot(frequency, measured, ".", color=style.BLUE, markersize=3)
+    phase.fill_between(frequency, measured - turn, measured + turn, color=style.SKY, alpha=0.4, linewidth=0)
+    phase.plot(frequency, measured, "o", **_DOTS)
     for curve, (colour, dash) in zip(
         curves, ((style.VERMILLION, "-"), (style.BLACK, "--"), (style.GREEN, ":")), strict=False
     ):
         gain.plot(
-            curve.frequency_hz, _db(np.abs(curve.response)), dash, color=colour, linewidth=1.3, label=curve.name
+            curve.frequency_hz,
+            _db(np.abs(curve.response)),
+            dash,
+            color=colour,
+            linewidth=1.1,
+            label=curve.name,
         )
         turned = _phase(curve.response)
         turned += 360 * np.round((reference[0] - turned[0]) / 360)
-        phase.plot(curve.frequency_hz, turned, dash, color=colour, linewidth=1.3)
+        phase.plot(curve.frequency_hz, turned, dash, color=colour, linewidth=1.1)
     channel, drive = CHANNELS[output], CHANNELS[INPUT]
-    gain.set_title(f"{channel.meaning.split(',')[0].capitalize()} over motor torque, {channel.symbol}/{drive.symbol}", loc="left")
+    gain.set_title(
+        f"{channel.meaning.split(',')[0].capitalize()} over motor torque, {_ratio(output)}", loc="left"
+    )
     gain.set_ylabel(f"Gain in dB\n(1 {channel.unit} per {drive.unit})")
     phase.set_ylabel("Phase in degrees")
     phase.yaxis.set_major_locator(MultipleLocator(90))
@@ -91,8 +98,7 @@ def coherence(frf: FrequencyResponse, *, least: float = 0.5, resonance_hz: float
     style.mark_band(lower, resonance_hz, named=False)
     colours = (style.BLUE, style.VERMILLION, style.GREEN)
     for row, (name, colour) in enumerate(zip(frf.outputs, colours, strict=False)):
-        symbol = f"{CHANNELS[name].symbol}/{CHANNELS[INPUT].symbol}"
-        upper.plot(frf.frequency_hz, frf.coherence[row], color=colour, linewidth=1.2, label=symbol)
+        upper.plot(frf.frequency_hz, frf.coherence[row], color=colour, linewidth=1.2, label=_ratio(name))
         relative = frf.standard_deviation[row] / np.maximum(np.abs(frf.response[row]), _LOWEST)
         lower.plot(frf.frequency_hz, 100 * relative, color=colour, linewidth=1.2)
     upper.axhline(least, color=style.GREY, linewidth=0.9, linestyle=":")
@@ -100,6 +106,7 @@ def coherence(frf: FrequencyResponse, *, least: float = 0.5, resonance_hz: float
     upper.set_ylabel("Coherence")
     upper.set_title("How sure the responses are", loc="left")
     lower.set_yscale("log")
+    lower.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     lower.set_ylabel("Standard deviation in %")
     style.frequency_axis(upper, frf.frequency_hz[0], frf.frequency_hz[-1], label=False)
     style.frequency_axis(lower, frf.frequency_hz[0], frf.frequency_hz[-1])
@@ -107,6 +114,10 @@ def coherence(frf: FrequencyResponse, *, least: float = 0.5, resonance_hz: float
         style.style_axes(axes)
     style.legend(upper, loc="lower left", ncols=2)
     return figure
+
+
+def _ratio(output: str) -> str:
+    return f"{style.symbol(CHANNELS[output].symbol)} / {style.symbol(CHANNELS[INPUT].symbol)}"
 
 
 def _db(size: Array) -> Array:

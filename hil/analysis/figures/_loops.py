@@ -47,7 +47,7 @@ def nyquist(
         measured: like `loops`, M values each.
     """
     both = measured is not None and measured_hz is not None
-    figure = style.new_figure(22 if both else 13, 11.5)
+    figure = style.new_figure(22 if both else 13, 12.5)
     panels = figure.subplots(1, 2 if both else 1, squeeze=False)[0]
     reach = _reach(frequency_hz, loops)
     _nyquist_panel(panels[0], frequency_hz, loops, resonance_hz, reach, "-")
@@ -57,7 +57,8 @@ def nyquist(
         panels[1].set_title("Open loop, measured plant", loc="left")
     for axes in panels:
         style.style_axes(axes)
-    style.legend(panels[0], loc="lower right")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False, fontsize=8.5)
     return figure
 
 
@@ -75,18 +76,19 @@ def sensitivity(
     style.mark_band(axes, resonance_hz)
     axes.axhline(0, color=style.GREY, linewidth=0.9)
     low, high = 0.1, min(100.0, float(frequency_hz[-1]))
-    top = 6.0
+    top, bottom = 6.0, -20.0
     for name, loop in loops.items():
         if name == "plant":
             continue
         label, colour = _LOOKS[name]
         values = -20 * np.log10(np.maximum(np.abs(1 + loop), 1e-300))
         axes.plot(frequency_hz, values, color=colour, linewidth=1.4, label=label)
-        top = max(top, float(np.max(values[(frequency_hz > low) & (frequency_hz < high)])))
+        shown = values[(frequency_hz > low) & (frequency_hz < high)]
+        top, bottom = max(top, float(np.max(shown))), min(bottom, float(np.min(shown)))
         if measured is not None and measured_hz is not None and name in measured:
             points = -20 * np.log10(np.maximum(np.abs(1 + measured[name]), 1e-300))
             axes.plot(measured_hz, points, ".", color=colour, markersize=3, alpha=0.6)
-    axes.set_ylim(-40, min(top + 3, 30))
+    axes.set_ylim(max(bottom - 3, -60), min(top + 3, 30))
     axes.set_ylabel("Sensitivity |S| in dB")
     title = "Sensitivity of the wheel speed control"
     axes.set_title(title + (", dots: measured plant" if measured is not None else ""), loc="left")
@@ -130,7 +132,13 @@ def trade_off_chart(
             )
     if chosen is not None:
         axes.plot(
-            *chosen, marker="*", markersize=13, color=style.BLACK, linestyle="none", label=chosen_name, zorder=5
+            *chosen,
+            marker="*",
+            markersize=13,
+            color=style.BLACK,
+            linestyle="none",
+            label=chosen_name,
+            zorder=5,
         )
     axes.axvline(0, color=style.GREY, linewidth=0.9, linestyle=(0, (4, 2)))
     axes.set_yscale("log")

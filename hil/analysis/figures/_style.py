@@ -35,8 +35,8 @@ def style_axes(axes: Axes) -> None:
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=_FONT, which="both")
     for label in (axes.xaxis.label, axes.yaxis.label):
-        label.set_size(_FONT + 0.5)
-    axes.title.set_size(_FONT + 1.5)
+        label.set_fontsize(_FONT + 0.5)
+    axes.title.set_fontsize(_FONT + 1.5)
 
 
 def frequency_axis(axes: Axes, low_hz: float, high_hz: float, *, label: bool = True) -> None:
@@ -63,9 +63,19 @@ def legend(axes: Axes, **options: object) -> None:
     axes.legend(**({"fontsize": _FONT - 1, "frameon": False, "handlelength": 1.8} | options))  # type: ignore[arg-type]
 
 
+def symbol(text: str) -> str:
+    """A channel's symbol as mathematics: 'T_m*' becomes T with subscript m and an asterisk."""
+    base, _, index = text.partition("_")
+    star = "^*" if index.endswith("*") else ""
+    letters = {"ω": r"\omega"}
+    return f"${letters.get(base, base)}_{{{index.rstrip('*')}}}{star}$"
+
+
 def render(figure: Figure) -> dict[str, bytes]:
     """The figure as 'png' and 'svg'; the same figure always gives the same bytes."""
     pictures = {}
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # laid out once, for both
     for kind, metadata in (("png", {"Software": None}), ("svg", {"Date": None, "Creator": None})):
         buffer = io.BytesIO()
         with mpl.rc_context({"svg.hashsalt": "hil"}):

@@ -60,10 +60,7 @@ def local_polynomial(
     response = np.empty(shape, complex)
     variance, noise, power = np.empty(shape), np.empty(shape), np.empty(shape)
     for i, (centre, half) in enumerate(zip(centres, half_widths, strict=True)):
-        rows = [
-            _between(lines.frequency_hz, centre - half, centre + half)
-            for lines in experiments
-        ]
+        rows = [_between(lines.frequency_hz, centre - half, centre + half) for lines in experiments]
         window = _Window(experiments, drive, rows, float(centre), float(half), joint)
         if window.drive_rms < _LOWEST_INPUT * rms:
             raise UnfitDataError("no_excitation", f"the input has no power at {centre:.4g} Hz")
@@ -99,7 +96,9 @@ def _grid(from_hz: float, to_hz: float, points: int, least_half_width: float) ->
         if centres[-1] + step > to_hz * (1 + 1e-9):
             break
         centres.append(centres[-1] + step)
-    middle = np.array(centres)
+    stretch = np.log(to_hz / from_hz) / np.log(centres[-1] / from_hz) if len(centres) > 1 else 1.0
+    middle = from_hz * (np.array(centres) / from_hz) ** stretch
+    middle[-1] = max(to_hz, middle[0])  # the stretch ends there but for rounding
     half = np.maximum(0.5 * per_window * middle * (ratio - 1), least_half_width * (1 + 1e-9))
     return middle, half
 

@@ -218,4 +218,3 @@ def _distortion(
     return Distortion(
         frequency[odd], level[:, odd], noise[:, odd], frequency[even], level[:, even], noise[:, even]
     )
-

@@ -45,7 +45,10 @@ def check_signals(input_: Array, outputs: Array, output_names: tuple[str, ...], 
     """
     if not _moves(input_):
         raise UnfitDataError(
-            "no_excitation", f"the input stays at {input_[0]:g}", where=where, fix="run a chirp or a multisine"
+            "no_excitation",
+            f"the input stays at {input_[0]:g}",
+            where=where,
+            fix="run a chirp or a multisine",
         )
     for values, name in zip(outputs, output_names, strict=True):
         if not _moves(values):
@@ -105,7 +108,7 @@ def check_length(duration_s: float, sample_time_s: float, from_hz: float, to_hz:
             "too_short",
             f"a sample time of {sample_time_s * 1e3:.3g} ms is too long for {to_hz:g} Hz",
             where=where,
-            fix=f"sample faster, or give --to-hz {1 / (LEAST_SAMPLES_PER_PERIOD * sample_time_s):.3g} or less",
+            fix=f"sample faster, or lower --to-hz to {1 / (LEAST_SAMPLES_PER_PERIOD * sample_time_s):.3g}",
         )
 
 
@@ -181,7 +184,9 @@ def check_coherence(
         UnfitDataError: low_coherence, with output and frequencies.
     """
     notes = []
-    edges = np.concatenate([frequency_hz[:1], np.sqrt(frequency_hz[1:] * frequency_hz[:-1]), frequency_hz[-1:]])
+    edges = np.concatenate(
+        [frequency_hz[:1], np.sqrt(frequency_hz[1:] * frequency_hz[:-1]), frequency_hz[-1:]]
+    )
     for values, name in zip(coherence, output_names, strict=True):
         low = ~(values >= least)
         if not low.any():

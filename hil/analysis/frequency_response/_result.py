@@ -67,11 +67,11 @@ class FrequencyResponse:
 
     def of(self, output: str) -> ComplexArray:
         """Response of one output; KeyError if it was not estimated."""
-        return self.response[self._row(output)]
+        return np.asarray(self.response[self._row(output)])
 
     def deviation_of(self, output: str) -> Array:
         """Standard deviation of one output's response; KeyError if it was not estimated."""
-        return self.standard_deviation[self._row(output)]
+        return np.asarray(self.standard_deviation[self._row(output)])
 
     def _row(self, output: str) -> int:
         if output not in self.outputs:

@@ -68,7 +68,7 @@ def averaged_spectra(
     coherence = np.clip(np.abs(syu) ** 2 / np.maximum(suu * syy, np.finfo(float).tiny), 0.0, 1.0)
     h1 = syu / suu
     shown = np.maximum(coherence, np.finfo(float).eps)
-    rate = h1 * {"h1": 1.0, "h2": 1 / shown, "hv": 1 / np.sqrt(shown)}[estimator]
+    rate = h1 * shown ** {"h1": 0.0, "h2": -1.0, "hv": -0.5}[estimator]
     deviation = np.abs(rate) * np.sqrt((1 - coherence) / (shown * windows * _HANN_OVERLAP_GAIN))
     s = 2j * np.pi * frequency
     hold = np.exp(0.5 * experiments[0].hold_s * s)
@@ -110,4 +110,4 @@ def _sums(
             syu += y * u.conj()
             windows += 1
     share = max(windows, 1)
-    return suu / share, syy / share, syu / share, windows
+    return suu / share, syy / share, np.asarray(syu / share), windows

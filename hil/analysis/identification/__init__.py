@@ -16,6 +16,7 @@ from hil.analysis.identification._chain_fit import (
     fit_chain,
 )
 from hil.analysis.identification._fit import Fit, expected_deviation, fit
+from hil.analysis.identification._identify import Identification, identify
 from hil.analysis.identification._modal import Modes, Structure
 from hil.analysis.identification._order import ORDERS, Candidate, OrderChoice, choose_order
 from hil.analysis.identification._table import fit_of, model_of
@@ -29,6 +30,7 @@ __all__ = [
     "ChainChoice",
     "ChainFit",
     "Fit",
+    "Identification",
     "Misfit",
     "Modes",
     "OrderChoice",
@@ -39,8 +41,9 @@ __all__ = [
     "choose_order",
     "expected_deviation",
     "fit",
-    "fit_of",
     "fit_chain",
+    "fit_of",
+    "identify",
     "model_of",
     "transfer_functions_of",
 ]

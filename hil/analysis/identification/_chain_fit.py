@@ -54,6 +54,15 @@ class ChainFit:
     cost: float
 
     @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the rows of `response`."""
+        return OUTPUTS
+
+    def response(self, frequency_hz: Array) -> ComplexArray:
+        """Responses of all three outputs (3 x F), dead time included."""
+        return chain_response(self.model.kind, self.model.parameters, frequency_hz)
+
+    @property
     def explains(self) -> bool:
         """Whether every output is explained."""
         return all(misfit.explained for misfit in self.misfit.values())
@@ -161,7 +170,8 @@ def fit_chain(
     solution = min(solutions, key=lambda s: float(s.cost))
     values = parameters(solution.x)
     freedom = max(len(solution.fun) - len(names), 1)
-    covariance = np.linalg.pinv(solution.jac.T @ solution.jac) * 2 * float(solution.cost) / freedom
+    jacobian = np.asarray(solution.jac)
+    covariance = np.linalg.pinv(jacobian.T @ jacobian) * 2 * float(solution.cost) / freedom
     errors = {
         name: float(values[name] * np.sqrt(max(c, 0.0)))
         for name, c in zip(names, np.diag(covariance), strict=True)

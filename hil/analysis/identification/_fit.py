@@ -59,9 +59,7 @@ class Fit:
 
     def polynomials(self) -> tuple[list[Array], Array]:
         """Numerators and monic denominator in descending powers of s."""
-        numerators, denominator = polynomials(
-            self.modes.structure, self.modes.poles, self.modes.coefficients
-        )
+        numerators, denominator = polynomials(self.modes.structure, self.modes.poles, self.modes.coefficients)
         return [np.asarray(n, float) for n in numerators], np.asarray(denominator, float)
 
     def coefficient_errors(self) -> tuple[list[Array], Array]:
@@ -142,9 +140,7 @@ def fit(
         found = problem.solve(start.structure, start.poles, start.delay_s)
     else:
         free = order - integrator
-        structure = Structure(
-            integrator, free // 2, free % 2 == 1, (integrator,) * outputs, (1,) * outputs
-        )
+        structure = Structure(integrator, free // 2, free % 2 == 1, (integrator,) * outputs, (1,) * outputs)
         found = problem.solve(structure, *problem.best_start(structure))
     result = problem.finish(found, frf.outputs)
     if prune and start is None:
@@ -191,7 +187,7 @@ class _Problem:
     def __init__(self, frf: FrequencyResponse, rows: npt.NDArray[np.bool_] | None) -> None:
         part = slice(None) if rows is None else rows
         self.frequency_hz = frf.frequency_hz[part]
-        self.s = 2j * np.pi * self.frequency_hz
+        self.s: ComplexArray = np.asarray(2j * np.pi * self.frequency_hz)
         self.response = frf.response[:, part]
         # sqrt 2: real and imaginary part each hold half of the variance.
         self.weight = np.sqrt(2) / expected_deviation(frf)[:, part]

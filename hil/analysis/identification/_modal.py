@@ -87,7 +87,7 @@ class Modes:
     def pole_locations(self) -> ComplexArray:
         """Roots of the denominator in rad/s, sorted by magnitude."""
         c = self.poles
-        roots = [np.zeros(1)] if self.structure.integrator else []
+        roots: list[npt.NDArray[np.inexact]] = [np.zeros(1)] if self.structure.integrator else []
         roots += [np.roots([1.0, c[2 * j], c[2 * j + 1]]) for j in range(self.structure.sections)]
         roots += [-c[-1:]] if self.structure.real_pole else []
         every = np.concatenate(roots).astype(complex)
@@ -105,7 +105,9 @@ def basis(structure: Structure, poles: Array, s: ComplexArray) -> ComplexArray:
     return np.stack(columns, axis=1)
 
 
-def basis_derivatives(structure: Structure, poles: Array, s: ComplexArray) -> list[tuple[slice, ComplexArray]]:
+def basis_derivatives(
+    structure: Structure, poles: Array, s: ComplexArray
+) -> list[tuple[slice, ComplexArray]]:
     """For each pole parameter: the columns it changes, and their derivatives (F x columns)."""
     first = int(structure.integrator)
     derivatives = []

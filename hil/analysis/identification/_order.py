@@ -1,4 +1,4 @@
-"""The order that the data ask for: what each one leaves on data it has not seen, and whether that is noise."""
+"""The order that the data ask for: what each leaves on data it has not seen, and whether that is noise."""
 
 from __future__ import annotations
 
@@ -91,9 +91,7 @@ def choose_order(
             break
     best = min(c.held_out for c in candidates)
     chosen = next(
-        i
-        for i, c in enumerate(candidates)
-        if best >= _WORTHWHILE * c.held_out or c.excess <= _NEGLIGIBLE
+        i for i, c in enumerate(candidates) if best >= _WORTHWHILE * c.held_out or c.excess <= _NEGLIGIBLE
     )
     progress("pole at the origin")
     free = evaluate(frf, candidates[chosen].order, integrator=False)
@@ -118,9 +116,7 @@ def evaluate(frf: FrequencyResponse, order: int, *, integrator: bool) -> Candida
         if not left_out.any():
             continue
         part = fit(frf, order, integrator=integrator, start=whole.modes, rows=~left_out)
-        error[:, left_out] = (
-            frf.response[:, left_out] - part.modes.response(frf.frequency_hz[left_out])
-        )
+        error[:, left_out] = frf.response[:, left_out] - part.modes.response(frf.frequency_hz[left_out])
     size = np.abs(frf.response)
     excess = float(np.mean((np.abs(error) / size) ** 2) - np.mean((deviation / size) ** 2))
     held_out = float(np.mean(np.abs(error / deviation) ** 2))

@@ -70,7 +70,7 @@ def pole_parameters(poles: ComplexArray, structure: Structure) -> Array:
     values = [value for section in sections[: structure.sections] for value in section]
     if structure.real_pole:
         values.append(single if single is not None else float(np.sqrt(fastest)))
-    return np.maximum(np.array(values), 1e-6)
+    return np.asarray(np.maximum(np.array(values), 1e-6))
 
 
 def _spread(frequency_hz: Array, structure: Structure) -> ComplexArray:
@@ -80,4 +80,4 @@ def _spread(frequency_hz: Array, structure: Structure) -> ComplexArray:
     poles = (-0.3 + 1j) * omega[: structure.sections]
     if structure.real_pole:
         poles = np.append(poles, -2 * np.pi * float(frequency_hz[-1]) / 3)
-    return poles
+    return np.asarray(poles, complex)

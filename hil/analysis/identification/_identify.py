@@ -1,0 +1,101 @@
+"""The whole way from experiments to models."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from hil.analysis.frequency_response import Experiment, FrequencyResponse, Method, estimate
+from hil.analysis.identification._chain_fit import ChainChoice, choose_chain
+from hil.analysis.identification._fit import Fit
+from hil.analysis.identification._order import ORDERS, OrderChoice, choose_order
+from hil.analysis.identification._table import model_of
+from hil.core.channels import OUTPUTS
+from hil.core.model import Model
+
+
+@dataclass(frozen=True)
+class Identification:
+    """What `hil identify` finds; `chain` and `physical` are None without motor speed and another output."""
+
+    frf: FrequencyResponse
+    orders: OrderChoice
+    chain: ChainChoice | None
+    model: Model
+    physical: Model | None
+    notes: tuple[str, ...]
+
+    @property
+    def fit(self) -> Fit:
+        """The rational fit that was taken."""
+        return self.orders.best.fit
+
+
+def identify(
+    experiments: Sequence[Experiment],
+    *,
+    from_hz: float | None = None,
+    to_hz: float | None = None,
+    method: Method = "auto",
+    order: int | None = None,
+    gear_ratio: float | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Identification:
+    """Frequency response, rational fit with dead time, and driveline chain.
+
+    Args:
+        experiments: what to use, together.
+        from_hz: see `estimate`.
+        to_hz: see `estimate`.
+        method: see `estimate`.
+        order: order of the denominator; None lets the data choose.
+        gear_ratio: known gear ratio of the chain.
+        progress: told what is being done.
+
+    Raises:
+        UnfitDataError: the data cannot give a frequency response.
+        BadInputError: arguments that make no sense, or too few data.
+    """
+    progress("frequency response")
+    frf = estimate(experiments, from_hz=from_hz, to_hz=to_hz, method=method)
+    orders = choose_order(frf, ORDERS if order is None else (order,), progress=progress)
+    fit = orders.best.fit
+    notes = list(frf.notes)
+    chain = None
+    if OUTPUTS[0] in frf.outputs and len(frf.outputs) > 1:
+        chain = choose_chain(frf, gear_ratio=gear_ratio, torque_delay_s=fit.modes.delay_s, progress=progress)
+        if not chain.best.explains:
+            notes.append(chain.reason)
+    else:
+        notes.append(f"no chain was fitted: that needs '{OUTPUTS[0]}' and another output")
+    meta = {
+        "sources": [experiment.name for experiment in experiments],
+        "method": frf.method,
+        "band_hz": [float(frf.frequency_hz[0]), float(frf.frequency_hz[-1])],
+        "dead_time_standard_error_s": fit.delay_error_s,
+        "standard_errors": _standard_errors(fit),
+    }
+    if chain is not None and chain.best.model.kind == "three_inertia":
+        meta["chain"] = dict(chain.best.model.parameters)
+    physical = None if chain is None else _physical(chain, meta["sources"])
+    return Identification(frf, orders, chain, model_of(fit, meta), physical, tuple(notes))
+
+
+def _standard_errors(fit: Fit) -> dict[str, list[float]]:
+    numerators, denominator = fit.coefficient_errors()
+    errors = {"denominator": [float(e) for e in denominator]}
+    for name, row, two in zip(fit.outputs, numerators, fit.modes.structure.roll_off, strict=True):
+        errors[name] = [float(e) for e in row[two - 1 :]]
+    return errors
+
+
+def _physical(chain: ChainChoice, sources: object) -> Model:
+    best = chain.best
+    meta = {
+        "sources": sources,
+        "reason": chain.reason,
+        "explains_the_data": best.explains,
+        "standard_errors": best.standard_errors,
+        "misfit": {name: {"gain_db": m.gain_db, "phase_deg": m.phase_deg} for name, m in best.misfit.items()},
+    }
+    return Model(best.model.kind, dict(best.model.parameters), meta=meta)

@@ -1,0 +1,30 @@
+"""`hil export`: a recording for other tools."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hil.cli._output import console, print_json
+from hil.core.recording import read_recording, write_recording
+
+
+def command(
+    recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet or .mf4")],
+    out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet or .mf4")],
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Write a recording's channels as CSV, Parquet or MDF4."""
+    table = read_recording(recording)
+    write_recording(table, out)
+    if as_json:
+        print_json({"file": str(out), "samples": len(table.time_s), "channels": list(table.channels)})
+    else:
+        console().print(
+            f"{len(table.time_s)} samples of {len(table.channels)} channels: {out}", highlight=False
+        )
+    return 0
