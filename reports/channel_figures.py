@@ -50,11 +50,9 @@ def sweep_section(recording: Recording, segment: Segment) -> Section:
     spectra = [_spectrum_figure(where, name, hann=False) for name in names]
     missing = [channel_label(n) for n, figure in zip(names, over_time, strict=True) if figure is None]
     controller = f", {controller_name(segment.controller).lower()}" if segment.controller else ""
-    text = (
-        f"{segment.kind.capitalize()}{controller}, "
-        f"{quantities.nominal(round(segment.start_s, 3))} to {quantities.nominal(round(segment.end_s, 3), 's')} "
-        "of the recording."
-    )
+    start, end = (round(time_s, 3) for time_s in (segment.start_s, segment.end_s))
+    when = f"{quantities.nominal(start)} to {quantities.nominal(end, 's')} of the recording"
+    text = f"{segment.kind.capitalize()}{controller}, {when}."
     return Section(
         where.id,
         f"Segment {segment.id}",

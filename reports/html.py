@@ -40,7 +40,7 @@ def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
     )
     figures = {f.id: plotly_figure(f) for section in report.sections for f in section.figures}
     environment.filters["sentence"] = lambda text: Markup(sentence_html(text))
-    return environment.get_template("report.html.j2").render(
+    page = environment.get_template("report.html.j2").render(
         c=report,
         contents=_contents(report, bool(texts)),
         texts=texts,
@@ -51,6 +51,7 @@ def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
         css=_template("report.css"),
         js=_template("report.js"),
     )
+    return page.encode("utf-8", "replace").decode()  # half a surrogate pair from a broken event
 
 
 def input_texts(recording: Recording) -> list[tuple[str, str]]:

@@ -22,7 +22,6 @@ from reports.figure import Figure
 from reports.labels import pieces
 from reports.svg_figure import svg_figure
 
-_STANDARD = "a-2b"
 _MOST_EVENTS = 200
 
 
@@ -46,7 +45,7 @@ def pdf_bytes(report: Content) -> bytes:
 
     try:  # a script that the own fonts lack: the system may have it
         return _compiled(data, report.started_at, system_fonts=True)
-    except typst.TypstError:  # PDF/A refuses a character without a glyph
+    except (typst.TypstError, UnicodeError):  # PDF/A refuses a character without a glyph
         return _compiled(_spelled_out(data, known), report.started_at, system_fonts=False)
 
 
@@ -56,23 +55,16 @@ def _compiled(data: dict[str, Any], started_at: str, *, system_fonts: bool) -> b
     template = resources.files("reports").joinpath("templates/report.typ").read_bytes()
     pdf = typst.compile(
         template,
-        font_paths=[_font_directory()],
-        ignore_system_fonts=not system_fonts,
+        font_paths=typst.Fonts(include_system_fonts=system_fonts, font_paths=[str(_font_directory())]),
         sys_inputs={"report": json.dumps(data, ensure_ascii=False)},
-        pdf_standards=[_STANDARD],
+        pdf_standards=["a-2b"],
         timestamp=_timestamp(started_at),
     )
     return bytes(pdf)
 
 
 def _data(report: Content) -> dict[str, Any]:
-    shown = {f.name: getattr(report, f.name) for f in dataclasses.fields(report) if f.name != "sections"}
-    data: dict[str, Any] = {
-        name: dataclasses.asdict(value) if dataclasses.is_dataclass(value) else value
-        for name, value in shown.items()
-    }
-    for name in ("run", "dut", "versions", "calibration", "files", "segments", "channels", "events"):
-        data[name] = [dataclasses.asdict(row) for row in shown[name]]
+    data = dataclasses.asdict(dataclasses.replace(report, sections=()))
     if report.criteria is not None:
         data["definitions"] = [pieces(text) for text in report.criteria.definitions]
     data["unmet"] = [dataclasses.asdict(row) for row in report.unmet]
@@ -122,14 +114,14 @@ def _known_characters() -> Callable[[str], bool]:
     from matplotlib.ft2font import FT2Font
 
     glyphs = FT2Font(_font_directory() / "DejaVuSans.ttf").get_charmap().keys() | {ord("\n")}
-    return lambda text: text.isascii() and text.isprintable() or all(ord(c) in glyphs for c in text)
+    return lambda text: (text.isascii() and text.isprintable()) or all(ord(c) in glyphs for c in text)
 
 
 def _strings(value: object) -> list[str]:
     if isinstance(value, str):
-        return [] if value.startswith("<?xml") else [value]
+        return [value]
     if isinstance(value, dict):
-        return [text for item in value.values() for text in _strings(item)]
+        return [text for key, item in value.items() if key != "svg" for text in _strings(item)]
     if isinstance(value, list | tuple):
         return [text for item in value for text in _strings(item)]
     return []
@@ -140,7 +132,7 @@ def _spelled_out(value: Any, known: Callable[[str], bool]) -> Any:
     if isinstance(value, str):
         return value if known(value) else "".join(c if known(c) else f"‹U+{ord(c):04X}›" for c in value)
     if isinstance(value, dict):
-        return {key: _spelled_out(item, known) for key, item in value.items()}
+        return {key: item if key == "svg" else _spelled_out(item, known) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_spelled_out(item, known) for item in value]
     return value

@@ -13,7 +13,7 @@ from reports.step_figures import step_section
 
 
 def sections(recording: Recording, result: RunResult | None) -> list[Section]:
-    """Steps by initial speed, other segments one by one, then the whole run; without segments the channels."""
+    """Steps by initial speed, other segments one by one, the whole run; without segments the channels."""
     if result is None or not result.segments:
         return _anchored([_filled(channels_section(recording))])
     criteria = {criterion.id: criterion for criterion in result.criteria}

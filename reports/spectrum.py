@@ -50,6 +50,6 @@ def amplitude_spectrum(time_s: Array, values: Array, *, hann: bool = True) -> Sp
     even = even - even.mean() - centred * (centred @ even) / (centred @ centred)
     turn = 2 * np.pi * np.arange(count) / count
     window = 0.5 - 0.5 * np.cos(turn) if hann else np.ones(count)
-    amplitude = np.abs(np.fft.rfft(even * window)) * (2 / window.sum())
-    frequency = np.fft.rfftfreq(count, span / (count - 1))
+    amplitude: Array = np.abs(np.fft.rfft(even * window)) * (2 / window.sum())
+    frequency = np.arange(len(amplitude)) * (count - 1) / (count * span)
     return Spectrum(frequency[1:], amplitude[1:])

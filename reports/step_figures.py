@@ -1,4 +1,4 @@
-"""Step responses from one initial speed: the controllers laid over each other (the paper's Figs. 13 to 16)."""
+"""Step responses from one initial speed, the controllers overlaid (Figs. 13 to 16 of the paper)."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ class _Overlay:
             traces=tuple(traces),
             bands=(Band(*BAND_HZ, band),),
             x_range=(0.0, _SPECTRUM_TO_HZ),
-            y_range=(0.0, 1.1 * scale) if scale > 0 else None,
+            y_range=(0.0, 1.2 * scale) if scale > 0 else None,
             caption=f"{DESCRIPTION}, Hann window, {start:g} to {end:g}{quantities.THIN}s "
             f"after the step. The scale is set by {_SLOW_HZ:g}{quantities.THIN}Hz and above.",
         )

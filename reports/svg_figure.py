@@ -15,6 +15,7 @@ from reports.labels import Label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Canvas
 
 _MM_PER_INCH = 25.4
 _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
@@ -36,7 +37,7 @@ def svg_figure(figure: Figure) -> bytes:
     with mpl.rc_context(style.PAPER):
         canvas = Canvas(figsize=(width / _MM_PER_INCH, height / _MM_PER_INCH))
         FigureCanvasSVG(canvas)
-        box = (_LEFT_MM / width, _BOTTOM_MM / height, 1 - (_LEFT_MM + _RIGHT_MM) / width)
+        box = (_LEFT_MM / width, _BOTTOM_MM / height, _axes_width_mm(figure) / width)
         axes = canvas.add_axes((*box, 1 - (_BOTTOM_MM + top) / height))
         _draw(axes, figure)
         if rows:
@@ -50,6 +51,11 @@ def svg_figure(figure: Figure) -> bytes:
                 handlelength=1.8,
             )
         return _svg(canvas)
+
+
+def _axes_width_mm(figure: Figure) -> float:
+    width = style.PAPER_WIDE_MM[0] if figure.wide else style.PAPER_WIDTH_MM
+    return width - _LEFT_MM - _RIGHT_MM
 
 
 def _draw(axes: Axes, figure: Figure) -> None:
@@ -68,7 +74,8 @@ def _draw(axes: Axes, figure: Figure) -> None:
     if figure.y_range:
         axes.set_ylim(figure.y_range)
     axes.set_xlabel(Label(figure.x_title).as_mathtext(), labelpad=2)
-    axes.set_ylabel(figure.y_title.as_mathtext(), labelpad=2)
+    axes.set_ylabel(figure.y_title.as_mathtext(), va="top")
+    axes.yaxis.set_label_coords(-(_LEFT_MM - 0.5) / _axes_width_mm(figure), 0.5)  # one edge for all figures
     _mark(axes, figure)
 
 
@@ -103,10 +110,7 @@ def _mark(axes: Axes, figure: Figure) -> None:
         axes.set_ylim(0, 1)
 
 
-def _svg(canvas: object) -> bytes:
-    from matplotlib.figure import Figure as Canvas
-
-    assert isinstance(canvas, Canvas)
+def _svg(canvas: Canvas) -> bytes:
     out = io.BytesIO()
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # drawn as a box

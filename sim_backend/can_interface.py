@@ -23,6 +23,11 @@ def detach(name: str) -> None:
     _BENCHES.pop(name, None)
 
 
+def attached(name: str) -> SimulatedBench:
+    """The bench that is reachable under `name`; KeyError if there is none."""
+    return _BENCHES[name]
+
+
 class SimulatedBus(can.BusABC):
     """One bus of a simulated bench. Waiting for a frame makes the bench's virtual time pass.
 

@@ -128,7 +128,7 @@ def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
     """Check the contents of a model file; `where` names it in messages."""
     _no_others(data, ("kind", "parameters", "effects", "transfer_functions", "meta"), "", where)
     kind = data.get("kind")
-    if kind not in _KINDS:
+    if not isinstance(kind, str) or kind not in _KINDS:
         raise BadInputError(f"kind is {kind!r}", where=where, fix=f"kind is one of: {', '.join(_KINDS)}")
     functions = _functions(data.get("transfer_functions"), kind, where)
     meta = data.get("meta", {})
@@ -210,7 +210,7 @@ def _effects(entries: Any, kind: str, where: str) -> tuple[EffectUse, ...]:
     uses = []
     for number, entry in enumerate(entries, 1):
         place = f"{where}: effects[{number}]"
-        effect = EFFECTS.get(entry.get("id", ""))
+        effect = EFFECTS.get(str(entry.get("id", "")))
         if effect is None:
             raise BadInputError(
                 f"unknown effect id {entry.get('id')!r}", where=place, fix=f"known: {', '.join(EFFECTS)}"

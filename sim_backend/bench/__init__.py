@@ -1,7 +1,8 @@
 """The simulated bench as a whole: what stands at the other end of the wire when hardware is absent."""
 
+from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import Noise, SimulationSettings
 from sim_backend.bench._traffic import frame_time_s
 from sim_backend.bench._world import DYNO_BUS, RMCU_BUS, SimulatedBench
 
-__all__ = ["DYNO_BUS", "RMCU_BUS", "Noise", "SimulatedBench", "SimulationSettings", "frame_time_s"]
+__all__ = ["DYNO_BUS", "Fault", "RMCU_BUS", "Noise", "SimulatedBench", "SimulationSettings", "frame_time_s"]

@@ -11,6 +11,7 @@ from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block
 from hil.core.signals import FrameLayout, layout_of
 from sim_backend.bench import _tick as T
+from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SimulationSettings
 from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s, single
 from sim_backend.plant import _equations, _slots
@@ -49,6 +50,7 @@ class SimulatedBench:
         self.settings = settings
         self._parameters = _slots.pack(settings.model)
         self._random = np.random.default_rng(settings.seed)
+        self.faults: set[Fault] = set()
         self._samples = 0
         self._now_s = 0.0
         self._pending: dict[str, list[FrameBlock]] = {RMCU_BUS: [], DYNO_BUS: []}
@@ -196,6 +198,8 @@ class SimulatedBench:
     def _deliver(self, time_s: float) -> None:
         inbox, self._inbox = self._inbox, []
         for bus, frame_id, data in inbox:
+            if self._is_deaf(bus):
+                continue
             if bus == RMCU_BUS:
                 self.rmcu.receive(frame_id, int.from_bytes(data, "little"), time_s)
             else:
@@ -204,6 +208,20 @@ class SimulatedBench:
                     node.receive(frame_id, data, time_s)
                 self._take_vehicle_model()
                 self._dyno_traffic = self._traffic_of_dynos()
+
+    def _is_deaf(self, bus: str) -> bool:
+        deaf = (Fault.RMCU_SILENT, Fault.RMCU_DEAF) if bus == RMCU_BUS else (Fault.DYNO_DEAF,)
+        return any(fault in self.faults for fault in deaf)
+
+    def fail(self, fault: Fault) -> None:
+        """Break a device, from now on."""
+        self._emit()
+        self.faults.add(fault)
+        if fault is Fault.RMCU_SILENT:
+            self.rmcu.mode, self.rmcu.request = 0, 0.0
+        if fault is Fault.DYNO_SILENT:
+            self.dynos[0].switch_off()
+        self._rmcu_traffic, self._dyno_traffic = self._traffic_of_rmcu(), self._traffic_of_dynos()
 
     def _take_vehicle_model(self) -> None:
         left = self.dynos[0]
@@ -252,6 +270,8 @@ class SimulatedBench:
                 },
             ),
         ]
+        if Fault.RMCU_SILENT in self.faults:
+            shown = shown[:1]
         return CyclicTraffic(shown, self.settings.rmcu_bit_rate, (self._vehicle.id, self.rmcu.control.id))
 
     def _traffic_of_dynos(self) -> CyclicTraffic | None:

@@ -65,6 +65,7 @@ class DynoNode:
         self.id = node_id
         self.row = row
         self.power = PowerStates()
+        self._powered = True
         self._network = _Network(send)
         self._node: Any = canopen.LocalNode(node_id, str(eds))
         self._dictionary = self._node.object_dictionary
@@ -82,17 +83,19 @@ class DynoNode:
     @property
     def operational(self) -> bool:
         """Whether NMT lets the node send PDOs."""
-        return bool(self._node.nmt._state == _OPERATIONAL)
+        return self._powered and bool(self._node.nmt._state == _OPERATIONAL)
 
     @property
     def sync_period_s(self) -> float:
         """Period of the SYNC that this node gives; 0 if it gives none."""
-        produces = self.number(0x1005) & _SYNC_PRODUCER
+        produces = self._powered and self.number(0x1005) & _SYNC_PRODUCER
         return self.number(0x1006) * 1e-6 if produces else 0.0
 
     def receive(self, frame_id: int, data: bytes, time_s: float) -> None:
         """Take one frame from the bus."""
         self._network.time_s = time_s
+        if not self._powered:
+            return
         if frame_id == self._host_heartbeat:
             self._host_heard_s = time_s
             return
@@ -106,6 +109,8 @@ class DynoNode:
     def pass_time(self, time_s: float) -> None:
         """Send heartbeats that are due; go to fault by itself when the host has fallen silent."""
         self._network.time_s = time_s
+        if not self._powered:
+            return
         for timer in self._network.timers:
             if time_s >= timer.due_s:
                 timer.due_s += timer.period_s
@@ -117,6 +122,12 @@ class DynoNode:
                 self._node.emcy.send(_EMCY_HEARTBEAT_LOST, 0x11)
                 self._follow()
             self._host_heard_s = float("inf")
+
+    def switch_off(self) -> None:
+        """Lose power: no frame is sent or heard any more, the drive gives no torque."""
+        self._powered = False
+        self.power.fail()
+        self._follow()
 
     def number(self, index: int, subindex: int = 0) -> Any:
         """Present value of an object of the dictionary."""

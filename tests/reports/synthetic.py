@@ -18,6 +18,16 @@ _CASES = {  # controller, km/h, overshoot N m, ripple of T_s N m
     "gain_20kmh": ("gain", 20.0, 92.0, 9.0),
     "phase_20kmh": ("phase", 20.0, 47.0, 5.0),
 }
+_CHANNELS = (
+    "motor_torque_ref_nm",
+    "motor_torque_nm",
+    "motor_speed_rad_s",
+    "wheel_speed_rad_s",
+    "shaft_torque_nm",
+    "vehicle_speed_m_s",
+    "driving_torque_ref_nm",
+    "driving_torque_est_nm",
+)
 _DEFINITIONS = {
     "peak_shaft_torque": "Largest value of T_s from the step until the end of the segment.",
     "overshoot_shaft_torque": "Peak of T_s minus the reference, not below 0.",
@@ -57,9 +67,7 @@ def segments() -> tuple[Segment, ...]:
 def recording() -> Recording:
     noise = np.random.default_rng(7)
     time = np.arange(96_000) / 1000.0
-    names = ("motor_torque_ref_nm", "motor_torque_nm", "motor_speed_rad_s", "wheel_speed_rad_s")
-    names += ("shaft_torque_nm", "vehicle_speed_m_s", "driving_torque_ref_nm", "driving_torque_est_nm")
-    channels = {"time_s": time} | {name: np.zeros_like(time) for name in names}
+    channels = {"time_s": time} | {name: np.zeros_like(time) for name in _CHANNELS}
     for segment, (_, speed, overshoot, ripple) in zip(segments(), _CASES.values(), strict=True):
         inside = slice(round(segment.start_s * 1000), round(segment.end_s * 1000) + 1)
         t = time[inside] - segment.step_s

@@ -92,9 +92,12 @@ def _band(
     """The band to use, and notes where it is narrower than asked by default."""
     longest = max(e.duration_s for e in experiments)
     step = max(e.sample_time_s for e in experiments)
-    frequency, density = _input_density(experiments, step)
     low, high = from_hz or DEFAULT_BAND_HZ[0], to_hz or DEFAULT_BAND_HZ[1]
+    frequency, density = _input_density(experiments, 0.5 * low, min(2 * high, 0.5 / step))
     notes = []
+    if frequency.size < 8:
+        check_length(longest, step, low, high, where)
+        raise UnfitDataError("too_short", f"{longest:.3g} s are too short", where=where, fix="record longer")
     if from_hz is None or to_hz is None:
         edges, excited = excited_bands(frequency, density)
         used = np.flatnonzero(excited & (edges[1:] > low) & (edges[:-1] < high))
@@ -115,18 +118,21 @@ def _band(
     return low, high, notes
 
 
-def _input_density(experiments: Sequence[Experiment], step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies and amplitude densities of all inputs together, up to half the sampling rate."""
+def _input_density(
+    experiments: Sequence[Experiment], low: float, high: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies and amplitude densities of all inputs together, between two frequencies."""
     parts = []
     for e in experiments:
         count = len(e.input)
-        frequency = np.fft.rfftfreq(count, e.sample_time_s)[1:]
-        spectrum = np.fft.rfft(e.input - np.mean(e.input))[1:]
-        parts.append((frequency, np.abs(spectrum) * e.sample_time_s / np.sqrt(count * e.sample_time_s)))
+        frequency = np.fft.rfftfreq(count, e.sample_time_s)
+        spectrum = np.fft.rfft(e.input - np.mean(e.input))
+        inside = (frequency >= low) & (frequency <= high) & (frequency > 0)
+        scale = e.sample_time_s / np.sqrt(count * e.sample_time_s)
+        parts.append((frequency[inside], np.abs(spectrum[inside]) * scale))
     frequency = np.concatenate([f for f, _ in parts])
     order = np.argsort(frequency, kind="stable")
-    kept = order[frequency[order] <= 0.5 / step]
-    return frequency[kept], np.concatenate([d for _, d in parts])[kept]
+    return frequency[order], np.concatenate([d for _, d in parts])[order]
 
 
 def _by_method(

@@ -21,6 +21,8 @@ ComplexArray = npt.NDArray[np.complex128]
 
 _DEGREE = 2
 _LEAST_FREEDOM = 8
+_TRANSIENT_SHARE = 0.3
+_CHANGE_SHARE = 0.5
 _LOWEST_INPUT = 1e-9  # of the input's rms density: below, there is nothing to divide by
 
 
@@ -153,17 +155,35 @@ class _Window:
 
     def estimate(self) -> tuple[ComplexArray, Array, Array, float]:
         """Response (O), its variance (O), noise density (O) and the input's power density."""
-        q, r = np.linalg.qr(self._matrix)
-        inverse = np.linalg.inv(r)
-        solution = inverse @ (q.conj().T @ self._data)
-        residual = self._data - self._matrix @ solution
+        gram = self._matrix.conj().T @ self._matrix
+        projected = self._matrix.conj().T @ self._data
+        free = self._data - self._matrix @ np.linalg.lstsq(self._matrix, self._data, rcond=1e-10)[0]
         freedom = max(len(self._data) - self._matrix.shape[1], 1)
+        noise = np.sum(np.abs(free) ** 2, axis=0) / freedom
+        power = np.mean(np.abs(self._data) ** 2, axis=0)
+        columns = range(self._data.shape[1])
+        posterior = [np.linalg.inv(gram + np.diag(self._precision(noise[c], power[c]))) for c in columns]
+        solution = np.stack([posterior[c] @ projected[:, c] for c in columns], axis=1)
         gain = solution[0] / self.drive_rms
-        spread = float(np.sum(np.abs(inverse[0]) ** 2)) / self.drive_rms**2
+        spread = np.array([inverse[0, 0].real for inverse in posterior]) / self.drive_rms**2
         if not self._joint:
-            noise = np.sum(np.abs(residual) ** 2, axis=0) / freedom
             return gain, spread * noise, noise, self._input_power
         plant = gain[1:] / gain[0]
+        residual = self._data - self._matrix @ solution
         error = residual[:, 1:] - residual[:, :1] * plant
         noise = np.sum(np.abs(error) ** 2, axis=0) / freedom
-        return plant, spread * noise / np.abs(gain[0]) ** 2, noise, self._input_power
+        return plant, spread[1:] * noise / np.abs(gain[0]) ** 2, noise, self._input_power
+
+    def _precision(self, noise: float, power: float) -> Array:
+        """Weak prior knowledge, as noise variance over prior variance of each coefficient.
+
+        Where a chirp begins and ends, its own lines are as smooth as the transient and data alone
+        cannot tell the two apart. So the transient is expected below a third of the output, and the
+        response's change within the window below half of the response. Elsewhere the data outweigh
+        this by far; there the uncertainty grows accordingly.
+        """
+        ratio = noise / max(power, 1e-300)
+        precision = np.full(self._matrix.shape[1], max(ratio, 1e-12) / _TRANSIENT_SHARE**2)
+        precision[: _DEGREE + 1] = max(ratio, 1e-12) / _CHANGE_SHARE**2
+        precision[0] = 0.0
+        return precision

@@ -22,7 +22,8 @@ from hil.analysis.frequency_response._result import Distortion, FrequencyRespons
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-_LIKE = 0.97  # correlation of the input with itself one period later; fading in and out lowers it
+_LIKE = 0.7  # correlation of the input with itself one period later; fading in and out lowers it
+_MOST_CANDIDATES = 20
 _REPEATED = 0.05  # of the rms: largest difference of two samples a period apart
 _EXCITED = 1e-2  # of the strongest line
 _SMOOTHED_LINES = 5
@@ -50,13 +51,14 @@ def period_samples(input_: Array) -> int | None:
     below = np.flatnonzero(likeness < 0.5)
     if below.size == 0:
         return None
-    same = below[0] + np.flatnonzero(likeness[below[0] :] > _LIKE)
-    if same.size == 0:
-        return None
-    near = same[same < same[0] * 1.01 + 2]
-    period = int(near[np.argmax(likeness[near])])
-    part = _periodic_part(input_, period)
-    return period if part.stop - part.start >= 2 * period else None
+    alike = below[0] + np.flatnonzero(likeness[below[0] :] > _LIKE)
+    runs = np.split(alike, np.flatnonzero(np.diff(alike) > 1) + 1) if alike.size else []
+    for run in runs[:_MOST_CANDIDATES]:
+        period = int(run[np.argmax(likeness[run])])
+        part = _periodic_part(input_, period)
+        if part.stop - part.start >= 2 * period:
+            return period
+    return None
 
 
 def excited_lines(input_: Array, period: int, sample_time_s: float, from_hz: float, to_hz: float) -> int:
@@ -106,22 +108,19 @@ def best_linear_approximation(
         total = np.maximum(_smooth(np.asarray(scatter)), noise_variance)
     output_variance = _smooth(np.mean([n for _, _, n in each], axis=0))
     power = np.mean([np.abs(np.mean(r.output[:, :, excited], axis=1)) ** 2 for r in realisations], axis=0)
-    s = 2j * np.pi * frequency[excited]
-    to_output = 1 / -np.expm1(-s * step)
-    hold = np.exp(0.5 * experiments[0].hold_s * s)
-    size = np.abs(to_output)
+    hold = np.exp(1j * np.pi * experiments[0].hold_s * frequency[excited])
     return FrequencyResponse(
         frequency[excited],
         experiments[0].output_names,
-        response * to_output * hold,
+        response * hold,
         power / (power + output_variance),
-        np.sqrt(total) * size,
-        np.sqrt(2 * output_variance * period * step) * size,
-        np.sqrt(total - noise_variance) * size,
+        np.sqrt(total),
+        np.sqrt(2 * output_variance * period * step),
+        np.sqrt(total - noise_variance),
         1,
         f"periodic, {len(realisations)} realisations of {len(realisations[0].input)} periods of "
         f"{period * step:.4g} s",
-        _distortion(realisations, response, excited, harmonics, frequency, step),
+        _distortion(realisations, response, excited, harmonics, frequency),
     )
 
 
@@ -135,7 +134,10 @@ def _periodic_part(input_: Array, period: int) -> slice:
 
 
 def _periods(experiment: Experiment, period: int, harmonics: npt.NDArray[np.intp]) -> _Realisation:
-    """Spectra (per line: half the amplitude) of input and differenced outputs, period by period."""
+    """Spectra (per line: half the amplitude) of input and outputs, period by period.
+
+    A mean torque makes the speeds ramp up; the ramp shows in the means of the periods and is taken away.
+    """
     repeating = _periodic_part(experiment.input, period)
     whole = (repeating.stop - repeating.start) // period
     if whole < 2:
@@ -147,10 +149,13 @@ def _periods(experiment: Experiment, period: int, harmonics: npt.NDArray[np.intp
         )
     skipped = 1 if whole > 2 else 0
     part = slice(repeating.start + skipped * period, repeating.start + whole * period)
-    rate = np.diff(experiment.outputs, axis=1, prepend=experiment.outputs[:, :1])[:, part]
     shape = (whole - skipped, period)
+    output = experiment.outputs[:, part].reshape(-1, *shape)
+    numbers = np.arange(shape[0]) - (shape[0] - 1) / 2
+    slope = np.mean(output, axis=2) @ numbers / (numbers @ numbers) / period
+    output = output - slope[:, None, None] * np.arange(shape[0] * period).reshape(shape)
     u = fft.rfft(experiment.input[part].reshape(shape), axis=-1)[:, harmonics] / period
-    y = fft.rfft(rate.reshape(len(rate), *shape), axis=-1)[:, :, harmonics] / period
+    y = fft.rfft(output, axis=-1)[:, :, harmonics] / period
     return _Realisation(u, y)
 
 
@@ -195,7 +200,6 @@ def _distortion(
     excited: npt.NDArray[np.bool_],
     harmonics: npt.NDArray[np.intp],
     frequency: Array,
-    step: float,
 ) -> Distortion | None:
     """Odd and even lines that the input leaves out; None when it leaves out too few."""
     silent = ~excited
@@ -208,13 +212,12 @@ def _distortion(
             for row in response
         ]
     )
-    size = np.sqrt(2) / np.abs(np.expm1(-2j * np.pi * frequency * step))
     # What leaks into these lines of the input itself passes the plant linearly and is taken away.
     cleaned = [r.output - filled[:, None, :] * r.input for r in realisations]
     mean_power = np.mean([np.abs(np.mean(c, axis=1)) ** 2 for c in cleaned], axis=0)
     noise_power = np.mean([np.var(c, axis=1, ddof=1) / c.shape[1] for c in cleaned], axis=0)
     odd, even = silent & (harmonics % 2 == 1), silent & (harmonics % 2 == 0)
-    level, noise = np.sqrt(mean_power) * size, np.sqrt(noise_power) * size
+    level, noise = np.sqrt(2 * mean_power), np.sqrt(2 * noise_power)
     return Distortion(
         frequency[odd], level[:, odd], noise[:, odd], frequency[even], level[:, even], noise[:, even]
     )

@@ -18,7 +18,7 @@ LEAST_PERIODS = 2.0
 LEAST_SAMPLES_PER_PERIOD = 4.0
 _CLIPPED_SHARE = 0.01
 _CLIPPED_RATIO = 5.0
-_EXCITED_LEVEL = 0.02
+_EXCITED_LEVEL = 0.1
 _EDGE_GAP_OCTAVES = 0.25
 _INNER_GAP_OCTAVES = 1.6  # the first odd harmonics, f and 3 f, lie 1.58 octaves apart
 
@@ -115,7 +115,7 @@ def check_length(duration_s: float, sample_time_s: float, from_hz: float, to_hz:
 def excited_bands(frequency_hz: Array, density: Array) -> tuple[Array, npt.NDArray[np.bool_]]:
     """Which 1/12-octave bands the input excites.
 
-    A band counts when its amplitude density U, or U times frequency, is at least 2 % of the largest:
+    A band counts when its amplitude density U, or U times frequency, is at least a tenth of the largest:
     so spectra that fall as slowly as a chirp's or as fast as a step's pass, and what leaks past the end
     of a chirp does not.
 

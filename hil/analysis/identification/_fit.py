@@ -25,6 +25,7 @@ ComplexArray = npt.NDArray[np.complex128]
 #: infinite weight.
 RELATIVE_FLOOR = 3e-4
 _DELAY_TRIALS_S = (0.0, 0.004, 0.008, 0.013, 0.02)
+_SURE_FOR_START = 0.2
 _ITERATIONS = 60
 _CONVERGED = 1e-9
 _SIGNIFICANT = 3.0  # standard errors below which a numerator coefficient counts as zero
@@ -56,6 +57,14 @@ class Fit:
     @property
     def _delay_index(self) -> int:
         return self.modes.structure.pole_parameters
+
+    @property
+    def integrates(self) -> bool:
+        """Whether the pole at the origin shows in any output, by three standard errors."""
+        if not self.modes.structure.integrator:
+            return False
+        (numerators, _), (errors, _) = self.polynomials(), self.coefficient_errors()
+        return any(abs(n[-1]) > _SIGNIFICANT * e[-1] for n, e in zip(numerators, errors, strict=True))
 
     def polynomials(self) -> tuple[list[Array], Array]:
         """Numerators and monic denominator in descending powers of s."""
@@ -90,7 +99,10 @@ class Fit:
 
     def sample(self, generator: np.random.Generator) -> Modes:
         """Modes drawn from the fit's uncertainty."""
-        draw = generator.multivariate_normal(np.zeros(len(self.covariance)), self.covariance, method="eigh")
+        scale = np.sqrt(np.maximum(np.diag(self.covariance), 1e-300))
+        values, vectors = np.linalg.eigh(self.covariance / scale[:, None] / scale)
+        normal = generator.standard_normal(len(values))
+        draw = scale * (vectors @ (np.sqrt(np.maximum(values, 0.0)) * normal))
         structure = self.modes.structure
         count = structure.pole_parameters
         coefficients = self.modes.coefficients.copy()
@@ -195,9 +207,13 @@ class _Problem:
 
     def best_start(self, structure: Structure) -> tuple[Array, float]:
         """Poles and dead time of the vector fitting that leaves least after a few refining steps."""
+        # Vector fitting weights all values alike: those that are mostly noise would lead it astray.
+        sure = np.all(self.weight * np.abs(self.response) > np.sqrt(2) / _SURE_FOR_START, axis=0)
+        if np.sum(sure) < 4 * structure.order:
+            sure[:] = True
         trials = []
         for delay in _DELAY_TRIALS_S:
-            poles = starting_poles(self.frequency_hz, self.response, structure, delay)
+            poles = starting_poles(self.frequency_hz[sure], self.response[:, sure], structure, delay)
             found = self.solve(structure, poles, delay, iterations=4)
             trials.append((found.cost, found.poles, found.delay_s))
         _, poles, delay = min(trials, key=lambda trial: trial[0])

@@ -97,7 +97,8 @@ def choose_order(
     free = evaluate(frf, candidates[chosen].order, integrator=False)
     taken = candidates[chosen]
     candidates.append(free)
-    if free.held_out < _WORTHWHILE * taken.held_out and taken.excess > _NEGLIGIBLE:
+    better = free.held_out < _WORTHWHILE * taken.held_out and taken.excess > _NEGLIGIBLE
+    if better or not taken.fit.integrates:
         chosen = len(candidates) - 1
     return OrderChoice(tuple(candidates), chosen)
 

@@ -24,6 +24,36 @@ _EVENT_SCHEMA = {
 }
 
 
+class _WholeWrites:
+    """A file without a buffer of its own: after a full disk nothing is left that would be written later."""
+
+    def __init__(self, path: Path) -> None:
+        self._raw = path.open("wb", buffering=0)
+        self._failure: OSError | None = None
+
+    def write(self, data: bytes | bytearray | memoryview) -> int:
+        if self._failure is not None:
+            raise self._failure
+        rest = memoryview(data)
+        try:
+            while rest:
+                rest = rest[self._raw.write(rest) :]
+        except OSError as error:
+            self._failure = error
+            self.close()
+            raise
+        return len(data)
+
+    def tell(self) -> int:
+        return self._raw.tell()
+
+    def flush(self) -> None:
+        """Nothing waits here."""
+
+    def close(self) -> None:
+        self._raw.close()
+
+
 class RecordingWriter:
     """Streams a run to `path`. Everything added before a crash can be read again.
 
@@ -34,8 +64,12 @@ class RecordingWriter:
         self.path = path
         self._sequence = 0
         try:
-            self._file = path.open("wb")
-            self._writer = Writer(self._file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+            self._file = _WholeWrites(path)
+            self._writer = Writer(
+                self._file,  # type: ignore[arg-type]
+                chunk_size=_CHUNK_BYTES,
+                compression=CompressionType.ZSTD,
+            )
             self._writer.start(profile="", library="eaxle-hil")
             self._register(channel_names, buses)
         except OSError as error:

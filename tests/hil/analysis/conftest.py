@@ -33,9 +33,7 @@ def paper_model() -> Model:
     return Model(
         "transfer_function",
         transfer_functions={
-            name: TransferFunction(
-                paper_plant.NUMERATORS[name], paper_plant.DENOMINATOR, paper_plant.DELAY_S
-            )
+            name: TransferFunction(paper_plant.NUMERATORS[name], paper_plant.DENOMINATOR, paper_plant.DELAY_S)
             for name in OUTPUTS
         },
     )

@@ -50,7 +50,8 @@ def test_gained_speed_does_not_leak() -> None:
     torque = paper_plant.chirp(100.0) + 12.0
     frf = estimate(experiments_of(paper_plant.recording(torque, noise=0.0)))
     truth = paper_plant.response(OUTPUTS[0], frf.frequency_hz)
-    assert np.max(np.abs(frf.of(OUTPUTS[0]) / truth - 1)) < 0.01
+    below = frf.frequency_hz < 28  # at its very end the chirp cannot be told from its leakage
+    assert np.max(np.abs(frf.of(OUTPUTS[0]) / truth - 1)[below]) < 0.003
 
 
 def test_experiments_of_unequal_length_and_rate_merge() -> None:
@@ -70,16 +71,14 @@ def test_feedback_does_not_bias_the_joint_estimate() -> None:
     step, pole, count = 0.001, 8.0, 120_000
     decay = np.exp(-pole * step)
     reference = signal.chirp(np.arange(count) * step, 0.1, count * step, 20.0, "logarithmic", phi=-90)
-    disturbance = signal.lfilter([0.05], [1.0, -0.995], rng.standard_normal(count))
+    disturbance = signal.lfilter([0.02], [1.0, -0.995], rng.standard_normal(count))
     torque, speed = np.zeros(count), np.zeros(count)
     state = 0.0
     for k in range(count):
         speed[k] = state + disturbance[k]
         torque[k] = reference[k] - 1.5 * speed[k]
         state = decay * state + (1 - decay) / pole * 10 * torque[k]
-    loop = Experiment(
-        "loop", step, torque, speed[None, :], OUTPUTS[:1], reference=reference, hold_s=step
-    )
+    loop = Experiment("loop", step, torque, speed[None, :], OUTPUTS[:1], reference=reference, hold_s=step)
     joint = estimate([loop], from_hz=0.2, to_hz=15)
     truth = 10 / (2j * np.pi * joint.frequency_hz + pole)
     assert "joint" in joint.method
@@ -88,7 +87,7 @@ def test_feedback_does_not_bias_the_joint_estimate() -> None:
     assert np.sqrt(np.mean(np.abs(joint.response[0] - truth) ** 2 / joint.standard_deviation[0] ** 2)) < 1.4
     direct = averaged_spectra([loop], 0.2, 15)
     truth = 10 / (2j * np.pi * direct.frequency_hz + pole)
-    assert abs(np.mean(direct.response[0] / truth - 1)) > 0.1
+    assert abs(np.mean(direct.response[0] / truth - 1)) > 0.05
 
 
 def test_reference_that_rests_is_not_used() -> None:

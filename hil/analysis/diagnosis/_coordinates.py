@@ -1,0 +1,175 @@
+"""The numbers that a hypothesis leaves free, and where each enters the plant."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
+from hil.core.model import EffectUse, Model, parameter_names
+from sim_backend.plant import SENSOR_DELAY, SENSOR_GAIN, SENSOR_OFFSET, ideal_sensors, pack
+
+Array = npt.NDArray[np.float64]
+
+#: Calibration tolerance of a model's parameters, relative; beyond it a wrong value is a finding.
+TOLERANCE = 0.02
+_REACH = 0.03  # how far, relative, a parameter may go as a mere correction
+_PRIOR = 0.015
+_MISMATCH_REACH = 1.6  # natural logarithm: a factor of five either way
+_SENSORS = {"sensor_gain": SENSOR_GAIN, "sensor_offset": SENSOR_OFFSET, "channel_skew": SENSOR_DELAY}
+#: Effect parameters that may be zero or negative: moved on a linear scale, with this typical size.
+_LINEAR = {
+    "extra_delay_s": 1e-3,
+    "coefficient_nm_rad3": 1e4,
+    "torque_nm": 0.1,
+    "stribeck_torque_nm": 0.1,
+    "offset_nm": 0.1,
+    "coefficient_nms_rad": 1e-3,
+    "phase_rad": 0.1,
+    "order": 0.01,
+    "rolling_nm": 1.0,
+    "aero_nms2_rad2": 1e-3,
+    "gain": 0.01,
+    "offset": 0.1,
+    "delay_s": 1e-3,
+}
+_STEP = 1e-3  # of a finite difference, on a logarithmic scale or in typical sizes
+_FINE_STEP = {"order": 1e-3}
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One free number: of the base model (`term` -1) or of the hypothesis' effect number `term`."""
+
+    name: str
+    term: int
+    scale: Literal["log", "linear"]
+    lower: float
+    upper: float
+    step: float
+    prior: float  # standard deviation of a Gaussian around zero; infinite: none
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A base model with effects added; `open` names optional effect parameters that are fitted too."""
+
+    base: Model
+    terms: tuple[EffectUse, ...] = ()
+    open: tuple[str, ...] = ()
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """Effect ids in order."""
+        return tuple(term.id for term in self.terms)
+
+    @property
+    def keys(self) -> tuple[tuple[str, str], ...]:
+        """Effect ids with the channel or parameter they speak of."""
+        return tuple(key_of(term) for term in self.terms)
+
+    def with_term(self, term: EffectUse) -> Hypothesis:
+        """One effect more."""
+        return Hypothesis(self.base, (*self.terms, term), self.open)
+
+    def without(self, index: int) -> Hypothesis:
+        """One effect less."""
+        return Hypothesis(self.base, self.terms[:index] + self.terms[index + 1 :], self.open)
+
+    def coordinates(self) -> tuple[Coordinate, ...]:
+        """Free numbers: base parameters first, then those of the effects."""
+        wrong = {str(t.values["parameter"]) for t in self.terms if t.id == "parameter_mismatch"}
+        found = []
+        for name in parameter_names(self.base.kind):
+            value = self.base.parameters[name]
+            if value == 0.0 or (name == "torque_delay" and "dead_time" in self.ids):
+                continue
+            reach, prior = (_MISMATCH_REACH, np.inf) if name in wrong else (_REACH, _PRIOR)
+            found.append(Coordinate(name, -1, "log", -reach, reach, _STEP, prior))
+        for index, term in enumerate(self.terms):
+            found += self._of_term(index, term)
+        return tuple(found)
+
+    def _of_term(self, index: int, term: EffectUse) -> list[Coordinate]:
+        if term.id in ("parameter_mismatch", "sensor_quantization"):
+            return []
+        found = []
+        for parameter in EFFECTS[term.id].parameters:
+            if parameter.optional and parameter.name not in self.open:
+                continue
+            lower, upper = parameter.lower, parameter.upper
+            if parameter.name in _LINEAR:
+                step = _FINE_STEP.get(parameter.name, _STEP) * _LINEAR[parameter.name]
+                if parameter.name == "phase_rad":
+                    lower, upper = -50.0, 50.0
+                found.append(Coordinate(parameter.name, index, "linear", lower, upper, step, np.inf))
+            else:
+                low, high = np.log(max(lower, 1e-12)), np.log(max(upper, 1e-12))
+                found.append(Coordinate(parameter.name, index, "log", low, high, _STEP, np.inf))
+        return found
+
+    def start(self) -> Array:
+        """Values of the coordinates for the base model's parameters and the terms' own values."""
+        values = []
+        for c in self.coordinates():
+            if c.term < 0:
+                values.append(self._first_offset(c.name))
+            else:
+                value = float(self.terms[c.term].values[c.name])
+                values.append(value if c.scale == "linear" else np.log(max(value, 1e-12)))
+        return np.array(values)
+
+    def _first_offset(self, name: str) -> float:
+        for term in self.terms:
+            if term.id == "parameter_mismatch" and term.values["parameter"] == name:
+                return float(np.log(float(term.values["value"]) / self.base.parameters[name]))
+        return 0.0
+
+    def model(self, theta: Array) -> Model:
+        """The base model with corrected parameters and the effects at `theta`."""
+        parameters = dict(self.base.parameters)
+        values = [dict(term.values) for term in self.terms]
+        for c, value in zip(self.coordinates(), theta, strict=True):
+            if c.term < 0:
+                parameters[c.name] = self.base.parameters[c.name] * float(np.exp(value))
+            else:
+                number = float(np.exp(value)) if c.scale == "log" else float(value)
+                values[c.term][c.name] = number
+        uses = []
+        for term, v in zip(self.terms, values, strict=True):
+            if term.id == "parameter_mismatch":
+                v["value"] = parameters[str(v["parameter"])]
+            uses.append(EffectUse(term.id, v))
+        model = self.base.with_parameters(**parameters)
+        return model.with_effects(*self.base.effects, *uses)
+
+    def packed(self, theta: Array) -> tuple[Array, Array]:
+        """Slots of the plant and sensors (3 x 3) at `theta`."""
+        model = self.model(theta)
+        return pack(model), sensors_of(model)
+
+
+def key_of(term: EffectUse) -> tuple[str, str]:
+    """Id, and the channel or parameter that the effect speaks of ('' for none)."""
+    return term.id, str(term.values.get("channel", term.values.get("parameter", "")))
+
+
+def sensors_of(model: Model) -> Array:
+    """Gain, offset and delay of each channel (3 x 3) from a model's sensor effects."""
+    sensors = np.asarray(ideal_sensors(1)[0])
+    for use in model.effects:
+        column = _SENSORS.get(use.id)
+        channel = str(use.values.get("channel", ""))
+        if column is None or channel not in OUTPUTS:
+            continue
+        value = float(use.values[EFFECTS[use.id].parameters[0].name])
+        row = OUTPUTS.index(channel)
+        if column == SENSOR_GAIN:
+            sensors[row, SENSOR_GAIN] *= value
+        else:
+            sensors[row, column] += value
+    return sensors

@@ -1,0 +1,136 @@
+"""Weighted simulation errors of a hypothesis over all recordings, and their derivatives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._coordinates import Hypothesis
+from hil.analysis.diagnosis._trace import Trace
+from sim_backend.plant import simulate_many
+
+Array = npt.NDArray[np.float64]
+
+STARTS = 3  # free initial values of each recording: motor speed, wheel speed, shaft torque
+_HUGE = 1e12
+
+
+@dataclass(frozen=True)
+class Normal:
+    """Normal equations of one recording: of the shared coordinates, of its start, and between them."""
+
+    shared: Array
+    between: Array
+    start: Array
+    shared_gradient: Array
+    start_gradient: Array
+
+
+class Problem:
+    """Recordings with the noise levels that weigh them.
+
+    `weights` are trace by trace (3,): what one block's error is multiplied by, 0 for a missing channel.
+    """
+
+    def __init__(self, traces: list[Trace], noise: Array) -> None:
+        self.traces = traces
+        self.noise = noise
+        self.weights = [
+            np.where(t.has, np.sqrt(t.block) / np.where(noise > 0, noise, np.inf), 0.0) for t in traces
+        ]
+        self.rows = int(sum(np.count_nonzero(t.has) * len(t.measured) for t in traces))
+
+    def first_starts(self, hypothesis: Hypothesis) -> list[Array]:
+        """Initial values read from the recordings, completed by the model where a channel is missing."""
+        ratio = hypothesis.base.parameters["gear_ratio"]
+        starts = []
+        for trace in self.traces:
+            motor, wheel, shaft = trace.start
+            if not np.isfinite(motor):
+                motor = wheel * ratio if np.isfinite(wheel) else 0.0
+            if not np.isfinite(wheel):
+                wheel = motor / ratio
+            starts.append(np.array([motor, wheel, shaft if np.isfinite(shaft) else 0.0]))
+        return starts
+
+    def outputs(self, trace: int, slots: Array, sensors: Array, starts: Array) -> Array:
+        """Simulated channels of one recording for many sets: sets x blocks x 3."""
+        t = self.traces[trace]
+        return np.asarray(simulate_many(slots, t.torque, t.dt, starts, sensors, t.block))
+
+    def errors(self, trace: int, simulated: Array) -> Array:
+        """Weighted measured minus simulated, blocks x 3, 0 where not measured."""
+        weights = self.weights[trace]
+        difference = np.where(weights > 0, self.traces[trace].measured - simulated, 0.0)
+        return np.nan_to_num(difference * weights, nan=_HUGE, posinf=_HUGE, neginf=-_HUGE)
+
+    def costs(self, points: list[tuple[Array, Array]], starts: list[Array]) -> Array:
+        """Sum of squared errors of several points (slots, sensors); `starts`: per recording, points x 3."""
+        slots = np.stack([p for p, _ in points])
+        sensors = np.stack([s for _, s in points])
+        total = np.zeros(len(points))
+        for index in range(len(self.traces)):
+            simulated = self.outputs(index, slots, sensors, starts[index])
+            total += np.array([np.sum(self.errors(index, one) ** 2) for one in simulated])
+        return total
+
+    def linearised(
+        self, hypothesis: Hypothesis, theta: Array, starts: list[Array]
+    ) -> tuple[float, list[Normal], list[tuple[Array, Array, Array]]]:
+        """Cost, normal equations, and per recording the errors and weighted derivatives.
+
+        Derivatives are (rows, coordinates) and (rows, STARTS) with rows = blocks x 3 flattened.
+        """
+        coordinates = hypothesis.coordinates()
+        points = [hypothesis.packed(theta)]
+        for index, c in enumerate(coordinates):
+            moved = theta.copy()
+            moved[index] += c.step if theta[index] + c.step <= c.upper else -c.step
+            points.append(hypothesis.packed(moved))
+        slots = np.stack([p for p, _ in points] + [points[0][0]] * STARTS)
+        sensors = np.stack([s for _, s in points] + [points[0][1]] * STARTS)
+        signed = np.array([c.step if v + c.step <= c.upper else -c.step for c, v in zip(coordinates, theta, strict=True)])
+        cost, normals, pieces = 0.0, [], []
+        for index, start in enumerate(starts):
+            steps = self.start_steps()
+            tried = np.tile(start, (len(slots), 1))
+            tried[len(points) :] += np.diag(steps)
+            simulated = self.outputs(index, slots, sensors, tried)
+            error = self.errors(index, simulated[0]).ravel()
+            weights = self.weights[index]
+            change = ((simulated[1:] - simulated[0]) * weights).reshape(len(slots) - 1, -1)
+            np.nan_to_num(change, copy=False)
+            shared = (change[: len(coordinates)] / signed[:, None]).T
+            initial = (change[len(coordinates) :] / steps[:, None]).T
+            cost += float(error @ error)
+            normals.append(normal_equations(shared, initial, error))
+            pieces.append((error, shared, initial))
+        return cost, normals, pieces
+
+    def start_steps(self) -> Array:
+        """Sizes of the finite differences in the initial values."""
+        typical = np.array([0.1, 0.0125, 1.0])
+        return np.where(np.isfinite(self.noise) & (self.noise > 0), 0.5 * self.noise, typical)
+
+
+def normal_equations(shared: Array, initial: Array, error: Array) -> Normal:
+    """Products of derivatives and errors."""
+    return Normal(shared.T @ shared, shared.T @ initial, initial.T @ initial, shared.T @ error, initial.T @ error)
+
+
+def reduced(normals: list[Normal]) -> tuple[Array, Array]:
+    """Normal equations with every recording's start eliminated."""
+    size = len(normals[0].shared_gradient)
+    matrix, gradient = np.zeros((size, size)), np.zeros(size)
+    for n in normals:
+        inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
+        matrix += n.shared - n.between @ inverse @ n.between.T
+        gradient += n.shared_gradient - n.between @ (inverse @ n.start_gradient)
+    return matrix, gradient
+
+
+def start_step(n: Normal, step: Array) -> Array:
+    """The best change of a recording's start when the shared coordinates change by `step`."""
+    return np.asarray(np.linalg.pinv(n.start, rcond=1e-10, hermitian=True) @ (n.start_gradient - n.between.T @ step))

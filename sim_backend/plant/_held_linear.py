@@ -1,0 +1,113 @@
+"""The linear part of a driveline over one held step, as matrices: what makes many replays affordable.
+
+Without nonlinear forces a held input moves the state exactly by a matrix product. Nonlinear forces are
+split off as three inputs that vary linearly over a step (exponential time differencing, order two):
+x' = A·x + B·[torque, extra shaft torque, extra rotor loss, load on the vehicle].
+Source: S. M. Cox, P. C. Matthews, J. Comput. Phys. 176 (2002) 430-455.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import expm
+
+from sim_backend.plant import _slots as P
+
+Array = npt.NDArray[np.float64]
+
+ROTOR, TWIST, WHEEL, TYRE, VEHICLE, LAGGED, HOUSING_ANGLE, HOUSING = range(8)
+STATES = 8
+INPUTS = 4
+
+
+def system(p: Array) -> tuple[Array, Array]:
+    """A (8 x 8) and B (8 x 4) of the linear part of a packed model, SI units."""
+    a, b = np.zeros((STATES, STATES)), np.zeros((STATES, INPUTS))
+    if p[P.KIND] == P.RIGID:
+        _rigid(p, a, b)
+    else:
+        _chain(p, a, b)
+    if p[P.LAG] > 0.0:
+        a[:, LAGGED] += b[:, 0]
+        b[:, 0] = 0.0
+        a[LAGGED, :] = 0.0
+        a[LAGGED, LAGGED], b[LAGGED, 0] = -1.0 / p[P.LAG], 1.0 / p[P.LAG]
+    return a, b
+
+
+def _rigid(p: Array, a: Array, b: Array) -> None:
+    n = p[P.GEAR_RATIO]
+    inertia = p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / n**2
+    for state, share in ((ROTOR, 1.0), (WHEEL, 1.0 / n), (VEHICLE, 1.0 / n)):
+        a[state, ROTOR] = -share * p[P.DRAG] / inertia
+        b[state] = np.array([share, 0.0, -share, -share / n]) / inertia
+
+
+def _chain(p: Array, a: Array, b: Array) -> None:
+    n = p[P.GEAR_RATIO]
+    slope = np.zeros(STATES)  # of the twist
+    slope[ROTOR], slope[HOUSING], slope[WHEEL] = 1.0 / n, 1.0 - 1.0 / n, -1.0
+    shaft = p[P.SHAFT_DAMPING] * slope
+    shaft[TWIST] += p[P.SHAFT_STIFFNESS]
+    loss = np.zeros(STATES)
+    loss[ROTOR], loss[HOUSING] = p[P.DRAG], -p[P.DRAG]
+    a[TWIST] = slope
+    a[ROTOR] = (-loss - shaft / n) / p[P.MOTOR_INERTIA]
+    b[ROTOR] = np.array([1.0, -1.0 / n, -1.0, 0.0]) / p[P.MOTOR_INERTIA]
+    if p[P.HOUSING_INERTIA] > 0.0:
+        a[HOUSING_ANGLE, HOUSING] = 1.0
+        a[HOUSING] = (loss - (1.0 - 1.0 / n) * shaft) / p[P.HOUSING_INERTIA]
+        a[HOUSING, HOUSING_ANGLE] -= p[P.MOUNT_STIFFNESS] / p[P.HOUSING_INERTIA]
+        a[HOUSING, HOUSING] -= p[P.MOUNT_DAMPING] / p[P.HOUSING_INERTIA]
+        b[HOUSING] = np.array([-1.0, 1.0 / n - 1.0, 1.0, 0.0]) / p[P.HOUSING_INERTIA]
+    if p[P.KIND] == P.TWO_INERTIA:
+        a[WHEEL] = a[VEHICLE] = shaft / p[P.VEHICLE_INERTIA]
+        b[WHEEL] = b[VEHICLE] = np.array([0.0, 1.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
+        return
+    road = np.zeros(STATES)
+    road[TYRE], road[WHEEL], road[VEHICLE] = p[P.TYRE_STIFFNESS], p[P.TYRE_DAMPING], -p[P.TYRE_DAMPING]
+    a[WHEEL] = (shaft - road) / p[P.WHEEL_INERTIA]
+    b[WHEEL] = np.array([0.0, 1.0, 0.0, 0.0]) / p[P.WHEEL_INERTIA]
+    a[TYRE, WHEEL], a[TYRE, VEHICLE] = 1.0, -1.0
+    a[VEHICLE] = road / p[P.VEHICLE_INERTIA]
+    b[VEHICLE] = np.array([0.0, 0.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
+
+
+def held_step(a: Array, b: Array, duration: float) -> tuple[Array, Array, Array]:
+    """Transition over `duration`, effect of inputs held, and of inputs that rise from 0 to 1 over it."""
+    size = STATES + 2 * INPUTS
+    block = np.zeros((size, size))
+    block[:STATES, :STATES], block[:STATES, STATES : STATES + INPUTS] = a, b
+    block[STATES : STATES + INPUTS, STATES + INPUTS :] = np.eye(INPUTS) / max(duration, 1e-12)
+    power = np.asarray(expm(block * duration))
+    return (
+        power[:STATES, :STATES],
+        power[:STATES, STATES : STATES + INPUTS],
+        power[:STATES, STATES + INPUTS :],
+    )
+
+
+def step_matrices(p: Array, dt: float, substeps: int) -> tuple[Array, Array, Array, Array]:
+    """What the compiled loop needs of one packed model.
+
+    Returns:
+        transition (8 x 8, transposed), torque columns (substeps x 2 x 8: effect of the older and the newer
+        torque in each substep, the switch laid exactly), held forces (3 x 8), rising forces (3 x 8).
+    """
+    a, b = system(p)
+    h = dt / substeps
+    transition, held, rising = held_step(a, b, h)
+    late = p[P.TORQUE_DELAY] - np.floor(p[P.TORQUE_DELAY] / dt + 1e-9) * dt
+    torque = np.zeros((substeps, 2, STATES))
+    for index in range(substeps):
+        before = float(np.clip(late - index * h, 0.0, h))
+        if before >= h - 1e-12:
+            torque[index, 0] = held[:, 0]
+        elif before <= 1e-12:
+            torque[index, 1] = held[:, 0]
+        else:
+            rest, new, _ = held_step(a, b, h - before)
+            torque[index, 0] = rest @ held_step(a, b, before)[1][:, 0]
+            torque[index, 1] = new[:, 0]
+    return transition.T.copy(), torque, held[:, 1:].T.copy(), rising[:, 1:].T.copy()

@@ -1,0 +1,68 @@
+import pytest
+
+from drivers import BusLoop, DynoDriver, DynoNodes, VehicleParameters, Wire
+from hil.core.errors import BadInputError, BenchError
+from sim_backend.bench import Fault
+from sim_backend.can_interface import SimulatedBus, attached
+from tests.benches_for_tests import SIM, running
+
+
+def test_the_vehicle_model_is_told_and_read_back():
+    vehicle = SIM.vehicle.model_copy(update={"inertia_kg_m2": 250.0, "rolling_nm": 20.0, "slip": 0.05})
+    with running("vehicle", vehicle=vehicle) as bench:
+        bench.loop.run_for(0.01)
+        left = attached("vehicle").dynos[0]
+        assert [left.number(0x2000, i) for i in (1, 2)] == [250.0, 20.0]
+        assert left.number(0x2000, 4) == pytest.approx(0.05)
+
+
+def test_states_are_reached_and_left():
+    with running("states") as bench:
+        bench.dyno.enable(10.0)
+        assert bench.dyno.left.state == "operation enabled"
+        assert not bench.dyno.is_off()
+        bench.dyno.disable()
+        assert bench.loop.wait_for(bench.dyno.is_off, 0.1)
+
+
+def test_enabling_resets_a_fault_without_passing_through_torque():
+    with running("reset") as bench:
+        world = attached("reset")
+        world.dynos[1].power.fail()
+        bench.loop.run_for(0.05)
+        assert bench.dyno.right.state == "fault"
+        bench.dyno.enable(10.0)
+        assert bench.dyno.right.state == "operation enabled"
+
+
+def test_a_deaf_dyno_is_named():
+    with running("deaf") as bench:
+        attached("deaf").fail(Fault.DYNO_DEAF)
+        with pytest.raises(BenchError, match="rear left.*node 3"):
+            bench.dyno.enable(10.0)
+
+
+def test_missing_nodes_are_named():
+    with running("missing"):
+        world = attached("missing")
+        wire = Wire("dyno", SimulatedBus("missing/dyno"), world)
+        nodes = DynoNodes(3, 4, {"front left": 9})
+        driver = DynoDriver(BusLoop(world, [wire]), wire, SIM.dyno.eds, nodes, VehicleParameters())
+        with pytest.raises(BenchError, match=r"front left \(node 9\)"):
+            driver.start()
+        wire.close()
+
+
+def test_an_eds_without_the_measured_values_is_refused(tmp_path):
+    path = tmp_path / "other.eds"
+    path.write_text(SIM.dyno.eds.read_text().replace("0x21010020", "0x2ABC0020"))
+    with running("eds") as bench, pytest.raises(BadInputError, match="0x2ABC"):
+        DynoDriver(bench.loop, bench.loop.wires[1], path, DynoNodes(), VehicleParameters())
+
+
+def test_emergencies_are_told():
+    with running("emcy") as bench:
+        world = attached("emcy")
+        world.dynos[0]._node.emcy.send(0x4310, 1)
+        bench.loop.run_for(0.05)
+        assert any("0x4310" in text for text in bench.dyno.troubles())

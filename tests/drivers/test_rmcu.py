@@ -1,0 +1,85 @@
+import numpy as np
+import pytest
+
+from drivers import BusLoop, RmcuDriver, Wire
+from hil.core.controller import load_controller
+from hil.core.errors import BadInputError, BenchError
+from sim_backend.bench import Fault
+from sim_backend.can_interface import SimulatedBus, attached
+from test_plans import load_plan
+from tests.benches_for_tests import SIM, running
+
+CONTROLLERS = load_plan("acceptance").source.parent / "controllers"
+
+
+def test_a_controller_is_written_and_read_back():
+    controller = load_controller(CONTROLLERS / "phase_stabilization.toml")
+    with running("write") as bench:
+        bench.rmcu.write_controller(controller)
+        bench.loop.run_for(0.02)
+        stored = attached("write").rmcu._stored
+    assert stored["k_p"] == np.float32(2.6775)
+    assert stored["lead_gain"] == np.float32(controller.wsc.lead.alpha)
+    assert stored["notch_frequency"] == 0.0
+    assert stored["den_5"] == 1.0
+    assert stored["shaft_0"] == 0.0
+
+
+def test_a_refused_parameter_is_named_with_the_reason():
+    controller = load_controller(CONTROLLERS / "gain_stabilization.toml")
+    with running("refused") as bench:
+        with pytest.raises(BenchError, match="torque_limit.*out_of_range"):
+            bench.rmcu.write_controller(controller.model_copy(update={"torque_limit_nm": 1e4}))
+        for payload in bench.rmcu.requests("motor_torque", np.zeros(3)):
+            bench.rmcu.send(payload)
+            bench.loop.step()
+        with pytest.raises(BenchError, match="not_off"):
+            bench.rmcu.write_controller(controller)
+
+
+def test_an_unstable_filter_is_refused_by_the_rmcu():
+    controller = load_controller(CONTROLLERS / "gain_stabilization.toml")
+    plant = controller.plant.model_copy(update={"shaft_torque": (1.0, -5.0, 1.0)})
+    with running("unstable") as bench, pytest.raises(BenchError, match="apply.*out_of_range"):
+        bench.rmcu.write_controller(controller.model_copy(update={"plant": plant}))
+
+
+def test_a_silent_rmcu_is_named():
+    controller = load_controller(CONTROLLERS / "gain_stabilization.toml")
+    with running("silent") as bench:
+        attached("silent").fail(Fault.RMCU_SILENT)
+        with pytest.raises(BenchError, match="no reply"):
+            bench.rmcu.write_controller(controller)
+
+
+def test_counters_go_on_from_block_to_block():
+    with running("counters") as bench:
+        payloads = bench.rmcu.requests("motor_torque", np.zeros(10))
+        payloads += bench.rmcu.requests("off", np.zeros(10))
+        counters = [payload[0] & 15 for payload in payloads]
+        assert counters == [(counters[0] + i) % 16 for i in range(20)]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("MotorSpeed", "Drehzahl"), "'RMCU_Status' has no signal 'MotorSpeed'"),
+        (("RMCU_Request", "Request"), "no message 'RMCU_Request'"),
+        (("BO_ 256", "BO_ x256"), "not a DBC"),
+    ],
+)
+def test_a_dbc_that_lacks_something_is_refused_by_name(change, said, tmp_path):
+    path = tmp_path / "other.dbc"
+    path.write_text(SIM.rmcu.dbc.read_text().replace(*change))
+    with running("dbc"):
+        world = attached("dbc")
+        bus = SimulatedBus("dbc/rmcu")
+        wire = Wire("rmcu", bus, world)
+        with pytest.raises(BadInputError, match=said):
+            RmcuDriver(BusLoop(world, [wire]), wire, path)
+        wire.close()
+
+
+def test_a_missing_dbc_says_where_to_look(tmp_path):
+    with running("nodbc") as bench, pytest.raises(BadInputError, match=r"\[rmcu\] dbc"):
+        RmcuDriver(bench.loop, bench.loop.wires[0], tmp_path / "none.dbc")

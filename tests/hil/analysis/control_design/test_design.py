@@ -1,0 +1,131 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from hil.analysis.control_design import Design, DesignSpec, MarginLimits, design, measured_loop
+from hil.analysis.identification import Identification
+from hil.core.controller import controller_from_toml, controller_to_toml
+from hil.core.errors import BadInputError
+from hil.core.model import Model
+from tests.hil.analysis.identification.chains import THREE, TWO
+
+
+@pytest.fixture(scope="module")
+def paper_design(paper_model: Model) -> Design:
+    return design(paper_model, DesignSpec(inertia_kg_m2=4.4625))
+
+
+@pytest.fixture(scope="module")
+def optimised(paper_model: Model) -> Design:
+    return design(paper_model, DesignSpec(optimise=True))
+
+
+def test_controller_of_the_paper(paper_design: Design) -> None:
+    controller = paper_design.controller
+    assert controller.stabilization == "phase"
+    assert controller.wsc.proportional_gain == pytest.approx(2.6775)
+    assert controller.wsc.integral_gain == pytest.approx(0.4016, abs=5e-5)
+    assert controller.wsc.lead is not None
+    assert controller.wsc.lead.alpha == pytest.approx(0.25962, abs=5e-6)
+    assert controller.dfc.integral_gain == 0.001
+    assert controller.dfo.time_constant_s == pytest.approx(1 / 125.6)
+    assert controller.dfo.gear_ratio == pytest.approx(8.148, abs=5e-4)
+    assert controller.dfo.wheel_inertia_kg_m2 == pytest.approx(4.355, rel=0.01)
+    assert controller_from_toml(controller_to_toml(controller), "again") == controller
+
+
+def test_phase_beats_gain_at_the_resonance_and_loses_around_thirty_hertz(paper_design: Design) -> None:
+    """The paper's statement on Figs. 11 and 12."""
+    frequency = paper_design.frequency_hz
+
+    def sensitivity(name: str, at_hz: float) -> float:
+        return float(1 / abs(1 + np.interp(at_hz, frequency, paper_design.loop(name).sampled)))
+
+    assert sensitivity("phase", 10.6) < 0.6 * sensitivity("gain", 10.6)
+    assert paper_design.loop("phase").margins.sensitivity_peak_hz > 30
+    assert abs(np.angle(np.interp(10.6, frequency, paper_design.loop("phase").sampled), deg=True)) < abs(
+        np.angle(np.interp(10.6, frequency, paper_design.loop("pi").sampled), deg=True)
+    )
+
+
+def test_hold_costs_half_a_sample_of_phase(paper_design: Design) -> None:
+    loop = paper_design.loop("pi")
+    row = int(np.argmin(np.abs(paper_design.frequency_hz - 10.0)))
+    turn = np.angle(loop.sampled[row] / loop.continuous[row], deg=True)
+    assert turn == pytest.approx(-360 * 10.0 * 0.0005, abs=0.1)
+
+
+def test_optimum_beats_the_papers_lead(paper_design: Design, optimised: Design) -> None:
+    best, paper = optimised.loop("phase").margins, paper_design.loop("phase").margins
+    assert best.comfort_peak < 0.85 * paper.comfort_peak
+    assert best.stable
+    limits = MarginLimits()
+    worst = optimised.robustness
+    assert worst.stable_share == 1.0
+    assert worst.sensitivity_peak <= limits.sensitivity_peak * 1.006
+    assert worst.gain_margin_db >= limits.gain_margin_db * 0.994
+    assert worst.phase_margin_deg >= limits.phase_margin_deg * 0.994
+    assert worst.delay_margin_s >= limits.delay_margin_s * 0.994
+
+
+def test_impossible_limits_are_refused(paper_model: Model) -> None:
+    spec = DesignSpec(optimise=True, limits=MarginLimits(sensitivity_peak=1.01))
+    with pytest.raises(BadInputError, match="no lead keeps"):
+        design(paper_model, spec)
+
+
+def test_identified_uncertainty_is_used(paper_identification: Identification) -> None:
+    found = design(paper_identification.model, DesignSpec())
+    assert "fit's covariance" in found.robustness.source
+    assert found.robustness.sensitivity_peak == pytest.approx(
+        found.loop("phase").margins.sensitivity_peak, rel=0.02
+    )
+    points = measured_loop(found, paper_identification.frf)
+    expected = np.interp(
+        paper_identification.frf.frequency_hz, found.frequency_hz, found.loop("phase").sampled
+    )
+    assert np.median(np.abs(points["phase"] / expected - 1)) < 0.01
+
+
+def test_physical_chain_is_accepted() -> None:
+    found = design(Model("three_inertia", THREE), DesignSpec())
+    assert found.controller.dfo.wheel_inertia_kg_m2 == THREE["wheel_inertia"]
+    assert found.loop("phase").margins.stable
+
+
+def test_two_inertias_need_the_wheels_inertia() -> None:
+    with pytest.raises(BadInputError, match="wheels' inertia"):
+        design(Model("two_inertia", TWO), DesignSpec())
+    found = design(Model("two_inertia", TWO), DesignSpec(wheel_inertia_kg_m2=4.0))
+    assert found.controller.dfo.wheel_inertia_kg_m2 == 4.0
+
+
+def test_notch_instead_of_lead(paper_model: Model) -> None:
+    found = design(paper_model, DesignSpec(stabilisation="gain", notch_hz=10.6))
+    assert found.controller.stabilization == "gain"
+    assert found.controller.wsc.notch is not None
+    assert "notch" in found.discrete
+
+
+def test_unstable_choice_is_said(paper_model: Model) -> None:
+    found = design(paper_model, DesignSpec(pole_rad_s=3.0))
+    assert not found.loop("phase").margins.stable
+    assert any("UNSTABLE" in note for note in found.notes)
+
+
+@pytest.mark.parametrize(
+    "change", [{"pole_rad_s": 0.0}, {"torque_limit_nm": -1.0}, {"inertia_kg_m2": np.nan}]
+)
+def test_impossible_values(paper_model: Model, change: dict[str, float]) -> None:
+    with pytest.raises(BadInputError, match="positive"):
+        design(paper_model, replace(DesignSpec(), **change))  # type: ignore[arg-type]
+
+
+def test_trade_off_rises_with_the_phase(paper_design: Design) -> None:
+    chart = paper_design.trade_off
+    at_forty = int(np.flatnonzero(chart.frequencies_hz == 40)[0])
+    assert np.all(np.diff(chart.phase_deg[:, at_forty]) > 0)
+    assert chart.sensitivity_peak.shape == chart.phase_deg.shape

@@ -1,0 +1,118 @@
+import json
+import resource
+import signal
+
+import numpy as np
+import pytest
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
+from hypothesis import given
+from hypothesis import strategies as st
+from mcap.reader import make_reader
+
+from hil.core.errors import BadInputError, BenchError
+from hil.core.frames import FRAME
+from hil.core.recording import RecordingWriter, read_frames, read_recording
+
+NAMES = ["time_s", "motor_torque_ref_nm", "motor_speed_rad_s", *[f"extra_{i}" for i in range(20)]]
+
+
+def frames(count: int) -> np.ndarray:
+    block = np.zeros(count, FRAME)
+    block["time_s"] = np.arange(count) * 1e-3
+    block["id"] = 0x110
+    block["length"] = 8
+    block["data"] = np.arange(count, dtype=np.uint64) << np.uint64(40)
+    return block
+
+
+def write(path, samples=3000):
+    rows = np.random.default_rng(0).standard_normal((samples, len(NAMES)))
+    rows[:, 0] = np.arange(samples) * 1e-3
+    writer = RecordingWriter(path, NAMES, ["rmcu", "dyno"])
+    for start in range(0, samples, 10):
+        writer.add_frames("rmcu", frames(10))
+        writer.add_rows(rows[start : start + 10])
+    writer.add_event(1.5, "arm", "drives enabled")
+    writer.attach("plan.yaml", b"name: x")
+    writer.describe("dut", {"name": "axle"})
+    writer.close()
+    return rows
+
+
+def test_everything_comes_back(tmp_path):
+    rows = write(tmp_path / "r.mcap")
+    read = read_recording(tmp_path / "r.mcap")
+    for column, name in enumerate(NAMES):
+        np.testing.assert_array_equal(read[name], rows[:, column])
+    assert read.attachments["plan.yaml"] == b"name: x"
+    assert read.metadata["dut"] == {"name": "axle"}
+    assert (read.events[0].time_s, read.events[0].kind) == (1.5, "arm")
+    assert read.notes == []
+    raw = read_frames(tmp_path / "r.mcap")
+    np.testing.assert_array_equal(raw["rmcu"][:10], frames(10))
+    assert len(raw["rmcu"]) == 3000
+    assert len(raw["dyno"]) == 0
+
+
+def test_other_readers_understand_the_schemas_in_the_file(tmp_path):
+    rows = write(tmp_path / "r.mcap", samples=20)
+    with (tmp_path / "r.mcap").open("rb") as file:
+        messages = list(make_reader(file).iter_messages(topics=["/channels", "/can/rmcu", "/events"]))
+    classes = {}
+    for schema, channel, message in messages:
+        if channel.message_encoding == "json":
+            assert json.loads(message.data)["kind"] == "arm"
+            continue
+        if schema.name not in classes:
+            pool = descriptor_pool.DescriptorPool()
+            for file in descriptor_pb2.FileDescriptorSet.FromString(schema.data).file:
+                pool.Add(file)
+            classes[schema.name] = message_factory.GetMessageClass(pool.FindMessageTypeByName(schema.name))
+        decoded = classes[schema.name].FromString(message.data)
+        if schema.name == "hil.Channels":
+            sample = round(decoded.time_s * 1000)
+            assert decoded.extra_19 == rows[sample, NAMES.index("extra_19")]
+        else:
+            assert list(decoded.data) == frames(10)["data"].tolist()
+            assert decoded.length == b"\x08" * 10
+    assert set(classes) == {"hil.Channels", "hil.CanFrames"}
+
+
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.9, 0.999])
+def test_a_recording_that_was_cut_gives_what_is_whole_and_says_so(share, tmp_path):
+    rows = write(tmp_path / "r.mcap")
+    content = (tmp_path / "r.mcap").read_bytes()
+    (tmp_path / "cut.mcap").write_bytes(content[: int(len(content) * share)])
+    try:
+        read = read_recording(tmp_path / "cut.mcap")
+    except BadInputError as error:
+        assert share < 0.5
+        assert "broken" in str(error)
+        return
+    assert "cut off" in read.notes[0]
+    np.testing.assert_array_equal(read["time_s"], rows[: len(read.time_s), 0])
+
+
+@given(st.integers(0, 60_000), st.integers(0, 255))
+def test_a_broken_byte_never_gives_a_traceback(tmp_path_factory, position, value):
+    path = tmp_path_factory.mktemp("broken") / "r.mcap"
+    write(path, samples=50)
+    content = bytearray(path.read_bytes())
+    content[position % len(content)] = value
+    path.write_bytes(bytes(content))
+    try:
+        read_recording(path)
+    except BadInputError as error:
+        assert str(path) in str(error)
+
+
+def test_a_full_disk_is_a_bench_failure_with_advice(tmp_path):
+    previous = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, limits[1]))
+    try:
+        with pytest.raises(BenchError, match="make room"):
+            write(tmp_path / "r.mcap", samples=100_000)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+        signal.signal(signal.SIGXFSZ, previous)

@@ -1,0 +1,34 @@
+from __future__ import annotations
+
+import warnings
+
+import pytest
+from matplotlib.mathtext import MathTextParser
+
+from hil.core.channels import CHANNELS
+from reports.labels import Label, channel_label, pieces, sentence_html
+
+
+def test_symbols_become_subscripts() -> None:
+    assert channel_label("motor_speed_rad_s").as_html() == "Motor speed <i>ω</i><sub>m</sub>"
+    assert channel_label("driving_torque_est_nm").as_mathtext().endswith(r"$r\hat{F}_\mathrm{d}$")
+
+
+@pytest.mark.parametrize("name", CHANNELS)
+def test_matplotlib_can_set_every_symbol(name: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert MathTextParser("path").parse(channel_label(name).as_mathtext()).width > 0
+
+
+def test_words_of_a_user_stay_words() -> None:
+    label = Label("a <b> $x$", "T_s")
+    assert label.as_html() == "a &lt;b&gt; $x$ <i>T</i><sub>s</sub>"
+    assert label.as_mathtext() == r"a <b> \$x\$ $T_\mathrm{s}$"
+
+
+def test_a_sentence_is_cut_at_known_symbols_only() -> None:
+    text = "Peak of T_s, not of T_sum or x_y"
+    assert [piece for piece, known in pieces(text) if known] == ["T_s"]
+    assert "".join(piece for piece, _ in pieces(text)) == text
+    assert sentence_html("T_s < 5") == "<i>T</i><sub>s</sub> &lt; 5"

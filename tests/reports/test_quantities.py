@@ -1,0 +1,45 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from reports import quantities
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (357.123, "357.1"),
+        (0.0213456, "0.02135"),
+        (12345.6, "12\u202f346"),
+        (-4.5678, "−4.568"),
+        (0.0, "0"),
+        (2.5e-7, "2.500\u202f×\u202f10⁻⁷"),
+        (None, "–"),
+        (math.nan, "–"),
+        (-math.inf, "−∞"),
+    ],
+)
+def test_numbers_have_four_digits_and_a_true_minus(value: float | None, text: str) -> None:
+    assert quantities.number(value) == text
+
+
+def test_rounding_leaves_no_negative_zero() -> None:
+    assert quantities.number(-0.0004, decimals=2) == "0.00"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(564.0, "564"), (2.6775, "2.6775"), (0.001, "0.001"), (20, "20")]
+)
+def test_a_chosen_number_gains_no_digits(value: float, text: str) -> None:
+    assert quantities.nominal(value) == text
+
+
+def test_a_quantity_keeps_number_and_unit_together() -> None:
+    assert quantities.quantity(357.1, "N m") == "357.1\u202fN\u202fm"
+
+
+def test_file_sizes() -> None:
+    assert quantities.file_size(54) == "54\u202fB"
+    assert quantities.file_size(41_300_000) == "41.30\u202fMB"
