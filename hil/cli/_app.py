@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import difflib
+import functools
 import importlib
 import os
 import sys
 from collections.abc import Callable
 from typing import Any
 
-import click
 import typer
-import typer.core
 
-from hil.core.errors import HilError, InterruptError
+from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
 
 # name: (module, one line for `hil --help`). Modules are imported when their command is used.
 _COMMANDS = {
@@ -27,66 +27,59 @@ _COMMANDS = {
 }
 
 
-class _LazyGroup(click.Group):
-    """Imports a command's module only when it is asked for: `hil --help` answers at once."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        del ctx
-        return list(_COMMANDS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        del ctx
-        entry = _COMMANDS.get(cmd_name)
-        if entry is None:
-            return None
-        module = importlib.import_module(entry[0])
-        app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-        app.command(cmd_name, help=module.command.__doc__)(module.command)
-        command: Any = typer.main.get_command(app)
-        return command  # type: ignore[no-any-return]
-
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        del ctx
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, text) for name, (_, text) in _COMMANDS.items()])
-
-
-_app = _LazyGroup(
-    "hil",
-    help="Hardware-in-the-loop bench service for electric axles.",
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-
 def main() -> None:
     """Run the command line of this process and exit with its code."""
-    sys.exit(_guarded(lambda: _app.main(prog_name="hil", standalone_mode=False)))
+    sys.exit(_guarded(sys.argv[1:]))
 
 
-def _guarded(call: Callable[[], Any]) -> int:
-    try:
-        code = call()
+def _dispatch(arguments: list[str]) -> int:
+    if not arguments or arguments[0] in ("-h", "--help"):
+        print(_help())
+        return 0 if arguments else 2
+    name = arguments[0]
+    if name not in _COMMANDS:
+        near = difflib.get_close_matches(name, _COMMANDS, 1)
+        hint = f"did you mean '{near[0]}'?" if near else "see hil --help"
+        raise BadInputError(f"there is no command '{name}'", fix=hint)
+    command = importlib.import_module(_COMMANDS[name][0]).command
+    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
+    settings = {"help_option_names": ["-h", "--help"]}
+    app.command(name, help=command.__doc__, context_settings=settings)(_with_exit_code(command))
+    app(arguments[1:], prog_name=f"hil {name}")
+    return 0
+
+
+def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
+    @functools.wraps(command)
+    def call(*args: Any, **kwargs: Any) -> None:
+        try:
+            code = command(*args, **kwargs)
+        except KeyboardInterrupt:
+            raise InterruptError("interrupted") from None
         sys.stdout.flush()
+        raise SystemExit(code)
+
+    return call
+
+
+def _help() -> str:
+    width = max(map(len, _COMMANDS))
+    lines = [f"  {name:<{width}}  {text}" for name, (_, text) in _COMMANDS.items()]
+    head = (
+        "Usage: hil COMMAND [ARGS]...\n\nHardware-in-the-loop bench service for electric axles.\n\nCommands:"
+    )
+    return "\n".join([head, *lines, "", "hil COMMAND --help tells about one of them."])
+
+
+def _guarded(arguments: list[str]) -> int:
+    try:
+        return _dispatch(arguments)
     except HilError as error:
-        _say(str(error))
+        print(f"error: {error}", file=sys.stderr)
         return error.exit_code
-    except click.exceptions.Abort:
-        _say("interrupted")
-        return InterruptError.exit_code
-    except KeyboardInterrupt:
-        _say("interrupted")
-        return InterruptError.exit_code
-    except click.ClickException as error:
-        error.show()
-        return 2
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
-        _say(f"{error.filename or ''}: {error.strerror or error}".lstrip(": "))
-        return 3
-    return code if isinstance(code, int) else 0
-
-
-def _say(text: str) -> None:
-    print(f"error: {text}", file=sys.stderr)
+        print(f"error: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
+        return BenchError.exit_code

@@ -103,6 +103,7 @@ class _Run:
         finally:
             # Also when the interpreter itself is going down: nobody may be left with torque on.
             bench.loop.shielded = True
+            self._watch.active = False  # its work is done: what is beyond a limit is being taken down
             self._unsafe = reach_safe_state(bench) if self._armed else []
         return self._finish(time.perf_counter() - started)
 

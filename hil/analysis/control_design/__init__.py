@@ -1,13 +1,6 @@
 """Controllers from models, the paper's way, and how well they hold."""
 
-from hil.analysis.control_design._design import (
-    Design,
-    DesignSpec,
-    Loop,
-    Robustness,
-    design,
-    measured_loop,
-)
+from hil.analysis.control_design._design import design, measured_loop
 from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._laws import (
     Normalisation,
@@ -31,6 +24,7 @@ from hil.analysis.control_design._loop import (
 )
 from hil.analysis.control_design._optimize import MarginLimits, Objective, Optimum, optimize
 from hil.analysis.control_design._plant import DesignPlant, design_plant, resonance_hz
+from hil.analysis.control_design._spec import Design, DesignSpec, Loop, Robustness
 from hil.analysis.control_design._trade_off import TradeOff, trade_off
 from hil.analysis.control_design._uncertainty import PlantSet, possible_plants
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._laws import (
-    Normalisation,
     feed_forward,
     feedback_functions,
     lead,
@@ -20,16 +18,16 @@ from hil.analysis.control_design._laws import (
     speed_filter,
 )
 from hil.analysis.control_design._loop import (
-    Margins,
     feedback_response,
     hold_response,
     loop_grid,
     margins,
 )
-from hil.analysis.control_design._optimize import MarginLimits, Objective, Optimum, optimize
+from hil.analysis.control_design._optimize import optimize
 from hil.analysis.control_design._plant import DesignPlant, design_plant
-from hil.analysis.control_design._trade_off import TradeOff, trade_off
-from hil.analysis.control_design._uncertainty import PlantSet, possible_plants
+from hil.analysis.control_design._spec import Design, DesignSpec, Loop, Robustness
+from hil.analysis.control_design._trade_off import trade_off
+from hil.analysis.control_design._uncertainty import possible_plants
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification import fit_chain
 from hil.core.channels import OUTPUTS
@@ -39,91 +37,6 @@ from hil.core.model import Model, TransferFunction
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
-Stabilisation = Literal["phase", "gain"]
-
-
-@dataclass(frozen=True)
-class DesignSpec:
-    """What the designer chooses; defaults are the paper's (Table 1, sections 3.2 and 4.2)."""
-
-    stabilisation: Stabilisation = "phase"
-    pole_rad_s: float = 0.3
-    lead_deg: float = 36.0
-    lead_hz: float = 40.0
-    normalisation: Normalisation = "high_frequency"
-    notch_hz: float | None = None
-    notch_width: float = 2.0
-    notch_depth: float = 0.08
-    inertia_kg_m2: float | None = None
-    gear_ratio: float | None = None
-    wheel_inertia_kg_m2: float | None = None
-    torque_limit_nm: float = 150.0
-    sample_time_s: float = 0.001
-    speed_filter_time_s: float = 0.05
-    feed_forward_time_s: float = 0.05
-    observer_time_s: float = 1 / 125.6
-    dfc_integral_gain: float = 0.001
-    wheel_radius_m: float = 0.33
-    slip_floor_m_s: float = 1.0
-    slip_limit: float = 0.2
-    optimise: bool = False
-    objective: Objective = "max"
-    limits: MarginLimits = field(default_factory=MarginLimits)
-    name: str = ""
-
-
-@dataclass(frozen=True)
-class Loop:
-    """One open loop on the design's grid, as the RMCU closes it (sampled, held) and as in continuous time."""
-
-    name: str
-    sampled: ComplexArray
-    continuous: ComplexArray
-    margins: Margins
-    continuous_margins: Margins
-
-
-@dataclass(frozen=True)
-class Robustness:
-    """The worst over all possible plants, as sampled."""
-
-    source: str
-    stable_share: float
-    sensitivity_peak: float
-    comfort_peak: float
-    gain_margin_db: float
-    phase_margin_deg: float
-    delay_margin_s: float
-
-
-@dataclass(frozen=True)
-class Design:
-    """The controller and the evidence for it.
-
-    `loops` are, in this order: plant alone, PI, phase (PI and lead), gain (PI and notch), all on the
-    grid `frequency_hz`; `chosen` names the one that the controller closes. `discrete` holds the RMCU's
-    filters by name.
-    """
-
-    controller: Controller
-    plant: DesignPlant
-    spec: DesignSpec
-    frequency_hz: Array
-    loops: tuple[Loop, ...]
-    chosen: str
-    trade_off: TradeOff
-    robustness: Robustness
-    plants: PlantSet
-    optimum: Optimum | None
-    discrete: dict[str, DiscreteFilter]
-    notes: tuple[str, ...]
-
-    def loop(self, name: str) -> Loop:
-        """One of the loops; KeyError if there is none of that name."""
-        for loop in self.loops:
-            if loop.name == name:
-                return loop
-        raise KeyError(name)
 
 
 def design(model: Model, spec: DesignSpec, *, progress: Callable[[str], None] = lambda _: None) -> Design:
@@ -133,7 +46,7 @@ def design(model: Model, spec: DesignSpec, *, progress: Callable[[str], None] = 
         BadInputError: the model lacks an output, a resonance or an inertia; values out of range; with
             `optimise`, no controller keeps the limits.
     """
-    _check(spec)
+    spec.check()
     plant = design_plant(model)
     motor = plant.functions[OUTPUTS[0]]
     notes = list(plant.notes)
@@ -217,23 +130,6 @@ def measured_loop(design: Design, frf: FrequencyResponse) -> dict[str, ComplexAr
     for name, wsc in _speed_controls(design.spec, gains, design.plant.resonance_hz).items():
         found[name] = measured * feedback_response(feedback_functions(wsc), frf.frequency_hz, step)
     return found
-
-
-def _check(spec: DesignSpec) -> None:
-    positive: dict[str, Any] = {
-        "--pole": abs(spec.pole_rad_s),
-        "--sample-time": spec.sample_time_s,
-        "--torque-limit": spec.torque_limit_nm,
-        "--inertia": spec.inertia_kg_m2,
-        "--gear-ratio": spec.gear_ratio,
-        "--wheel-inertia": spec.wheel_inertia_kg_m2,
-        "--notch-hz": spec.notch_hz,
-    }
-    for option, value in positive.items():
-        if value is not None and not (np.isfinite(value) and value > 0):
-            raise BadInputError(f"{option} is {value:g}", fix="give a positive number")
-    if spec.optimise and spec.stabilisation == "gain":
-        raise BadInputError("--optimize searches a lead", fix="leave out --notch-hz")
 
 
 def _speed_controls(spec: DesignSpec, gains: tuple[float, float], resonance_hz: float) -> dict[str, Wsc]:

@@ -91,7 +91,9 @@ class Problem:
             points.append(hypothesis.packed(moved))
         slots = np.stack([p for p, _ in points] + [points[0][0]] * STARTS)
         sensors = np.stack([s for _, s in points] + [points[0][1]] * STARTS)
-        signed = np.array([c.step if v + c.step <= c.upper else -c.step for c, v in zip(coordinates, theta, strict=True)])
+        signed = np.array(
+            [c.step if v + c.step <= c.upper else -c.step for c, v in zip(coordinates, theta, strict=True)]
+        )
         cost, normals, pieces = 0.0, [], []
         for index, start in enumerate(starts):
             steps = self.start_steps()
@@ -117,7 +119,9 @@ class Problem:
 
 def normal_equations(shared: Array, initial: Array, error: Array) -> Normal:
     """Products of derivatives and errors."""
-    return Normal(shared.T @ shared, shared.T @ initial, initial.T @ initial, shared.T @ error, initial.T @ error)
+    return Normal(
+        shared.T @ shared, shared.T @ initial, initial.T @ initial, shared.T @ error, initial.T @ error
+    )
 
 
 def reduced(normals: list[Normal]) -> tuple[Array, Array]:
@@ -133,4 +137,6 @@ def reduced(normals: list[Normal]) -> tuple[Array, Array]:
 
 def start_step(n: Normal, step: Array) -> Array:
     """The best change of a recording's start when the shared coordinates change by `step`."""
-    return np.asarray(np.linalg.pinv(n.start, rcond=1e-10, hermitian=True) @ (n.start_gradient - n.between.T @ step))
+    return np.asarray(
+        np.linalg.pinv(n.start, rcond=1e-10, hermitian=True) @ (n.start_gradient - n.between.T @ step)
+    )

@@ -156,7 +156,7 @@ def _periods(experiment: Experiment, period: int, harmonics: npt.NDArray[np.intp
     output = output - slope[:, None, None] * np.arange(shape[0] * period).reshape(shape)
     u = fft.rfft(experiment.input[part].reshape(shape), axis=-1)[:, harmonics] / period
     y = fft.rfft(output, axis=-1)[:, :, harmonics] / period
-    return _Realisation(u, y)
+    return _Realisation(u, np.asarray(y, complex))
 
 
 def _group(realisations: list[_Realisation]) -> list[_Realisation]:

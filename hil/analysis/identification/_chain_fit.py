@@ -25,6 +25,7 @@ _HALVED = 0.5
 _NOTICEABLE = 0.01  # rms of the logarithm: 0.09 dB and 0.6 degrees
 _USUAL_MODEL_ERROR = 0.03  # relative; data less sure than this count less
 _SMALLEST = {"shaft_damping": 1e-3, "tyre_damping": 1e-3, "viscous_drag": 1e-6, "torque_delay": 1e-5}
+_LARGEST = {"torque_delay": 0.9, "gear_ratio": 1e3}
 
 
 @dataclass(frozen=True)
@@ -144,44 +145,61 @@ def fit_chain(
         raise BadInputError(
             f"a chain needs '{OUTPUTS[0]}' and another output; there are: {', '.join(frf.outputs)}"
         )
-    rows = [OUTPUTS.index(name) for name in frf.outputs]
-    relative = frf.standard_deviation / np.abs(frf.response)
-    weight = 1 / np.hypot(1.0, relative / _USUAL_MODEL_ERROR)
-    given = {"gear_ratio": gear_ratio, "torque_delay": torque_delay_s}
-    known = {name: value for name, value in given.items() if value is not None}
-    names = [n for n in parameter_names(kind) if n not in known]
-
-    def parameters(theta: Array) -> dict[str, float]:
-        return known | {name: float(np.exp(value)) for name, value in zip(names, theta, strict=True)}
-
-    def residual(theta: Array) -> Array:
-        ratio = chain_response(kind, parameters(theta), frf.frequency_hz)[rows] / frf.response
-        error = weight * np.log(ratio)
-        return np.concatenate([error.real.ravel(), error.imag.ravel()])
-
-    low = np.array([np.log(_SMALLEST.get(n, 1e-6)) for n in names])
-    high = np.array([np.log(0.9 if n == "torque_delay" else 1e9) for n in names])
-    solutions = []
-    for start in _starts(frf, kind, gear_ratio):
-        theta = np.clip([np.log(start[n]) for n in names], low + 1e-6, high - 1e-6)
-        solutions.append(
-            least_squares(residual, theta, bounds=(low, high), x_scale=0.3, max_nfev=60, ftol=1e-9)
-        )
+    known = {"gear_ratio": gear_ratio, "torque_delay": torque_delay_s}
+    problem = _Problem(frf, kind, {name: value for name, value in known.items() if value is not None})
+    # Levenberg-Marquardt of MINPACK: for so few unknowns faster than scipy's own bounded search.
+    solutions = [
+        least_squares(problem.residual, problem.logarithms(start), method="lm", max_nfev=500, ftol=1e-9)
+        for start in _starts(frf, kind, gear_ratio)
+    ]
     solution = min(solutions, key=lambda s: float(s.cost))
-    values = parameters(solution.x)
-    freedom = max(len(solution.fun) - len(names), 1)
+    values = problem.parameters(solution.x)
+    freedom = max(len(solution.fun) - len(problem.names), 1)
     jacobian = np.asarray(solution.jac)
     covariance = np.linalg.pinv(jacobian.T @ jacobian) * 2 * float(solution.cost) / freedom
     errors = {
         name: float(values[name] * np.sqrt(max(c, 0.0)))
-        for name, c in zip(names, np.diag(covariance), strict=True)
+        for name, c in zip(problem.names, np.diag(covariance), strict=True)
     }
-    ordered = {name: values[name] for name in parameter_names(kind)}
-    misfit = _misfit(chain_response(kind, ordered, frf.frequency_hz)[rows], frf, relative)
-    return ChainFit(Model(kind, ordered), errors, misfit, float(solution.cost))
+    return ChainFit(Model(kind, values), errors, _misfit(problem.response(values), frf), float(solution.cost))
 
 
-def _misfit(model: ComplexArray, frf: FrequencyResponse, relative: Array) -> dict[str, Misfit]:
+class _Problem:
+    """Logarithmic misfit as a function of the logarithms of the unknown parameters."""
+
+    def __init__(self, frf: FrequencyResponse, kind: str, known: dict[str, float]) -> None:
+        self._frf = frf
+        self._kind = kind
+        self._known = known
+        self._rows = [OUTPUTS.index(name) for name in frf.outputs]
+        self._weight = 1 / np.hypot(1.0, _relative_deviation(frf) / _USUAL_MODEL_ERROR)
+        self.names = [n for n in parameter_names(kind) if n not in known]
+        self._low = np.log([_SMALLEST.get(n, 1e-6) for n in self.names])
+        self._high = np.log([_LARGEST.get(n, 1e9) for n in self.names])
+
+    def logarithms(self, values: dict[str, float]) -> Array:
+        return np.asarray(np.log([values[n] for n in self.names]))
+
+    def parameters(self, theta: Array) -> dict[str, float]:
+        """All parameters in file order, kept within what makes sense."""
+        found = np.exp(np.clip(theta, self._low, self._high))
+        values = self._known | dict(zip(self.names, found.tolist(), strict=True))
+        return {name: values[name] for name in parameter_names(self._kind)}
+
+    def response(self, values: dict[str, float]) -> ComplexArray:
+        return np.asarray(chain_response(self._kind, values, self._frf.frequency_hz)[self._rows])
+
+    def residual(self, theta: Array) -> Array:
+        error = self._weight * np.log(self.response(self.parameters(theta)) / self._frf.response)
+        return np.concatenate([error.real.ravel(), error.imag.ravel()])
+
+
+def _relative_deviation(frf: FrequencyResponse) -> Array:
+    return np.asarray(frf.standard_deviation / np.abs(frf.response))
+
+
+def _misfit(model: ComplexArray, frf: FrequencyResponse) -> dict[str, Misfit]:
+    relative = _relative_deviation(frf)
     logarithm = np.log(model / frf.response)
     found = {}
     for row, name in enumerate(frf.outputs):

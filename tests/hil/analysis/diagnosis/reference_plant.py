@@ -52,7 +52,7 @@ def _integrate(torque, dt, p, start, out):
         p[17],
     )
     mj, mk, mc = p[18], p[19], p[20]
-    sub = 10
+    sub = 40
     h = dt / sub
     wm, ww, wv = start[0], start[1], start[1]
     e, et, ha, hw, zf, zh, tl = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, torque[0]

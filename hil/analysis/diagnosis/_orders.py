@@ -1,0 +1,144 @@
+"""Orders of turning in what the model leaves unexplained: one Fourier transform over angle.
+
+A ripple torque at order o adds G(o·speed)·exp(i·o·angle) to every channel. Correlating the weighted error
+with that for every o at once: the error goes through the adjoint of G in the frequency domain, is sorted
+into bins of angle, and is Fourier transformed over angle (order tracking by resampling, turned around).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._fit import Fit
+from hil.analysis.diagnosis._problem import Problem
+from sim_backend.plant import pack, system
+
+Array = npt.NDArray[np.float64]
+
+_LARGEST_ORDER = {"wheel": 60.0, "motor": 60.0}
+_BINS_A_TURN = 8  # of the largest order
+_FROM_HZ = 0.5
+_LEAST_ANGLE_RAD = 20.0
+_SPEED_BINS = 200
+
+
+@dataclass(frozen=True)
+class OrderLine:
+    """One order found: `score` is about the drop of the sum of squared errors that it buys."""
+
+    side: Literal["wheel", "motor"]
+    order: float
+    score: float
+
+
+def order_lines(problem: Problem, fit: Fit, side: Literal["wheel", "motor"], most: int = 2) -> list[OrderLine]:
+    """The strongest orders of the wheel's or the rotor's turning in the errors of `fit`, strongest first."""
+    angles, images, powers, speeds = [], [], [], []
+    slots = pack(fit.hypothesis.model(fit.theta))
+    for index, trace in enumerate(problem.traces):
+        error = fit.pieces[index][0].reshape(-1, 3)
+        speed = _wheel_speed(problem, fit, index)
+        if side == "motor":
+            speed = speed * fit.hypothesis.base.parameters["gear_ratio"]
+        dt = trace.dt * trace.block
+        image, frequency, power = _adjoint(slots, error * problem.weights[index], problem.weights[index], dt, side)
+        angles.append(np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * dt)]))
+        images.append(image)
+        speeds.append(speed)
+        powers.append((frequency, power))
+    reach = max(float(np.ptp(a)) for a in angles)
+    if reach < _LEAST_ANGLE_RAD:
+        return []
+    spectrum, orders = _over_angle(angles, images, _LARGEST_ORDER[side])
+    energy = _expected(orders, speeds, powers)
+    # a bias of the start and slow drifts live at low orders: an order must turn a few times
+    usable = orders * reach > 8 * np.pi
+    score = np.where(usable & (energy > 0), 2.0 * np.abs(spectrum) ** 2 / np.maximum(energy, 1e-12), 0.0)
+    return _peaks(score, orders, energy, side, most, 2 * np.pi / reach)
+
+
+def _wheel_speed(problem: Problem, fit: Fit, index: int) -> Array:
+    measured = problem.traces[index].measured
+    if np.isfinite(measured[0, 1]):
+        return measured[:, 1]
+    return np.asarray(measured[:, 0] / fit.hypothesis.base.parameters["gear_ratio"])
+
+
+def _adjoint(slots: Array, error: Array, weights: Array, dt: float, side: str) -> tuple[Array, Array, Array]:
+    """The error seen from the ripple's input, and the weighted power of the response over frequency."""
+    size = len(error)
+    frequency = np.fft.rfftfreq(size, dt)
+    inside = (frequency >= _FROM_HZ) & (frequency <= 60.0)
+    responses = _responses(slots, frequency[inside], side)
+    spectrum = np.fft.rfft(error, axis=0)
+    image = np.zeros(len(frequency), complex)
+    image[inside] = np.sum(np.conj(responses) * spectrum[inside], axis=1)
+    power = np.zeros(len(frequency))
+    power[inside] = np.sum(np.abs(responses) ** 2 * weights**2, axis=1)
+    return np.fft.irfft(image, size), frequency, power
+
+
+def _responses(slots: Array, frequency: Array, side: str) -> Array:
+    """Motor speed, wheel speed and shaft torque per N m of ripple: frequencies x 3."""
+    from sim_backend.plant import _slots as P
+
+    a, b = system(slots)
+    column = b[:, 1] if side == "wheel" else -b[:, 2]
+    twist_rate = np.zeros(len(a))
+    twist_rate[0], twist_rate[7], twist_rate[2] = 1 / slots[P.GEAR_RATIO], 1 - 1 / slots[P.GEAR_RATIO], -1.0
+    c = np.zeros((3, len(a)))
+    c[0, 0], c[0, 7], c[1, 2] = 1.0, -1.0, 1.0
+    c[2] = slots[P.SHAFT_DAMPING] * twist_rate
+    c[2, 1] += slots[P.SHAFT_STIFFNESS]
+    s = 2j * np.pi * frequency
+    states = np.linalg.solve(
+        s[:, None, None] * np.eye(len(a)) - a, np.broadcast_to(column[:, None], (len(s), len(a), 1))
+    )
+    found = (c @ states)[:, :, 0]
+    if side == "wheel":
+        found[:, 2] += 1.0
+    return np.asarray(found)
+
+
+def _over_angle(angles: list[Array], images: list[Array], largest: float) -> tuple[Array, Array]:
+    low = min(float(a.min()) for a in angles)
+    high = max(float(a.max()) for a in angles)
+    width = 2 * np.pi / (largest * _BINS_A_TURN)
+    count = int(2 ** np.ceil(np.log2(2 * (high - low) / width + 1)))
+    bins = np.zeros(count)
+    for angle, image in zip(angles, images, strict=True):
+        bins += np.bincount(np.floor((angle - low) / width).astype(int), image, count)
+    spectrum = np.conj(np.fft.rfft(bins))
+    orders = 2 * np.pi * np.arange(len(spectrum)) / (count * width)
+    keep = orders <= largest
+    return spectrum[keep], orders[keep]
+
+
+def _expected(orders: Array, speeds: list[Array], powers: list[tuple[Array, Array]]) -> Array:
+    """Sum over samples of the response's power at the frequency that each order has there."""
+    total = np.zeros(len(orders))
+    for speed, (frequency, power) in zip(speeds, powers, strict=True):
+        counts, edges = np.histogram(np.abs(speed), _SPEED_BINS)
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        at = orders[:, None] * middle / (2 * np.pi)
+        total += np.interp(at.ravel(), frequency, power, right=0.0).reshape(at.shape) @ counts
+    return total
+
+
+def _peaks(
+    score: Array, orders: Array, energy: Array, side: Literal["wheel", "motor"], most: int, apart: float
+) -> list[OrderLine]:
+    found: list[OrderLine] = []
+    del energy
+    left = score.copy()
+    for _ in range(most):
+        top = int(np.argmax(left))
+        if left[top] <= 0.0:
+            break
+        found.append(OrderLine(side, float(orders[top]), float(left[top])))
+        left[np.abs(orders - orders[top]) < 4 * apart] = 0.0
+    return found

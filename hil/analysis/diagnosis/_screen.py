@@ -1,0 +1,117 @@
+"""Linearised score of every effect against the remaining error, parameters and starts projected out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
+from hil.analysis.diagnosis._fit import Fit, box_step
+from hil.analysis.diagnosis._probes import Probe, mismatches, probes
+from hil.analysis.diagnosis._problem import Problem
+from hil.core.model import EffectUse
+
+Array = npt.NDArray[np.float64]
+
+_MISMATCH_REACH = 0.5
+
+
+@dataclass(frozen=True)
+class Score:
+    """An effect at its most promising size; `gain` is the expected drop of the sum of squared errors."""
+
+    use: EffectUse
+    gain: float
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Id and channel or parameter."""
+        return key_of(self.use)
+
+
+def screen(problem: Problem, fit: Fit) -> list[Score]:
+    """Every effect that can be added to `fit`, each at its best probe, most promising first."""
+    candidates = probes(problem, fit)
+    matrix, gradient, constant = _products(problem, fit, candidates)
+    base = len(fit.theta)
+    coordinates = fit.hypothesis.coordinates()
+    lower = np.array([c.lower for c in coordinates]) - fit.theta
+    upper = np.array([c.upper for c in coordinates]) - fit.theta
+    precision = np.array([1.0 / c.prior**2 for c in coordinates])
+    matrix[:base, :base] += np.diag(precision)
+    gradient[:base] -= precision * fit.theta
+    rest = _gain(matrix, gradient, lower, upper, np.arange(base))[0]
+    best: dict[tuple[str, str], Score] = {}
+    at = base
+    for probe in candidates:
+        columns = np.arange(at, at + len(probe.directions))
+        at += len(probe.directions)
+        low = np.concatenate([lower, [d.lower for d in probe.directions]])
+        high = np.concatenate([upper, [d.upper for d in probe.directions]])
+        gain, amounts = _gain(matrix, gradient, low, high, np.concatenate([np.arange(base), columns]))
+        _keep(best, Score(probe.use(amounts[base:]), gain - rest))
+    del constant
+    for use in mismatches(fit.hypothesis):
+        index = _index(fit.hypothesis, str(use.values["parameter"]))
+        low, high = lower.copy(), upper.copy()
+        low[index], high[index] = -_MISMATCH_REACH, _MISMATCH_REACH
+        freed = matrix.copy()
+        freed[index, index] -= precision[index]
+        pull = gradient.copy()
+        pull[index] += precision[index] * fit.theta[index]
+        gain, step = _gain(freed, pull, low, high, np.arange(base))
+        value = float(use.values["value"]) * float(np.exp(fit.theta[index] + step[index]))
+        _keep(best, Score(EffectUse(use.id, {**use.values, "value": value}), gain - rest))
+    return sorted(best.values(), key=lambda s: -s.gain)
+
+
+def _keep(best: dict[tuple[str, str], Score], score: Score) -> None:
+    if score.key not in best or best[score.key].gain < score.gain:
+        best[score.key] = score
+
+
+def _index(hypothesis: Hypothesis, name: str) -> int:
+    names = [c.name if c.term < 0 else "" for c in hypothesis.coordinates()]
+    return names.index(name)
+
+
+def _gain(matrix: Array, gradient: Array, lower: Array, upper: Array, columns: Array) -> tuple[float, Array]:
+    """Drop of the squared error that `columns` can buy within their bounds, and their amounts."""
+    m, g = matrix[np.ix_(columns, columns)], gradient[columns]
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(m), 1e-30))
+    x = box_step(m * np.outer(scale, scale), g * scale, lower / scale, upper / scale) * scale
+    return float(2 * g @ x - x @ m @ x), x
+
+
+def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Array, Array, float]:
+    """Products of all derivatives and probe responses with each other and the error, starts projected out."""
+    packed = [fit.hypothesis.packed(fit.theta)]
+    for probe in candidates:
+        for direction in probe.directions:
+            added = fit.hypothesis.with_term(EffectUse(probe.id, direction.values))
+            theta = np.concatenate([_carried(fit, added), added.start()[len(_carried(fit, added)) :]])
+            packed.append(added.packed(theta))
+    slots = np.stack([p for p, _ in packed])
+    sensors = np.stack([s for _, s in packed])
+    size = len(fit.theta) + len(packed) - 1
+    matrix, gradient, total = np.zeros((size, size)), np.zeros(size), 0.0
+    for index, (error, shared, initial) in enumerate(fit.pieces):
+        starts = np.tile(fit.starts[index], (len(packed), 1))
+        simulated = problem.outputs(index, slots, sensors, starts)
+        change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(len(packed) - 1, -1)
+        columns = np.concatenate([shared, np.nan_to_num(change, copy=False, posinf=0.0, neginf=0.0).T], axis=1)
+        basis = np.linalg.qr(initial)[0] if np.any(initial) else np.zeros((len(error), 1))
+        columns = columns - basis @ (basis.T @ columns)
+        free = error - basis @ (basis.T @ error)
+        matrix += columns.T @ columns
+        gradient += columns.T @ free
+        total += float(free @ free)
+    return matrix, gradient, total
+
+
+def _carried(fit: Fit, added: Hypothesis) -> Array:
+    """Values of the coordinates that `added` shares with `fit`, in the order of `added`."""
+    known = {(c.name, c.term): v for c, v in zip(fit.hypothesis.coordinates(), fit.theta, strict=True)}
+    return np.array([known[(c.name, c.term)] for c in added.coordinates() if (c.name, c.term) in known])
