@@ -29,7 +29,7 @@ def command(
     A recording that another tool made gets a report of its channels, without verdict.
     """
     path = source / RECORDING if source.is_dir() else source
-    recording = read_recording(path)
+    recording = read_recording(path, allow_missing=True)
     target = out or path.parent
     result = rejudged(recording)
     written = write_reports(recording, result, target)

@@ -67,7 +67,7 @@ def _write(outcome: RunOutcome, out: Path) -> RunResult:
     """Reports and result.json; what could not be written is missing from `files`, and said."""
     files = {"recording": outcome.recording.name}
     try:
-        written = write_reports(read_recording(outcome.recording), outcome.result, out)
+        written = write_reports(read_recording(outcome.recording, allow_missing=True), outcome.result, out)
         files |= {kind: path.name for kind, path in written.items()}
     except HilError as error:
         outcome.error = outcome.error or error

@@ -31,8 +31,11 @@ _WRITERS: dict[str, Callable[[Recording, Path], None]] = {
 }
 
 
-def read_recording(path: Path, *, least_samples: int = 2) -> Recording:
+def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = False) -> Recording:
     """Read `.mcap`, `.csv`, `.parquet` or `.mf4`; refuse what no command could use.
+
+    Args:
+        allow_missing: keep channels of which much is missing, for reports of runs that failed.
 
     Raises:
         BadInputError: names file, line and column where it can.
@@ -42,7 +45,7 @@ def read_recording(path: Path, *, least_samples: int = 2) -> Recording:
         raise BadInputError(
             f"recordings end in {', '.join(_READERS)}", where=str(path), fix="rename or convert the file"
         )
-    return checked(reader(path), least_samples=least_samples)
+    return checked(reader(path), least_samples=least_samples, allow_missing=allow_missing)
 
 
 def write_recording(recording: Recording, path: Path) -> None:

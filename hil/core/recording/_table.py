@@ -74,8 +74,10 @@ class Recording:
         return Recording(cut, self.source, self.metadata, self.attachments, self.events, list(self.notes))
 
 
-def checked(recording: Recording, *, least_samples: int = 2) -> Recording:
+def checked(recording: Recording, *, least_samples: int = 2, allow_missing: bool = False) -> Recording:
     """Refuse what no command can use; mend small gaps in cells and say so in `notes`.
+
+    With `allow_missing`, channels with many missing cells stay as they are (a report of a failed run).
 
     Raises:
         BadInputError: a required channel is missing, time runs backwards or stands still, too many
@@ -103,16 +105,19 @@ def checked(recording: Recording, *, least_samples: int = 2) -> Recording:
         )
     for name in (INPUT, *OUTPUTS):
         if name in recording:
-            _mend(recording, name)
+            _mend(recording, name, allow_missing=allow_missing)
     return recording
 
 
-def _mend(recording: Recording, name: str) -> None:
+def _mend(recording: Recording, name: str, *, allow_missing: bool) -> None:
     values = recording[name]
     missing = ~np.isfinite(values)
     if not missing.any():
         return
     share = float(np.mean(missing))
+    if share > LARGEST_MISSING_SHARE and allow_missing:
+        recording.notes.append(f"{share:.1%} of '{name}' is missing")
+        return
     if share > LARGEST_MISSING_SHARE:
         row = int(np.flatnonzero(missing)[0])
         raise BadInputError(

@@ -40,7 +40,9 @@ def finished(tmp_path_factory):
     """The directory of a run that passed, and what `--json` printed."""
     directory = tmp_path_factory.mktemp("finished")
     (directory / "quick.yaml").write_text(QUICK.replace("LIMIT", "400"))
-    done = hil("run", directory / "quick.yaml", "--out", directory / "out", "--operator", "A. Tester", "--json")
+    done = hil(
+        "run", directory / "quick.yaml", "--out", directory / "out", "--operator", "A. Tester", "--json"
+    )
     return directory / "out", json.loads(done.stdout)
 
 

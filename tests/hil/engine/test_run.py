@@ -10,7 +10,9 @@ from sim_backend.bench import Fault
 from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM, plan, sim_bench
 
-CHIRP = "[{chirp: {segment: c, quantity: motor_torque, from_hz: 1, to_hz: 20, duration_s: 2, amplitude_nm: 10}}]"
+CHIRP = (
+    "[{chirp: {segment: c, quantity: motor_torque, from_hz: 1, to_hz: 20, duration_s: 2, amplitude_nm: 10}}]"
+)
 STEP = """
   - set_controller: {file: phase_stabilization.toml}
   - hold_speed: {speed_km_h: 10, duration_s: 0.5}
@@ -65,7 +67,9 @@ def test_the_lead_holds_its_torque_limit_without_winding_up(tmp_path):
     steps = STEP.replace("to_nm: 200", "to_nm: 500")
     directory = SIM.source.parent.parent / "test_plans/library/controllers"
     weak = (directory / "phase_stabilization.toml").read_text()
-    weak = "\n".join("torque_limit_nm = 30.0" if "torque_limit" in line else line for line in weak.split("\n"))
+    weak = "\n".join(
+        "torque_limit_nm = 30.0" if "torque_limit" in line else line for line in weak.split("\n")
+    )
     (tmp_path / "weak.toml").write_text(weak)
     steps = steps.replace("phase_stabilization.toml", str(tmp_path / "weak.toml"))
     recording = read_recording(run(tmp_path, steps).recording)
@@ -78,7 +82,10 @@ def test_the_lead_holds_its_torque_limit_without_winding_up(tmp_path):
         (CHIRP.replace("amplitude_nm: 10", "amplitude_nm: 160"), "of motor torque, the bench allows 150"),
         ("[{hold_speed: {speed_km_h: 150, duration_s: 1}}]", "150 km/h, the bench allows 100.8"),
         (STEP.replace("to_nm: 200", "to_nm: 700"), "700 N m of driving torque"),
-        (STEP.replace("  - set_controller: {file: phase_stabilization.toml}\n", ""), "set a controller first"),
+        (
+            STEP.replace("  - set_controller: {file: phase_stabilization.toml}\n", ""),
+            "set a controller first",
+        ),
     ],
 )
 def test_a_plan_beyond_the_bench_is_refused_before_anything_moves(steps, said, tmp_path):
@@ -154,7 +161,7 @@ def test_a_device_that_is_not_safe_does_not_keep_the_other_from_its_safe_state(t
 
     outcome = run(tmp_path, name="other", hook=hook)
     assert outcome.result.safe_state == "not_confirmed"
-    assert "dynos did not confirm" in read_recording(outcome.recording).events[-1].text
+    assert "dynos did not confirm" in read_recording(outcome.recording, allow_missing=True).events[-1].text
     assert worlds[-1].rmcu.mode == 0
 
 

@@ -120,7 +120,9 @@ def _outside(truth: Truth, effect: str, s: float) -> tuple[str, dict[str, float]
     return "", {}
 
 
-def draw(effects: tuple[str, ...], size: float, seed: int) -> tuple[Truth, list[tuple[str, str, dict[str, float]]]]:
+def draw(
+    effects: tuple[str, ...], size: float, seed: int
+) -> tuple[Truth, list[tuple[str, str, dict[str, float]]]]:
     """The truth with `effects`, and the answer: id, channel or parameter, values."""
     rng = np.random.default_rng([seed, 77])
     truth = Truth()

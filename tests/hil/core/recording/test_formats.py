@@ -118,3 +118,13 @@ def test_an_export_to_a_directory_that_cannot_be_written_leaves_nothing(tmp_path
     with pytest.raises(BadInputError, match="--out"):
         write_recording(recording(), tmp_path / "file" / "r.csv")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file"]
+
+
+def test_a_failed_runs_recording_can_still_be_reported(tmp_path):
+    rows = [f"{t:.3f},1,{'' if i > 50 else t}" for i, t in enumerate(TIME)]
+    (tmp_path / "r.csv").write_text(HEADER + "\n".join(rows))
+    with pytest.raises(BadInputError, match="74.5%"):
+        read_recording(tmp_path / "r.csv")
+    read = read_recording(tmp_path / "r.csv", allow_missing=True)
+    assert np.isnan(read["motor_speed_rad_s"][100])
+    assert "missing" in read.notes[0]
