@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup test lint bench lock clean
+.PHONY: run setup test lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance
@@ -33,6 +33,11 @@ test: lint
 
 bench: setup
 	$(BIN)/python -m benchmarks
+
+# Makes the README's pictures from an acceptance run.
+figures: setup
+	$(BIN)/hil run acceptance --out out/acceptance
+	$(BIN)/python docs/images/make.py out/acceptance/recording.mcap
 
 # Pins every dependency with hashes and without addresses of package indexes.
 lock: $(BIN)/uv

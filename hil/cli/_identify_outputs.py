@@ -55,7 +55,10 @@ def summary_of(found: Identification, experiments: list[Experiment], files: list
     numerator_errors, denominator_errors = fit.coefficient_errors()
     poles = fit.modes.pole_locations()
     return {
-        "experiments": [{"name": e.name, "duration_s": e.duration_s, "kind": e.kind} for e in experiments],
+        "experiments": [
+            {"name": e.name, "duration_s": e.duration_s, "kind": e.kind, "input_hold_s": e.hold_s}
+            for e in experiments
+        ],
         "frequency_response": {
             "method": frf.method,
             "from_hz": frf.frequency_hz[0],
@@ -146,7 +149,8 @@ def text_of(found: Identification, summary: dict[str, Any], out: Path) -> str:
         f"{frf.frequency_hz[0]:.3g}-{frf.frequency_hz[-1]:.3g} Hz, "
         f"{len(frf.frequency_hz)} frequencies, {frf.method}",
         f"order {summary['order']}, "
-        f"dead time {fit.modes.delay_s * 1e3:.3f} ± {fit.delay_error_s * 1e3:.3f} ms"
+        f"dead time {fit.modes.delay_s * 1e3:.3f} ± {fit.delay_error_s * 1e3:.3f} ms beside a hold of "
+        f"{summary['experiments'][0]['input_hold_s'] * 1e3:g} ms"
         + (f", resonance {summary['resonance_hz']:.2f} Hz" if summary["resonance_hz"] else ""),
         "",
         "order      held-out error  beyond noise  whiteness p",

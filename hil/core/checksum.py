@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.compiled import compiled
+
 _POLYNOMIAL, _START, _FINAL = 0x1D, 0xFF, 0xFF
 
 
@@ -33,8 +35,17 @@ def crc8(frame_id: int, payload: int) -> int:
 
 def crc8_many(frame_id: int, payloads: npt.NDArray[np.uint64]) -> npt.NDArray[np.uint64]:
     """`crc8` of many payloads."""
-    octets = np.ascontiguousarray(payloads, "<u8").view(np.uint8).reshape(-1, 8)
-    crc = np.full(len(octets), _TABLE[_START ^ (frame_id & 0xFF)], np.uint8)
-    for column in range(7):
-        crc = _ARRAY[crc ^ octets[:, column]]
-    return (crc ^ np.uint8(_FINAL)).astype(np.uint64)
+    return np.asarray(_crc_of_each(frame_id, payloads, _ARRAY))
+
+
+@compiled
+def _crc_of_each(frame_id, payloads, table):  # type: ignore[no-untyped-def]
+    found = np.empty(payloads.shape[0], np.uint64)
+    for i in range(payloads.shape[0]):
+        crc = table[_START ^ (frame_id & 0xFF)]
+        word = payloads[i]
+        for _ in range(7):
+            crc = table[crc ^ np.uint8(word & np.uint64(0xFF))]
+            word >>= np.uint64(8)
+        found[i] = crc ^ np.uint8(_FINAL)
+    return found

@@ -81,11 +81,12 @@ def _couple(x, drives, w):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def tick(k, x, p, w, torques, fir, drives, sensors, past, noise, mode, request, code, status, row):  # type: ignore[no-untyped-def]
+def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, request, code, status, row):  # type: ignore[no-untyped-def]
     """Sample k: fill `row` with what is measured and commanded at t_k, then move to t_k+1.
 
     `fir` holds the RMCU's arrays (numerators, denominators, filter states, gains, states).
     """
+    p = K.as_tuple(vector)
     b, a, z, gains, states = fir
     dt = gains[M.SAMPLE_TIME]
     coupled = _couple(x, drives, w)

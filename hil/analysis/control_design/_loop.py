@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.control_design._discretise import tustin
 from hil.core.model import TransferFunction
 
 Array = npt.NDArray[np.float64]
@@ -26,14 +25,16 @@ def loop_grid(sample_time_s: float = 0.001, count: int = 3000) -> Array:
 def feedback_response(
     blocks: Sequence[TransferFunction], frequency_hz: Array, sample_time_s: float | None
 ) -> ComplexArray:
-    """Response of blocks in series; by Tustin's rule with a sample time, continuous without."""
-    response = np.ones(np.shape(frequency_hz), complex)
+    """Response of blocks in series; by Tustin's rule with a sample time, continuous without.
+
+    Tustin's rule is the continuous response at the warped frequency tan(π f T)/(π T).
+    """
+    frequency = np.asarray(frequency_hz, dtype=float)
+    if sample_time_s is not None:
+        frequency = np.tan(np.pi * frequency * sample_time_s) / (np.pi * sample_time_s)
+    response = np.ones(frequency.shape, complex)
     for block in blocks:
-        response = response * (
-            block.response(frequency_hz)
-            if sample_time_s is None
-            else tustin(block, sample_time_s).response(frequency_hz)
-        )
+        response = response * block.response(frequency)
     return response
 
 

@@ -150,11 +150,24 @@ def _low_frequency_inertia(motor: TransferFunction) -> float:
     """
     denominator = np.array(motor.denominator)
     if denominator[-1] == 0:
-        return float(denominator[-2] / motor.numerator[-1])
-    slow = np.roots(denominator)
-    slowest = slow[np.argmin(np.abs(slow))]
-    return float(denominator[-1] / (-slowest.real * motor.numerator[-1]))
+        slope = float(denominator[-2])
+    else:
+        poles = np.roots(denominator)
+        slope = float(denominator[-1] / -poles[np.argmin(np.abs(poles))].real)
+    return _positive(slope, motor.numerator[-1], "inertia seen by the motor")
 
 
 def _ratio(motor: TransferFunction, wheel: TransferFunction) -> float:
-    return float(motor.numerator[-1] / wheel.numerator[-1] * (wheel.denominator[0] / motor.denominator[0]))
+    scale = wheel.denominator[0] / motor.denominator[0]
+    return _positive(motor.numerator[-1] * scale, wheel.numerator[-1], "gear ratio")
+
+
+def _positive(top: float, bottom: float, name: str) -> float:
+    """top/bottom, which must be a positive number."""
+    value = top / bottom if bottom else 0.0
+    if not (np.isfinite(value) and value > 0):
+        raise BadInputError(
+            f"the model has no positive {name} at low frequency",
+            fix="identify it from data that reach lower frequencies",
+        )
+    return float(value)

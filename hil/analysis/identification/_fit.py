@@ -27,7 +27,8 @@ RELATIVE_FLOOR = 3e-4
 _DELAY_TRIALS_S = (0.0, 0.004, 0.008, 0.013, 0.02)
 _SURE_FOR_START = 0.2
 _ITERATIONS = 60
-_CONVERGED = 1e-9
+_CONVERGED = 1e-7
+_EXACT = 1e-8  # of the expected residual: data without noise are fitted no closer
 _SIGNIFICANT = 3.0  # standard errors below which a numerator coefficient counts as zero
 
 
@@ -258,7 +259,7 @@ class _Problem:
     ) -> _Point:
         """Levenberg-Marquardt from these poles and this dead time."""
         point = self.evaluate(structure, poles, delay_s)
-        damping = 1e-3
+        damping, standing = 1e-3, 0
         for _ in range(iterations):
             gradient, curvature = self._normal_equations(point)
             diagonal = np.diag(curvature) + 1e-300
@@ -274,9 +275,9 @@ class _Problem:
                 damping *= 4
             else:
                 return point
-            gained = point.cost - trial.cost
+            standing = standing + 1 if point.cost - trial.cost < _CONVERGED * point.cost else 0
             point, damping = trial, damping / 6
-            if gained < _CONVERGED * point.cost:
+            if standing == 2 or point.cost < _EXACT * self.values:
                 break
         return point
 

@@ -8,6 +8,13 @@ import numpy as np
 import numpy.typing as npt
 from google.protobuf import descriptor_pb2
 
+from hil.core.frames import FRAME
+
+# Tags of CanFrames' fields, all of wire type 2 (length, then bytes)
+_FRAME_TAGS = {
+    name: bytes([number << 3 | 2])
+    for number, name in enumerate(("time_s", "id", "flags", "length", "data"), 1)
+}
 _Field = descriptor_pb2.FieldDescriptorProto
 _Type: TypeAlias = "descriptor_pb2.FieldDescriptorProto._Type.ValueType"
 _Label: TypeAlias = "descriptor_pb2.FieldDescriptorProto._Label.ValueType"
@@ -53,10 +60,11 @@ def encode_rows(rows: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
 
 def encode_frames(block: npt.NDArray[np.void]) -> bytes:
     """One CanFrames message."""
+    count = len(block)
     parts = []
-    for number, name in enumerate(("time_s", "id", "flags", "length", "data"), 1):
-        column = np.ascontiguousarray(block[name]).tobytes()
-        parts += [_varint((number << 3) | 2), _varint(len(column)), column]
+    for name, tag in _FRAME_TAGS.items():
+        parts.append(tag + _varint(count * FRAME[name].itemsize))
+        parts.append(block[name].tobytes())
     return b"".join(parts)
 
 

@@ -1,8 +1,11 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from hil.analysis.control_design import Design, DesignSpec, design
 from hil.analysis.frequency_response import FrequencyResponse, estimate, experiments_of
 from hil.analysis.identification import Identification, identify
 from hil.core.channels import OUTPUTS
@@ -45,6 +48,17 @@ def exact_frf() -> FrequencyResponse:
     return exact(np.array([paper_plant.response(name, GRID) for name in OUTPUTS]))
 
 
+@pytest.fixture(scope="session")
+def paper_design(paper_model: Model) -> Design:
+    """The paper's own lead, notch and gains."""
+    return design(paper_model, DesignSpec(inertia_kg_m2=4.4625, notch_hz=10.6))
+
+
+@pytest.fixture(scope="session")
+def optimised_design(paper_model: Model) -> Design:
+    return design(paper_model, DesignSpec(optimise=True))
+
+
 GRID = np.geomspace(0.05, 30.0, 400)
 
 
@@ -56,4 +70,17 @@ def exact(response: np.ndarray, relative: float = 0.0, seed: int = 0) -> Frequen
     zeros = np.zeros(response.shape)
     return FrequencyResponse(
         GRID, OUTPUTS, response + deviation * noise, zeros + 1, deviation, zeros, zeros, 1, "made"
+    )
+
+
+def outputs_of(frf: FrequencyResponse, count: int) -> FrequencyResponse:
+    """The same response with its first `count` outputs only."""
+    return replace(
+        frf,
+        outputs=frf.outputs[:count],
+        response=frf.response[:count],
+        coherence=frf.coherence[:count],
+        standard_deviation=frf.standard_deviation[:count],
+        noise=frf.noise[:count],
+        nonlinear=frf.nonlinear[:count],
     )

@@ -6,21 +6,16 @@ import re
 
 import pytest
 
-from hil.analysis.control_design import DesignSpec, design
+from hil.analysis.control_design import Design, DesignSpec, design
 from hil.analysis.identification import Identification
 from tests.hil.analysis import paper_table
 from tests.hil.analysis.paper_table import Results, Row
 
 
 @pytest.fixture(scope="module")
-def all_(paper_identification: Identification) -> Results:
-    model = paper_table.paper_model()
-    return Results(
-        paper_identification,
-        design(paper_identification.model, DesignSpec()),
-        design(model, DesignSpec(inertia_kg_m2=paper_table.PAPER_INERTIA, notch_hz=10.6)),
-        design(model, DesignSpec(optimise=True)),
-    )
+def all_(paper_identification: Identification, paper_design: Design, optimised_design: Design) -> Results:
+    identified = design(paper_identification.model, DesignSpec())
+    return Results(paper_identification, identified, paper_design, optimised_design)
 
 
 def check(rows: list[Row]) -> None:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import signal
 
-from hil.analysis.control_design import feed_forward, lead, lead_function, tustin
+from hil.analysis.control_design import feed_forward, feedback_response, lead, lead_function, tustin
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction
 
@@ -32,3 +32,10 @@ def test_low_frequencies_are_the_continuous_ones(paper_model: Model) -> None:
 def test_improper_functions_are_refused() -> None:
     with pytest.raises(BadInputError, match="improper"):
         tustin(TransferFunction((1.0, 0.0, 0.0), (1.0, 1.0)), 0.001)
+
+
+def test_loops_are_judged_with_the_same_filters() -> None:
+    part = lead_function(lead(36, 40))
+    frequency = np.geomspace(0.1, 490, 50)
+    found = feedback_response((part,), frequency, 0.001)
+    np.testing.assert_allclose(found, tustin(part, 0.001).response(frequency), rtol=1e-9)

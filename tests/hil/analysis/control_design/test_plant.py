@@ -96,3 +96,13 @@ def test_unstable_plant(paper_model: Model) -> None:
     }
     with pytest.raises(BadInputError, match="unstable"):
         design_plant(replace(paper_model, transfer_functions=functions))
+
+
+@pytest.mark.parametrize("name", OUTPUTS[:2])
+def test_no_inertia_or_ratio_at_low_frequency(paper_model: Model, name: str) -> None:
+    broken = replace(
+        paper_model.transfer_functions[name],
+        numerator=(*paper_model.transfer_functions[name].numerator[:-1], 0.0),
+    )
+    with pytest.raises(BadInputError, match="at low frequency"):
+        design_plant(replace(paper_model, transfer_functions=paper_model.transfer_functions | {name: broken}))

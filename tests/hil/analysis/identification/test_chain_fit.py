@@ -6,7 +6,7 @@ from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification import Identification, chain_response, choose_chain, fit_chain
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
-from tests.hil.analysis.conftest import GRID, exact
+from tests.hil.analysis.conftest import GRID, exact, outputs_of
 from tests.hil.analysis.identification.chains import RIGID, THREE, TWO
 
 
@@ -54,16 +54,5 @@ def test_known_gear_ratio_is_kept(exact_frf: FrequencyResponse) -> None:
 
 
 def test_motor_speed_alone_is_not_enough(exact_frf: FrequencyResponse) -> None:
-    alone = FrequencyResponse(
-        exact_frf.frequency_hz,
-        OUTPUTS[:1],
-        exact_frf.response[:1],
-        exact_frf.coherence[:1],
-        exact_frf.standard_deviation[:1],
-        exact_frf.noise[:1],
-        exact_frf.nonlinear[:1],
-        1,
-        "made",
-    )
     with pytest.raises(BadInputError, match="another output"):
-        fit_chain(alone, "two_inertia")
+        fit_chain(outputs_of(exact_frf, 1), "two_inertia")

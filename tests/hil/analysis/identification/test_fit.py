@@ -9,7 +9,7 @@ from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import load_model, save_model
 from tests.hil.analysis import paper_plant
-from tests.hil.analysis.conftest import GRID, exact
+from tests.hil.analysis.conftest import GRID, exact, outputs_of
 
 TRUTH = np.array([paper_plant.response(name, GRID) for name in OUTPUTS])
 
@@ -69,18 +69,7 @@ def test_any_dead_time(delay: float) -> None:
 
 
 def test_one_output_alone() -> None:
-    data = exact(TRUTH, 0.01)
-    alone = FrequencyResponse(
-        data.frequency_hz,
-        OUTPUTS[:1],
-        data.response[:1],
-        data.coherence[:1],
-        data.standard_deviation[:1],
-        data.noise[:1],
-        data.nonlinear[:1],
-        1,
-        "made",
-    )
+    alone = outputs_of(exact(TRUTH, 0.01), 1)
     found = fit(alone, 5)
     assert found.modes.delay_s == pytest.approx(0.008, abs=1e-4)
 

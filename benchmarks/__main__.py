@@ -1,0 +1,17 @@
+"""`make bench`: every figure that the documentation states, printed side by side in one run."""
+
+from __future__ import annotations
+
+import importlib
+
+_PARTS = ("plant", "virtual_time", "reports", "identification")
+
+
+def main() -> None:
+    for name in _PARTS:
+        print(f"\n== {name.replace('_', ' ')} ==")
+        importlib.import_module(f"benchmarks.{name}").main()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,230 @@
+"""Draws a case from a seed: plant, hidden effects, experiments, noise, and the model that the diagnosis gets."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from hil.core.channels import OUTPUTS
+from hil.core.model import Model, parameter_names
+from tests.blind.experiments import SAMPLE_S, Experiment, holdout_set, in_closed_loop, main_set
+from tests.blind.families import FAMILIES, RIGID, Family, Hidden, Setting, fits
+from tests.blind.outsiders import OUTSIDERS, outsider_fits
+from tests.blind.plant import COARSE, Array, Truth, true_outputs
+from tests.blind.sizing import Ruler, largest_share, likeness
+from tests.blind.specs import SIZES, Spec
+
+_TYPICAL = {
+    "motor_inertia": 0.02,
+    "gear_ratio": 8.5,
+    "shaft_stiffness": 6000.0,
+    "shaft_damping": 20.0,
+    "wheel_inertia": 4.4,
+    "tyre_stiffness": 5700.0,
+    "tyre_damping": 350.0,
+    "vehicle_inertia": 300.0,
+    "viscous_drag": 0.002,
+    "torque_delay": 0.008,
+}
+_SPREAD = 0.25  # how far plants differ from the typical one
+_CALIBRATION = 0.015  # how far a model is from its plant; files state 2 %
+_CLOSED_LOOP_SHARE = 0.15
+_ALIKE = 0.6  # |cos| above which a pair is not asked for
+_NOT_TOGETHER = (
+    {"dead_time", "actuator_lag"},
+    {"torque_rate_limit", "actuator_lag"},
+    {"torque_saturation", "actuator_lag"},
+    {"torque_saturation", "torque_rate_limit"},
+    {"coulomb_friction", "running_resistance"},
+    {"viscous_drag", "running_resistance"},
+    {"torque_deadband", "coulomb_friction"},
+    {"mount_mode", "shaft_cubic_stiffness"},
+    {"shaft_hysteresis", "backlash"},
+    {"shaft_hysteresis", "shaft_cubic_stiffness"},
+)
+
+
+@dataclass(frozen=True)
+class NoiseLevel:
+    """White noise with a coloured share; standard deviations in the units of OUTPUTS."""
+
+    deviations: Array
+    share: float
+    corner_hz: float
+
+
+@dataclass(frozen=True)
+class Case:
+    """A drawn case. Only `model` and what `experiments` and `holdout` measure go to the diagnosis."""
+
+    spec: Spec
+    seed: int
+    model: Model
+    truth: Truth
+    hidden: tuple[Hidden, ...]
+    share: float
+    experiments: tuple[Experiment, ...]
+    holdout: tuple[Experiment, ...]
+    noise: NoiseLevel
+
+
+def draw_case(seed: int, spec: Spec) -> Case:
+    """The case that `seed` and `spec` name, always the same."""
+    rng = np.random.default_rng([seed, zlib.crc32(spec.key.encode())])
+    kind = _kind(rng, spec)
+    nominal = _nominal(rng, kind)
+    base = Truth(kind, {name: value * _off(rng) for name, value in nominal.items()})
+    scale = rng.uniform(0.8, 1.25)
+    experiments, holdout = main_set(rng, scale), holdout_set(rng, scale)
+    plain = np.concatenate([true_outputs(base, e, substeps=COARSE)[1] for e in experiments])
+    deviation = np.std(plain, axis=0)
+    noise = NoiseLevel(
+        deviation * np.exp(rng.uniform(np.log(0.005), np.log(0.02), 3)),
+        rng.uniform(0.05, 0.2),
+        rng.uniform(2.0, 15.0),
+    )
+    setting = Setting(kind, base.parameters, scale, dict(zip(OUTPUTS, deviation.tolist(), strict=True)))
+    hidden, share = _hidden(rng, spec, base, setting, experiments, noise)
+    if spec.group == "mismatch":
+        nominal, hidden, share = _mismatch(rng, base, nominal, experiments, noise)
+    if spec.group == "one_recording":
+        experiments, hidden, share = _most_telling(rng, hidden[0], base, experiments, noise, share)
+    if rng.uniform() < _CLOSED_LOOP_SHARE:
+        experiments = [in_closed_loop(e, rng) for e in experiments]
+    for one in hidden:
+        base = base.joined(Truth(kind, {}, one.laws, one.sensors))
+    rounded = {name: float(f"{value:.4g}") for name, value in nominal.items()}
+    return Case(
+        spec, seed, Model(kind, rounded), base, hidden, share, tuple(experiments), tuple(holdout), noise
+    )
+
+
+def _off(rng: np.random.Generator) -> float:
+    return 1.0 + rng.uniform(-_CALIBRATION, _CALIBRATION)
+
+
+def _kind(rng: np.random.Generator, spec: Spec) -> str:
+    kinds = ("three_inertia", "two_inertia", "rigid")
+    draws = rng.choice(kinds, size=60, p=(0.55, 0.3, 0.15))
+    check = outsider_fits if spec.group == "outside" else fits
+    if spec.subject in FAMILIES or spec.subject in OUTSIDERS:
+        return str(next(kind for kind in draws if check(spec.subject, kind)))
+    return str(draws[0])
+
+
+def _nominal(rng: np.random.Generator, kind: str) -> dict[str, float]:
+    nominal = {
+        name: _TYPICAL[name] * float(np.exp(rng.uniform(-_SPREAD, _SPREAD))) for name in parameter_names(kind)
+    }
+    return {name: float(f"{value:.4g}") for name, value in nominal.items()}
+
+
+def _hidden(
+    rng: np.random.Generator,
+    spec: Spec,
+    base: Truth,
+    setting: Setting,
+    experiments: list[Experiment],
+    noise: NoiseLevel,
+) -> tuple[tuple[Hidden, ...], float]:
+    if spec.group in ("none", "mismatch"):
+        return (), 0.0
+    if spec.group == "pair":
+        return _pair(rng, spec, base, setting, experiments, noise)
+    draw = OUTSIDERS[spec.subject] if spec.group == "outside" else FAMILIES[spec.subject]
+    return _sized(draw(rng, setting), base, experiments, noise, SIZES[spec.size])
+
+
+def _sized(
+    family: Family, base: Truth, experiments: list[Experiment], noise: NoiseLevel, ratio: float
+) -> tuple[tuple[Hidden], float]:
+    ruler = Ruler(base, experiments, noise.deviations, _own_parameter(family.id))
+    size, share = ruler.size_for(family, share_of(ratio))
+    return (family.of_size(size),), share
+
+
+def share_of(ratio: float) -> float:
+    """Share of an effect whose gap is `ratio` times the noise floor: they add by squares."""
+    return float(np.sqrt(ratio**2 - 1.0))
+
+
+def _own_parameter(id: str) -> str:
+    """The base parameter that an effect is a change of: a refit may not take it away."""
+    return {"dead_time": "torque_delay", "viscous_drag": "viscous_drag"}.get(id, "")
+
+
+def _pair(
+    rng: np.random.Generator,
+    spec: Spec,
+    base: Truth,
+    setting: Setting,
+    experiments: list[Experiment],
+    noise: NoiseLevel,
+) -> tuple[tuple[Hidden, ...], float]:
+    """Two effects, each large enough alone, whose traces differ."""
+    ruler = Ruler(base, experiments, noise.deviations)
+    names = RIGID if base.kind == "rigid" else [id for id in FAMILIES if fits(id, base.kind)]
+    while True:
+        first, second = (FAMILIES[str(id)](rng, setting) for id in rng.choice(names, 2, replace=False))
+        if {first.id, second.id} in _NOT_TOGETHER:
+            continue
+        hidden, traces = [], []
+        for family in (first, second):
+            of_one = ruler
+            if _own_parameter(family.id) in base.parameters:
+                of_one = Ruler(base, experiments, noise.deviations, _own_parameter(family.id))
+            size, _ = of_one.size_for(family, share_of(SIZES[spec.size]))
+            hidden.append(family.of_size(size))
+            traces.append(of_one.residual(hidden[-1]))
+        channels = [s.channel for h in hidden for s in h.sensors]
+        if len(channels) == len(set(channels)) and likeness(*traces) < _ALIKE:
+            return tuple(hidden), min(largest_share(t) for t in traces)
+
+
+def _mismatch(
+    rng: np.random.Generator,
+    base: Truth,
+    nominal: dict[str, float],
+    experiments: list[Experiment],
+    noise: NoiseLevel,
+) -> tuple[dict[str, float], tuple[Hidden, ...], float]:
+    """One parameter of the model file is 3 to 10 % wrong, one that the outputs show."""
+    names = [name for name in base.parameters if name not in ("torque_delay", "gear_ratio", "viscous_drag")]
+    best: tuple[float, str, float] = (0.0, "", 0.0)
+    for name in rng.permutation(names):
+        factor = 1.0 + rng.choice([-1.0, 1.0]) * rng.uniform(0.03, 0.1)
+        ruler = Ruler(base, experiments, noise.deviations, str(name))
+        wrong = base.with_parameter(str(name), base.parameters[str(name)] * factor)
+        share = ruler.share_of_truth(wrong)
+        if share > best[0]:
+            best = (share, str(name), factor)
+        if share > share_of(SIZES["edge"]):
+            break
+    share, name, factor = best
+    values: dict[str, float | str] = {"parameter": name, "value": base.parameters[name]}
+    return (
+        nominal | {name: base.parameters[name] * factor},
+        (Hidden("parameter_mismatch", {}, (), values),),
+        share,
+    )
+
+
+def _most_telling(
+    rng: np.random.Generator,
+    hidden: Hidden,
+    base: Truth,
+    experiments: list[Experiment],
+    noise: NoiseLevel,
+    share: float,
+) -> tuple[list[Experiment], tuple[Hidden, ...], float]:
+    """One of the two recordings that show the effect best."""
+    shares = [Ruler(base, [e], noise.deviations, _own_parameter(hidden.id)).share(hidden) for e in experiments]
+    order = np.argsort(shares)[::-1]
+    chosen = int(order[0] if rng.uniform() < 0.7 else order[1])
+    return [experiments[chosen]], (hidden,), max(shares[chosen], 0.0) or share
+
+
+def duration_s(case: Case) -> float:
+    return sum(len(e.torque_nm) for e in case.experiments) * SAMPLE_S

@@ -1,0 +1,88 @@
+"""Effects that the registry does not have: the honest answer is that something unknown is there."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tests.blind.families import Draw, Family, Hidden, Setting
+
+
+def _one(id: str, law: str, smallest: float, largest: float, **fixed: tuple[float, float]) -> Draw:
+    """A law grows with the size; `fixed` constants are drawn from their ranges."""
+
+    def draw(rng: np.random.Generator, setting: Setting) -> Family:
+        del setting
+        drawn = {name: rng.uniform(*ends) for name, ends in fixed.items()}
+        return Family(id, smallest, largest, lambda size: Hidden(id, {law: size, **drawn}))
+
+    return draw
+
+
+def _absorber(rng: np.random.Generator, setting: Setting) -> Family:
+    del setting
+    omega, ratio = 2.0 * math.pi * rng.uniform(4.0, 9.0), rng.uniform(0.02, 0.06)
+
+    def of_size(size: float) -> Hidden:
+        return Hidden(
+            "outside:wheel_absorber",
+            {
+                "absorber_inertia": size,
+                "absorber_stiffness": size * omega**2,
+                "absorber_damping": 2.0 * ratio * omega * size,
+            },
+        )
+
+    return Family("outside:wheel_absorber", 0.02, 60.0, of_size)
+
+
+def _tyre_slip(rng: np.random.Generator, setting: Setting) -> Family:
+    del rng
+    # deflection at the largest torques of the chirp, as a share of the sliding angle
+    usual = 300.0 * setting.scale / setting.parameters["tyre_stiffness"]
+
+    def of_size(size: float) -> Hidden:
+        return Hidden("outside:tyre_slip", {"slip_angle": usual / size})
+
+    return Family("outside:tyre_slip", 1e-3, 1.0, of_size)
+
+
+def _speed_mount(rng: np.random.Generator, setting: Setting) -> Family:
+    """A mount whose bushes stiffen with speed: no fixed mode fits at all speeds."""
+    del setting
+    omega, ratio = 2.0 * math.pi * rng.uniform(10.0, 14.0), rng.uniform(0.03, 0.06)
+    stiffening = rng.uniform(0.1, 0.25)
+
+    def of_size(size: float) -> Hidden:
+        inertia = 1.0 / size
+        return Hidden(
+            "outside:speed_dependent_mount",
+            {
+                "has_mount": 1.0,
+                "housing_inertia": inertia,
+                "mount_stiffness": inertia * omega**2,
+                "mount_damping": 2.0 * ratio * omega * inertia,
+                "mount_speed_stiffening": stiffening,
+            },
+        )
+
+    return Family("outside:speed_dependent_mount", 1e-2, 3.0, of_size)
+
+
+OUTSIDERS: dict[str, Draw] = {
+    "outside:torque_fade": _one("outside:torque_fade", "torque_fade", 5e-3, 0.5, fade_time_s=(6.0, 15.0)),
+    "outside:shaft_asymmetry": _one("outside:shaft_asymmetry", "shaft_asymmetry", 5e-3, 1.5),
+    "outside:shaft_drift": _one("outside:shaft_drift", "shaft_drift", 1e-4, 0.03),
+    "outside:wheel_absorber": _absorber,
+    "outside:fixed_tone": _one("outside:fixed_tone", "tone_nm", 0.1, 300.0, tone_hz=(3.0, 16.0)),
+    "outside:tyre_slip": _tyre_slip,
+    "outside:speed_dependent_mount": _speed_mount,
+}
+
+
+def outsider_fits(id: str, kind: str) -> bool:
+    """Tyre slip needs a tyre in the model; a rigid driveline shows the torque's fading only."""
+    if kind == "rigid":
+        return id == "outside:torque_fade"
+    return id != "outside:tyre_slip" or kind == "three_inertia"

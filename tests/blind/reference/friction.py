@@ -1,0 +1,45 @@
+"""Dry friction with a bristle state (LuGre: Canudas de Wit et al., IEEE TAC 40, 1995), and running resistance."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from numba import njit
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+def sliding_torque(p: Any, speed: float) -> float:
+    """Stribeck curve in N m at a steady sliding speed in rad/s, without sign."""
+    if p.stribeck == 0.0:
+        return p.coulomb  # type: ignore[no-any-return]
+    return p.coulomb + p.stribeck * math.exp(-((speed / p.stribeck_speed) ** 2))  # type: ignore[no-any-return]
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+def bristle_after(p: Any, bristle: float, speed: float, span_s: float) -> float:
+    """Bristle deflection in rad after `span_s` at constant speed: the exact solution.
+
+    dz/dt = v - sigma0 |v| z / g(v) is linear in z, and stiff at speed: an explicit step would not do.
+    """
+    if speed == 0.0 or p.coulomb <= 0.0:
+        return bristle
+    steady = math.copysign(sliding_torque(p, speed) / p.bristle_stiffness, speed)
+    return steady + (bristle - steady) * math.exp(-abs(speed) * span_s / abs(steady))
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+def friction_torque(p: Any, bristle: float, speed: float) -> float:
+    """Torque in N m against the rotor: bristles, their damping, and what is equal in both directions."""
+    if p.coulomb <= 0.0:
+        return p.friction_offset  # type: ignore[no-any-return]
+    rate = speed - p.bristle_stiffness * abs(speed) * bristle / sliding_torque(p, speed)
+    return p.bristle_stiffness * bristle + p.bristle_damping * rate + p.friction_offset  # type: ignore[no-any-return]
+
+
+@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+def running_resistance(p: Any, speed: float) -> float:
+    """Torque in N m against the vehicle: rolling with a smooth sign, air by the square of the speed."""
+    if p.rolling == 0.0:
+        return p.aero * speed * abs(speed)  # type: ignore[no-any-return]
+    return p.rolling * math.tanh(speed / p.rolling_speed) + p.aero * speed * abs(speed)  # type: ignore[no-any-return]

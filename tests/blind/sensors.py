@@ -1,0 +1,44 @@
+"""What stands between a quantity and its channel: gain, offset, lateness, rounding; and noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.interpolate import CubicSpline
+from scipy.signal import lfilter
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """Errors of one channel: reading = gain·truth(t - delay_s) + offset, then rounded to `step`."""
+
+    channel: str
+    gain: float = 1.0
+    offset: float = 0.0
+    delay_s: float = 0.0
+    step: float = 0.0
+
+    def read(self, truth: Array, sample_s: float) -> Array:
+        """The reading before rounding; the first value stands for the time before the recording."""
+        if self.delay_s == 0.0:
+            return self.gain * truth + self.offset
+        time_s = np.arange(len(truth)) * sample_s
+        late = np.clip(time_s - self.delay_s, 0.0, time_s[-1])
+        return self.gain * CubicSpline(time_s, truth)(late) + self.offset
+
+    def rounded(self, reading: Array) -> Array:
+        return np.round(reading / self.step) * self.step if self.step > 0.0 else reading
+
+
+def coloured_noise(
+    rng: np.random.Generator, samples: int, deviation: float, *, share: float, corner_hz: float, rate_hz: float
+) -> Array:
+    """Noise of standard deviation `deviation`: white, and `share` of the variance low-passed at `corner_hz`."""
+    pole = np.exp(-2.0 * np.pi * corner_hz / rate_hz)
+    slow = lfilter([np.sqrt(1.0 - pole**2)], [1.0, -pole], rng.standard_normal(samples + 2000))[2000:]
+    white = rng.standard_normal(samples)
+    return np.asarray(deviation * (np.sqrt(1.0 - share) * white + np.sqrt(share) * slow))
