@@ -1,6 +1,6 @@
 """Test plans: what a plan is, the stimuli it plays, the metrics and criteria it is judged by."""
 
-from test_plans.conductor import Array, Conductor, PlannedSegment, Quantity
+from test_plans.conductor import Array, Conductor, PlannedSegment, Quantity, Work
 from test_plans.criteria import Criterion
 from test_plans.judging import judge
 from test_plans.loading import library_plans, load_plan, plan_from_text
@@ -24,6 +24,7 @@ __all__ = [
     "PlannedSegment",
     "Quantity",
     "Step",
+    "Work",
     "estimate_duration_s",
     "judge",
     "library_plans",

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
+
+from hil.core.recording import Recording
 
 Array = npt.NDArray[np.float64]
 Quantity = Literal["motor_torque", "driving_torque"]
@@ -31,6 +34,11 @@ class PlannedSegment:
     end_s: float = math.inf
 
 
+#: What an analysis step does: from the run's recording so far (its segments in the attachment `run.json`) and
+#: the directory with what earlier analyses made, to new files by name.
+Work = Callable[[Recording, Path], Mapping[str, bytes]]
+
+
 class Conductor(Protocol):
     """Carries out what steps ask for; the engine implements it. Every call blocks until done."""
 
@@ -38,7 +46,10 @@ class Conductor(Protocol):
     sample_time_s: float
 
     def set_controller(self, file: Path) -> None:
-        """Write a controller file's parameters to the RMCU and read them back."""
+        """Write a controller file's parameters to the RMCU and read them back.
+
+        A relative path names a file that an analysis of this run has made.
+        """
         ...
 
     def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
@@ -67,4 +78,8 @@ class Conductor(Protocol):
 
     def ramp_down(self, duration_s: float) -> None:
         """Bring torque and speed to zero."""
+        ...
+
+    def analyse(self, name: str, work: Work, makes: tuple[str, ...]) -> None:
+        """Let `work` look at the recording so far and keep the files it returns; `makes` announces them."""
         ...

@@ -10,7 +10,7 @@ import typer
 
 from hil.analysis.control_design import DesignSpec, MarginLimits, Normalisation, Objective, design
 from hil.analysis.frequency_response import frf_from_csv
-from hil.cli._design_outputs import output_files, summary_of, text_of
+from hil.analysis.outputs.control_design import output_files, summary_of, text_of
 from hil.cli._together import progress, to_json, write_together
 from hil.core.errors import BadInputError
 from hil.core.model import load_model

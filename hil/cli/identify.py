@@ -10,7 +10,7 @@ import typer
 
 from hil.analysis.frequency_response import Experiment, Method, experiments_of
 from hil.analysis.identification import ORDERS, identify
-from hil.cli._identify_outputs import output_files, summary_of, text_of
+from hil.analysis.outputs.identification import output_files, summary_of, text_of
 from hil.cli._together import progress, to_json, write_together
 from hil.core.channels import INPUT
 from hil.core.errors import BadInputError

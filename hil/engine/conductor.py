@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -10,11 +11,12 @@ import numpy as np
 from drivers import TICK_S
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BenchError
-from hil.core.result import Segment
+from hil.core.files import write_atomically
+from hil.core.result import RunResult, Segment
 from hil.engine.bench import Bench
 from hil.engine.preflight import Rehearsal
 from hil.engine.recorder import Recorder
-from test_plans import Array, PlannedSegment, Quantity
+from test_plans import Array, PlannedSegment, Quantity, Work
 
 _SPEED_TOLERANCE_RAD_S = 0.5
 _SPEED_GRACE_S = 5.0
@@ -26,17 +28,20 @@ class BenchConductor:
 
     sample_time_s = TICK_S
 
-    def __init__(self, bench: Bench, recorder: Recorder, ask: Callable[[str], None]) -> None:
-        self._bench, self._recorder, self._ask = bench, recorder, ask
+    def __init__(self, bench: Bench, recorder: Recorder, out: Path, ask: Callable[[str], None]) -> None:
+        self._bench, self._recorder, self._out, self._ask = bench, recorder, out, ask
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
         self._speed_m_s = 0.0
         self.segments: list[Segment] = []
         self.controllers: dict[str, str] = {}
+        self.made: dict[str, bytes] = {}
 
     def set_controller(self, file: Path) -> None:
         """Write a controller to the RMCU (torque off) and read it back."""
         self._check.set_controller(file)
+        if not file.is_absolute() and file.name in self.made:
+            file = self._out / file
         controller = load_controller(file)
         self._bench.rmcu.write_controller(controller)
         self._controller = controller
@@ -108,6 +113,39 @@ class BenchConductor:
         """Torque off, then the dynos bring the wheels to standstill."""
         self._switch_off()
         self.hold_speed(0.0, duration_s)
+
+    def analyse(self, name: str, work: Work, makes: tuple[str, ...]) -> None:
+        """Analyse the run so far; on a bench with hardware heartbeats go on meanwhile."""
+        self._check.analyse(name, work, makes)
+        self._switch_off()
+        recording = self._recorder.so_far()
+        recording.attachments["run.json"] = self._result_so_far().model_dump_json().encode()
+        files = self._computed(lambda: work(recording, self._out))
+        for file, content in files.items():
+            write_atomically(self._out / file, content)
+            self.made[file] = content
+        self._event("analysis", f"{name}: {', '.join(sorted(files))}")
+
+    def _result_so_far(self) -> RunResult:
+        return RunResult(
+            verdict="error",
+            plan="",
+            bench=self._bench.file.name,
+            real_time_factor=0.0,
+            bench_time_s=0.0,
+            safe_state="not_needed",
+            segments=tuple(self.segments),
+            reason="the run is still going on",
+        )
+
+    def _computed(self, work: Callable[[], Mapping[str, bytes]]) -> Mapping[str, bytes]:
+        if self._bench.simulated:
+            return work()  # virtual time stands still
+        with ThreadPoolExecutor(1) as pool:
+            running = pool.submit(work)
+            while not running.done():
+                self._bench.loop.step()
+            return running.result()
 
     def _begin(self, planned: PlannedSegment, clock_s: float, samples: int) -> None:
         start_s = self._recorder.recording_time(clock_s)

@@ -11,7 +11,7 @@ import numpy as np
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from hil.engine.bench_file import BenchFile
-from test_plans import Array, Plan, PlannedSegment, Quantity, estimate_duration_s
+from test_plans import Array, Plan, PlannedSegment, Quantity, Work, estimate_duration_s
 
 _BYTES_PER_SECOND = 120_000  # measured: a recording's size for each second of bench time, with room to spare
 
@@ -51,10 +51,20 @@ class Rehearsal:
     def __init__(self, bench: BenchFile) -> None:
         self._bench = bench
         self._has_controller = False
+        self._made: set[str] = set()
         self.torque_limit_nm = bench.limits.motor_torque_nm
 
     def set_controller(self, file: Path) -> None:
-        """The file must be readable and within the torque limit."""
+        """The file must be readable and within the torque limit, or be made by an earlier step."""
+        if not file.is_absolute() and file.name in self._made:
+            self._has_controller = True
+            return
+        if not file.is_absolute() and not file.is_file():
+            raise BadInputError(
+                f"no earlier step makes '{file}'",
+                where="plan",
+                fix="put the design step before set_controller",
+            )
         controller = load_controller(file)
         limit = self._bench.limits.motor_torque_nm
         if controller.torque_limit_nm > limit:
@@ -109,3 +119,8 @@ class Rehearsal:
 
     def ramp_down(self, duration_s: float) -> None:
         """Nothing to compare."""
+
+    def analyse(self, name: str, work: Work, makes: tuple[str, ...]) -> None:
+        """Remember what will be there."""
+        del name, work
+        self._made.update(makes)

@@ -66,6 +66,11 @@ class Recorder:
     def finish_rows(self) -> Recording:
         """Decode what is left; the whole run's channels, for judging."""
         self._write_rows(everything=True)
+        return self.so_far()
+
+    def so_far(self) -> Recording:
+        """The channels decoded until now."""
+        self._write_rows()
         names = self._assembler.names
         rows = np.concatenate(self._chunks) if self._chunks else np.zeros((0, len(names)))
         channels = {name: np.ascontiguousarray(rows[:, column]) for column, name in enumerate(names)}

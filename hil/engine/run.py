@@ -87,7 +87,7 @@ class _Run:
         buses = [wire.name for wire in bench.loop.wires]
         self._recorder = Recorder(request.out / RECORDING, self._bindings, buses, TICK_S)
         self._watch = LimitWatch(self._bindings, request.bench.limits, TICK_S)
-        self._conductor = BenchConductor(bench, self._recorder, request.ask)
+        self._conductor = BenchConductor(bench, self._recorder, request.out, request.ask)
         bench.loop.on_block(self._recorder.take)
         bench.loop.on_block(self._watch.take)
         started = time.perf_counter()
@@ -212,6 +212,7 @@ class _Run:
             attachments["model.toml"] = model_to_toml(self._bench.model).encode()
         for name, text in self._conductor.controllers.items():
             attachments[f"controller/{name}.toml"] = text.encode()
+        attachments |= {f"made/{name}": content for name, content in self._conductor.made.items()}
         for name, content in attachments.items():
             writer.attach(name, content)
         operator = request.operator or request.bench.operator

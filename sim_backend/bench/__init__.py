@@ -5,4 +5,4 @@ from sim_backend.bench._settings import Noise, SimulationSettings
 from sim_backend.bench._traffic import frame_time_s
 from sim_backend.bench._world import DYNO_BUS, RMCU_BUS, SimulatedBench
 
-__all__ = ["DYNO_BUS", "Fault", "RMCU_BUS", "Noise", "SimulatedBench", "SimulationSettings", "frame_time_s"]
+__all__ = ["DYNO_BUS", "RMCU_BUS", "Fault", "Noise", "SimulatedBench", "SimulationSettings", "frame_time_s"]

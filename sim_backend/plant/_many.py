@@ -7,6 +7,7 @@ fraction of a milliradian that slips at the friction torque, where the kernel ha
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +26,7 @@ _STICK_RATE_RAD_S = 250.0  # of the rotor on its sticking contact: above all mod
 _STICK_DAMPING = 0.7
 _STRIBECK_WIDTH_RAD_S = 2.0
 _ROLLING_WIDTH_RAD_S = 0.05
-_SLIP, _STICK, _WHEEL_ANGLE = range(3)  # further states, of the nonlinear forces alone
+_SLIP, _STICK, _WHEEL_ANGLE, _MOTOR_ANGLE = range(4)  # further states, of the nonlinear forces alone
 
 
 def ideal_sensors(sets: int) -> Array:
@@ -36,7 +37,13 @@ def ideal_sensors(sets: int) -> Array:
 
 
 def simulate_many(
-    parameters: Array, torque_nm: Array, dt: float, starts: Array, sensors: Array, block: int = 1
+    parameters: Array,
+    torque_nm: Array,
+    dt: float,
+    starts: Array,
+    sensors: Array,
+    block: int = 1,
+    angles: Array | None = None,
 ) -> Array:
     """Channels of many packed models for one torque request, each the mean of `block` samples.
 
@@ -45,6 +52,8 @@ def simulate_many(
         torque_nm: shape (n,), held for `dt` seconds each; the first value has acted since long before.
         starts: sets x 3: motor speed, wheel speed (rad/s), shaft torque (N m).
         sensors: sets x 3 channels x (gain, offset, delay in s).
+        angles: n x 2, wheel and rotor angle in rad that ripples follow (as measured); when left out, the
+            simulated ones.
 
     Returns:
         sets x (n // block) x 3, in the order of `CHANNELS`. A diverged set shows as NaN or huge numbers.
@@ -55,16 +64,11 @@ def simulate_many(
     transition = np.zeros((sets, STATES, STATES))
     torque = np.zeros((sets, most, 2, STATES))
     held, rising = np.zeros((sets, 3, STATES)), np.zeros((sets, 3, STATES))
-    seen: dict[bytes, int] = {}
     for index, p in enumerate(parameters):
-        same = seen.setdefault(p[_LINEAR].tobytes() + bytes([int(substeps[index])]), index)
-        if same != index:
-            transition[index], torque[index] = transition[same], torque[same]
-            held[index], rising[index] = held[same], rising[same]
-            continue
-        matrices = step_matrices(p, dt, int(substeps[index]))
+        used = int(substeps[index])
+        matrices = _matrices(p[_LINEAR].tobytes(), dt, used)
         transition[index], held[index], rising[index] = matrices[0], matrices[2], matrices[3]
-        torque[index, : substeps[index]] = matrices[1]
+        torque[index, :used] = matrices[1]
     out = np.empty((sets, len(torque_nm) // block, len(CHANNELS)))
     _run_all(
         np.ascontiguousarray(torque_nm, dtype=float),
@@ -75,6 +79,7 @@ def simulate_many(
         block,
         substeps,
         (transition, torque, held, rising),
+        np.zeros((0, 2)) if angles is None else np.ascontiguousarray(angles, dtype=float),
         out,
     )
     return out
@@ -100,6 +105,13 @@ _LINEAR = [
 ]
 _STATELESS = [P.CUBIC, P.WHEEL_ORDER_AMPLITUDE, P.MOTOR_ORDER_AMPLITUDE, P.ROLLING, P.AERO]
 _ABRUPT = [P.HALF_GAP, P.HYSTERESIS_STIFFNESS, P.COULOMB, P.STRIBECK]
+
+
+@lru_cache(maxsize=512)
+def _matrices(linear: bytes, dt: float, substeps: int) -> tuple[Array, Array, Array, Array]:
+    p = np.zeros(len(P.NAMES))
+    p[_LINEAR] = np.frombuffer(linear)
+    return step_matrices(p, dt, substeps)
 
 
 def _substeps(p: Array) -> int:
@@ -176,8 +188,8 @@ def _forces(x, further, p):  # type: ignore[no-untyped-def]
             damping = 2.0 * _STICK_DAMPING * _STICK_RATE_RAD_S * inertia * speed
             loss += min(max(damping, -0.5 * level), 0.5 * level)
     if p[P.MOTOR_ORDER_AMPLITUDE] != 0.0:
-        angle = p[P.GEAR_RATIO] * (x[1] + further[_WHEEL_ANGLE] - x[6])
-        loss -= p[P.MOTOR_ORDER_AMPLITUDE] * math.sin(p[P.MOTOR_ORDER] * angle + p[P.MOTOR_ORDER_PHASE])
+        angle = p[P.MOTOR_ORDER] * further[_MOTOR_ANGLE] + p[P.MOTOR_ORDER_PHASE]
+        loss -= p[P.MOTOR_ORDER_AMPLITUDE] * math.sin(angle)
     load = 0.0
     if p[P.ROLLING] != 0.0 or p[P.AERO] != 0.0:
         at = x[4]
@@ -209,7 +221,22 @@ def _follow(old, x, further, h, p):  # type: ignore[no-untyped-def]
         stretch = level / (inertia * _STICK_RATE_RAD_S * _STICK_RATE_RAD_S)
         speed = 0.5 * (old[0] - old[7] + x[0] - x[7])
         stuck = min(max(stuck + h * speed / stretch, -1.0), 1.0)
-    return slipped, stuck, angle
+    return slipped, stuck, angle, p[P.GEAR_RATIO] * (x[1] + angle - x[6])
+
+
+@inlined
+def _at(angles, at, dt, further):  # type: ignore[no-untyped-def]
+    """Further states with the given angles at the time `at`, if any are given."""
+    if angles.shape[0] == 0:
+        return further
+    k = min(int(at / dt), angles.shape[0] - 2)
+    part = at / dt - k
+    return (
+        further[0],
+        further[1],
+        angles[k, 0] + part * (angles[k + 1, 0] - angles[k, 0]),
+        angles[k, 1] + part * (angles[k + 1, 1] - angles[k, 1]),
+    )
 
 
 @compiled
@@ -243,7 +270,7 @@ def _observe(x, f, p, acting, row):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _run(torque, dt, p, start, substeps, transition, column, held, rising, fine):  # type: ignore[no-untyped-def]
+def _run(torque, dt, p, start, substeps, transition, column, held, rising, angles, fine):  # type: ignore[no-untyped-def]
     """One model over the whole recording into `fine` (n x 3)."""
     n = torque.shape[0]
     acting = np.empty(n)
@@ -255,11 +282,11 @@ def _run(torque, dt, p, start, substeps, transition, column, held, rising, fine)
     forced = forced or p[P.WHEEL_ORDER_AMPLITUDE] != 0.0 or p[P.MOTOR_ORDER_AMPLITUDE] != 0.0
     forced = forced or p[P.ROLLING] != 0.0 or p[P.AERO] != 0.0
     x, y, z = np.zeros(STATES), np.zeros(STATES), np.zeros(STATES)
-    further, f = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    further, f = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     _first_state(p, start, acting[0], x)
     if forced:
         if x[0] != 0.0:
-            further = (0.0, math.tanh(x[0] / 0.2), 0.0)
+            further = (0.0, math.tanh(x[0] / 0.2), 0.0, p[P.GEAR_RATIO] * x[1])
         f = _forces(x, further, p)
     for k in range(n):
         new = acting[max(k - whole, 0)]
@@ -275,11 +302,12 @@ def _run(torque, dt, p, start, substeps, transition, column, held, rising, fine)
             if forced:
                 for i in range(8):
                     y[i] += held[0, i] * f[0] + held[1, i] * f[1] + held[2, i] * f[2]
-                g = _forces(y, _follow(x, y, further, h, p), p)
+                later = k * dt + (sub + 1) * h
+                g = _forces(y, _at(angles, later, dt, _follow(x, y, further, h, p)), p)
                 for i in range(8):
                     z[i] = y[i] + rising[0, i] * (g[0] - f[0])
                     z[i] += rising[1, i] * (g[1] - f[1]) + rising[2, i] * (g[2] - f[2])
-                further = _follow(x, z, further, h, p)
+                further = _at(angles, later, dt, _follow(x, z, further, h, p))
                 f = _forces(z, further, p)
                 for i in range(8):
                     x[i] = z[i]
@@ -306,7 +334,7 @@ def _averaged(fine, dt, sensor, block, out):  # type: ignore[no-untyped-def]
 
 
 @compiled_parallel
-def _run_all(torque, dt, parameters, starts, sensors, block, substeps, matrices, out):  # type: ignore[no-untyped-def]
+def _run_all(torque, dt, parameters, starts, sensors, block, substeps, matrices, angles, out):  # type: ignore[no-untyped-def]
     transition, column, held, rising = matrices
     for s in prange(parameters.shape[0]):
         fine = np.empty((torque.shape[0], 3))
@@ -320,6 +348,7 @@ def _run_all(torque, dt, parameters, starts, sensors, block, substeps, matrices,
             column[s],
             held[s],
             rising[s],
+            angles,
             fine,
         )
         _averaged(fine, dt, sensors[s], block, out[s])

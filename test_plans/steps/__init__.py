@@ -2,7 +2,7 @@
 
 from test_plans.registry import Registry
 from test_plans.steps._excitation import Excitation
-from test_plans.steps._step import SAMPLE_TIME_S, Step
+from test_plans.steps._step import SAMPLE_TIME_S, Name, Step
 from test_plans.steps.chirp import Chirp
 from test_plans.steps.coast import Coast
 from test_plans.steps.hold_speed import HoldSpeed
@@ -11,7 +11,7 @@ from test_plans.steps.operator_prompt import OperatorPrompt
 from test_plans.steps.ramp import Ramp
 from test_plans.steps.ramp_down import RampDown
 from test_plans.steps.repeat import Repeat
-from test_plans.steps.set_controller import FileSearch, SetController
+from test_plans.steps.set_controller import FileSearch, SetController, designed_file
 from test_plans.steps.stairs import Stairs
 from test_plans.steps.step import TorqueStep
 from test_plans.steps.wait import Wait
@@ -42,6 +42,7 @@ __all__ = [
     "FileSearch",
     "HoldSpeed",
     "Multisine",
+    "Name",
     "OperatorPrompt",
     "Ramp",
     "RampDown",
@@ -51,4 +52,5 @@ __all__ = [
     "Step",
     "TorqueStep",
     "Wait",
+    "designed_file",
 ]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, Self
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from test_plans.conductor import Conductor
 from test_plans.pace import Outlook, Pace
-from test_plans.steps._step import Step
+from test_plans.steps._step import Name, Step
 
 
 @dataclass(frozen=True)
@@ -27,13 +27,22 @@ class SetController(Step):
     """Load a controller file into the RMCU; `file` is absolute or relative to where it was found from."""
 
     kind: ClassVar[str] = "set_controller"
-    file: Path = Field(strict=False, description="controller file (TOML), relative to the plan or built in")
+    file: Path | None = Field(
+        default=None, strict=False, description="controller file (TOML), relative to the plan or built in"
+    )
+    designed: Name | None = Field(default=None, description="name of an earlier design step of this plan")
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Self:
+        if (self.file is None) == (self.designed is None):
+            raise ValueError("give either 'file' or 'designed'")
+        return self
 
     @field_validator("file", mode="after")
     @classmethod
-    def _found_and_valid(cls, file: Path, info: ValidationInfo) -> Path:
+    def _found_and_valid(cls, file: Path | None, info: ValidationInfo) -> Path | None:
         search = info.context
-        if not isinstance(search, FileSearch) or not search.required:
+        if file is None or not isinstance(search, FileSearch) or not search.required:
             return file
         places = [directory / file for directory in search.directories]
         found = next((place for place in places if _is_file(place)), None)
@@ -47,11 +56,16 @@ class SetController(Step):
 
     def carry_out(self, conductor: Conductor) -> None:
         """Hand the file over."""
-        conductor.set_controller(self.file)
+        conductor.set_controller(self.file or designed_file(str(self.designed)))
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:  # noqa: ARG002 - not on the dynos
         """Next to no time."""
         return Outlook(0.0, speed_m_s)
+
+
+def designed_file(name: str) -> Path:
+    """Relative path under which a design step's controller is kept."""
+    return Path(f"controller_{name}.toml")
 
 
 def _is_file(path: Path) -> bool:

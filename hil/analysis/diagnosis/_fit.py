@@ -40,6 +40,10 @@ class Fit:
 def box_step(matrix: Array, gradient: Array, lower: Array, upper: Array) -> Array:
     """Minimiser of ½xᵀMx - gᵀx within bounds, by an active set."""
     size = len(gradient)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    matrix, gradient = matrix * np.outer(scale, scale), gradient * scale
+    lower, upper = lower / scale, upper / scale
+    reach = float(np.max(np.abs(gradient), initial=1e-300))
     x = np.zeros(size)
     free = np.ones(size, bool)
     for _ in range(3 * size + 3):
@@ -58,11 +62,11 @@ def box_step(matrix: Array, gradient: Array, lower: Array, upper: Array) -> Arra
             continue
         x = trial
         pull = gradient - matrix @ x
-        release = ~free & (((x <= lower) & (pull > 1e-9)) | ((x >= upper) & (pull < -1e-9)))
+        release = ~free & (((x <= lower) & (pull > 1e-9 * reach)) | ((x >= upper) & (pull < -1e-9 * reach)))
         if not release.any():
             break
         free[int(np.argmax(np.where(release, np.abs(pull), -1.0)))] = True
-    return np.clip(x, lower, upper)
+    return np.clip(x, lower, upper) * scale
 
 
 def fit(

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis._fit import Fit
 from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._trace import blocks
 from sim_backend.plant import pack, system
 
 Array = npt.NDArray[np.float64]
@@ -24,6 +25,7 @@ _BINS_A_TURN = 8  # of the largest order
 _FROM_HZ = 0.5
 _LEAST_ANGLE_RAD = 20.0
 _SPEED_BINS = 200
+_ORDER_GRID = 600
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,12 @@ def order_lines(problem: Problem, fit: Fit, side: Literal["wheel", "motor"], mos
     slots = pack(fit.hypothesis.model(fit.theta))
     for index, trace in enumerate(problem.traces):
         error = fit.pieces[index][0].reshape(-1, 3)
-        speed = _wheel_speed(problem, fit, index)
-        if side == "motor":
-            speed = speed * fit.hypothesis.base.parameters["gear_ratio"]
         dt = trace.dt * trace.block
+        turned = trace.angles(fit.hypothesis.base.parameters["gear_ratio"])[:, 0 if side == "wheel" else 1]
+        angle = blocks(turned[:, None], trace.block)[:, 0]
+        speed = np.gradient(angle, dt)
         image, frequency, power = _adjoint(slots, error * problem.weights[index], problem.weights[index], dt, side)
-        angles.append(np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * dt)]))
+        angles.append(angle)
         images.append(image)
         speeds.append(speed)
         powers.append((frequency, power))
@@ -58,14 +60,7 @@ def order_lines(problem: Problem, fit: Fit, side: Literal["wheel", "motor"], mos
     # a bias of the start and slow drifts live at low orders: an order must turn a few times
     usable = orders * reach > 8 * np.pi
     score = np.where(usable & (energy > 0), 2.0 * np.abs(spectrum) ** 2 / np.maximum(energy, 1e-12), 0.0)
-    return _peaks(score, orders, energy, side, most, 2 * np.pi / reach)
-
-
-def _wheel_speed(problem: Problem, fit: Fit, index: int) -> Array:
-    measured = problem.traces[index].measured
-    if np.isfinite(measured[0, 1]):
-        return measured[:, 1]
-    return np.asarray(measured[:, 0] / fit.hypothesis.base.parameters["gear_ratio"])
+    return _peaks(score, orders, side, most, 2 * np.pi / reach)
 
 
 def _adjoint(slots: Array, error: Array, weights: Array, dt: float, side: str) -> tuple[Array, Array, Array]:
@@ -120,20 +115,20 @@ def _over_angle(angles: list[Array], images: list[Array], largest: float) -> tup
 
 def _expected(orders: Array, speeds: list[Array], powers: list[tuple[Array, Array]]) -> Array:
     """Sum over samples of the response's power at the frequency that each order has there."""
-    total = np.zeros(len(orders))
+    coarse = np.linspace(0.0, float(orders[-1]), _ORDER_GRID)
+    total = np.zeros(_ORDER_GRID)
     for speed, (frequency, power) in zip(speeds, powers, strict=True):
         counts, edges = np.histogram(np.abs(speed), _SPEED_BINS)
         middle = 0.5 * (edges[1:] + edges[:-1])
-        at = orders[:, None] * middle / (2 * np.pi)
+        at = coarse[:, None] * middle / (2 * np.pi)
         total += np.interp(at.ravel(), frequency, power, right=0.0).reshape(at.shape) @ counts
-    return total
+    return np.interp(orders, coarse, total)
 
 
 def _peaks(
-    score: Array, orders: Array, energy: Array, side: Literal["wheel", "motor"], most: int, apart: float
+    score: Array, orders: Array, side: Literal["wheel", "motor"], most: int, apart: float
 ) -> list[OrderLine]:
     found: list[OrderLine] = []
-    del energy
     left = score.copy()
     for _ in range(most):
         top = int(np.argmax(left))

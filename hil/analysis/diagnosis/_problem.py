@@ -32,9 +32,12 @@ class Problem:
     """Recordings with the noise levels that weigh them.
 
     `weights` are trace by trace (3,): what one block's error is multiplied by, 0 for a missing channel.
+    Ripples follow the measured angles (`steered`) while a hypothesis is sought: a simulated angle drifts off
+    as long as the model is not right, and takes the ripple's phase with it.
     """
 
-    def __init__(self, traces: list[Trace], noise: Array) -> None:
+    def __init__(self, traces: list[Trace], noise: Array, gear_ratio: float, *, steered: bool = True) -> None:
+        self.angles = [t.angles(gear_ratio) if steered else None for t in traces]
         self.traces = traces
         self.noise = noise
         self.weights = [
@@ -58,7 +61,8 @@ class Problem:
     def outputs(self, trace: int, slots: Array, sensors: Array, starts: Array) -> Array:
         """Simulated channels of one recording for many sets: sets x blocks x 3."""
         t = self.traces[trace]
-        return np.asarray(simulate_many(slots, t.torque, t.dt, starts, sensors, t.block))
+        simulated = simulate_many(slots, t.torque, t.dt, starts, sensors, t.block, self.angles[trace])
+        return np.asarray(simulated)
 
     def errors(self, trace: int, simulated: Array) -> Array:
         """Weighted measured minus simulated, blocks x 3, 0 where not measured."""

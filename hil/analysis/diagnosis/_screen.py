@@ -80,8 +80,7 @@ def _index(hypothesis: Hypothesis, name: str) -> int:
 def _gain(matrix: Array, gradient: Array, lower: Array, upper: Array, columns: Array) -> tuple[float, Array]:
     """Drop of the squared error that `columns` can buy within their bounds, and their amounts."""
     m, g = matrix[np.ix_(columns, columns)], gradient[columns]
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(m), 1e-30))
-    x = box_step(m * np.outer(scale, scale), g * scale, lower / scale, upper / scale) * scale
+    x = box_step(m, g, lower, upper)
     return float(2 * g @ x - x @ m @ x), x
 
 

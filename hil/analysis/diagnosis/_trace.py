@@ -40,6 +40,17 @@ class Trace:
     start: Array
     notes: tuple[str, ...]
 
+    def angles(self, gear_ratio: float) -> Array:
+        """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds."""
+        motor, wheel = self.samples[:, 0], self.samples[:, 1]
+        if not self.has[1]:
+            wheel = motor / gear_ratio
+        if not self.has[0]:
+            motor = wheel * gear_ratio
+        speeds = np.column_stack([wheel, motor])
+        turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
+        return np.concatenate([np.zeros((1, 2)), turned])
+
     @property
     def has(self) -> npt.NDArray[np.bool_]:
         """Which of the three channels were measured."""

@@ -38,7 +38,7 @@ def test_every_format_gives_back_what_was_written(ending, tmp_path):
 def test_csv_is_read_by_pandas(tmp_path):
     write_recording(recording(), tmp_path / "r.csv")
     frame = pd.read_csv(tmp_path / "r.csv")
-    assert list(frame.columns)[0] == "time_s"
+    assert frame.columns[0] == "time_s"
     np.testing.assert_allclose(frame["motor_speed_rad_s"], np.cos(TIME), rtol=1e-8)
 
 

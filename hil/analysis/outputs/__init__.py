@@ -1,0 +1,1 @@
+"""What analyses leave behind: files, summaries and figures, for commands and for plans."""
