@@ -105,8 +105,15 @@ def _decimals(criterion: CriterionResult) -> int:
     return decimals
 
 
+def _bound(value: float | None) -> str:
+    """A limit as it was chosen; one that was measured (another segment's value) with five digits."""
+    if value is not None and float(f"{value:.6g}") != value:
+        return quantities.number(value, significant=5)
+    return quantities.nominal(value)
+
+
 def _limit(criterion: CriterionResult) -> str:
-    lower, upper = quantities.nominal(criterion.lower), quantities.nominal(criterion.upper)
+    lower, upper = _bound(criterion.lower), _bound(criterion.upper)
     if criterion.lower is not None and criterion.upper is not None:
         return f"{lower} to {upper}"
     if criterion.upper is not None:

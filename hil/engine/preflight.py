@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError
 from hil.engine.bench_file import BenchFile
 from test_plans import Array, Plan, PlannedSegment, Quantity, Work, estimate_duration_s
 
-_BYTES_PER_SECOND = 120_000  # measured: a recording's size for each second of bench time, with room to spare
+_BYTES_PER_SECOND = 250_000  # a recording takes some 170 kB for each second of bench time, and a report
 
 
 def preflight(plan: Plan, bench: BenchFile, out: Path, today: datetime.date) -> None:

@@ -34,7 +34,7 @@ class Score:
 def screen(problem: Problem, fit: Fit) -> list[Score]:
     """Every effect that can be added to `fit`, each at its best probe, most promising first."""
     candidates = probes(problem, fit)
-    matrix, gradient, constant = _products(problem, fit, candidates)
+    matrix, gradient = _products(problem, fit, candidates)
     base = len(fit.theta)
     coordinates = fit.hypothesis.coordinates()
     lower = np.array([c.lower for c in coordinates]) - fit.theta
@@ -52,7 +52,6 @@ def screen(problem: Problem, fit: Fit) -> list[Score]:
         high = np.concatenate([upper, [d.upper for d in probe.directions]])
         gain, amounts = _gain(matrix, gradient, low, high, np.concatenate([np.arange(base), columns]))
         _keep(best, Score(probe.use(amounts[base:]), gain - rest))
-    del constant
     for use in mismatches(fit.hypothesis):
         index = _index(fit.hypothesis, str(use.values["parameter"]))
         low, high = lower.copy(), upper.copy()
@@ -84,8 +83,11 @@ def _gain(matrix: Array, gradient: Array, lower: Array, upper: Array, columns: A
     return float(2 * g @ x - x @ m @ x), x
 
 
-def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Array, Array, float]:
-    """Products of all derivatives and probe responses with each other and the error, starts projected out."""
+def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Array, Array]:
+    """Products of all derivatives and probe responses with each other and the error, starts projected out.
+
+    Products between different probes are left zero: no two are used together.
+    """
     packed = [fit.hypothesis.packed(fit.theta)]
     for probe in candidates:
         for direction in probe.directions:
@@ -94,20 +96,28 @@ def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Arra
             packed.append(added.packed(theta))
     slots = np.stack([p for p, _ in packed])
     sensors = np.stack([s for _, s in packed])
-    size = len(fit.theta) + len(packed) - 1
-    matrix, gradient, total = np.zeros((size, size)), np.zeros(size), 0.0
+    base, size = len(fit.theta), len(fit.theta) + len(packed) - 1
+    groups = np.cumsum([0, *(len(p.directions) for p in candidates)])
+    matrix, gradient = np.zeros((size, size)), np.zeros(size)
     for index, (error, shared, initial) in enumerate(fit.pieces):
         starts = np.tile(fit.starts[index], (len(packed), 1))
         simulated = problem.outputs(index, slots, sensors, starts)
         change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(len(packed) - 1, -1)
-        columns = np.concatenate([shared, np.nan_to_num(change, copy=False, posinf=0.0, neginf=0.0).T], axis=1)
+        change[~np.isfinite(change)] = 0.0
         basis = np.linalg.qr(initial)[0] if np.any(initial) else np.zeros((len(error), 1))
-        columns = columns - basis @ (basis.T @ columns)
+        mine = shared - basis @ (basis.T @ shared)
         free = error - basis @ (basis.T @ error)
-        matrix += columns.T @ columns
-        gradient += columns.T @ free
-        total += float(free @ free)
-    return matrix, gradient, total
+        along = change @ basis
+        matrix[:base, :base] += mine.T @ mine
+        across = change @ mine
+        matrix[base:, :base] += across
+        matrix[:base, base:] += across.T
+        gradient[:base] += mine.T @ free
+        gradient[base:] += change @ free
+        for first, last in zip(groups[:-1], groups[1:], strict=True):
+            own = change[first:last] @ change[first:last].T - along[first:last] @ along[first:last].T
+            matrix[base + first : base + last, base + first : base + last] += own
+    return matrix, gradient
 
 
 def _carried(fit: Fit, added: Hypothesis) -> Array:

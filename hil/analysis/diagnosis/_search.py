@@ -25,6 +25,8 @@ LEAST_EVIDENCE = 45.0  # drop of the squared error in noise variances, after def
 _LEAST_SHARE = 0.5  # of the remaining excess over the noise that one effect must close
 _LEAST_OF_ALL = 2e-3  # of the first excess: below it, a formula differs and no effect is missing
 _MOST_EFFECTS = 3
+_PAIR_STARTS = 3
+_LEAST_PAIR_SHARE = 0.75
 _RACE = 5  # candidates that are fitted at each step
 _RACE_ROUNDS = 3
 _OUT_OF_RACE = 2.5  # times the best cost after the first rounds
@@ -75,10 +77,30 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None]) -> F
         winner = _refined(problem, step.fits[0])
         step.fits[0] = winner
         if not accepted(problem, found.base, found.best, winner):
-            break
+            pair = _pair(problem, found, step.fits) if not found.best.hypothesis.terms else None
+            if pair is None:
+                break
+            winner = pair
         found.best = winner
         found = _backward(problem, found)
     return found
+
+
+def _pair(problem: Problem, found: Found, fits: list[Fit]) -> Fit | None:
+    """Two effects that close the gap together where neither does alone."""
+    best: Fit | None = None
+    for parent in fits[:_PAIR_STARTS]:
+        if evidence(problem, found.base, parent) < LEAST_EVIDENCE:
+            continue
+        scores = screen(problem, parent)
+        for one in _race(problem, parent, scores[:_PAIR_STARTS]) if scores else []:
+            if best is None or one.total < best.total:
+                best = one
+    if best is None or _share(problem, found.base, best) < _LEAST_PAIR_SHARE:
+        return None
+    drop = found.base.total - best.total
+    enough = evidence(problem, found.base, best) > 2 * LEAST_EVIDENCE and drop > 0
+    return best if enough else None
 
 
 def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:

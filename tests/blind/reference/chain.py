@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from tests.blind.reference.contact import shaft_torque
+from tests.blind.reference.contact import SERIES, series_contact, shaft_torque
 from tests.blind.reference.controller import pi_torque
 from tests.blind.reference.friction import bristle_after, friction_torque, running_resistance
 from tests.blind.reference.hysteresis import ELEMENTS, advance
@@ -18,22 +18,32 @@ ROTOR, HOUSING, WHEEL, VEHICLE, ABSORBER = range(5)
 _ITERATIONS = 2  # contraction is below 0.01 at 50 µs: two leave less than 1e-6
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def _twist(p: Any, x: np.ndarray) -> float:
     """Twist (or its rate): gear output against wheel; the gear turns with the housing."""
     return x[HOUSING] + (x[ROTOR] - x[HOUSING]) / p.gear_ratio - x[WHEEL]  # type: ignore[no-any-return]
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
-def measured_shaft_torque(p: Any, x: np.ndarray, v: np.ndarray, hysteretic: float, time_s: float) -> float:
-    """T_s in N m: shafts, hysteretic path and ripple."""
-    torque = shaft_torque(p, _twist(p, x), _twist(p, v), time_s) + hysteretic
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+def _through_shafts(
+    p: Any, x: np.ndarray, v: np.ndarray, wound: float, span_s: float, time_s: float
+) -> Any:
+    """(twist of the shafts, torque in N m) `span_s` after they had the twist `wound`; `x`, `v` are of the end."""
+    twist, rate = _twist(p, x), _twist(p, v)
+    if p.half_gap > 0.0 and p.contact_form == SERIES:
+        return series_contact(p, wound, twist - rate * span_s, rate, span_s)
+    return twist, shaft_torque(p, twist, rate, time_s)
+
+
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+def _with_ripple(p: Any, torque: float, wheel_angle: float) -> float:
+    """Shaft torque in N m with the joints' and tyres' ripple."""
     if p.wheel_amplitude > 0.0:
-        torque += p.wheel_amplitude * math.sin(p.wheel_order * x[WHEEL] + p.wheel_phase)
+        torque += p.wheel_amplitude * math.sin(p.wheel_order * wheel_angle + p.wheel_phase)
     return torque  # type: ignore[no-any-return]
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def _accelerations(
     p: Any, x: np.ndarray, v: np.ndarray, drive: float, shaft: float, tyre: float, time_s: float, a: np.ndarray
 ) -> None:
@@ -57,7 +67,7 @@ def _accelerations(
         a[WHEEL] = (wheel - running_resistance(p, v[WHEEL])) / p.vehicle_inertia
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def _tyre_after(p: Any, deflection: float, slip_speed: float, span_s: float) -> float:
     """Tyre deflection in rad after `span_s`; with a finite slip angle it slides as in Dahl's model (1968)."""
     if math.isinf(p.slip_angle):
@@ -66,7 +76,7 @@ def _tyre_after(p: Any, deflection: float, slip_speed: float, span_s: float) -> 
     return steady + (deflection - steady) * math.exp(-abs(slip_speed) * span_s / p.slip_angle)
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def simulate_chain(
     p: Any,
     ref: np.ndarray,
@@ -91,14 +101,14 @@ def simulate_chain(
     v[ROTOR] = wheel_speed * p.gear_ratio
     v[WHEEL] = v[VEHICLE] = v[ABSORBER] = wheel_speed
     x[ROTOR] = seat * p.half_gap * p.gear_ratio
-    bristle = lagged = torque = deflection = hysteretic = 0.0
+    bristle = lagged = torque = deflection = wound = shaft = 0.0
     loop = np.zeros(2)
     loop[1] = wheel_speed
     for k in range(n):
         time_s = k * sample_s
         out[k, 0] = v[ROTOR] - v[HOUSING]
         out[k, 1] = v[WHEEL]
-        out[k, 2] = measured_shaft_torque(p, x, v, hysteretic, time_s)
+        out[k, 2] = shaft
         if control.proportional > 0.0:
             ref[k] = pi_torque(control, loop, ref[k], target[k], v[WHEEL] + wheel_noise[k], sample_s)
         for i in range(substeps):
@@ -119,17 +129,22 @@ def simulate_chain(
                 if p.motor_amplitude > 0.0:
                     drive += p.motor_amplitude * math.sin(p.motor_order * x_mid[ROTOR] + p.motor_phase)
                 beside = advance(p, memory, memory_mid, _twist(p, v_mid), 0.5 * h)
-                shaft = measured_shaft_torque(p, x_mid, v_mid, beside, middle)
+                through = _through_shafts(p, x_mid, v_mid, wound, 0.5 * h, middle)[1]
+                shaft = _with_ripple(p, through + beside, x_mid[WHEEL])
                 slip = v_mid[WHEEL] - v_mid[VEHICLE]
                 tyre = p.tyre_stiffness * _tyre_after(p, deflection, slip, 0.5 * h) + p.tyre_damping * slip
                 _accelerations(p, x_mid, v_mid, drive, shaft, tyre, middle, a)
                 for j in range(5):
                     v_mid[j] = v[j] + 0.5 * h * a[j]
             bristle = bristle_after(p, bristle, v_mid[ROTOR] - v_mid[HOUSING], h)
-            hysteretic = advance(p, memory, memory_mid, _twist(p, v_mid), h)
+            beside = advance(p, memory, memory_mid, _twist(p, v_mid), h)
             memory, memory_mid = memory_mid, memory
             deflection = _tyre_after(p, deflection, v_mid[WHEEL] - v_mid[VEHICLE], h)
             for j in range(5):
                 x[j] += h * v_mid[j]
                 v[j] = 2.0 * v_mid[j] - v[j]
+            # over the whole step the mean rate counts; a spring's torque needs the rate at its end
+            play = p.half_gap > 0.0 and p.contact_form == SERIES
+            wound, through = _through_shafts(p, x, v_mid if play else v, wound, h, start + h)
+            shaft = _with_ripple(p, through + beside, x[WHEEL])
     return out

@@ -1,13 +1,14 @@
-"""Shaft torque over twist: free play with a dissipative contact, cubic and asymmetric stiffness."""
+"""Shaft torque over twist: free play in two formulations, cubic and asymmetric stiffness."""
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from numba import njit
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def elastic(p: Any, twist: float, time_s: float) -> float:
     """Spring torque in N m of a twist in rad (free play already taken off)."""
     stiffness = p.shaft_stiffness * (1.0 + p.shaft_drift * time_s)
@@ -16,9 +17,47 @@ def elastic(p: Any, twist: float, time_s: float) -> float:
     return stiffness * twist + p.cubic * twist * twist * twist
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+#: Forms of the free play.
+SERIES, DISSIPATIVE = 1.0, 2.0
+#: Stiffness of the flanks over that of the shafts: stiff enough to leave the base model's stiffness alone.
+_FLANKS = 400.0
+
+
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+def series_contact(p: Any, wound: float, twist: float, rate: float, span_s: float) -> Any:
+    """Free play in series with the shafts: (twist of the shafts after `span_s`, torque in N m).
+
+    Compliant flanks close and open the play; between them the shafts unwind on their own damping, as in
+    Nordin, Galic and Gutman (Int. J. Adapt. Control 11, 1997), whose model is the limit of rigid flanks.
+    `twist` is the whole twist at the start; the solution for a constant `rate` is exact while no flank
+    opens.
+    """
+    stiffness, damping = p.shaft_stiffness, p.shaft_damping
+    before = twist - wound
+    side = math.copysign(1.0, before) if abs(before) > p.half_gap else 0.0
+    if side == 0.0:
+        after = wound * math.exp(-stiffness * span_s / damping)
+        end = twist + rate * span_s - after
+        if abs(end) <= p.half_gap:
+            return after, 0.0
+        # closes within the span: the rest of it is in contact
+        side = math.copysign(1.0, end)
+        free_s = span_s * (side * p.half_gap - before) / (end - before)
+        wound *= math.exp(-stiffness * free_s / damping)
+        twist += rate * free_s
+        span_s -= free_s
+    speed = (1.0 + _FLANKS) * stiffness / damping
+    part = _FLANKS / (1.0 + _FLANKS)
+    start = part * (twist - side * p.half_gap - rate / speed)
+    rest = (wound - start) * math.exp(-speed * span_s)
+    after = start + part * rate * span_s + rest
+    torque = stiffness * after + damping * (part * rate - speed * rest)
+    return after, side * max(0.0, side * torque)
+
+
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def shaft_torque(p: Any, twist: float, rate: float, time_s: float) -> float:
-    """Torque in N m of the shafts behind the free play.
+    """Torque in N m of the shafts, and of a free play whose flanks dissipate.
 
     Damping grows with penetration (Hunt and Crossley, J. Appl. Mech. 42, 1975: dissipation that starts at
     zero force), saturating at the shafts' own damping after `contact_depth`, and flanks never pull.

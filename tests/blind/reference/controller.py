@@ -27,7 +27,7 @@ def control(
     return rows[0]  # type: ignore[no-any-return]
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def pi_torque(
     c: Any, state: np.ndarray, excitation: float, target: float, wheel_speed: float, sample_s: float
 ) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 from numba import njit
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def sliding_torque(p: Any, speed: float) -> float:
     """Stribeck curve in N m at a steady sliding speed in rad/s, without sign."""
     if p.stribeck == 0.0:
@@ -16,7 +16,7 @@ def sliding_torque(p: Any, speed: float) -> float:
     return p.coulomb + p.stribeck * math.exp(-((speed / p.stribeck_speed) ** 2))  # type: ignore[no-any-return]
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def bristle_after(p: Any, bristle: float, speed: float, span_s: float) -> float:
     """Bristle deflection in rad after `span_s` at constant speed: the exact solution.
 
@@ -28,7 +28,7 @@ def bristle_after(p: Any, bristle: float, speed: float, span_s: float) -> float:
     return steady + (bristle - steady) * math.exp(-abs(speed) * span_s / abs(steady))
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def friction_torque(p: Any, bristle: float, speed: float) -> float:
     """Torque in N m against the rotor: bristles, their damping, and what is equal in both directions."""
     if p.coulomb <= 0.0:
@@ -37,7 +37,7 @@ def friction_torque(p: Any, bristle: float, speed: float) -> float:
     return p.bristle_stiffness * bristle + p.bristle_damping * rate + p.friction_offset  # type: ignore[no-any-return]
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def running_resistance(p: Any, speed: float) -> float:
     """Torque in N m against the vehicle: rolling with a smooth sign, air by the square of the speed."""
     if p.rolling == 0.0:

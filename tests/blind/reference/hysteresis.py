@@ -13,14 +13,14 @@ MASING = 2.0
 ELEMENTS = 10
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def _bouc_wen_slope(p: Any, fraction: float, rate: float) -> float:
     """d(fraction)/dt for a twist rate in rad/s; beta = gamma = 0.5, A = 1."""
     full = abs(fraction) ** p.hysteresis_sharpness if fraction * rate > 0.0 else 0.0
     return rate / p.hysteresis_slip * (1.0 - full)  # type: ignore[no-any-return]
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def advance(p: Any, state: np.ndarray, after: np.ndarray, rate: float, span_s: float) -> float:
     """Write the state after `span_s` of twist rate `rate` to `after`; return the torque in N m.
 

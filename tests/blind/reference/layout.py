@@ -27,6 +27,7 @@ OFF: dict[str, float] = {
     "deadband_nm": 0.0,
     # contact and shaft
     "half_gap": 0.0,
+    "contact_form": 1.0,  # 1: compliant flanks in series with the shafts, 2: dissipative flanks
     "contact_depth": 1e-3,
     "cubic": 0.0,
     "hysteresis": 0.0,  # 1: Bouc-Wen, 2: Masing

@@ -15,7 +15,7 @@ from tests.blind.reference.torque_path import acting, delayed
 _ITERATIONS = 3
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def _acceleration(p: Any, drive: float, bristle: float, angle: float, speed: float) -> float:
     """Rotor acceleration in rad/s²."""
     ripple = p.motor_amplitude * math.sin(p.motor_order * angle + p.motor_phase)
@@ -25,7 +25,7 @@ def _acceleration(p: Any, drive: float, bristle: float, angle: float, speed: flo
     return (drive + ripple - loss - load) / inertia  # type: ignore[no-any-return]
 
 
-@njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def simulate_rigid(
     p: Any,
     ref: np.ndarray,

@@ -1,0 +1,131 @@
+"""How far simulation and measurement are apart: per channel, band, recording and operating condition."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._coordinates import Hypothesis
+from hil.analysis.diagnosis._problem import Problem
+from hil.core.channels import OUTPUTS
+
+Array = npt.NDArray[np.float64]
+
+BANDS_HZ = ((0.0, 1.0), (1.0, 3.0), (3.0, 6.0), (6.0, 10.0), (10.0, 15.0), (15.0, 30.0), (30.0, 125.0))
+CONDITIONS = ("near standstill", "torque reversals", "large torque", "high speed", "elsewhere")
+_STANDSTILL_SHARE = 0.03
+_REVERSAL_S = 0.15
+
+
+@dataclass(frozen=True)
+class ChannelGap:
+    """Ratios to the rms of the measured channel around its mean."""
+
+    gap: float
+    noise_floor: float
+
+
+@dataclass(frozen=True)
+class GapMap:
+    """Error over noise (1: nothing but noise): recordings x channels x bands, and conditions x channels."""
+
+    recordings: tuple[str, ...]
+    by_band: Array
+    by_condition: Array
+
+
+def settled_starts(problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]) -> list[Array]:
+    """Initial values of each recording at which the plant, held at `theta`, fits best."""
+    slots, sensors = hypothesis.packed(theta)
+    found = []
+    for index, start in enumerate(starts):
+        steps = problem.start_steps()
+        for _ in range(3):
+            tried = np.tile(start, (4, 1))
+            tried[1:] += np.diag(steps)
+            simulated = problem.outputs(index, np.tile(slots, (4, 1)), np.tile(sensors, (4, 1, 1)), tried)
+            error = problem.errors(index, simulated[0]).ravel()
+            change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(3, -1).T / steps
+            if not (np.isfinite(change).all() and np.any(change)):
+                break
+            start = start + np.linalg.lstsq(change, error, rcond=1e-8)[0]
+        found.append(start)
+    return found
+
+
+def simulated_samples(problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]) -> list[Array]:
+    """Channels of each recording at full rate, n x 3."""
+    from sim_backend.plant import simulate_many
+
+    slots, sensors = hypothesis.packed(theta)
+    return [
+        simulate_many(slots[None], t.torque, t.dt, start[None], sensors[None], 1, angles)[0]
+        for t, start, angles in zip(problem.traces, starts, problem.angles, strict=True)
+    ]
+
+
+def channel_gaps(problem: Problem, simulated: list[Array]) -> dict[str, ChannelGap]:
+    """Gap and noise floor of each measured channel over the recordings together."""
+    gaps = {}
+    for column, channel in enumerate(OUTPUTS):
+        pairs = [
+            (t.samples[:, column], s[:, column])
+            for t, s in zip(problem.traces, simulated, strict=True)
+            if t.has[column]
+        ]
+        if not pairs:
+            continue
+        measured = np.concatenate([m for m, _ in pairs])
+        error = measured - np.concatenate([s for _, s in pairs])
+        spread = max(float(np.std(measured)), 1e-12)
+        rms = float(np.sqrt(np.mean(error**2)))
+        gaps[channel] = ChannelGap(rms / spread, float(problem.noise[column]) / spread)
+    return gaps
+
+
+def gap_map(problem: Problem, simulated: list[Array]) -> GapMap:
+    """Where the error stands above the noise."""
+    bands = np.full((len(problem.traces), 3, len(BANDS_HZ)), np.nan)
+    sums, counts = np.zeros((len(CONDITIONS), 3)), np.zeros(len(CONDITIONS))
+    for row, (trace, values) in enumerate(zip(problem.traces, simulated, strict=True)):
+        error = (trace.samples - values) / problem.noise
+        masks = conditions_of(trace.samples, trace.torque, trace.dt)
+        for column in np.flatnonzero(trace.has):
+            bands[row, column] = _band_ratios(error[:, column], trace.dt)
+            sums[:, column] += masks @ error[:, column] ** 2
+        counts += masks.sum(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        condition = np.sqrt(sums / counts[:, None])
+    return GapMap(tuple(t.name for t in problem.traces), bands, condition)
+
+
+def _band_ratios(error: Array, dt: float) -> Array:
+    power = np.abs(np.fft.rfft(error)) ** 2 / len(error)
+    frequency = np.fft.rfftfreq(len(error), dt)
+    ratios = np.full(len(BANDS_HZ), np.nan)
+    for index, (low, high) in enumerate(BANDS_HZ):
+        inside = (frequency >= low) & (frequency < high)
+        if inside.any():
+            ratios[index] = np.sqrt(np.mean(power[inside]))
+    return ratios
+
+
+def conditions_of(samples: Array, torque: Array, dt: float) -> Array:
+    """Which samples belong to each of `CONDITIONS`, as 0/1, conditions x samples; each to one alone."""
+    speed = np.abs(np.where(np.isfinite(samples[:, 0]), samples[:, 0], samples[:, 1]))
+    fastest = max(float(np.nanmax(speed)), 1e-9)
+    largest = max(float(np.max(np.abs(torque))), 1e-9)
+    flips = np.flatnonzero(np.diff(np.sign(torque)) != 0)
+    near_flip = np.zeros(len(torque))
+    near_flip[flips] = 1.0
+    reach = max(1, round(_REVERSAL_S / dt))
+    after = np.convolve(near_flip, np.ones(reach))[: len(torque)] > 0
+    masks = [speed < _STANDSTILL_SHARE * fastest, after, np.abs(torque) > 0.6 * largest, speed > 0.6 * fastest]
+    left = np.ones(len(torque), bool)
+    rows = []
+    for mask in masks:
+        rows.append(mask & left)
+        left &= ~mask
+    return np.array([*rows, left], dtype=float)
