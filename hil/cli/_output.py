@@ -47,8 +47,14 @@ def progress(description: str) -> Iterator[Callable[[float, str], None]]:
         yield lambda share, text: bar.update(task, completed=share, now=text)
 
 
-def criteria_table(criteria: tuple[CriterionResult, ...]) -> Table:
-    """Criteria with value, limits, margin and verdict."""
+def print_criteria(page: Console, criteria: tuple[CriterionResult, ...]) -> None:
+    """Criteria with value, limits, margin and verdict; below, why some could not be judged."""
+    page.print(_table(criteria))
+    for reason in _reasons(criteria):
+        page.print(f"  {reason}", highlight=False, markup=False, soft_wrap=True)
+
+
+def _table(criteria: tuple[CriterionResult, ...]) -> Table:
     table = Table(box=None, pad_edge=False, header_style="bold")
     table.add_column("criterion", no_wrap=True)
     for name in ("value", "limit", "margin"):
@@ -64,6 +70,15 @@ def criteria_table(criteria: tuple[CriterionResult, ...]) -> Table:
             " ".join(limits) or "-",
             f"{c.margin:.4g}" if c.margin is not None else "-",
             c.unit,
-            f"[{_STYLE[c.verdict]}]{c.verdict}[/]" + (f"  {c.reason}" if c.reason else ""),
+            f"[{_STYLE[c.verdict]}]{c.verdict}[/]",
         )
     return table
+
+
+def _reasons(criteria: tuple[CriterionResult, ...]) -> list[str]:
+    """Why criteria could not be judged, each reason once."""
+    found: dict[str, int] = {}
+    for c in criteria:
+        if c.reason:
+            found[c.reason] = found.get(c.reason, 0) + 1
+    return [f"{count} not judged: {reason}" for reason, count in found.items()]

@@ -7,11 +7,11 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._output import console, criteria_table, print_json
+from hil.cli._output import console, print_criteria, print_json
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
-from hil.core.recording import Recording, read_recording
-from hil.core.result import CriterionResult, RunResult, Verdict
+from hil.core.recording import SEGMENT, Recording, read_recording
+from hil.core.result import CriterionResult, RunResult, Segment, Verdict
 from hil.engine import RECORDING
 from reports import write_reports
 from test_plans import judge, plan_from_text
@@ -45,18 +45,18 @@ def command(
     if as_json:
         print_json(result.model_dump(mode="json"))
     else:
-        console().print(criteria_table(result.criteria))
+        print_criteria(console(), result.criteria)
         console().print(f"\n{result.verdict.upper()}\nreport: {written['html']}", highlight=False)
     return {"pass": 0, "fail": 1, "error": 1}[result.verdict]
 
 
 def rejudged(recording: Recording) -> RunResult | None:
     """The run's result with its criteria computed again; None for a recording without a run."""
-    if "run.json" not in recording.attachments or "plan.yaml" not in recording.attachments:
+    if "plan.yaml" not in recording.attachments:
         return None
     where = str(recording.source)
     try:
-        stored = RunResult.model_validate_json(recording.attachments["run.json"])
+        stored = _stored(recording)
         text = recording.attachments["plan.yaml"].decode()
     except ValueError as error:
         raise BadInputError(
@@ -65,6 +65,28 @@ def rejudged(recording: Recording) -> RunResult | None:
     plan = plan_from_text(text, f"{where}: plan.yaml", recording.source.parent, files_required=False)
     criteria = judge(plan, recording, stored.segments)
     return stored.model_copy(update={"criteria": criteria, "verdict": _verdict(criteria, stored)})
+
+
+def _stored(recording: Recording) -> RunResult:
+    """The result as it was stored; of a recording that was cut off, what can still be said."""
+    if "run.json" in recording.attachments:
+        return RunResult.model_validate_json(recording.attachments["run.json"])
+    run = recording.metadata.get("run", {})
+    segments = [
+        Segment.model_validate_json(table["json"])
+        for name, table in recording.metadata.items()
+        if name.startswith(SEGMENT)
+    ]
+    return RunResult(
+        verdict="error",
+        plan=run.get("plan", "?"),
+        bench=run.get("bench", "?"),
+        real_time_factor=0.0,
+        bench_time_s=float(recording.time_s[-1]),
+        safe_state="not_confirmed",
+        segments=tuple(segments),
+        reason="the recording was cut off before the run had ended; nothing is known of its safe state",
+    )
 
 
 def _verdict(criteria: tuple[CriterionResult, ...], stored: RunResult) -> Verdict:

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._output import console, criteria_table, print_json, progress
+from hil.cli._output import console, print_criteria, print_json, progress
 from hil.core.errors import HilError, InterruptError
 from hil.core.files import write_atomically
 from hil.core.model import load_model
@@ -82,7 +82,7 @@ def _write(outcome: RunOutcome, out: Path) -> RunResult:
 def _print(result: RunResult, out: Path) -> None:
     page = console()
     if result.criteria:
-        page.print(criteria_table(result.criteria))
+        print_criteria(page, result.criteria)
     page.print(
         f"\n{result.plan} on {result.bench}: [bold]{result.verdict.upper()}[/]"
         f"   safe state {result.safe_state}   {result.bench_time_s:.0f} s of bench time, "

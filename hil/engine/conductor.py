@@ -12,6 +12,7 @@ from drivers import TICK_S
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
+from hil.core.recording import SEGMENT
 from hil.core.result import RunResult, Segment
 from hil.engine.bench import Bench
 from hil.engine.preflight import Rehearsal
@@ -45,7 +46,9 @@ class BenchConductor:
         controller = load_controller(file)
         self._bench.rmcu.write_controller(controller)
         self._controller = controller
-        self.controllers[file.stem] = file.read_text("utf-8")
+        if file.stem not in self.controllers:
+            self.controllers[file.stem] = file.read_text("utf-8")
+            self._recorder.writer.attach(f"controller/{file.stem}.toml", file.read_bytes())
         self._event(
             "controller", f"{controller.name} ({controller.stabilization} stabilization) written, read back"
         )
@@ -165,6 +168,7 @@ class BenchConductor:
                 reference_after=planned.reference_after,
             )
         )
+        self._recorder.writer.describe(SEGMENT + planned.id, {"json": self.segments[-1].model_dump_json()})
         self._event("segment", f"{planned.id} begins")
 
     def _switch_off(self) -> None:

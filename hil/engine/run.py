@@ -87,6 +87,7 @@ class _Run:
         buses = [wire.name for wire in bench.loop.wires]
         self._recorder = Recorder(request.out / RECORDING, self._bindings, buses, TICK_S)
         self._watch = LimitWatch(self._bindings, request.bench.limits, TICK_S)
+        self._store_inputs()
         self._conductor = BenchConductor(bench, self._recorder, request.out, request.ask)
         bench.loop.on_block(self._recorder.take)
         bench.loop.on_block(self._watch.take)
@@ -202,18 +203,28 @@ class _Run:
             return None
 
     def _store(self, result: RunResult) -> None:
-        request, writer = self._request, self._recorder.writer
-        attachments = {
-            "plan.yaml": request.plan.text.encode(),
-            "bench.toml": request.bench.text.encode(),
-            "run.json": result.model_dump_json(indent=1).encode(),
-        }
-        if self._bench.model is not None:
-            attachments["model.toml"] = model_to_toml(self._bench.model).encode()
-        for name, text in self._conductor.controllers.items():
-            attachments[f"controller/{name}.toml"] = text.encode()
+        writer = self._recorder.writer
+        attachments = {"run.json": result.model_dump_json(indent=1).encode()}
         attachments |= {f"made/{name}": content for name, content in self._conductor.made.items()}
         for name, content in attachments.items():
+            writer.attach(name, content)
+        controllers = {
+            f"controller/{name}.toml": text.encode() for name, text in self._conductor.controllers.items()
+        }
+        writer.describe("hashes", hashes(self._inputs() | controllers | attachments))
+        writer.close()
+
+    def _inputs(self) -> dict[str, bytes]:
+        request = self._request
+        inputs = {"plan.yaml": request.plan.text.encode(), "bench.toml": request.bench.text.encode()}
+        if self._bench.model is not None:
+            inputs["model.toml"] = model_to_toml(self._bench.model).encode()
+        return inputs
+
+    def _store_inputs(self) -> None:
+        """What is known at the start stands at the start: a recording that is cut off still says what it is."""
+        request, writer = self._request, self._recorder.writer
+        for name, content in self._inputs().items():
             writer.attach(name, content)
         operator = request.operator or request.bench.operator
         writer.describe(
@@ -229,10 +240,8 @@ class _Run:
         )
         writer.describe("dut", request.bench.dut)
         writer.describe("versions", versions())
-        writer.describe("hashes", hashes(attachments))
         dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
         writer.describe("calibration", dates)
-        writer.close()
 
 
 def _verdict(criteria: tuple[CriterionResult, ...], error: HilError | None) -> Verdict:

@@ -10,7 +10,7 @@ import numpy as np
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model, parameter_names
 from tests.blind.experiments import SAMPLE_S, Experiment, holdout_set, in_closed_loop, main_set
-from tests.blind.families import FAMILIES, RIGID, Family, Hidden, Setting, fits
+from tests.blind.families import FAMILIES, RIGID, Hidden, Setting, fits
 from tests.blind.outsiders import OUTSIDERS, outsider_fits
 from tests.blind.plant import COARSE, Array, Truth, true_outputs
 from tests.blind.sizing import Ruler, largest_share, likeness
@@ -31,6 +31,8 @@ _TYPICAL = {
 _SPREAD = 0.25  # how far plants differ from the typical one
 _CALIBRATION = 0.015  # how far a model is from its plant; files state 2 %
 _CLOSED_LOOP_SHARE = 0.15
+_DRAWS = 6
+_MISSED = 1.5  # a share this many times too small or too large is drawn again
 _ALIKE = 0.6  # |cos| above which a pair is not asked for
 _NOT_TOGETHER = (
     {"dead_time", "actuator_lag"},
@@ -133,16 +135,39 @@ def _hidden(
         return (), 0.0
     if spec.group == "pair":
         return _pair(rng, spec, base, setting, experiments, noise)
-    draw = OUTSIDERS[spec.subject] if spec.group == "outside" else FAMILIES[spec.subject]
-    return _sized(draw(rng, setting), base, experiments, noise, SIZES[spec.size])
+    return _sized(rng, spec, base, setting, experiments, noise)
 
 
 def _sized(
-    family: Family, base: Truth, experiments: list[Experiment], noise: NoiseLevel, ratio: float
+    rng: np.random.Generator,
+    spec: Spec,
+    base: Truth,
+    setting: Setting,
+    experiments: list[Experiment],
+    noise: NoiseLevel,
 ) -> tuple[tuple[Hidden], float]:
-    ruler = Ruler(base, experiments, noise.deviations, _own_parameter(family.id))
-    size, share = ruler.size_for(family, share_of(ratio))
-    return (family.of_size(size),), share
+    """The subject at the size that was asked for; drawn again when these outputs cannot show it."""
+    outside = spec.group == "outside"
+    draw = OUTSIDERS[spec.subject] if outside else FAMILIES[spec.subject]
+    ruler = Ruler(base, experiments, noise.deviations, _own_parameter(spec.subject))
+    wanted = share_of(SIZES[spec.size])
+    best: tuple[float, Hidden, float] | None = None
+    for _ in range(_DRAWS):
+        family = draw(rng, setting)
+        size, share = ruler.size_for(family, wanted)
+        hidden = family.of_size(size)
+        left = share
+        if outside and 1.0 / _MISSED < share / wanted < _MISSED:
+            known = [FAMILIES[id](rng, setting) for id in FAMILIES if fits(id, base.kind)]
+            middles = [f.of_size(float(np.sqrt(f.smallest * f.largest))) for f in known]
+            left = ruler.unexplained(ruler.residual(hidden), middles)
+        missed = abs(np.log(max(left, 1e-9) / wanted))
+        if best is None or missed < best[0]:
+            best = (missed, hidden, left)
+        if missed < np.log(_MISSED):
+            break
+    assert best is not None
+    return (best[1],), best[2]
 
 
 def share_of(ratio: float) -> float:
@@ -220,7 +245,9 @@ def _most_telling(
     share: float,
 ) -> tuple[list[Experiment], tuple[Hidden, ...], float]:
     """One of the two recordings that show the effect best."""
-    shares = [Ruler(base, [e], noise.deviations, _own_parameter(hidden.id)).share(hidden) for e in experiments]
+    shares = [
+        Ruler(base, [e], noise.deviations, _own_parameter(hidden.id)).share(hidden) for e in experiments
+    ]
     order = np.argsort(shares)[::-1]
     chosen = int(order[0] if rng.uniform() < 0.7 else order[1])
     return [experiments[chosen]], (hidden,), max(shares[chosen], 0.0) or share

@@ -107,7 +107,9 @@ def main_set(rng: np.random.Generator, scale: float) -> list[Experiment]:
             rng.uniform(2.0, 6.0),
         ),
         _experiment("steps", scale * steps(rng, rng.uniform(32.0, 45.0), 20.0)),
-        _experiment("multisine", scale * multisine(rng, rng.uniform(9.0, 14.0), 24.0), rng.uniform(-2.0, 4.0)),
+        _experiment(
+            "multisine", scale * multisine(rng, rng.uniform(9.0, 14.0), 24.0), rng.uniform(-2.0, 4.0)
+        ),
         _experiment("coast_down", scale * coast_down(rng, 12.0, 26.0), rng.uniform(18.0, 30.0)),
         _experiment("reversals", scale * low_speed_reversals(rng, rng.uniform(9.0, 14.0), 16.0)),
     ]
@@ -116,7 +118,9 @@ def main_set(rng: np.random.Generator, scale: float) -> list[Experiment]:
 def holdout_set(rng: np.random.Generator, scale: float) -> list[Experiment]:
     """Other seeds, amplitudes and speeds, 56 s."""
     return [
-        _experiment("holdout_chirp", scale * chirp(rng.uniform(18.0, 24.0), 0.0, 20.0), rng.uniform(-1.0, 1.0)),
+        _experiment(
+            "holdout_chirp", scale * chirp(rng.uniform(18.0, 24.0), 0.0, 20.0), rng.uniform(-1.0, 1.0)
+        ),
         _experiment(
             "holdout_multisine", scale * multisine(rng, rng.uniform(12.0, 18.0), 20.0), rng.uniform(4.0, 12.0)
         ),

@@ -9,8 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hil.core.channels import OUTPUTS
+from tests.blind.reference.contact import DISSIPATIVE, SERIES
 from tests.blind.reference.hysteresis import BOUC_WEN, MASING
 from tests.blind.sensors import Sensor
+
+_WIDE_GAP = 0.003  # rad
 
 
 @dataclass(frozen=True)
@@ -81,6 +84,20 @@ def _deadband(rng: np.random.Generator, setting: Setting) -> Family:
         return Hidden("torque_deadband", {"deadband_nm": size}, (), {"half_width_nm": size})
 
     return Family("torque_deadband", 0.02 * setting.scale, 6.0 * setting.scale, of_size)
+
+
+def _backlash(rng: np.random.Generator, setting: Setting) -> Family:
+    del setting
+    dissipative = rng.uniform() < 0.4
+    depth = rng.uniform(1e-4, 6e-4)
+
+    def of_size(size: float) -> Hidden:
+        # a small gap with flanks that never pull is no longer a small change: damping itself is cut off
+        form = DISSIPATIVE if dissipative and size > _WIDE_GAP else SERIES
+        laws = {"half_gap": size, "contact_form": form, "contact_depth": depth}
+        return Hidden("backlash", laws, (), {"half_gap_rad": size})
+
+    return Family("backlash", 1e-4, 0.03, of_size)
 
 
 def _cubic(rng: np.random.Generator, setting: Setting) -> Family:
@@ -227,7 +244,7 @@ FAMILIES: dict[str, Draw] = {
     "torque_saturation": _falling("torque_saturation", "limit_nm", "limit_nm", 42.0, 6.0),
     "torque_rate_limit": _falling("torque_rate_limit", "rate_nm_s", "limit_nm_s", 2e4, 60.0),
     "torque_deadband": _deadband,
-    "backlash": _plain("backlash", "half_gap", "half_gap_rad", 1e-4, 0.05),
+    "backlash": _backlash,
     "shaft_cubic_stiffness": _cubic,
     "shaft_hysteresis": _hysteresis,
     "coulomb_friction": _coulomb,

@@ -45,13 +45,13 @@ def _tyre_slip(rng: np.random.Generator, setting: Setting) -> Family:
     def of_size(size: float) -> Hidden:
         return Hidden("outside:tyre_slip", {"slip_angle": usual / size})
 
-    return Family("outside:tyre_slip", 1e-3, 1.0, of_size)
+    return Family("outside:tyre_slip", 1e-3, 4.0, of_size)
 
 
 def _speed_mount(rng: np.random.Generator, setting: Setting) -> Family:
     """A mount whose bushes stiffen with speed: no fixed mode fits at all speeds."""
     del setting
-    omega, ratio = 2.0 * math.pi * rng.uniform(10.0, 14.0), rng.uniform(0.03, 0.06)
+    omega, ratio = 2.0 * math.pi * rng.uniform(12.0, 18.0), rng.uniform(0.06, 0.12)
     stiffening = rng.uniform(0.1, 0.25)
 
     def of_size(size: float) -> Hidden:
@@ -67,7 +67,7 @@ def _speed_mount(rng: np.random.Generator, setting: Setting) -> Family:
             },
         )
 
-    return Family("outside:speed_dependent_mount", 1e-2, 3.0, of_size)
+    return Family("outside:speed_dependent_mount", 1e-3, 1.5, of_size)
 
 
 OUTSIDERS: dict[str, Draw] = {
@@ -82,7 +82,7 @@ OUTSIDERS: dict[str, Draw] = {
 
 
 def outsider_fits(id: str, kind: str) -> bool:
-    """Tyre slip needs a tyre in the model; a rigid driveline shows the torque's fading only."""
+    """Tyre slip and an absorber on the wheel need a wheel of its own; a rigid driveline only shows fading."""
     if kind == "rigid":
         return id == "outside:torque_fade"
-    return id != "outside:tyre_slip" or kind == "three_inertia"
+    return id not in ("outside:tyre_slip", "outside:wheel_absorber") or kind == "three_inertia"

@@ -35,7 +35,13 @@ class Sensor:
 
 
 def coloured_noise(
-    rng: np.random.Generator, samples: int, deviation: float, *, share: float, corner_hz: float, rate_hz: float
+    rng: np.random.Generator,
+    samples: int,
+    deviation: float,
+    *,
+    share: float,
+    corner_hz: float,
+    rate_hz: float,
 ) -> Array:
     """Noise of standard deviation `deviation`: white, and `share` of the variance low-passed at `corner_hz`."""
     pole = np.exp(-2.0 * np.pi * corner_hz / rate_hz)

@@ -111,6 +111,17 @@ class Ruler:
             columns.append(np.concatenate([self._shown(r) for r in rows]))
         return columns
 
+    def unexplained(self, trace: Array, others: Sequence[Hidden]) -> float:
+        """What is left of a trace's share when the one of `others` that is most alike explains its part."""
+        left = largest_share(trace)
+        for other in others:
+            direction = self.residual(other)
+            length = float(np.linalg.norm(direction))
+            if length > 0.0 and np.isfinite(length):
+                direction /= length
+                left = min(left, largest_share(trace - direction * float(direction @ trace)))
+        return left
+
 
 def largest_share(residual: Array) -> float:
     """Largest rms over the three channels of a residual in units of noise."""

@@ -13,7 +13,8 @@ from tests.blind.outsiders import OUTSIDERS
 GROUPS = ("single", "pair", "none", "outside", "mismatch", "one_recording")
 
 #: gap before over noise floor, by size
-SIZES = {"clear": 3.0, "middle": 1.8, "edge": 1.3}
+SIZES = {"large": 10.0, "clear": 3.0, "middle": 1.8, "edge": 1.3}
+_GRADES = ("clear", "middle", "edge")
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,15 @@ class Spec:
 
 def full_set() -> list[Spec]:
     """Every effect at every size twice, and what else a diagnosis must stand."""
-    specs = [Spec("single", id, size, turn) for turn in range(2) for id in FAMILIES for size in SIZES]
+    specs = [Spec("single", id, size, turn) for turn in range(2) for id in FAMILIES for size in _GRADES]
+    specs += [Spec("single", id, "large", 0) for id in FAMILIES]
     specs += [Spec("pair", "any", "clear" if turn % 2 else "middle", turn) for turn in range(60)]
     specs += [Spec("none", "none", "none", turn) for turn in range(30)]
     specs += [
-        Spec("outside", id, size, turn) for turn in range(3) for id in OUTSIDERS for size in ("clear", "middle")
+        Spec("outside", id, size, turn)
+        for turn in range(3)
+        for id in OUTSIDERS
+        for size in ("clear", "middle")
     ]
     specs += [Spec("mismatch", "parameter_mismatch", "any", turn) for turn in range(24)]
     specs += [Spec("one_recording", id, "clear", turn) for turn in range(2) for id in FAMILIES]
@@ -53,7 +58,9 @@ def subset(specs: Sequence[Spec], count: int, seed: int) -> list[Spec]:
         if not members:
             continue
         many = [
-            Spec(s.group, s.subject, s.size, s.turn + 1000 * extra) for extra in range(rounds) for s in members
+            Spec(s.group, s.subject, s.size, s.turn + 1000 * extra)
+            for extra in range(rounds)
+            for s in members
         ]
         wanted = max(1, round(count * len(members) / len(specs)))
         order = rng.permutation(len(many)) if rounds == 1 else np.arange(len(many))

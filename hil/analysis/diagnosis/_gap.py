@@ -36,7 +36,9 @@ class GapMap:
     by_condition: Array
 
 
-def settled_starts(problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]) -> list[Array]:
+def settled_starts(
+    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
+) -> list[Array]:
     """Initial values of each recording at which the plant, held at `theta`, fits best."""
     slots, sensors = hypothesis.packed(theta)
     found = []
@@ -55,7 +57,9 @@ def settled_starts(problem: Problem, hypothesis: Hypothesis, theta: Array, start
     return found
 
 
-def simulated_samples(problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]) -> list[Array]:
+def simulated_samples(
+    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
+) -> list[Array]:
     """Channels of each recording at full rate, n x 3."""
     from sim_backend.plant import simulate_many
 
@@ -122,7 +126,12 @@ def conditions_of(samples: Array, torque: Array, dt: float) -> Array:
     near_flip[flips] = 1.0
     reach = max(1, round(_REVERSAL_S / dt))
     after = np.convolve(near_flip, np.ones(reach))[: len(torque)] > 0
-    masks = [speed < _STANDSTILL_SHARE * fastest, after, np.abs(torque) > 0.6 * largest, speed > 0.6 * fastest]
+    masks = [
+        speed < _STANDSTILL_SHARE * fastest,
+        after,
+        np.abs(torque) > 0.6 * largest,
+        speed > 0.6 * fastest,
+    ]
     left = np.ones(len(torque), bool)
     rows = []
     for mask in masks:

@@ -37,7 +37,9 @@ class OrderLine:
     score: float
 
 
-def order_lines(problem: Problem, fit: Fit, side: Literal["wheel", "motor"], most: int = 2) -> list[OrderLine]:
+def order_lines(
+    problem: Problem, fit: Fit, side: Literal["wheel", "motor"], most: int = 2
+) -> list[OrderLine]:
     """The strongest orders of the wheel's or the rotor's turning in the errors of `fit`, strongest first."""
     angles, images, powers, speeds = [], [], [], []
     slots = pack(fit.hypothesis.model(fit.theta))
@@ -47,7 +49,9 @@ def order_lines(problem: Problem, fit: Fit, side: Literal["wheel", "motor"], mos
         turned = trace.angles(fit.hypothesis.base.parameters["gear_ratio"])[:, 0 if side == "wheel" else 1]
         angle = blocks(turned[:, None], trace.block)[:, 0]
         speed = np.gradient(angle, dt)
-        image, frequency, power = _adjoint(slots, error * problem.weights[index], problem.weights[index], dt, side)
+        image, frequency, power = _adjoint(
+            slots, error * problem.weights[index], problem.weights[index], dt, side
+        )
         angles.append(angle)
         images.append(image)
         speeds.append(speed)

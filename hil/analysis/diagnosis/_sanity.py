@@ -50,7 +50,12 @@ def _dead_or_clipped(trace: Trace, noise: Array) -> None:
         for end in (values.max(), values.min()):
             at_end = values == end
             steady = np.ptp(values) < 20 * max(float(noise[column]), 1e-12)
-            if np.mean(at_end) > _CLIPPED_SHARE and not steady and abs(end) > 0.2 * np.ptp(values) and _plateau(at_end):
+            if (
+                np.mean(at_end) > _CLIPPED_SHARE
+                and not steady
+                and abs(end) > 0.2 * np.ptp(values)
+                and _plateau(at_end)
+            ):
                 raise BadInputError(
                     f"{name} looks clipped at {end:g}: {np.mean(at_end):.0%} of its samples read exactly this",
                     where=trace.name,

@@ -112,9 +112,7 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
 def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
     """Coordinates of `hypothesis`: those that `parent` has by their fitted values, others by their start."""
     terms = {key_of(t): i for i, t in enumerate(parent.hypothesis.terms)}
-    known = {
-        (c.name, c.term): v for c, v in zip(parent.hypothesis.coordinates(), parent.theta, strict=True)
-    }
+    known = {(c.name, c.term): v for c, v in zip(parent.hypothesis.coordinates(), parent.theta, strict=True)}
     values = hypothesis.start()
     wrong = {str(t.values["parameter"]) for t in hypothesis.terms if t.id == "parameter_mismatch"}
     for index, c in enumerate(hypothesis.coordinates()):

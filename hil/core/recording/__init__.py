@@ -18,6 +18,9 @@ from hil.core.recording._tables_on_disk import (
     write_parquet,
 )
 
+#: Prefix of the metadata records that hold a run's segments, written as each begins.
+SEGMENT = "segment/"
+
 _READERS: dict[str, Callable[[Path], Recording]] = {
     ".mcap": read_mcap,
     ".csv": read_csv,
@@ -57,6 +60,7 @@ def write_recording(recording: Recording, path: Path) -> None:
 
 
 __all__ = [
+    "SEGMENT",
     "Event",
     "Recording",
     "RecordingWriter",

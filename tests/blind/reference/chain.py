@@ -25,9 +25,7 @@ def _twist(p: Any, x: np.ndarray) -> float:
 
 
 @njit(error_model="numpy")  # type: ignore[untyped-decorator]
-def _through_shafts(
-    p: Any, x: np.ndarray, v: np.ndarray, wound: float, span_s: float, time_s: float
-) -> Any:
+def _through_shafts(p: Any, x: np.ndarray, v: np.ndarray, wound: float, span_s: float, time_s: float) -> Any:
     """(twist of the shafts, torque in N m) `span_s` after they had the twist `wound`; `x`, `v` are of the end."""
     twist, rate = _twist(p, x), _twist(p, v)
     if p.half_gap > 0.0 and p.contact_form == SERIES:
@@ -45,7 +43,14 @@ def _with_ripple(p: Any, torque: float, wheel_angle: float) -> float:
 
 @njit(error_model="numpy")  # type: ignore[untyped-decorator]
 def _accelerations(
-    p: Any, x: np.ndarray, v: np.ndarray, drive: float, shaft: float, tyre: float, time_s: float, a: np.ndarray
+    p: Any,
+    x: np.ndarray,
+    v: np.ndarray,
+    drive: float,
+    shaft: float,
+    tyre: float,
+    time_s: float,
+    a: np.ndarray,
 ) -> None:
     """Write accelerations in rad/s²; `drive` acts between housing and rotor, `shaft` and `tyre` on the wheel."""
     a[ROTOR] = (drive - shaft / p.gear_ratio) / p.motor_inertia

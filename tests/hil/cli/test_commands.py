@@ -194,3 +194,13 @@ def test_help_names_every_command_quickly_and_each_has_its_own():
     for command in ("run", "check", "report", "simulate", "export", "schema"):
         assert command in listed
         assert "Usage" in hil(command, "--help").stdout
+
+
+def test_a_recording_that_was_cut_off_is_reported_with_its_plan(finished, tmp_path):
+    out, _ = finished
+    content = (out / "recording.mcap").read_bytes()
+    (tmp_path / "cut.mcap").write_bytes(content[: len(content) * 8 // 10])
+    cut = json.loads(hil("report", tmp_path / "cut.mcap", "--json", code=1).stdout)
+    assert (cut["verdict"], cut["plan"], cut["safe_state"]) == ("error", "quick", "not_confirmed")
+    assert cut["segments"][0]["id"] == "s"
+    assert "cut off" in (tmp_path / "report.html").read_text()

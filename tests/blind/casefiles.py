@@ -1,0 +1,95 @@
+"""Measures a case and writes what the diagnosis may see; the answer stays in memory."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.model import save_model
+from hil.core.recording import Recording, write_recording
+from tests.blind.cases import Case
+from tests.blind.experiments import SAMPLE_S, Experiment
+from tests.blind.plant import Array, Truth, read_by_sensors, true_outputs
+from tests.blind.sensors import coloured_noise
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a case hides: opened after the diagnosis.
+
+    `noise` and `holdout_noise` are rms(noise) / rms(measured - its mean) of each channel over the recordings
+    together, from the noise that was really added (rounding included).
+    """
+
+    effects: tuple[tuple[str, dict[str, float | str]], ...]
+    share: float
+    noise: dict[str, float]
+    holdout_noise: dict[str, float]
+
+
+@dataclass(frozen=True)
+class OpenFiles:
+    """Paths of a case that the diagnosis is given."""
+
+    model: Path
+    recordings: tuple[Path, ...]
+    holdout: tuple[Path, ...]
+
+
+def write_case(case: Case, directory: Path) -> tuple[OpenFiles, Answer]:
+    """Write model.toml and the recordings as CSV; return their paths and the sealed answer."""
+    model = directory / "model.toml"
+    save_model(case.model, model)
+    main, noise = _measure(case, case.experiments, 1, directory)
+    holdout, holdout_noise = _measure(case, case.holdout, 2, directory)
+    answer = Answer(tuple((h.id, h.values) for h in case.hidden), case.share, noise, holdout_noise)
+    return OpenFiles(model, main, holdout), answer
+
+
+def _measure(
+    case: Case, experiments: tuple[Experiment, ...], stream: int, directory: Path
+) -> tuple[tuple[Path, ...], dict[str, float]]:
+    rng = np.random.default_rng([case.seed, stream, len(case.spec.key), *case.spec.key.encode()])
+    paths, shown, errors = [], [], []
+    for experiment in experiments:
+        request, reading, clean = _recorded(case, experiment, rng)
+        shown.append(reading)
+        errors.append(reading - clean)
+        path = directory / f"{experiment.name}.csv"
+        columns = {TIME: np.arange(len(request)) * SAMPLE_S, INPUT: request}
+        columns |= {name: reading[:, i] for i, name in enumerate(OUTPUTS)}
+        write_recording(Recording(columns, path), path)
+        paths.append(path)
+    together, error = np.concatenate(shown), np.concatenate(errors)
+    ratio = np.sqrt(np.mean(error**2, axis=0)) / np.std(together, axis=0)
+    return tuple(paths), dict(zip(OUTPUTS, ratio.tolist(), strict=True))
+
+
+def _recorded(case: Case, experiment: Experiment, rng: np.random.Generator) -> tuple[Array, Array, Array]:
+    """(torque request, what the channels read, the same without noise and rounding)."""
+    samples = len(experiment.torque_nm)
+    noise = np.stack(
+        [
+            coloured_noise(
+                rng,
+                samples,
+                float(deviation),
+                share=case.noise.share,
+                corner_hz=case.noise.corner_hz,
+                rate_hz=1.0 / SAMPLE_S,
+            )
+            for deviation in case.noise.deviations
+        ],
+        axis=1,
+    )
+    seat = rng.uniform(-1.0, 1.0)
+    request, outputs = true_outputs(case.truth, experiment, wheel_noise=noise[:, 1].copy(), seat=seat)
+    if not math.isfinite(float(np.sum(outputs))):
+        raise FloatingPointError(f"{case.spec.key}: the reference plant diverged in {experiment.name}")
+    reading = read_by_sensors(case.truth, outputs, noise)
+    unrounded = Truth(case.truth.kind, {}, {}, tuple(s for s in case.truth.sensors if s.step == 0.0))
+    return request, reading, read_by_sensors(unrounded, outputs, np.zeros_like(noise))

@@ -1,0 +1,141 @@
+"""Compares a diagnosis with the opened answer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from hil.core.channels import OUTPUTS
+from tests.blind.casefiles import Answer
+from tests.blind.diagnosing import Reply
+from tests.blind.families import FAMILIES
+from tests.blind.specs import Spec
+
+#: The names of the registry; a diagnosis may know more, for what is outside of it.
+KNOWN = (*FAMILIES, "parameter_mismatch")
+_SURE = 0.9
+
+Values = Mapping[str, float | str]
+
+
+@dataclass
+class Score:
+    """One case, judged. `right` is what its group asks for; see the functions of this module."""
+
+    group: str
+    subject: str
+    size: str
+    turn: int
+    kind: str
+    hidden: list[str]
+    share: float
+    verdict: str
+    named: list[str]
+    right: bool
+    failure: str
+    wall_s: float
+    names_right: list[tuple[float, bool]] = field(default_factory=list)
+    honest: bool = True
+    parameter_errors: dict[str, float] = field(default_factory=dict)
+    gap_over_noise: dict[str, float] = field(default_factory=dict)
+    gap_before_over_noise: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def key(self) -> str:
+        return f"{self.group}/{self.subject}/{self.size}/{self.turn}"
+
+    @property
+    def worst_gap(self) -> float:
+        return max(self.gap_over_noise.values(), default=math.nan)
+
+    @property
+    def mean_gap(self) -> float:
+        """Root mean square over the channels."""
+        values = list(self.gap_over_noise.values())
+        return math.sqrt(sum(v * v for v in values) / len(values)) if values else math.nan
+
+    def as_json(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
+    """Judge a reply."""
+    diagnosis = reply.diagnosis
+    entries: list[dict[str, Any]] = diagnosis.get("effects", [])
+    verdict = reply.failure and "failed" or str(diagnosis.get("verdict"))
+    hidden = [_label(id, values) for id, values in answer.effects]
+    named = [_label(e["id"], e.get("parameters", {})) for e in entries]
+    judged = [(float(e.get("confidence", 1.0)), n in hidden) for e, n in zip(entries, named, strict=True)]
+    result = Score(
+        spec.group, spec.subject, spec.size, spec.turn, kind, hidden, answer.share, verdict, named,
+        _right(spec, hidden, verdict, named), reply.failure, reply.wall_s, judged,
+    )  # fmt: skip
+    # in a plant with something outside the registry any known name is wrong, whatever its confidence
+    result.honest = not any(confidence >= _SURE and not true for confidence, true in judged)
+    if result.right:
+        result.parameter_errors = _parameter_errors(answer, entries, named)
+    gaps = diagnosis.get("holdout_gap") or diagnosis.get("gap") or {}
+    for channel in OUTPUTS:
+        noise = answer.holdout_noise[channel]
+        if channel in gaps and noise > 0.0:
+            result.gap_over_noise[channel] = float(gaps[channel]["after"]) / noise
+            result.gap_before_over_noise[channel] = float(gaps[channel]["before"]) / noise
+    return result
+
+
+def _right(spec: Spec, hidden: Sequence[str], verdict: str, named: Sequence[str]) -> bool:
+    """Single, one recording, mismatch: that name alone. Pair: both and no third. None: nothing. Outside: unknown."""
+    if spec.group == "none":
+        return verdict == "none" and not named
+    if spec.group == "outside":
+        foreign = bool(named) and not any(name.split("(")[0] in KNOWN for name in named)
+        return verdict == "unknown" or (verdict == "named" and foreign)
+    return verdict == "named" and sorted(named) == sorted(hidden)
+
+
+def _label(id: str, values: Values) -> str:
+    """The name, with the channel or parameter that it is about: another channel is another answer."""
+    about = values.get("channel") or values.get("parameter")
+    return f"{id}({about})" if about else id
+
+
+def _parameter_errors(
+    answer: Answer, entries: Sequence[Mapping[str, Any]], named: Sequence[str]
+) -> dict[str, float]:
+    errors = {}
+    for id, values in answer.effects:
+        label = _label(id, values)
+        found = entries[named.index(label)]["parameters"]
+        for name, error in errors_of(id, values, found).items():
+            errors[f"{label}.{name}"] = error
+    return errors
+
+
+def errors_of(id: str, truth: Values, found: Values) -> dict[str, float]:
+    """Relative errors of an effect's numbers.
+
+    A phase counts in radians, a gain by its distance from 1. Stiffness and slip of a hysteresis are not unique
+    (a Bouc-Wen loop is not a Jenkins loop): their product, the torque at which it slips, counts.
+    """
+    if id == "shaft_hysteresis":
+        right, got = (_number(v, "stiffness_nm_rad") * _number(v, "slip_rad") for v in (truth, found))
+        return {"slip_torque_nm": abs(got / right - 1.0)}
+    errors = {}
+    for name, value in truth.items():
+        if isinstance(value, str):
+            continue
+        got = _number(found, name)
+        if name == "phase_rad":
+            errors[name] = abs((got - value + math.pi) % (2.0 * math.pi) - math.pi)
+        elif name == "gain":
+            errors[name] = abs((got - value) / (value - 1.0))
+        else:
+            errors[name] = abs(got / value - 1.0)
+    return errors
+
+
+def _number(values: Values, name: str) -> float:
+    """A parameter that is not given is an optional one, and zero."""
+    return float(values.get(name, 0.0))
