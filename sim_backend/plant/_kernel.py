@@ -135,19 +135,19 @@ def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque):  # t
 def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untyped-def]
     """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS); vehicle coupled.
 
-    `start` is [motor speed, wheel speed, shaft torque]; before the first sample the first torque acted.
+    `start` is [motor speed, wheel speed, shaft torque, motor torque that acted before the first sample].
     """
     p = as_tuple(vector)
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     late = max(0.0, p[P.TORQUE_DELAY] - whole * dt)
     if late < 1e-9 * dt:
         late = 0.0
-    slewed = shaped(torque[0], p)
+    slewed = shaped(start[3], p)
     x = initial_state(p, start[0], start[1], start[2], slewed)
     for k in range(torque.shape[0]):
         outputs(x, p, slewed, True, 0.0, out[k])
-        new = torque[max(k - whole, 0)]
-        old = torque[max(k - whole - 1, 0)]
+        new = torque[k - whole] if k >= whole else start[3]
+        old = torque[k - whole - 1] if k > whole else start[3]
         x, slewed = sample(x, p, slewed, old, new, late, dt, True, 0.0, longest_step)
 
 

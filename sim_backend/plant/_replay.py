@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,16 +19,21 @@ Array = npt.NDArray[np.float64]
 
 LONGEST_STEP_S = 1e-4
 _UNEVEN_SHARE = 0.01
-_START_SAMPLES = 20
+_START_SAMPLES = (20, 10, 5)
+_RESTING_SHARE = 0.05
 
 
 @dataclass(frozen=True)
 class Start:
-    """Where a replay begins: motor and wheel speed in rad/s, shaft torque in N m (wheel side)."""
+    """Where a replay begins: motor and wheel speed in rad/s, shaft torque in N m (wheel side).
+
+    `motor_torque_nm` has acted before the first sample; None: the first sample's torque.
+    """
 
     motor_speed_rad_s: float = 0.0
     wheel_speed_rad_s: float = 0.0
     shaft_torque_nm: float = 0.0
+    motor_torque_nm: float | None = None
 
 
 def simulate(
@@ -40,7 +46,7 @@ def simulate(
     """Channels of `model` for a torque request held for `sample_time_s` from sample to sample.
 
     Args:
-        torque_ref_nm: shape (n,), N m; its first value has acted since long before.
+        torque_ref_nm: shape (n,), N m.
         start: initial speeds and shaft torque; standstill when left out.
 
     Returns:
@@ -54,7 +60,8 @@ def simulate(
     else:
         parameters = _slots.pack(model)
         out = _kernel.empty_output(len(torque))
-        begin = np.array([start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm])
+        before = torque[0] if start.motor_torque_nm is None else start.motor_torque_nm
+        begin = np.array([start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm, before])
         _kernel.run(torque, sample_time_s, parameters, begin, longest_step_s, out)
         channels = {
             "motor_torque_nm": out[:, _kernel.OUT_MOTOR_TORQUE].copy(),
@@ -82,27 +89,38 @@ def replay(model: Model, recording: Recording) -> Recording:
         notes.append(f"time stamps are uneven: simulated every {dt * 1e3:g} ms, interpolated back")
     else:
         dt = float((time[-1] - time[0]) / (len(time) - 1))
-    channels = simulate(model, torque, dt, start_of(recording))
+    start = start_of(recording)
+    if _rests(model, start, float(torque[0])):
+        start = dataclasses.replace(start, motor_torque_nm=0.0)
+    channels = simulate(model, torque, dt, start)
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
     return Recording({TIME: time, INPUT: recording[INPUT], **channels}, recording.source, notes=notes)
 
 
+def _rests(model: Model, start: Start, torque_nm: float) -> bool:
+    """Whether the shafts carry next to nothing of the first torque: then none has acted before it."""
+    gear_ratio = model.parameters.get("gear_ratio", 1.0)
+    return abs(start.shaft_torque_nm) < _RESTING_SHARE * gear_ratio * abs(torque_nm)
+
+
 def start_of(recording: Recording) -> Start:
-    """Initial condition: the mean of the first samples while the torque request has not changed yet."""
-    torque = recording[INPUT]
-    changes = np.flatnonzero(torque[:_START_SAMPLES] != torque[0])
-    count = int(changes[0]) if changes.size else min(_START_SAMPLES, len(torque))
+    """Initial condition: the mean of the first samples, as many as show no motion beyond their noise."""
 
     def first(name: str) -> float:
-        return float(np.mean(recording[name][:count])) if name in recording else np.nan
+        return _beginning(recording[name]) if name in recording else 0.0
 
-    motor, wheel, shaft = (first(n) for n in ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm"))
-    return Start(
-        0.0 if np.isnan(motor) else motor,
-        0.0 if np.isnan(wheel) else wheel,
-        0.0 if np.isnan(shaft) else shaft,
-    )
+    return Start(first("motor_speed_rad_s"), first("wheel_speed_rad_s"), first("shaft_torque_nm"))
+
+
+def _beginning(values: Array) -> float:
+    for count in _START_SAMPLES:
+        head = values[:count]
+        # White noise scatters as much from sample to sample as around its mean; motion does not.
+        noise = np.median(np.abs(np.diff(head))) / (0.6745 * np.sqrt(2.0))
+        if np.std(head) <= 1.5 * noise:
+            return float(np.mean(head))
+    return float(values[0])
 
 
 def _functions(

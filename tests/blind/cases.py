@@ -1,4 +1,4 @@
-"""Draws a case from a seed: plant, hidden effects, experiments, noise, and the model that the diagnosis gets."""
+"""Draws a case from a seed: plant, hidden effects, experiments, noise, and the model that is handed out."""
 
 from __future__ import annotations
 
@@ -72,14 +72,14 @@ class Case:
     noise: NoiseLevel
 
 
-def draw_case(seed: int, spec: Spec) -> Case:
-    """The case that `seed` and `spec` name, always the same."""
+def draw_case(seed: int, spec: Spec, length: float = 1.0) -> Case:
+    """The case that `seed` and `spec` name, always the same; recordings `length` times as long as usual."""
     rng = np.random.default_rng([seed, zlib.crc32(spec.key.encode())])
     kind = _kind(rng, spec)
     nominal = _nominal(rng, kind)
     base = Truth(kind, {name: value * _off(rng) for name, value in nominal.items()})
     scale = rng.uniform(0.8, 1.25)
-    experiments, holdout = main_set(rng, scale), holdout_set(rng, scale)
+    experiments, holdout = main_set(rng, scale, length), holdout_set(rng, scale, length)
     plain = np.concatenate([true_outputs(base, e, substeps=COARSE)[1] for e in experiments])
     deviation = np.std(plain, axis=0)
     noise = NoiseLevel(

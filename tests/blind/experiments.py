@@ -49,8 +49,9 @@ def _faded(signal: Array, fade_s: float = 0.25) -> Array:
 def chirp(amplitude_nm: float, bias_nm: float, duration_s: float) -> Array:
     """Logarithmic sweep 0.05 to 30 Hz; a cosine, so that the speed swings about its start."""
     time_s = _time(duration_s)
-    rate = np.log(_HIGHEST_HZ / _LOWEST_HZ) / duration_s
-    phase = 2.0 * np.pi * _LOWEST_HZ * np.expm1(rate * time_s) / rate
+    lowest = max(_LOWEST_HZ, 1.0 / duration_s)
+    rate = np.log(_HIGHEST_HZ / lowest) / duration_s
+    phase = 2.0 * np.pi * lowest * np.expm1(rate * time_s) / rate
     return _faded(bias_nm + amplitude_nm * np.cos(phase))
 
 
@@ -96,35 +97,39 @@ def low_speed_reversals(rng: np.random.Generator, amplitude_nm: float, duration_
     return _faded(amplitude_nm * (triangle + 0.15 * np.cos(2.0 * np.pi * rng.uniform(2.0, 4.0) * time_s)))
 
 
-def main_set(rng: np.random.Generator, scale: float) -> list[Experiment]:
-    """The 7 recordings, 196 s; `scale` multiplies all torques."""
+def main_set(rng: np.random.Generator, scale: float, length: float = 1.0) -> list[Experiment]:
+    """The 7 recordings, 196 s at `length` 1; `scale` multiplies all torques."""
     return [
-        _experiment("chirp_small", scale * chirp(rng.uniform(8.0, 12.0), 0.0, 40.0)),
-        _experiment("chirp_large", scale * chirp(rng.uniform(30.0, 42.0), 0.0, 40.0)),
+        _experiment("chirp_small", scale * chirp(rng.uniform(8.0, 12.0), 0.0, length * 40.0)),
+        _experiment("chirp_large", scale * chirp(rng.uniform(30.0, 42.0), 0.0, length * 40.0)),
         _experiment(
             "chirp_biased",
-            scale * chirp(rng.uniform(5.0, 7.0), rng.uniform(24.0, 28.0), 30.0),
+            scale * chirp(rng.uniform(5.0, 7.0), rng.uniform(24.0, 28.0), length * 30.0),
             rng.uniform(2.0, 6.0),
         ),
-        _experiment("steps", scale * steps(rng, rng.uniform(32.0, 45.0), 20.0)),
+        _experiment("steps", scale * steps(rng, rng.uniform(32.0, 45.0), length * 20.0)),
         _experiment(
-            "multisine", scale * multisine(rng, rng.uniform(9.0, 14.0), 24.0), rng.uniform(-2.0, 4.0)
+            "multisine", scale * multisine(rng, rng.uniform(9.0, 14.0), length * 24.0), rng.uniform(-2.0, 4.0)
         ),
-        _experiment("coast_down", scale * coast_down(rng, 12.0, 26.0), rng.uniform(18.0, 30.0)),
-        _experiment("reversals", scale * low_speed_reversals(rng, rng.uniform(9.0, 14.0), 16.0)),
+        _experiment("coast_down", scale * coast_down(rng, 12.0, length * 26.0), rng.uniform(18.0, 30.0)),
+        _experiment("reversals", scale * low_speed_reversals(rng, rng.uniform(9.0, 14.0), length * 16.0)),
     ]
 
 
-def holdout_set(rng: np.random.Generator, scale: float) -> list[Experiment]:
-    """Other seeds, amplitudes and speeds, 56 s."""
+def holdout_set(rng: np.random.Generator, scale: float, length: float = 1.0) -> list[Experiment]:
+    """Other seeds, amplitudes and speeds, 56 s at `length` 1."""
     return [
         _experiment(
-            "holdout_chirp", scale * chirp(rng.uniform(18.0, 24.0), 0.0, 20.0), rng.uniform(-1.0, 1.0)
+            "holdout_chirp",
+            scale * chirp(rng.uniform(18.0, 24.0), 0.0, length * 20.0),
+            rng.uniform(-1.0, 1.0),
         ),
         _experiment(
-            "holdout_multisine", scale * multisine(rng, rng.uniform(12.0, 18.0), 20.0), rng.uniform(4.0, 12.0)
+            "holdout_multisine",
+            scale * multisine(rng, rng.uniform(12.0, 18.0), length * 20.0),
+            rng.uniform(4.0, 12.0),
         ),
-        _experiment("holdout_steps", scale * steps(rng, rng.uniform(25.0, 38.0), 16.0)),
+        _experiment("holdout_steps", scale * steps(rng, rng.uniform(25.0, 38.0), length * 16.0)),
     ]
 
 

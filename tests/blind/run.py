@@ -25,9 +25,11 @@ from tests.blind.tables import as_markdown
 _RESULTS = Path("docs/reference/blind-results.md")
 
 
-def run_case(seed: int, spec: Spec, diagnose: Diagnose, keep: Path | None = None) -> Score:
+def run_case(
+    seed: int, spec: Spec, diagnose: Diagnose, keep: Path | None = None, length: float = 1.0
+) -> Score:
     """Draw, measure, ask, open the answer, judge. With `keep`, the files stay in a directory of the case."""
-    case = draw_case(seed, spec)
+    case = draw_case(seed, spec, length)
     with tempfile.TemporaryDirectory(prefix="blind-") as place:
         directory = Path(place)
         files, answer = write_case(case, directory)
@@ -41,12 +43,17 @@ def run_case(seed: int, spec: Spec, diagnose: Diagnose, keep: Path | None = None
 
 
 def run_all(
-    seed: int, specs: Sequence[Spec], diagnose: Diagnose, jobs: int, keep: Path | None = None
+    seed: int,
+    specs: Sequence[Spec],
+    diagnose: Diagnose,
+    jobs: int,
+    keep: Path | None = None,
+    length: float = 1.0,
 ) -> list[Score]:
     """Scores in the order of `specs`, from `jobs` processes."""
     results: dict[Spec, Score] = {}
     with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
-        waiting = {pool.submit(run_case, seed, spec, diagnose, keep): spec for spec in specs}
+        waiting = {pool.submit(run_case, seed, spec, diagnose, keep, length): spec for spec in specs}
         for done in as_completed(waiting):
             spec = waiting[done]
             results[spec] = done.result()
@@ -80,14 +87,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         says_nothing if options.stand_in else partial(by_command_line, threads=options.threads)
     )
     start = time.perf_counter()
-    scores = run_all(options.seed, specs, diagnose, options.jobs, options.keep)
+    scores = run_all(options.seed, specs, diagnose, options.jobs, options.keep, options.length)
     wall = time.perf_counter() - start
     command = "python -m tests.blind " + " ".join(arguments if arguments is not None else sys.argv[1:])
     how = (
-        f"Made by `{command.strip()}`: {len(scores)} cases, seed {options.seed}, {options.jobs} at a time with "
-        f"{options.threads} threads each, {wall / 60:.0f} minutes. Sizes: gap before / noise floor on the channel "
-        "that shows the effect best, after what a refit of the base parameters would take away: large 10, "
-        "clear 3, middle 1.8, edge 1.3."
+        f"Made by `{command.strip()}`: {len(scores)} cases, seed {options.seed}, {options.jobs} at a time "
+        f"with {options.threads} threads each, {wall / 60:.0f} minutes. Sizes: gap before / noise floor on "
+        "the channel that shows the effect best, after what a refit of the base parameters would take away: "
+        f"large 10, clear 3, middle 1.8, edge 1.3. Recordings last {196.0 * options.length:g} s together."
     )
     page = as_markdown(scores, how)
     options.out.parent.mkdir(parents=True, exist_ok=True)
@@ -115,6 +122,9 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--size", action="append", help="only large, clear, middle or edge; may be repeated")
     parser.add_argument("--jobs", type=int, default=2, help="cases at a time")
     parser.add_argument("--threads", type=int, default=1, help="threads of each diagnosis")
+    parser.add_argument(
+        "--length", type=float, default=1.0, help="of the recordings; below 1 for a quick look"
+    )
     parser.add_argument("--keep", type=Path, help="directory in which every case's files are kept")
     parser.add_argument("--out", type=Path, default=_RESULTS, help="Markdown to write; a JSON goes beside it")
     parser.add_argument("--stand-in", action="store_true", help="do not ask hil diagnose: answer 'none'")

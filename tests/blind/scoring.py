@@ -64,7 +64,7 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
     """Judge a reply."""
     diagnosis = reply.diagnosis
     entries: list[dict[str, Any]] = diagnosis.get("effects", [])
-    verdict = reply.failure and "failed" or str(diagnosis.get("verdict"))
+    verdict = "failed" if reply.failure else str(diagnosis.get("verdict"))
     hidden = [_label(id, values) for id, values in answer.effects]
     named = [_label(e["id"], e.get("parameters", {})) for e in entries]
     judged = [(float(e.get("confidence", 1.0)), n in hidden) for e, n in zip(entries, named, strict=True)]
@@ -86,7 +86,10 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
 
 
 def _right(spec: Spec, hidden: Sequence[str], verdict: str, named: Sequence[str]) -> bool:
-    """Single, one recording, mismatch: that name alone. Pair: both and no third. None: nothing. Outside: unknown."""
+    """Single, one recording, mismatch: that name alone. Pair: both, no third. None: nothing named.
+
+    Outside: unknown, or names that the registry does not have.
+    """
     if spec.group == "none":
         return verdict == "none" and not named
     if spec.group == "outside":
@@ -116,8 +119,8 @@ def _parameter_errors(
 def errors_of(id: str, truth: Values, found: Values) -> dict[str, float]:
     """Relative errors of an effect's numbers.
 
-    A phase counts in radians, a gain by its distance from 1. Stiffness and slip of a hysteresis are not unique
-    (a Bouc-Wen loop is not a Jenkins loop): their product, the torque at which it slips, counts.
+    A phase counts in radians, a gain by its distance from 1. Stiffness and slip of a hysteresis are not
+    unique (a Bouc-Wen loop is not a Jenkins loop): their product, the torque at which it slips, counts.
     """
     if id == "shaft_hysteresis":
         right, got = (_number(v, "stiffness_nm_rad") * _number(v, "slip_rad") for v in (truth, found))

@@ -43,7 +43,7 @@ def coloured_noise(
     corner_hz: float,
     rate_hz: float,
 ) -> Array:
-    """Noise of standard deviation `deviation`: white, and `share` of the variance low-passed at `corner_hz`."""
+    """Noise of standard deviation `deviation`: white, `share` of its variance low-passed at `corner_hz`."""
     pole = np.exp(-2.0 * np.pi * corner_hz / rate_hz)
     slow = lfilter([np.sqrt(1.0 - pole**2)], [1.0, -pole], rng.standard_normal(samples + 2000))[2000:]
     white = rng.standard_normal(samples)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
@@ -50,8 +51,8 @@ def _summary(scores: Sequence[Score]) -> list[str]:
         "parameter. Honest: no wrong name with a confidence of 0.9 or more.",
         _table(["group", "cases", "right %", "line %", "target %", "honest %"], rows),
         "## Gap, parameters, time",
-        "Gap after over the true noise on held-out recordings, in single-effect cases: rms over the channels, "
-        "and the worst channel.",
+        "Gap after over the true noise on held-out recordings, in single-effect cases: rms over the "
+        "channels, and the worst channel.",
     ]
     singles = [s for s in scores if s.group == "single" and s.gap_over_noise]
     errors = [
@@ -102,7 +103,7 @@ def _said(one: Score) -> str:
 def _calibration(scores: Sequence[Score]) -> str:
     names = [pair for s in scores for pair in s.names_right]
     rows = []
-    for low, high in zip(_BINS, _BINS[1:], strict=False):
+    for low, high in itertools.pairwise(_BINS):
         inside = [(confidence, true) for confidence, true in names if low <= confidence < high]
         if inside:
             stated, true = np.mean(np.array(inside, dtype=float), axis=0)

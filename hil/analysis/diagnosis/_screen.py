@@ -16,6 +16,7 @@ from hil.core.model import EffectUse
 Array = npt.NDArray[np.float64]
 
 _MISMATCH_REACH = 0.5
+_DIVERGED = 1e8  # noise levels
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,8 @@ def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Arra
         starts = np.tile(fit.starts[index], (len(packed), 1))
         simulated = problem.outputs(index, slots, sensors, starts)
         change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(len(packed) - 1, -1)
-        change[~np.isfinite(change)] = 0.0
+        diverged = ~(np.abs(change).max(axis=1) < _DIVERGED)
+        change[diverged] = 0.0
         basis = np.linalg.qr(initial)[0] if np.any(initial) else np.zeros((len(error), 1))
         mine = shared - basis @ (basis.T @ shared)
         free = error - basis @ (basis.T @ error)

@@ -24,10 +24,12 @@ Array = npt.NDArray[np.float64]
 LEAST_EVIDENCE = 45.0  # drop of the squared error in noise variances, after deflation
 _LEAST_SHARE = 0.5  # of the remaining excess over the noise that one effect must close
 _LEAST_OF_ALL = 2e-3  # of the first excess: below it, a formula differs and no effect is missing
+_FLOOR_SHARE = 0.99  # the noise estimate is good to about a percent
 _MOST_EFFECTS = 3
 _PAIR_STARTS = 3
 _LEAST_PAIR_SHARE = 0.75
 _RACE = 5  # candidates that are fitted at each step
+_PROMISING = 0.4  # share of the best score
 _RACE_ROUNDS = 3
 _OUT_OF_RACE = 2.5  # times the best cost after the first rounds
 _RELATIVES = {
@@ -67,9 +69,11 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None]) -> F
     first = fit(problem, base)
     found = Found(first, first)
     while len(found.best.hypothesis.terms) < _MOST_EFFECTS:
+        if _excess(problem, found.best) < _worthwhile(problem, found.base):
+            break
         show(f"looking for effect {len(found.best.hypothesis.terms) + 1}")
         scores = screen(problem, found.best)
-        if not scores or scores[0].gain < LEAST_EVIDENCE:
+        if not scores or scores[0].gain < _worthwhile(problem, found.base):
             found.steps.append(Step(found.best, scores, []))
             break
         step = Step(found.best, scores, _race(problem, found.best, scores))
@@ -123,6 +127,15 @@ def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
     return values
 
 
+def _excess(problem: Problem, one: Fit) -> float:
+    return max(one.total - _FLOOR_SHARE * problem.rows, 0.0)
+
+
+def _worthwhile(problem: Problem, base: Fit) -> float:
+    """The least drop of the squared error that can earn a name."""
+    return max(LEAST_EVIDENCE, _LEAST_OF_ALL * (base.total - problem.rows))
+
+
 def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
     """Fits of the promising effects, best first; the hopeless are given up after a few rounds."""
     chosen = _chosen(scores)
@@ -139,7 +152,7 @@ def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
 
 
 def _chosen(scores: list[Score]) -> list[Score]:
-    top = [s for s in scores[:_RACE] if s.gain > max(LEAST_EVIDENCE / 2, 0.02 * scores[0].gain)]
+    top = [s for s in scores[:_RACE] if s.gain > max(LEAST_EVIDENCE / 2, _PROMISING * scores[0].gain)]
     wanted = {name for s in top[:2] for name in _RELATIVES.get(s.key[0], ())}
     have = {s.key[0] for s in top}
     return top + [s for s in scores if s.key[0] in wanted - have and s.gain > 0.1 * scores[0].gain]

@@ -8,7 +8,7 @@ from typing import Any
 from numba import njit
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def elastic(p: Any, twist: float, time_s: float) -> float:
     """Spring torque in N m of a twist in rad (free play already taken off)."""
     stiffness = p.shaft_stiffness * (1.0 + p.shaft_drift * time_s)
@@ -23,7 +23,7 @@ SERIES, DISSIPATIVE = 1.0, 2.0
 _FLANKS = 400.0
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def series_contact(p: Any, wound: float, twist: float, rate: float, span_s: float) -> Any:
     """Free play in series with the shafts: (twist of the shafts after `span_s`, torque in N m).
 
@@ -55,7 +55,7 @@ def series_contact(p: Any, wound: float, twist: float, rate: float, span_s: floa
     return after, side * max(0.0, side * torque)
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def shaft_torque(p: Any, twist: float, rate: float, time_s: float) -> float:
     """Torque in N m of the shafts, and of a free play whose flanks dissipate.
 

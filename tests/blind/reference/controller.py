@@ -24,10 +24,10 @@ def control(
     """Gains in N m per rad/s and N m per rad; `gain` and `offset` are the wheel speed sensor's."""
     row = (proportional, integral, filter_s, largest_nm, gain, offset)
     rows: np.ndarray = np.array([row], dtype=CONTROL)
-    return rows[0]  # type: ignore[no-any-return]
+    return rows[0]
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def pi_torque(
     c: Any, state: np.ndarray, excitation: float, target: float, wheel_speed: float, sample_s: float
 ) -> float:
@@ -41,4 +41,4 @@ def pi_torque(
     torque = excitation + c.proportional * error + c.integral * state[0]
     if abs(torque) < c.largest_nm:
         state[0] += error * sample_s
-    return min(max(torque, -c.largest_nm), c.largest_nm)  # type: ignore[no-any-return]
+    return min(max(torque, -c.largest_nm), c.largest_nm)

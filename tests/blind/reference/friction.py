@@ -1,4 +1,4 @@
-"""Dry friction with a bristle state (LuGre: Canudas de Wit et al., IEEE TAC 40, 1995), and running resistance."""
+"""Dry friction with a bristle (LuGre: Canudas de Wit et al., IEEE TAC 40, 1995); running resistance."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import Any
 from numba import njit
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def sliding_torque(p: Any, speed: float) -> float:
     """Stribeck curve in N m at a steady sliding speed in rad/s, without sign."""
     if p.stribeck == 0.0:
-        return p.coulomb  # type: ignore[no-any-return]
-    return p.coulomb + p.stribeck * math.exp(-((speed / p.stribeck_speed) ** 2))  # type: ignore[no-any-return]
+        return p.coulomb
+    return p.coulomb + p.stribeck * math.exp(-((speed / p.stribeck_speed) ** 2))
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def bristle_after(p: Any, bristle: float, speed: float, span_s: float) -> float:
     """Bristle deflection in rad after `span_s` at constant speed: the exact solution.
 
@@ -28,18 +28,18 @@ def bristle_after(p: Any, bristle: float, speed: float, span_s: float) -> float:
     return steady + (bristle - steady) * math.exp(-abs(speed) * span_s / abs(steady))
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def friction_torque(p: Any, bristle: float, speed: float) -> float:
     """Torque in N m against the rotor: bristles, their damping, and what is equal in both directions."""
     if p.coulomb <= 0.0:
-        return p.friction_offset  # type: ignore[no-any-return]
+        return p.friction_offset
     rate = speed - p.bristle_stiffness * abs(speed) * bristle / sliding_torque(p, speed)
-    return p.bristle_stiffness * bristle + p.bristle_damping * rate + p.friction_offset  # type: ignore[no-any-return]
+    return p.bristle_stiffness * bristle + p.bristle_damping * rate + p.friction_offset
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def running_resistance(p: Any, speed: float) -> float:
     """Torque in N m against the vehicle: rolling with a smooth sign, air by the square of the speed."""
     if p.rolling == 0.0:
-        return p.aero * speed * abs(speed)  # type: ignore[no-any-return]
-    return p.rolling * math.tanh(speed / p.rolling_speed) + p.aero * speed * abs(speed)  # type: ignore[no-any-return]
+        return p.aero * speed * abs(speed)
+    return p.rolling * math.tanh(speed / p.rolling_speed) + p.aero * speed * abs(speed)

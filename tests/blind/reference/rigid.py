@@ -15,17 +15,17 @@ from tests.blind.reference.torque_path import acting, delayed
 _ITERATIONS = 3
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def _acceleration(p: Any, drive: float, bristle: float, angle: float, speed: float) -> float:
     """Rotor acceleration in rad/s²."""
     ripple = p.motor_amplitude * math.sin(p.motor_order * angle + p.motor_phase)
     loss = friction_torque(p, bristle, speed) + p.viscous_drag * speed
     load = running_resistance(p, speed / p.gear_ratio) / p.gear_ratio
     inertia = p.motor_inertia + p.vehicle_inertia / p.gear_ratio**2
-    return (drive + ripple - loss - load) / inertia  # type: ignore[no-any-return]
+    return (drive + ripple - loss - load) / inertia
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def simulate_rigid(
     p: Any,
     ref: np.ndarray,

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def delayed(ref: np.ndarray, start_s: float, end_s: float, sample_s: float) -> float:
     """Mean over [start_s, end_s] of the held request; the span is already shifted by the dead time.
 
@@ -26,7 +26,7 @@ def delayed(ref: np.ndarray, start_s: float, end_s: float, sample_s: float) -> f
     return share * early + (1.0 - share) * late
 
 
-@njit(error_model="numpy")  # type: ignore[untyped-decorator]
+@njit(error_model="numpy")
 def acting(p: Any, request: float, lagged: float, before: float, time_s: float, step_s: float) -> Any:
     """One step of the path: (state of the lag, acting torque in N m).
 

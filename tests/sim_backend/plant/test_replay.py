@@ -335,6 +335,21 @@ def test_replay_gives_back_a_recording_of_the_same_model():
         np.testing.assert_allclose(got[name], truth[name], rtol=1e-6, atol=1e-6)
 
 
+def test_a_recording_that_starts_with_its_torque_at_rest_has_no_torque_before():
+    torque = np.full(2000, 20.0)
+    truth = simulate(THREE, np.concatenate([np.zeros(50), torque]), DT)
+    from_rest = {name: values[50:] for name, values in truth.items()}
+    got = replay(THREE, recording(np.arange(2000) * DT, torque, **from_rest))
+    np.testing.assert_allclose(got["motor_speed_rad_s"], from_rest["motor_speed_rad_s"], atol=1e-9)
+
+
+def test_a_recording_that_starts_under_steady_torque_goes_on_with_it():
+    torque = np.full(8000, 20.0)
+    truth = {name: values[5000:] for name, values in simulate(THREE, torque, DT).items()}
+    got = replay(THREE, recording(np.arange(3000) * DT, torque[5000:], **truth))
+    np.testing.assert_allclose(got["shaft_torque_nm"], truth["shaft_torque_nm"], rtol=0.01)
+
+
 def test_uneven_time_stamps_are_resampled_and_said():
     torque = step()
     truth = simulate(THREE, torque, DT)

@@ -1,0 +1,26 @@
+"""Why simulation and measurement differ: effects that a model lacks, found by name in recordings."""
+
+from hil.analysis.diagnosis._diagnose import diagnose
+from hil.analysis.diagnosis._gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
+from hil.analysis.diagnosis._result import (
+    Alternative,
+    Considered,
+    Diagnosis,
+    NamedEffect,
+    Overlay,
+)
+from hil.analysis.diagnosis._words import Where
+
+__all__ = [
+    "BANDS_HZ",
+    "CONDITIONS",
+    "Alternative",
+    "ChannelGap",
+    "Considered",
+    "Diagnosis",
+    "GapMap",
+    "NamedEffect",
+    "Overlay",
+    "Where",
+    "diagnose",
+]

@@ -1,0 +1,59 @@
+"""What the new model changes in what the bench is judged by: overshoot of a torque step, band energy."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy import signal
+
+from hil.core.model import Model
+from sim_backend.plant import Start, simulate
+
+Array = npt.NDArray[np.float64]
+
+_STEP_NM = 20.0
+_DT = 1e-3
+_BAND_HZ = (8.0, 20.0)
+
+
+def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
+    """Peak shaft torque over its steady value (%), and 8-20 Hz energy of the motor speed ((rad/s)²).
+
+    An open-loop step of 20 N m from 5 rad/s wheel speed, with the model before and after.
+    """
+    torque = np.concatenate([np.zeros(1000), np.full(5000, _STEP_NM)])
+    result: dict[str, dict[str, float]] = {"overshoot_shaft_torque_percent": {}, "band_energy_motor_speed": {}}
+    for name, model in (("before", before), ("after", after)):
+        start = Start(5.0 * model.parameters["gear_ratio"], 5.0, 0.0)
+        channels = simulate(model, torque, _DT, start)
+        shaft, motor = channels["shaft_torque_nm"], channels["motor_speed_rad_s"]
+        steady = float(np.mean(shaft[-2000:])) - float(np.mean(shaft[500:1000]))
+        peak = float(np.max(shaft[1000:])) - float(np.mean(shaft[500:1000]))
+        result["overshoot_shaft_torque_percent"][name] = 100.0 * max(0.0, peak / steady - 1.0) if steady else 0.0
+        result["band_energy_motor_speed"][name] = _band_energy(motor[1000:])
+    return result
+
+
+def _band_energy(values: Array) -> float:
+    frequency, density = signal.periodogram(signal.detrend(values), 1 / _DT, "hann")
+    inside = (frequency >= _BAND_HZ[0]) & (frequency <= _BAND_HZ[1])
+    return float(np.sum(density[inside]) * (frequency[1] - frequency[0]))
+
+
+def loop_area(model: Model) -> float | None:
+    """Energy in J that the shaft's hysteretic path loses in one cycle of four slip twists, if there is one.
+
+    Parameters of a hysteresis are not unique between its formulas; the area of its loop is.
+    """
+    for use in model.effects:
+        if use.id == "shaft_hysteresis":
+            slip, stiffness = float(use.values["slip_rad"]), float(use.values["stiffness_nm_rad"])
+            twist = 4 * slip * np.sin(np.linspace(0, 4 * np.pi, 8001))
+            z, force = 0.0, np.zeros(len(twist))
+            for k in range(1, len(twist)):
+                step = twist[k] - twist[k - 1]
+                ratio = z / slip
+                z += step if ratio * step <= 0 else step * (1 - ratio * ratio)
+                force[k] = stiffness * z
+            return float(np.abs(np.trapezoid(force[4000:], twist[4000:])))
+    return None

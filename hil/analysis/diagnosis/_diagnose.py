@@ -1,0 +1,262 @@
+"""The diagnosis as a whole: check the data, find, name, judge on held-out data, tell."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._confidence import alternatives_of, confidence_of
+from hil.analysis.diagnosis._consequences import consequences, loop_area
+from hil.analysis.diagnosis._coordinates import TOLERANCE, Hypothesis, key_of
+from hil.analysis.diagnosis._fit import Fit, fit
+from hil.analysis.diagnosis._gap import (
+    ChannelGap,
+    channel_gaps,
+    gap_map,
+    settled_starts,
+    simulated_samples,
+)
+from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._quantization import grids
+from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
+from hil.analysis.diagnosis._sanity import check
+from hil.analysis.diagnosis._search import Found, carried, colour, search
+from hil.analysis.diagnosis._trace import noise_levels, trace_of
+from hil.analysis.diagnosis._words import Where, signature, where
+from hil.core.errors import BadInputError
+from hil.core.model import EffectUse, Model
+from hil.core.recording import Recording
+
+Array = npt.NDArray[np.float64]
+
+_SMALL_EXCESS = 0.04  # of the noise power: below it, nothing is left to explain
+_CLOSED = 0.9  # share of the gap's power that a named hypothesis closes at least ...
+_CLOSED_TO = 1.15  # ... unless it reaches the noise up to this factor
+_RIPPLES = ("wheel_order_disturbance", "motor_order_ripple")
+
+
+def diagnose(
+    model: Model,
+    recordings: Sequence[Recording],
+    holdout: Sequence[Recording] = (),
+    *,
+    show: Callable[[str], None] = lambda text: None,
+) -> Diagnosis:
+    """Say which effects `model` lacks to explain `recordings`, and by how much they close the gap.
+
+    Args:
+        model: rigid, two_inertia or three_inertia.
+        holdout: recordings that no fit sees, only the final figures.
+        show: told what is going on.
+
+    Raises:
+        BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
+            gear ratio), or the model's kind is not supported.
+    """
+    began = time.perf_counter()
+    if model.kind == "transfer_function":
+        raise BadInputError(
+            "a transfer_function model has no parts that an effect could be added to",
+            fix="give the chain that `hil identify` writes as physical.toml",
+        )
+    show("reading the noise")
+    traces = [trace_of(r) for r in recordings]
+    noise = _usable_noise(noise_levels(traces))
+    notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + check(model, traces, noise)
+    problem = Problem(traces, noise, model.parameters["gear_ratio"])
+    hypothesis = Hypothesis(model)
+    found = search(problem, hypothesis, show)
+    show("judging")
+    judged = _Judged(problem, found, [trace_of(r) for r in holdout])
+    rounded = grids(traces, noise)
+    return judged.diagnosis(rounded, notes, time.perf_counter() - began)
+
+
+def _usable_noise(noise: Array) -> Array:
+    """A channel without any noise still needs a weight: a millionth of a unit."""
+    return np.where(np.isfinite(noise), np.maximum(noise, 1e-6), np.nan)
+
+
+@dataclass
+class _Judged:
+    """What the search found, simulated and compared."""
+
+    problem: Problem
+    found: Found
+    holdout: list  # type: ignore[type-arg]
+
+    def diagnosis(self, rounded: list[EffectUse], notes: list[str], seconds: float) -> Diagnosis:
+        base, best = self.found.base, self.found.best
+        verdict = self._verdict(bool(rounded))
+        kept = best if verdict == "named" and best.hypothesis.terms else base
+        free, after = self._free(kept)
+        before = self._nominal(free)
+        map_before, map_after = gap_map(free, before), gap_map(free, after)
+        model = kept.hypothesis.model(kept.theta)
+        updates, kept_parameters = self._updates(kept)
+        model = model.with_parameters(**kept_parameters)
+        tail = tuple(rounded) if verdict == "named" else ()
+        model = model.with_effects(*_lasting(model), *tail)
+        held_before, held_after = self._held(kept)
+        effects = self._effects(kept, free, after, map_before, map_after, rounded) if verdict == "named" else ()
+        overlays = tuple(
+            Overlay(t.name, t.dt, t.torque, t.samples, b, a)
+            for t, b, a in zip(free.traces, before, after, strict=True)
+        )
+        return Diagnosis(
+            verdict=verdict,
+            base=base.hypothesis.base,
+            model=model,
+            effects=effects,
+            parameter_updates=updates,
+            alternatives=alternatives_of(self.problem, self.found, verdict),
+            considered=self._considered(kept),
+            gap_before=channel_gaps(free, before),
+            gap_after=channel_gaps(free, after),
+            holdout_before=held_before,
+            holdout_after=held_after,
+            map_before=map_before,
+            map_after=map_after,
+            signature=signature(self.problem, kept, map_after) if verdict == "unknown" else "",
+            overlays=overlays,
+            notes=tuple(notes),
+            seconds=seconds,
+            loop_area_j=loop_area(model),
+            consequences=consequences(base.hypothesis.base, model),
+        )
+
+    def _verdict(self, rounded: bool) -> Verdict:
+        base, best = self.found.base, self.found.best
+        rows = self.problem.rows
+        first, left = base.cost / rows - 1.0, best.cost / rows - 1.0
+        if best.hypothesis.terms:
+            closed = 1.0 - max(left, 0.0) / max(first, 1e-9)
+            return "named" if closed > _CLOSED or np.sqrt(1.0 + max(left, 0.0)) < _CLOSED_TO else "unknown"
+        if left > _SMALL_EXCESS and colour(base) > 1.2:
+            return "unknown"
+        return "named" if rounded else "none"
+
+    def _free(self, kept: Fit) -> tuple[Problem, list[Array]]:
+        """Ripples let go of the measured angle, refitted a little, and the simulation at full rate."""
+        ratio = kept.hypothesis.base.parameters["gear_ratio"]
+        free = Problem(self.problem.traces, self.problem.noise, ratio, steered=False)
+        if any(t.id in _RIPPLES for t in kept.hypothesis.terms):
+            again = fit(free, kept.hypothesis, kept.starts, kept.theta, rounds=6)
+            if again.cost < 1.3 * kept.cost:
+                kept.theta, kept.starts = again.theta, again.starts
+            else:
+                free = self.problem
+        return free, simulated_samples(free, kept.hypothesis, kept.theta, kept.starts)
+
+    def _nominal(self, problem: Problem) -> list[Array]:
+        """The base model as it came, from its best initial values."""
+        hypothesis = self.found.base.hypothesis
+        theta = hypothesis.start()
+        starts = settled_starts(problem, hypothesis, theta, self.found.base.starts)
+        return simulated_samples(problem, hypothesis, theta, starts)
+
+    def _held(self, kept: Fit) -> tuple[dict[str, ChannelGap], dict[str, ChannelGap]]:
+        if not self.holdout:
+            return {}, {}
+        ratio = kept.hypothesis.base.parameters["gear_ratio"]
+        noise = _usable_noise(noise_levels(self.holdout))
+        problem = Problem(self.holdout, noise, ratio, steered=False)
+        gaps = []
+        for hypothesis, theta in (
+            (self.found.base.hypothesis, self.found.base.hypothesis.start()),
+            (kept.hypothesis, kept.theta),
+        ):
+            starts = settled_starts(problem, hypothesis, theta, problem.first_starts(hypothesis))
+            gaps.append(channel_gaps(problem, simulated_samples(problem, hypothesis, theta, starts)))
+        return gaps[0], gaps[1]
+
+    def _updates(self, kept: Fit) -> tuple[dict[str, tuple[float, float, float]], dict[str, float]]:
+        """Corrections of base parameters beyond what noise explains, and all parameters as fitted."""
+        errors = np.sqrt(np.maximum(np.diag(kept.covariance), 0.0))
+        model = kept.hypothesis.model(kept.theta)
+        wrong = {t.values["parameter"] for t in kept.hypothesis.terms if t.id == "parameter_mismatch"}
+        updates = {}
+        for c, value, error in zip(kept.hypothesis.coordinates(), kept.theta, errors, strict=True):
+            if c.term >= 0 or c.name in wrong or abs(value) < 2.0 * error:
+                continue
+            old, new = self.found.base.hypothesis.base.parameters[c.name], model.parameters[c.name]
+            updates[c.name] = (old, new, new * float(error))
+        return updates, dict(model.parameters)
+
+    def _effects(
+        self, kept: Fit, free: Problem, after: list[Array], map_before, map_after, rounded: list[EffectUse]  # type: ignore[no-untyped-def]
+    ) -> tuple[NamedEffect, ...]:
+        uses = kept.hypothesis.model(kept.theta).effects[len(kept.hypothesis.base.effects) :]
+        errors = np.sqrt(np.maximum(np.diag(kept.covariance) * max(1.0, kept.cost / self.problem.rows), 0.0))
+        named = []
+        for index, use in enumerate(uses):
+            fewer = kept.hypothesis.without(index)
+            theta = carried(kept, fewer)
+            without = simulated_samples(free, fewer, theta, kept.starts)
+            standard = {}
+            for c, error in zip(kept.hypothesis.coordinates(), errors, strict=True):
+                if c.term == index:
+                    value = float(use.values[c.name])
+                    standard[c.name] = float(error * (abs(value) if c.scale == "log" else 1.0))
+                if use.id == "parameter_mismatch" and c.term < 0 and c.name == use.values["parameter"]:
+                    standard["value"] = float(error) * float(use.values["value"])
+            place = where(free, without, after, map_before, map_after)
+            named.append(NamedEffect(_clean(use), standard, confidence_of(self.problem, self.found, index), place))
+        for use in rounded:
+            place = Where((str(use.values["channel"]),), (0.0, round(0.5 / free.traces[0].dt, 1)), "at all operating conditions")
+            named.append(NamedEffect(use, {"step": 0.0}, 0.99, place))
+        return tuple(named)
+
+    def _considered(self, kept: Fit) -> tuple[Considered, ...]:
+        named = set(kept.hypothesis.keys)
+        rows = {}
+        for step in self.found.steps:
+            fitted = {f.hypothesis.keys[-1]: f for f in step.fits}
+            for score in step.scores:
+                if score.key in named or score.key in rows:
+                    continue
+                one = fitted.get(score.key)
+                left = None if one is None else float(np.sqrt(one.cost / self.problem.rows))
+                rows[score.key] = Considered(*score.key, float(score.gain), left, _reason(one, score.gain, step.fits))
+        return tuple(sorted(rows.values(), key=lambda c: -c.score))
+
+
+def _reason(one: Fit | None, gain: float, fits: list[Fit]) -> str:
+    if gain < 45.0:
+        return "no evidence: the drop is what noise would give"
+    if one is None:
+        return "explains far less than the best by its linearised score; not fitted"
+    if fits and one is not fits[0]:
+        return f"leaves {np.sqrt(one.cost / fits[0].cost):.3g} times the gap of {fits[0].hypothesis.ids[-1]}"
+    return "closes too small a share of what is left"
+
+
+def _clean(use: EffectUse) -> EffectUse:
+    """Phases within ±π; optional values that were not fitted left out."""
+    values = dict(use.values)
+    if "phase_rad" in values:
+        values["phase_rad"] = float((float(values["phase_rad"]) + np.pi) % (2 * np.pi) - np.pi)
+    for name in ("stribeck_torque_nm", "offset_nm"):
+        if values.get(name) == 0.0:
+            del values[name]
+    return EffectUse(use.id, values)
+
+
+def _lasting(model: Model) -> list[EffectUse]:
+    """Effects that a model file keeps: a corrected parameter stands among the parameters."""
+    lasting = []
+    for use in model.effects:
+        if use.id == "parameter_mismatch":
+            continue
+        values = dict(use.values)
+        if "phase_rad" in values:
+            values = dict(_clean(use).values)
+        lasting.append(EffectUse(use.id, values))
+    return lasting
+
+
+__all__ = ["TOLERANCE", "diagnose", "key_of"]

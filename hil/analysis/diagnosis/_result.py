@@ -1,0 +1,137 @@
+"""What a diagnosis found, and its form in `diagnosis.json` (docs/reference/commands.md)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._gap import ChannelGap, GapMap
+from hil.analysis.diagnosis._words import Where
+from hil.core.model import EffectUse, Model
+
+Array = npt.NDArray[np.float64]
+Verdict = Literal["named", "none", "unknown"]
+
+
+@dataclass(frozen=True)
+class NamedEffect:
+    """An effect that the data show; `confidence` is the chance that the name is right."""
+
+    use: EffectUse
+    standard_error: dict[str, float]
+    confidence: float
+    where: Where
+
+
+@dataclass(frozen=True)
+class Considered:
+    """An effect that was looked at and not named; `left` is the gap over the noise that it would leave."""
+
+    id: str
+    about: str
+    score: float
+    left: float | None
+    reason: str
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """Another name for the same gap, and the test that would tell the two apart."""
+
+    use: EffectUse
+    confidence: float
+    separating_test: str
+    plan: str | None = None
+
+
+@dataclass(frozen=True)
+class Overlay:
+    """Measured, and simulated before and after, of one recording at full rate: n x 3 each; `dt` in s."""
+
+    name: str
+    dt: float
+    torque: Array
+    measured: Array
+    before: Array
+    after: Array
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """All that a diagnosis has to say; ratios of gaps are those of docs/reference/commands.md."""
+
+    verdict: Verdict
+    base: Model
+    model: Model
+    effects: tuple[NamedEffect, ...]
+    parameter_updates: dict[str, tuple[float, float, float]]  # from, to, standard error
+    alternatives: tuple[Alternative, ...]
+    considered: tuple[Considered, ...]
+    gap_before: dict[str, ChannelGap]
+    gap_after: dict[str, ChannelGap]
+    holdout_before: dict[str, ChannelGap]
+    holdout_after: dict[str, ChannelGap]
+    map_before: GapMap
+    map_after: GapMap
+    signature: str
+    overlays: tuple[Overlay, ...]
+    notes: tuple[str, ...]
+    seconds: float = 0.0
+    loop_area_j: float | None = None
+    consequences: dict[str, dict[str, float]] = field(default_factory=dict)
+
+    def as_json(self) -> dict[str, Any]:
+        """The content of `diagnosis.json`."""
+        return {
+            "verdict": self.verdict,
+            "effects": [_effect(e) for e in self.effects],
+            "parameter_updates": {
+                name: {"from": a, "to": b, "standard_error": s}
+                for name, (a, b, s) in self.parameter_updates.items()
+            },
+            "alternatives": [
+                {
+                    "id": a.use.id,
+                    "parameters": dict(a.use.values),
+                    "confidence": round(a.confidence, 3),
+                    "separating_test": a.separating_test,
+                    **({"plan": a.plan} if a.plan else {}),
+                }
+                for a in self.alternatives
+            ],
+            "gap": _gaps(self.gap_before, self.gap_after),
+            "holdout_gap": _gaps(self.holdout_before, self.holdout_after),
+            "remaining_gap": self.signature,
+            "considered": [
+                {"id": c.id, "about": c.about, "expected_drop": c.score, "gap_left": c.left, "reason": c.reason}
+                for c in self.considered
+            ],
+            "consequences": self.consequences,
+            **({"loop_area_j": self.loop_area_j} if self.loop_area_j is not None else {}),
+            "notes": list(self.notes),
+            "model": "model.toml",
+        }
+
+
+def _effect(effect: NamedEffect) -> dict[str, Any]:
+    return {
+        "id": effect.use.id,
+        "parameters": dict(effect.use.values),
+        "standard_error": effect.standard_error,
+        "confidence": round(effect.confidence, 3),
+        "where": {
+            "channels": list(effect.where.channels),
+            "band_hz": list(effect.where.band_hz),
+            "condition": effect.where.condition,
+        },
+    }
+
+
+def _gaps(before: dict[str, ChannelGap], after: dict[str, ChannelGap]) -> dict[str, dict[str, float]]:
+    return {
+        name: {"before": before[name].gap, "after": after[name].gap, "noise_floor": before[name].noise_floor}
+        for name in before
+    }

@@ -1,0 +1,106 @@
+"""What the data say, in words: where an effect acts, and what an unexplained gap looks like."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy import signal
+
+from hil.analysis.diagnosis._fit import Fit
+from hil.analysis.diagnosis._gap import CONDITIONS, GapMap
+from hil.analysis.diagnosis._orders import order_lines
+from hil.analysis.diagnosis._problem import Problem
+from hil.core.channels import OUTPUTS
+
+Array = npt.NDArray[np.float64]
+
+_SEGMENT = 1024
+_LINE = 8.0  # a spectral line stands this far above its neighbours
+
+
+@dataclass(frozen=True)
+class Where:
+    """Channels, frequency band and operating condition in which something acts."""
+
+    channels: tuple[str, ...]
+    band_hz: tuple[float, float]
+    condition: str
+
+
+def where(problem: Problem, without: list[Array], with_: list[Array], before: GapMap, after: GapMap) -> Where:
+    """Where the simulation without an effect and with it (n x 3 each recording) differ most."""
+    power = np.zeros(3)
+    density = np.zeros(0)
+    frequency = np.zeros(0)
+    for trace, a, b in zip(problem.traces, without, with_, strict=True):
+        change = np.where(trace.has, (b - a) / problem.noise, 0.0)
+        power += np.sum(change**2, axis=0)
+        frequency, one = signal.welch(
+            change, 1 / trace.dt, nperseg=min(_SEGMENT, len(change)), axis=0, detrend=False
+        )
+        total = one.sum(axis=1) * len(change)
+        density = density + total if density.shape == total.shape else total
+    ranked = np.argsort(-power)
+    channels = tuple(OUTPUTS[i] for i in ranked if power[i] > 0.3 * power[ranked[0]])
+    share = np.cumsum(density) / max(float(density.sum()), 1e-30)
+    low, high = np.interp([0.1, 0.9], share, frequency)
+    fall = np.nan_to_num(before.by_condition**2 - after.by_condition**2)[:, ranked[0]]
+    condition = CONDITIONS[int(np.argmax(fall))]
+    spread = "at all operating conditions" if fall.max() < 2.0 * max(float(np.median(fall)), 1e-12) else condition
+    return Where(channels, (round(float(low), 2), round(float(high), 2)), spread)
+
+
+def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
+    """What remains after `fit`: channel, frequency or order, condition, dependence on torque and speed."""
+    power = np.zeros(3)
+    densities, frequency = [], np.zeros(0)
+    for trace, (error, _, _) in zip(problem.traces, fit.pieces, strict=True):
+        e = error.reshape(-1, 3)
+        power += np.sum(e**2, axis=0) - len(e) * trace.has
+        frequency, one = signal.welch(e, 1 / (trace.dt * trace.block), nperseg=min(_SEGMENT, len(e)), axis=0)
+        densities.append(one)
+    column = int(np.argmax(power))
+    widest = max(len(d) for d in densities)
+    density = np.mean([d[:, column] for d in densities if len(d) == widest], axis=0)
+    frequency = np.linspace(0.0, float(frequency[-1]), widest)
+    top = 1 + int(np.argmax(density[1:]))
+    around = float(np.median(density[max(1, top - 20) : top + 20]))
+    words = [f"the gap is largest in {OUTPUTS[column]}"]
+    line = density[top] > _LINE * around
+    orders = [(o.score, side, o.order) for side in ("wheel", "motor") for o in order_lines(problem, fit, side, 1)]  # type: ignore[arg-type]
+    excess = max(fit.cost - problem.rows, 1.0)
+    strongest = max(orders, default=(0.0, "", 0.0))
+    if strongest[0] > 0.4 * excess:
+        words.append(f"it follows {strongest[1]} speed at order {strongest[2]:.3g}")
+    elif line:
+        words.append(f"it is a line at {frequency[top]:.3g} Hz, at whatever speed")
+    else:
+        share = np.cumsum(density) / density.sum()
+        low, high = np.interp([0.1, 0.9], share, frequency)
+        words.append(f"it lies between {low:.2g} and {high:.2g} Hz")
+    by = np.nan_to_num(gaps.by_condition[:, column])
+    words.append(f"it is strongest at: {CONDITIONS[int(np.argmax(by))]}")
+    words.append(_dependence(problem, fit, column))
+    return "; ".join(w for w in words if w)
+
+
+def _dependence(problem: Problem, fit: Fit, column: int) -> str:
+    levels, torques, speeds = [], [], []
+    for trace, (error, _, _) in zip(problem.traces, fit.pieces, strict=True):
+        if not trace.has[column]:
+            continue
+        levels.append(float(np.std(error.reshape(-1, 3)[:, column])))
+        torques.append(float(np.std(trace.torque)))
+        known = trace.measured[:, 0] if trace.has[0] else trace.measured[:, 1]
+        speeds.append(float(np.mean(np.abs(known))))
+    if len(levels) < 4:
+        return ""
+    names = []
+    for name, values in (("torque amplitude", torques), ("speed", speeds)):
+        if np.std(values) > 0 and np.std(levels) > 0:
+            r = float(np.corrcoef(np.log(np.maximum(levels, 1e-9)), np.log(np.maximum(values, 1e-9)))[0, 1])
+            if abs(r) > 0.75:
+                names.append(f"it {'grows' if r > 0 else 'falls'} with {name}")
+    return ", ".join(names) or "it depends little on torque amplitude and speed"
