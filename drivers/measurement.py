@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.channels import TIME
-from hil.core.frames import FrameBlock
+from hil.core.frames import FrameBlock, joined
 from hil.core.signals import Signal
 
 Array = npt.NDArray[np.float64]
@@ -94,7 +94,7 @@ class SampleAssembler:
         for bus, blocks in self._blocks.items():
             if not blocks:
                 continue
-            block = np.concatenate(blocks)
+            block = joined(blocks)
             self._blocks[bus] = []
             for key in self._keys:
                 if key[0] == bus:

@@ -9,7 +9,7 @@ import numpy as np
 
 from hil.core.clock import Clock
 from hil.core.errors import BenchError
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block
+from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
 
 
 class Wire:
@@ -52,7 +52,7 @@ class Wire:
             self._sent = []
             if not len(block):
                 return sent
-            block = np.concatenate([sent, block])
+            block = joined([sent, block])
             block = block[np.argsort(block["time_s"], kind="stable")]
         return block
 

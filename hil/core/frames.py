@@ -21,6 +21,14 @@ def empty_block() -> FrameBlock:
     return np.zeros(0, FRAME)
 
 
+def joined(blocks: list[FrameBlock]) -> FrameBlock:
+    """The blocks one after the other. As plain bytes: numpy compares structured types field by field."""
+    if len(blocks) == 1:
+        return blocks[0]
+    raw = np.dtype(f"V{FRAME.itemsize}")
+    return np.concatenate([np.ascontiguousarray(block).view(raw) for block in blocks]).view(FRAME)
+
+
 def newest(block: FrameBlock, frame_id: int) -> tuple[float, int] | None:
     """Time and payload of the last received frame with this identifier; None if the block has none."""
     ids = block["id"]

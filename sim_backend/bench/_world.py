@@ -8,7 +8,7 @@ import cantools
 import numpy as np
 
 from hil.core.errors import BadInputError
-from hil.core.frames import FrameBlock, empty_block
+from hil.core.frames import FrameBlock, empty_block, joined
 from hil.core.signals import FrameLayout, layout_of
 from sim_backend.bench import _tick as T
 from sim_backend.bench._faults import Fault
@@ -86,7 +86,7 @@ class SimulatedBench:
         if not blocks:
             return empty_block()
         self._pending[bus] = []
-        merged = blocks[0] if len(blocks) == 1 else np.concatenate(blocks)
+        merged = joined(blocks)
         if any(a["time_s"][-1] > b["time_s"][0] for a, b in pairwise(blocks)):
             merged = merged[np.argsort(merged["time_s"], kind="stable")]
         return merged

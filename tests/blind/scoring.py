@@ -67,14 +67,18 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
     verdict = "failed" if reply.failure else str(diagnosis.get("verdict"))
     hidden = [_label(id, values) for id, values in answer.effects]
     named = [_label(e["id"], e.get("parameters", {})) for e in entries]
-    judged = [(float(e.get("confidence", 1.0)), n in hidden) for e, n in zip(entries, named, strict=True)]
+    # a name that the registry does not have is neither right nor wrong
+    judged = [
+        (float(e.get("confidence", 1.0)), n in hidden)
+        for e, n in zip(entries, named, strict=True)
+        if e["id"] in KNOWN
+    ]
     result = Score(
         spec.group, spec.subject, spec.size, spec.turn, kind, hidden, answer.share, verdict, named,
         _right(spec, hidden, verdict, named), reply.failure, reply.wall_s, judged,
     )  # fmt: skip
-    # in a plant with something outside the registry any known name is wrong, whatever its confidence
     result.honest = not any(confidence >= _SURE and not true for confidence, true in judged)
-    if result.right:
+    if result.right and spec.group != "outside":
         result.parameter_errors = _parameter_errors(answer, entries, named)
     gaps = diagnosis.get("holdout_gap") or diagnosis.get("gap") or {}
     for channel in OUTPUTS:

@@ -138,7 +138,7 @@ def _failures(scores: Sequence[Score]) -> str:
 
 
 def _named(one: Score) -> str:
-    pairs = zip(one.named, one.names_right, strict=True)
+    pairs = itertools.zip_longest(one.named, one.names_right, fillvalue=(math.nan, False))
     return f"{one.verdict}: " + ", ".join(f"{name} {sure[0]:.2f}" for name, sure in pairs)
 
 

@@ -45,6 +45,7 @@ class Alternative:
     confidence: float
     separating_test: str
     plan: str | None = None
+    plan_text: str | None = None
 
 
 @dataclass(frozen=True)

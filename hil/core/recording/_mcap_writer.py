@@ -11,12 +11,13 @@ import numpy.typing as npt
 from mcap.writer import CompressionType, Writer
 
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
+from hil.core.frames import FrameBlock, joined
 from hil.core.recording import _schema
 
 CHANNELS_TOPIC = "/channels"
 EVENTS_TOPIC = "/events"
 FRAMES_TOPIC = "/can/"
+_MESSAGE_S = 0.045
 _CHUNK_BYTES = 256 * 1024  # about a second of a bench: what a crash can cost
 _EVENT_SCHEMA = {
     "type": "object",
@@ -63,6 +64,7 @@ class RecordingWriter:
     def __init__(self, path: Path, channel_names: list[str], buses: list[str]) -> None:
         self.path = path
         self._sequence = 0
+        self._waiting: dict[str, list[FrameBlock]] = {bus: [] for bus in buses}
         try:
             self._file = _WholeWrites(path)
             self._writer = Writer(
@@ -87,14 +89,34 @@ class RecordingWriter:
         self._frames = {bus: writer.register_channel(FRAMES_TOPIC + bus, "protobuf", frames) for bus in buses}
 
     def add_frames(self, bus: str, block: FrameBlock) -> None:
-        """Add the frames of one bus, as they came."""
-        if len(block):
+        """Add the frames of one bus, as they came; they become messages of about 50 ms."""
+        if not len(block):
+            return
+        waiting = self._waiting[bus]
+        waiting.append(block)
+        if block["time_s"][-1] - waiting[0]["time_s"][0] > _MESSAGE_S:
+            self._flush_frames(bus)
+
+    def _flush_frames(self, bus: str) -> None:
+        waiting = self._waiting[bus]
+        if waiting:
+            self._waiting[bus] = []
+            block = joined(waiting)
             self._add(self._frames[bus], float(block["time_s"][-1]), _schema.encode_frames(block))
 
     def add_rows(self, rows: npt.NDArray[np.float64]) -> None:
         """Add decoded samples (samples x channels; the first column is `time_s`)."""
-        for time_s, message in zip(rows[:, 0].tolist(), _schema.encode_rows(rows), strict=True):
-            self._add(self._channels, time_s, message.tobytes())
+        encoded = _schema.encode_rows(rows)
+        size = encoded.shape[1]
+        raw = encoded.tobytes()
+        stamps = np.rint(rows[:, 0] * 1e9).astype(np.int64).tolist()
+        add, channel, sequence = self._writer.add_message, self._channels, self._sequence
+        try:
+            for index, stamp in enumerate(stamps):
+                add(channel, stamp, raw[index * size : (index + 1) * size], stamp, sequence + index + 1)
+        except OSError as error:
+            raise self._failed(error) from error
+        self._sequence += len(stamps)
 
     def add_event(self, time_s: float, kind: str, text: str) -> None:
         """Add one event of the run."""
@@ -118,6 +140,8 @@ class RecordingWriter:
     def close(self) -> None:
         """Finish the file; it can be read without this, but then the last second may be missing."""
         try:
+            for bus in self._frames:
+                self._flush_frames(bus)
             self._writer.finish()
         except OSError as error:
             raise self._failed(error) from error

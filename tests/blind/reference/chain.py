@@ -95,7 +95,7 @@ def _step(
     h: float,
     work: Any,
 ) -> None:
-    """Advance the chain by `h` s at a constant motor torque: fixed-point iteration for the middle of the step.
+    """Advance the chain by `h` s at a constant motor torque: iterate for the middle of the step.
 
     x, v, a: angles, speeds, last accelerations; inner: bristle, tyre deflection, twist of the shafts,
     shaft torque at the end; memory: of the hysteresis; work: arrays for the middle of the step.

@@ -73,8 +73,8 @@ def test_other_readers_understand_the_schemas_in_the_file(tmp_path):
             sample = round(decoded.time_s * 1000)
             assert decoded.extra_19 == rows[sample, NAMES.index("extra_19")]
         else:
-            assert list(decoded.data) == frames(10)["data"].tolist()
-            assert decoded.length == b"\x08" * 10
+            assert list(decoded.data)[:10] == frames(10)["data"].tolist()
+            assert decoded.length[:10] == b"\x08" * 10
     assert set(classes) == {"hil.Channels", "hil.CanFrames"}
 
 

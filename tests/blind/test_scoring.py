@@ -1,0 +1,137 @@
+"""The scoring, with answers that are known."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from hil.core.effects import EFFECTS
+from hil.core.model import load_model
+from hil.core.recording import read_recording
+from tests.blind.casefiles import Answer, write_case
+from tests.blind.cases import draw_case
+from tests.blind.diagnosing import Reply, says_nothing
+from tests.blind.families import FAMILIES
+from tests.blind.outsiders import OUTSIDERS
+from tests.blind.run import main, run_case
+from tests.blind.scoring import errors_of, score
+from tests.blind.specs import GROUPS, Spec, full_set, subset
+
+NOISE = {"motor_speed_rad_s": 0.01, "wheel_speed_rad_s": 0.02, "shaft_torque_nm": 0.02}
+
+
+def _reply(verdict, *effects, **more):
+    entries = [
+        {"id": id, "parameters": parameters, "confidence": confidence}
+        for id, parameters, confidence in effects
+    ]
+    return Reply({"verdict": verdict, "effects": entries, **more}, "", 1.0)
+
+
+def _answer(*effects):
+    return Answer(effects, 1.0, NOISE, NOISE)
+
+
+BACKLASH = ("backlash", {"half_gap_rad": 0.01})
+GAIN = ("sensor_gain", {"channel": "shaft_torque_nm", "gain": 1.1})
+
+
+@pytest.mark.parametrize(
+    ("group", "hidden", "reply", "right"),
+    [
+        ("single", [BACKLASH], _reply("named", (*BACKLASH, 0.9)), True),
+        ("single", [BACKLASH], _reply("named", (*BACKLASH, 0.9), (*GAIN, 0.5)), False),
+        ("single", [BACKLASH], _reply("unknown"), False),
+        (
+            "single",
+            [GAIN],
+            _reply("named", ("sensor_gain", {"channel": "motor_speed_rad_s", "gain": 1.1}, 0.9)),
+            False,
+        ),
+        ("pair", [BACKLASH, GAIN], _reply("named", (*GAIN, 0.9), (*BACKLASH, 0.9)), True),
+        ("pair", [BACKLASH, GAIN], _reply("named", (*GAIN, 0.9)), False),
+        ("none", [], _reply("none"), True),
+        ("none", [], _reply("named", (*GAIN, 0.2)), False),
+        ("outside", [("outside:torque_fade", {})], _reply("unknown"), True),
+        ("outside", [("outside:torque_fade", {})], _reply("named", ("torque_fading", {}, 0.9)), True),
+        ("outside", [("outside:torque_fade", {})], _reply("named", (*BACKLASH, 0.3)), False),
+        ("single", [BACKLASH], Reply({}, "exit code 3: broken", 1.0), False),
+    ],
+)
+def test_what_is_right(group, hidden, reply, right):
+    result = score(Spec(group, "any", "clear", 0), "two_inertia", _answer(*hidden), reply)
+    assert result.right is right
+
+
+def test_gaps_count_in_units_of_the_true_noise():
+    gap = {name: {"before": 0.2, "after": 1.1 * ratio, "noise_floor": 1.0} for name, ratio in NOISE.items()}
+    reply = _reply("named", (*BACKLASH, 0.99), holdout_gap=gap)
+    result = score(Spec("single", "backlash", "clear", 0), "two_inertia", _answer(BACKLASH), reply)
+    assert result.worst_gap == pytest.approx(1.1)
+    assert result.mean_gap == pytest.approx(1.1)
+    assert result.names_right == [(0.99, True)]
+
+
+def test_errors_of_parameters():
+    assert errors_of("sensor_gain", {"gain": 1.1}, {"gain": 1.09})["gain"] == pytest.approx(0.1)
+    assert errors_of("backlash", {"half_gap_rad": 0.02}, {"half_gap_rad": 0.019}) == pytest.approx(
+        {"half_gap_rad": 0.05}
+    )
+    assert errors_of("motor_order_ripple", {"phase_rad": 3.1}, {"phase_rad": -3.1})[
+        "phase_rad"
+    ] == pytest.approx(0.0832, abs=1e-3)
+    loop = errors_of(
+        "shaft_hysteresis",
+        {"stiffness_nm_rad": 100.0, "slip_rad": 0.02},
+        {"stiffness_nm_rad": 200.0, "slip_rad": 0.01},
+    )
+    assert loop == pytest.approx({"slip_torque_nm": 0.0})
+
+
+def test_a_wrong_name_with_high_confidence_is_not_honest():
+    spec = Spec("one_recording", "backlash", "clear", 0)
+    assert not score(spec, "two_inertia", _answer(BACKLASH), _reply("named", (*GAIN, 0.95))).honest
+    assert score(spec, "two_inertia", _answer(BACKLASH), _reply("named", (*GAIN, 0.6))).honest
+
+
+def test_every_registered_effect_can_be_hidden_and_none_of_the_outsiders_is_registered():
+    contract = set(FAMILIES) | {"parameter_mismatch"}
+    assert contract <= set(EFFECTS)
+    assert not set(OUTSIDERS) & set(EFFECTS)
+
+
+def test_a_subset_has_every_group_and_is_the_same_again():
+    few = subset(full_set(), 24, 3)
+    assert {s.group for s in few} == set(GROUPS)
+    assert few == subset(full_set(), 24, 3)
+    assert len({s.key for s in full_set()}) == len(full_set())
+    assert len(subset(full_set(), 700, 3)) == pytest.approx(700, abs=5)
+
+
+def test_a_case_is_the_same_again_and_its_files_hold_no_answer(tmp_path):
+    spec = Spec("single", "torque_saturation", "clear", 0)
+    texts = []
+    for name in ("first", "again"):
+        case = draw_case(5, spec, 0.1)
+        (tmp_path / name).mkdir()
+        files, answer = write_case(case, tmp_path / name)
+        texts.append({p.name: p.read_text() for p in (tmp_path / name).iterdir()})
+        model = load_model(files.model)
+        assert not model.effects
+        assert not model.meta
+        recording = read_recording(files.recordings[0])
+        assert "shaft_torque_nm" in recording
+        assert answer.effects[0][0] == "torque_saturation"
+        EFFECTS["torque_saturation"].check(answer.effects[0][1], "answer")
+    assert texts[0] == texts[1]
+
+
+def test_a_run_with_a_stand_in_writes_both_files(tmp_path):
+    result = run_case(2, Spec("none", "none", "none", 0), says_nothing, tmp_path / "kept", 0.1)
+    assert result.right
+    assert (tmp_path / "kept" / "none-none-none-0" / "model.toml").exists()
+    out = tmp_path / "results.md"
+    assert main(["--stand-in", "--group", "none", "--cases", "1", "--length", "0.1", "--out", str(out)]) == 0
+    assert "| none | 1 | 100 |" in out.read_text()
+    assert json.loads(out.with_suffix(".json").read_text())["cases"][0]["verdict"] == "none"
