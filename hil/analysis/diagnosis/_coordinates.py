@@ -38,6 +38,8 @@ _LINEAR = {
     "delay_s": 1e-3,
 }
 _STEP = 1e-3  # of a finite difference, on a logarithmic scale or in typical sizes
+#: Beyond these an effect is no longer itself: a path that slips at 6 degrees is a spring.
+_UPPER = {"slip_rad": 0.1, "time_constant_s": 0.3}
 _FINE_STEP = {"order": 1e-3}
 
 
@@ -101,7 +103,7 @@ class Hypothesis:
         for parameter in EFFECTS[term.id].parameters:
             if parameter.optional and parameter.name not in self.open:
                 continue
-            lower, upper = parameter.lower, parameter.upper
+            lower, upper = parameter.lower, min(parameter.upper, _UPPER.get(parameter.name, np.inf))
             if parameter.name in _LINEAR:
                 step = _FINE_STEP.get(parameter.name, _STEP) * _LINEAR[parameter.name]
                 if parameter.name == "phase_rad":

@@ -24,7 +24,7 @@ from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._quantization import grids
 from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
 from hil.analysis.diagnosis._sanity import check
-from hil.analysis.diagnosis._search import Found, carried, colour, search
+from hil.analysis.diagnosis._search import Found, carried, colour, floor_of, search
 from hil.analysis.diagnosis._trace import noise_levels, trace_of
 from hil.analysis.diagnosis._words import Where, signature, where
 from hil.core.errors import BadInputError
@@ -132,7 +132,8 @@ class _Judged:
     def _verdict(self, rounded: bool) -> Verdict:
         base, best = self.found.base, self.found.best
         rows = self.problem.rows
-        first, left = base.cost / rows - 1.0, best.cost / rows - 1.0
+        first = (base.cost - floor_of(self.problem, base)) / rows
+        left = (best.cost - floor_of(self.problem, best)) / rows
         if best.hypothesis.terms:
             closed = 1.0 - max(left, 0.0) / max(first, 1e-9)
             return "named" if closed > _CLOSED or np.sqrt(1.0 + max(left, 0.0)) < _CLOSED_TO else "unknown"

@@ -15,6 +15,9 @@ Array = npt.NDArray[np.float64]
 
 STARTS = 3  # free initial values of each recording: motor speed, wheel speed, shaft torque
 _HUGE = 1e12
+_REST_SHARE = 0.1  # of a sample's noise: how still an axle at rest is
+_REST_SIGMAS = 4.0
+_REST_SAMPLES = 20
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,7 @@ class Problem:
         self.weights = [
             np.where(t.has, np.sqrt(t.block) / np.where(noise > 0, noise, np.inf), 0.0) for t in traces
         ]
+        self.resting = [_rests(t, noise) for t in traces]
         self.rows = int(sum(np.count_nonzero(t.has) * len(t.measured) for t in traces))
 
     def first_starts(self, hypothesis: Hypothesis) -> list[Array]:
@@ -51,6 +55,8 @@ class Problem:
         starts = []
         for trace in self.traces:
             motor, wheel, shaft = trace.start
+            if self.resting[len(starts)]:
+                motor = wheel = 0.0
             if not np.isfinite(motor):
                 motor = wheel * ratio if np.isfinite(wheel) else 0.0
             if not np.isfinite(wheel):
@@ -78,6 +84,7 @@ class Problem:
         for index in range(len(self.traces)):
             simulated = self.outputs(index, slots, sensors, starts[index])
             total += np.array([np.sum(self.errors(index, one) ** 2) for one in simulated])
+            total += (starts[index] ** 2) @ self.start_precision(index)
         return total
 
     def linearised(
@@ -110,10 +117,26 @@ class Problem:
             np.nan_to_num(change, copy=False)
             shared = (change[: len(coordinates)] / signed[:, None]).T
             initial = (change[len(coordinates) :] / steps[:, None]).T
-            cost += float(error @ error)
-            normals.append(normal_equations(shared, initial, error))
+            cost += float(error @ error) + float(start**2 @ self.start_precision(index))
+            normals.append(self._anchored(normal_equations(shared, initial, error), index, start))
             pieces.append((error, shared, initial))
         return cost, normals, pieces
+
+    def _anchored(self, n: Normal, index: int, start: Array) -> Normal:
+        precision = self.start_precision(index)
+        gradient = n.start_gradient - precision * start
+        return Normal(n.shared, n.between, n.start + np.diag(precision), n.shared_gradient, gradient)
+
+    def start_precision(self, trace: int) -> Array:
+        """How firmly a recording's initial values are held at zero: only the speeds of one that begins at rest.
+
+        A frictionless model cannot tell an offset of one speed channel from one of the other; an axle at
+        rest can.
+        """
+        if not self.resting[trace]:
+            return np.zeros(STARTS)
+        known = np.where(np.isfinite(self.noise), self.noise, np.inf)[:2]
+        return np.array([*(1.0 / np.maximum(_REST_SHARE * known, 1e-9) ** 2), 0.0])
 
     def start_steps(self) -> Array:
         """Sizes of the finite differences in the initial values."""
@@ -144,3 +167,9 @@ def start_step(n: Normal, step: Array) -> Array:
     return np.asarray(
         np.linalg.pinv(n.start, rcond=1e-10, hermitian=True) @ (n.start_gradient - n.between.T @ step)
     )
+
+
+def _rests(trace: Trace, noise: Array) -> bool:
+    """Whether the recording begins at rest: a speed channel reads zero, and no torque is asked for."""
+    near = np.abs(trace.start[:2]) < _REST_SIGMAS * noise[:2] / np.sqrt(_REST_SAMPLES)
+    return bool(np.any(near & trace.has[:2]) and trace.torque[0] == 0.0)

@@ -24,7 +24,9 @@ Array = npt.NDArray[np.float64]
 LEAST_EVIDENCE = 45.0  # drop of the squared error in noise variances, after deflation
 _LEAST_SHARE = 0.5  # of the remaining excess over the noise that one effect must close
 _LEAST_OF_ALL = 2e-3  # of the first excess: below it, a formula differs and no effect is missing
-_FLOOR_SHARE = 0.99  # the noise estimate is good to about a percent
+_LEAST_OF_NOISE = 2.5e-3  # of the noise's power: a smaller gap matters to nobody
+_FLOOR_REACH = (0.9, 1.03)
+_PRICE = 8.0  # of each parameter that an effect brings, when two effects explain the same
 _MOST_EFFECTS = 3
 _PAIR_STARTS = 3
 _LEAST_PAIR_SHARE = 0.75
@@ -69,7 +71,8 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None]) -> F
     first = fit(problem, base)
     found = Found(first, first)
     while len(found.best.hypothesis.terms) < _MOST_EFFECTS:
-        if _excess(problem, found.best) < _worthwhile(problem, found.base):
+        slack = 2.0 * np.sqrt(problem.rows)
+        if found.best.hypothesis.terms and _excess(problem, found.best) + slack < _worthwhile(problem, found.base):
             break
         show(f"looking for effect {len(found.best.hypothesis.terms) + 1}")
         scores = screen(problem, found.best)
@@ -127,18 +130,34 @@ def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
     return values
 
 
+def floor_of(problem: Problem, one: Fit) -> float:
+    """The squared error that noise alone would leave, from neighbouring errors of `one` itself.
+
+    Half the mean squared difference of neighbours is the variance of white noise and leaves out what is slow;
+    it may correct the spectral noise level by a few percent only.
+    """
+    total = 0.0
+    for error, _, _ in one.pieces:
+        e = error.reshape(-1, 3)
+        total += 0.5 * float(np.sum(np.diff(e, axis=0) ** 2)) * len(e) / (len(e) - 1)
+    return float(np.clip(total, _FLOOR_REACH[0] * problem.rows, _FLOOR_REACH[1] * problem.rows))
+
+
 def _excess(problem: Problem, one: Fit) -> float:
-    return max(one.total - _FLOOR_SHARE * problem.rows, 0.0)
+    return max(one.total - floor_of(problem, one), 0.0)
 
 
 def _worthwhile(problem: Problem, base: Fit) -> float:
     """The least drop of the squared error that can earn a name."""
-    return max(LEAST_EVIDENCE, _LEAST_OF_ALL * (base.total - problem.rows))
+    least = max(LEAST_EVIDENCE, _LEAST_OF_NOISE * problem.rows)
+    return max(least, _LEAST_OF_ALL * (base.total - problem.rows))
 
 
 def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
     """Fits of the promising effects, best first; the hopeless are given up after a few rounds."""
     chosen = _chosen(scores)
+    if not chosen:
+        return []
     fits = [grown(problem, parent, score.use, _RACE_ROUNDS) for score in chosen]
     floor = float(problem.rows)
     best = min(f.total for f in fits)
@@ -148,7 +167,7 @@ def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
             finished.append(fit(problem, one.hypothesis, one.starts, one.theta))
         else:
             finished.append(one)
-    return sorted(finished, key=lambda f: f.total)
+    return sorted(finished, key=lambda f: f.total + _PRICE * len(f.theta))
 
 
 def _chosen(scores: list[Score]) -> list[Score]:
@@ -182,12 +201,10 @@ def _opened(best: Fit, opened: Hypothesis) -> Array:
 
 def accepted(problem: Problem, base: Fit, poorer: Fit, richer: Fit) -> bool:
     """Whether `richer` earns its further name."""
-    drop = poorer.total - richer.total
-    first = max(base.total - problem.rows, 1.0)
     return (
         evidence(problem, poorer, richer) > LEAST_EVIDENCE
         and _share(problem, poorer, richer) > _LEAST_SHARE
-        and drop > _LEAST_OF_ALL * first
+        and poorer.total - richer.total > _worthwhile(problem, base)
     )
 
 
@@ -213,9 +230,10 @@ _SPAN = {1: 1, 2: 1, 3: 1.5, 5: 2.5, 8: 4, 13: 6.5, 21: 8}
 
 
 def _share(problem: Problem, poorer: Fit, richer: Fit) -> float:
-    """Share of the excess over the noise that the richer fit closes."""
-    floor = min(float(problem.rows), 0.999 * richer.total)
-    return (poorer.total - richer.total) / max(poorer.total - floor, 1e-9)
+    """Share of the excess over the noise that the richer fit closes; what noise may hide counts as closed."""
+    drop = poorer.total - richer.total
+    excess = poorer.total - floor_of(problem, richer) - 2.0 * np.sqrt(problem.rows)
+    return float(drop / max(excess, drop, 1e-9))
 
 
 def _backward(problem: Problem, found: Found) -> Found:

@@ -1,0 +1,104 @@
+"""The path of a bench with hardware: wall clock, ordinary python-can buses, frames one by one.
+
+The simulated bench runs in a thread of its own, in real time, at the other end of python-can's
+in-process virtual buses.
+"""
+
+import contextlib
+import threading
+import time
+
+import can
+import numpy as np
+
+from hil.core.errors import BenchError
+from hil.core.model import load_model
+from hil.core.recording import read_recording
+from hil.engine import RunRequest, run_plan
+from sim_backend.bench import SimulatedBench, SimulationSettings
+from tests.benches_for_tests import SIM, plan
+
+STEPS = """
+  - set_controller: {file: phase_stabilization.toml}
+  - hold_speed: {speed_km_h: 5, duration_s: 0.2}
+  - step: {segment: s, quantity: driving_torque, from_nm: 0, to_nm: 100, before_s: 0.2, after_s: 0.8}
+"""
+CRITERIA = "[{segment: s, metric: peak_shaft_torque, lower: 90, upper: 200}]"
+
+
+@contextlib.contextmanager
+def bench_in_real_time(name):
+    """A simulated bench behind `virtual` buses; gives the bench file and an event that cuts its power."""
+    world = SimulatedBench(SimulationSettings(load_model(SIM.simulation.model), SIM.rmcu.dbc, SIM.dyno.eds))
+    world.sleep_until(0.01)  # what is compiled is compiled before time counts
+    ends = {
+        bus: can.Bus(interface="virtual", channel=f"{name}/{bus}", preserve_timestamps=True)
+        for bus in SIM.buses
+    }
+    stop, unplugged = threading.Event(), threading.Event()
+    epoch = time.time() - world.now_s()
+
+    def serve():
+        while not stop.is_set():
+            world.sleep_until(time.time() - epoch)
+            for bus, end in ends.items():
+                while (message := end.recv(0)) is not None:
+                    world.put(bus, message.arbitration_id, bytes(message.data))
+                for frame in world.take(bus):
+                    if not unplugged.is_set():
+                        end.send(message_of(frame, epoch))
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=serve)
+    thread.start()
+    try:
+        buses = {
+            bus: settings.model_copy(
+                update={
+                    "interface": "virtual",
+                    "channel": f"{name}/{bus}",
+                    "options": {"preserve_timestamps": True},
+                }
+            )
+            for bus, settings in SIM.buses.items()
+        }
+        yield SIM.model_copy(update={"name": name, "buses": buses, "simulation": None}), unplugged
+    finally:
+        stop.set()
+        thread.join()
+        for end in ends.values():
+            end.shutdown()
+
+
+def message_of(frame, epoch):
+    data = int(frame["data"]).to_bytes(8, "little")[: int(frame["length"])]
+    return can.Message(
+        timestamp=epoch + float(frame["time_s"]),
+        arbitration_id=int(frame["id"]),
+        is_extended_id=False,
+        data=data,
+    )
+
+
+def test_a_run_in_real_time_records_and_judges_like_one_in_virtual_time(tmp_path):
+    for attempt in range(3):  # a machine that stops for 50 ms trips the RMCU, as it should
+        with bench_in_real_time(f"wall{attempt}") as (bench, _):
+            outcome = run_plan(RunRequest(plan(STEPS, CRITERIA), bench, tmp_path))
+        if outcome.error is None:
+            break
+    assert outcome.error is None, outcome.error
+    assert (outcome.result.verdict, outcome.result.safe_state) == ("pass", "confirmed")
+    recording = read_recording(outcome.recording)
+    assert recording.metadata["run"]["simulated"] == "false"
+    np.testing.assert_allclose(np.diff(recording.time_s), 1e-3)
+    sides = recording["shaft_torque_left_nm"] + recording["shaft_torque_right_nm"]
+    np.testing.assert_allclose(recording["shaft_torque_nm"], sides)
+
+
+def test_a_bench_that_loses_power_ends_the_run_and_is_not_called_safe(tmp_path):
+    with bench_in_real_time("power") as (bench, unplugged):
+        request = RunRequest(plan(STEPS, CRITERIA), bench, tmp_path)
+        request.progress = lambda share, text: unplugged.set() if share > 0.3 else None
+        outcome = run_plan(request)
+    assert isinstance(outcome.error, BenchError)
+    assert (outcome.result.verdict, outcome.result.safe_state) == ("error", "not_confirmed")
