@@ -21,6 +21,7 @@ _COMMANDS = {
     "report": ("hil.cli.report", "Make the report again from a recording."),
     "identify": ("hil.cli.identify", "Frequency responses and fits from recordings."),
     "design": ("hil.cli.design", "Controller from a model, with margins."),
+    "diagnose": ("hil.cli.diagnose", "Find where model and measurement disagree, name the effect, add it."),
     "simulate": ("hil.cli.simulate", "Replay a recording's torque through a model."),
     "export": ("hil.cli.export", "Write a recording as CSV, Parquet or MDF4."),
     "schema": ("hil.cli.schema", "JSON schema of plan files, for editors."),

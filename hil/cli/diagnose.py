@@ -10,7 +10,7 @@ import typer
 from hil.analysis.diagnosis import Diagnosis, diagnose
 from hil.cli._together import progress, to_json, write_together
 from hil.core.model import load_model, model_to_toml
-from hil.core.recording import Recording, read_recording
+from hil.core.recording import Recording, driven_by_torque, read_recording
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
 
 _LEAST_SAMPLES = 200
@@ -34,8 +34,8 @@ def command(
     """
     base = load_model(model)
     with progress() as show:
-        read = [_read(path, show) for path in recordings]
-        held = [_read(path, show) for path in holdout or []]
+        read = [part for path in recordings for part in driven_by_torque(_read(path, show))]
+        held = [part for path in holdout or [] for part in driven_by_torque(_read(path, show))]
         found = diagnose(base, read, held, show=show)
         show("writing the report")
         files = output_files(found, f"{model.stem}: {found.verdict}")

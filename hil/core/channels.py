@@ -34,6 +34,8 @@ _ALL = (
 
 CHANNELS: dict[str, Channel] = {channel.name: channel for channel in _ALL}
 
+#: Not measured but integrated: the angle that order disturbances follow, from the start of a run.
+WHEEL_ANGLE = "wheel_angle_rad"
 TIME = "time_s"
 INPUT = "motor_torque_ref_nm"
 OUTPUTS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")

@@ -47,6 +47,9 @@ class Segment(_Frozen):
     end_s: float
     controller: str = ""
     initial_speed_km_h: float = 0.0
+    load: Literal["vehicle", "speed"] = Field(
+        "vehicle", description="what the dynos did: simulate the vehicle, or hold a speed"
+    )
     reference_before: float = Field(0.0, description="value of the stepped quantity before the step")
     reference_after: float = Field(0.0, description="value of the stepped quantity after the step")
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -34,6 +35,7 @@ class BenchConductor:
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
         self._speed_m_s = 0.0
+        self._load: Literal["vehicle", "speed"] = "speed"
         self.segments: list[Segment] = []
         self.controllers: dict[str, str] = {}
         self.made: dict[str, bytes] = {}
@@ -61,6 +63,7 @@ class BenchConductor:
         ramp_s = abs(target - dyno.wheel_speed_rad_s) * self._bench.file.vehicle.wheel_radius_m
         ramp_s /= self._bench.file.dyno.speed_ramp_m_s2
         dyno.hold_speed(target)
+        self._load = "speed"
         loop.run_for(ramp_s)
         reached = loop.wait_for(
             lambda: abs(dyno.wheel_speed_rad_s - target) < _SPEED_TOLERANCE_RAD_S, _SPEED_GRACE_S
@@ -78,6 +81,7 @@ class BenchConductor:
     def release_vehicle(self) -> None:
         """Let the dynos simulate the vehicle."""
         self._bench.dyno.release_vehicle(self._speed_m_s)
+        self._load = "vehicle"
         self._event("speed", "dynos simulate the vehicle")
 
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
@@ -163,6 +167,7 @@ class BenchConductor:
                 controller=self._controller.stabilization
                 if self._controller and planned.quantity == "driving_torque"
                 else "",
+                load=self._load,
                 initial_speed_km_h=round(self._speed_m_s * 3.6, 6),
                 reference_before=planned.reference_before,
                 reference_after=planned.reference_after,

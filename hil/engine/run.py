@@ -222,7 +222,7 @@ class _Run:
         return inputs
 
     def _store_inputs(self) -> None:
-        """What is known at the start stands at the start: a recording that is cut off still says what it is."""
+        """What is known at the start stands at the start: also a recording that is cut off has it."""
         request, writer = self._request, self._recorder.writer
         for name, content in self._inputs().items():
             writer.attach(name, content)

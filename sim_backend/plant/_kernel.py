@@ -117,7 +117,7 @@ def outputs(x, p, slewed, coupled, load, row):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque):  # type: ignore[no-untyped-def]
+def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel_angle):  # type: ignore[no-untyped-def]
     """State that shows the given speeds (rad/s) and torques (N m), the road coupling at rest."""
     twist = 0.0
     if p[P.KIND] != P.RIGID:
@@ -128,14 +128,14 @@ def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque):  # t
         tyre = shaft_torque / p[P.TYRE_STIFFNESS]
     if p[P.KIND] == P.RIGID:
         wheel_speed = motor_speed / p[P.GEAR_RATIO]
-    return (motor_speed, twist, wheel_speed, tyre, wheel_speed, 0.0, motor_torque, 0.0, 0.0, 0.0)
+    return (motor_speed, twist, wheel_speed, tyre, wheel_speed, wheel_angle, motor_torque, 0.0, 0.0, 0.0)
 
 
 @compiled
 def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untyped-def]
     """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS); vehicle coupled.
 
-    `start` is [motor speed, wheel speed, shaft torque, motor torque that acted before the first sample].
+    `start` is [motor speed, wheel speed, shaft torque, motor torque that acted before, wheel angle].
     """
     p = as_tuple(vector)
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
@@ -143,7 +143,7 @@ def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untype
     if late < 1e-9 * dt:
         late = 0.0
     slewed = shaped(start[3], p)
-    x = initial_state(p, start[0], start[1], start[2], slewed)
+    x = initial_state(p, start[0], start[1], start[2], slewed, start[4])
     for k in range(torque.shape[0]):
         outputs(x, p, slewed, True, 0.0, out[k])
         new = torque[k - whole] if k >= whole else start[3]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import INPUT, TIME
+from hil.core.channels import INPUT, TIME, WHEEL_ANGLE
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from sim_backend.plant import _kernel, _slots
@@ -34,6 +34,7 @@ class Start:
     wheel_speed_rad_s: float = 0.0
     shaft_torque_nm: float = 0.0
     motor_torque_nm: float | None = None
+    wheel_angle_rad: float = 0.0
 
 
 def simulate(
@@ -61,7 +62,15 @@ def simulate(
         parameters = _slots.pack(model)
         out = _kernel.empty_output(len(torque))
         before = torque[0] if start.motor_torque_nm is None else start.motor_torque_nm
-        begin = np.array([start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm, before])
+        begin = np.array(
+            [
+                start.motor_speed_rad_s,
+                start.wheel_speed_rad_s,
+                start.shaft_torque_nm,
+                before,
+                start.wheel_angle_rad,
+            ]
+        )
         _kernel.run(torque, sample_time_s, parameters, begin, longest_step_s, out)
         channels = {
             "motor_torque_nm": out[:, _kernel.OUT_MOTOR_TORQUE].copy(),
@@ -110,7 +119,13 @@ def start_of(recording: Recording) -> Start:
     def first(name: str) -> float:
         return _beginning(recording[name]) if name in recording else 0.0
 
-    return Start(first("motor_speed_rad_s"), first("wheel_speed_rad_s"), first("shaft_torque_nm"))
+    angle = float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0
+    return Start(
+        first("motor_speed_rad_s"),
+        first("wheel_speed_rad_s"),
+        first("shaft_torque_nm"),
+        wheel_angle_rad=angle,
+    )
 
 
 def _beginning(values: Array) -> float:

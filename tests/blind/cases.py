@@ -84,7 +84,7 @@ def draw_case(seed: int, spec: Spec, length: float = 1.0) -> Case:
     deviation = np.std(plain, axis=0)
     noise = NoiseLevel(
         deviation * np.exp(rng.uniform(np.log(0.005), np.log(0.02), 3)),
-        rng.uniform(0.05, 0.2),
+        rng.uniform(0.0, 0.15),
         rng.uniform(2.0, 15.0),
     )
     setting = Setting(kind, base.parameters, scale, dict(zip(OUTPUTS, deviation.tolist(), strict=True)))
@@ -152,8 +152,12 @@ def _sized(
     ruler = Ruler(base, experiments, noise.deviations, _own_parameter(spec.subject))
     wanted = share_of(SIZES[spec.size])
     best: tuple[float, Hidden, float] | None = None
+    before: Hidden | None = None
     for _ in range(_DRAWS):
         family = draw(rng, setting)
+        if family.of_size(1.0) == before:
+            break  # nothing but the size is drawn
+        before = family.of_size(1.0)
         size, share = ruler.size_for(family, wanted)
         hidden = family.of_size(size)
         left = share

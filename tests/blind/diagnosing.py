@@ -32,7 +32,7 @@ Diagnose = Callable[[OpenFiles, Path], Reply]
 
 def by_command_line(files: OpenFiles, out: Path, *, threads: int = 1) -> Reply:
     """Run `hil diagnose` in a process of its own, with `threads` threads."""
-    command = [sys.executable, "-c", "import typer, hil.cli.diagnose as d; a = typer.Typer(pretty_exceptions_enable=False); a.command()(d.command); a()", "--json"]
+    command = [sys.executable, "-c", "from hil.cli import main; main()", "diagnose", "--json"]
     command += ["--model", str(files.model), "--out", str(out), *map(str, files.recordings)]
     for path in files.holdout:
         command += ["--holdout", str(path)]

@@ -86,6 +86,16 @@ def _deadband(rng: np.random.Generator, setting: Setting) -> Family:
     return Family("torque_deadband", 0.02 * setting.scale, 6.0 * setting.scale, of_size)
 
 
+def _dead_time(rng: np.random.Generator, setting: Setting) -> Family:
+    """Always clearly more than what calibration leaves open in the model's own dead time."""
+    del rng
+
+    def of_size(size: float) -> Hidden:
+        return Hidden("dead_time", {"extra_delay_s": size}, (), {"extra_delay_s": size})
+
+    return Family("dead_time", 0.06 * setting.parameters["torque_delay"], 0.03, of_size)
+
+
 def _backlash(rng: np.random.Generator, setting: Setting) -> Family:
     del setting
     dissipative = rng.uniform() < 0.4
@@ -239,7 +249,7 @@ def _sensor(id: str, value: str, smallest: float, largest: float) -> Draw:
 
 
 FAMILIES: dict[str, Draw] = {
-    "dead_time": _plain("dead_time", "extra_delay_s", "extra_delay_s", 1e-4, 0.03),
+    "dead_time": _dead_time,
     "actuator_lag": _plain("actuator_lag", "lag_s", "time_constant_s", 1e-4, 0.05),
     "torque_saturation": _falling("torque_saturation", "limit_nm", "limit_nm", 42.0, 6.0),
     "torque_rate_limit": _falling("torque_rate_limit", "rate_nm_s", "limit_nm_s", 2e4, 60.0),

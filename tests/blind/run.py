@@ -50,15 +50,18 @@ def run_all(
     keep: Path | None = None,
     length: float = 1.0,
 ) -> list[Score]:
-    """Scores in the order of `specs`, from `jobs` processes."""
+    """Scores in the order of `specs`, from `jobs` processes; after Ctrl-C those that are there."""
     results: dict[Spec, Score] = {}
     with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
         waiting = {pool.submit(run_case, seed, spec, diagnose, keep, length): spec for spec in specs}
-        for done in as_completed(waiting):
-            spec = waiting[done]
-            results[spec] = done.result()
-            _tell(results[spec], len(results), len(specs))
-    return [results[spec] for spec in specs]
+        try:
+            for done in as_completed(waiting):
+                spec = waiting[done]
+                results[spec] = done.result()
+                _tell(results[spec], len(results), len(specs))
+        except KeyboardInterrupt:
+            pool.shutdown(wait=False, cancel_futures=True)
+    return [results[spec] for spec in specs if spec in results]
 
 
 def _tell(one: Score, number: int, total: int) -> None:

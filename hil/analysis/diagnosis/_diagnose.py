@@ -15,17 +15,18 @@ from hil.analysis.diagnosis._coordinates import TOLERANCE, Hypothesis, key_of
 from hil.analysis.diagnosis._fit import Fit, fit
 from hil.analysis.diagnosis._gap import (
     ChannelGap,
+    GapMap,
     channel_gaps,
     gap_map,
     settled_starts,
     simulated_samples,
 )
-from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._problem import Problem, whitening_of
 from hil.analysis.diagnosis._quantization import grids
 from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
 from hil.analysis.diagnosis._sanity import check
 from hil.analysis.diagnosis._search import Found, carried, colour, floor_of, search
-from hil.analysis.diagnosis._trace import noise_levels, trace_of
+from hil.analysis.diagnosis._trace import Trace, noise_levels, trace_of
 from hil.analysis.diagnosis._words import Where, signature, where
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
@@ -36,6 +37,7 @@ Array = npt.NDArray[np.float64]
 _SMALL_EXCESS = 0.04  # of the noise power: below it, nothing is left to explain
 _CLOSED = 0.9  # share of the gap's power that a named hypothesis closes at least ...
 _CLOSED_TO = 1.15  # ... unless it reaches the noise up to this factor
+_FAR_FROM_NOISE = 50.0
 _RIPPLES = ("wheel_order_disturbance", "motor_order_ripple")
 
 
@@ -71,14 +73,47 @@ def diagnose(
     hypothesis = Hypothesis(model)
     found = search(problem, hypothesis, show)
     show("judging")
-    judged = _Judged(problem, found, [trace_of(r) for r in holdout])
     rounded = grids(traces, noise)
+    verdict = verdict_of(problem, found, bool(rounded))
+    if verdict == "named":
+        found.best = _reweighted(problem, found.best)
+    judged = _Judged(problem, found, verdict, [trace_of(r) for r in holdout])
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)
+
+
+def _reweighted(problem: Problem, best: Fit) -> Fit:
+    """Where even the best leaves far more than noise, errors are weighed by their own spectrum.
+
+    Otherwise the strongest resonance alone would set all parameters. Cost and errors that are handed on are
+    those of the plain weights.
+    """
+    if not best.hypothesis.terms or best.cost < _FAR_FROM_NOISE * problem.rows:
+        return best
+    ratio = best.hypothesis.base.parameters["gear_ratio"]
+    for _ in range(3):
+        other = Problem(problem.traces, problem.noise, ratio, whitening=whitening_of(best.pieces))
+        again = fit(other, best.hypothesis, best.starts, best.theta)
+        best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
+        best.covariance = again.covariance
+    return best
 
 
 def _usable_noise(noise: Array) -> Array:
     """A channel without any noise still needs a weight: a millionth of a unit."""
     return np.where(np.isfinite(noise), np.maximum(noise, 1e-6), np.nan)
+
+
+def verdict_of(problem: Problem, found: Found, rounded: bool) -> Verdict:
+    """Named if the accepted effects close the gap, unknown if a gap stays, else none."""
+    base, best = found.base, found.best
+    first = (base.cost - floor_of(problem, base)) / problem.rows
+    left = (best.cost - floor_of(problem, best)) / problem.rows
+    if best.hypothesis.terms:
+        closed = 1.0 - max(left, 0.0) / max(first, 1e-9)
+        return "named" if closed > _CLOSED or np.sqrt(1.0 + max(left, 0.0)) < _CLOSED_TO else "unknown"
+    if left > _SMALL_EXCESS and colour(base) > 1.2:
+        return "unknown"
+    return "named" if rounded else "none"
 
 
 @dataclass
@@ -87,11 +122,12 @@ class _Judged:
 
     problem: Problem
     found: Found
-    holdout: list  # type: ignore[type-arg]
+    verdict: Verdict
+    holdout: list[Trace]
 
     def diagnosis(self, rounded: list[EffectUse], notes: list[str], seconds: float) -> Diagnosis:
         base, best = self.found.base, self.found.best
-        verdict = self._verdict(bool(rounded))
+        verdict = self.verdict
         kept = best if verdict == "named" and best.hypothesis.terms else base
         free, after = self._free(kept)
         before = self._nominal(free)
@@ -128,18 +164,6 @@ class _Judged:
             loop_area_j=loop_area(model),
             consequences=consequences(base.hypothesis.base, model),
         )
-
-    def _verdict(self, rounded: bool) -> Verdict:
-        base, best = self.found.base, self.found.best
-        rows = self.problem.rows
-        first = (base.cost - floor_of(self.problem, base)) / rows
-        left = (best.cost - floor_of(self.problem, best)) / rows
-        if best.hypothesis.terms:
-            closed = 1.0 - max(left, 0.0) / max(first, 1e-9)
-            return "named" if closed > _CLOSED or np.sqrt(1.0 + max(left, 0.0)) < _CLOSED_TO else "unknown"
-        if left > _SMALL_EXCESS and colour(base) > 1.2:
-            return "unknown"
-        return "named" if rounded else "none"
 
     def _free(self, kept: Fit) -> tuple[Problem, list[Array]]:
         """Ripples let go of the measured angle, refitted a little, and the simulation at full rate."""
@@ -189,7 +213,13 @@ class _Judged:
         return updates, dict(model.parameters)
 
     def _effects(
-        self, kept: Fit, free: Problem, after: list[Array], map_before, map_after, rounded: list[EffectUse]  # type: ignore[no-untyped-def]
+        self,
+        kept: Fit,
+        free: Problem,
+        after: list[Array],
+        map_before: GapMap,
+        map_after: GapMap,
+        rounded: list[EffectUse],
     ) -> tuple[NamedEffect, ...]:
         uses = kept.hypothesis.model(kept.theta).effects[len(kept.hypothesis.base.effects) :]
         errors = np.sqrt(np.maximum(np.diag(kept.covariance) * max(1.0, kept.cost / self.problem.rows), 0.0))
@@ -214,7 +244,7 @@ class _Judged:
 
     def _considered(self, kept: Fit) -> tuple[Considered, ...]:
         named = set(kept.hypothesis.keys)
-        rows = {}
+        rows: dict[tuple[str, str], Considered] = {}
         for step in self.found.steps:
             fitted = {f.hypothesis.keys[-1]: f for f in step.fits}
             for score in step.scores:

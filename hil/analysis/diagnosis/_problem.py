@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg import toeplitz
+from scipy.signal import lfilter
 
 from hil.analysis.diagnosis._coordinates import Hypothesis
 from hil.analysis.diagnosis._trace import Trace
@@ -15,6 +17,7 @@ Array = npt.NDArray[np.float64]
 
 STARTS = 3  # free initial values of each recording: motor speed, wheel speed, shaft torque
 _HUGE = 1e12
+_WHITENING_ORDER = 16
 _REST_SHARE = 0.1  # of a sample's noise: how still an axle at rest is
 _REST_SIGMAS = 4.0
 _REST_SAMPLES = 20
@@ -39,7 +42,16 @@ class Problem:
     as long as the model is not right, and takes the ripple's phase with it.
     """
 
-    def __init__(self, traces: list[Trace], noise: Array, gear_ratio: float, *, steered: bool = True) -> None:
+    def __init__(
+        self,
+        traces: list[Trace],
+        noise: Array,
+        gear_ratio: float,
+        *,
+        steered: bool = True,
+        whitening: Array | None = None,
+    ) -> None:
+        self.whitening = whitening
         self.angles = [t.angles(gear_ratio) if steered else None for t in traces]
         self.traces = traces
         self.noise = noise
@@ -74,7 +86,14 @@ class Problem:
         """Weighted measured minus simulated, blocks x 3, 0 where not measured."""
         weights = self.weights[trace]
         difference = np.where(weights > 0, self.traces[trace].measured - simulated, 0.0)
-        return np.nan_to_num(difference * weights, nan=_HUGE, posinf=_HUGE, neginf=-_HUGE)
+        error = np.nan_to_num(difference * weights, nan=_HUGE, posinf=_HUGE, neginf=-_HUGE)
+        return self._whitened(error)
+
+    def _whitened(self, error: Array) -> Array:
+        """Errors (blocks x 3) through each channel's whitening filter, if there is one."""
+        if self.whitening is None:
+            return error
+        return np.column_stack([lfilter(w, 1.0, error[:, c]) for c, w in enumerate(self.whitening)])
 
     def costs(self, points: list[tuple[Array, Array]], starts: list[Array]) -> Array:
         """Sum of squared errors of several points (slots, sensors); `starts`: per recording, points x 3."""
@@ -113,7 +132,10 @@ class Problem:
             simulated = self.outputs(index, slots, sensors, tried)
             error = self.errors(index, simulated[0]).ravel()
             weights = self.weights[index]
-            change = ((simulated[1:] - simulated[0]) * weights).reshape(len(slots) - 1, -1)
+            change = (simulated[1:] - simulated[0]) * weights
+            if self.whitening is not None:
+                change = np.stack([self._whitened(one) for one in change])
+            change = change.reshape(len(slots) - 1, -1)
             np.nan_to_num(change, copy=False)
             shared = (change[: len(coordinates)] / signed[:, None]).T
             initial = (change[len(coordinates) :] / steps[:, None]).T
@@ -173,3 +195,28 @@ def _rests(trace: Trace, noise: Array) -> bool:
     """Whether the recording begins at rest: a speed channel reads zero, and no torque is asked for."""
     near = np.abs(trace.start[:2]) < _REST_SIGMAS * noise[:2] / np.sqrt(_REST_SAMPLES)
     return bool(np.any(near & trace.has[:2]) and trace.torque[0] == 0.0)
+
+
+def whitening_of(pieces: list[tuple[Array, Array, Array]]) -> Array:
+    """Filters (3 x order + 1) that make the errors of a fit white with unit variance, one a channel.
+
+    Autoregression by the Yule-Walker equations over all recordings.
+    """
+    filters = np.zeros((3, _WHITENING_ORDER + 1))
+    filters[:, 0] = 1.0
+    errors = [error.reshape(-1, 3) for error, _, _ in pieces]
+    for column in range(3):
+        rows = [e[:, column] for e in errors]
+        count = sum(len(e) for e in rows)
+        products = [
+            sum(float(e[lag:] @ e[: len(e) - lag]) for e in rows) / count for lag in range(_WHITENING_ORDER + 1)
+        ]
+        if products[0] <= 0.0:
+            continue
+        matrix = toeplitz(products[:-1]) + 1e-6 * products[0] * np.eye(_WHITENING_ORDER)
+        past = np.linalg.solve(matrix, products[1:])
+        variance = max(products[0] - float(past @ products[1:]), 1e-6 * products[0])
+        filters[column, 0] = 1.0
+        filters[column, 1:] = -past
+        filters[column] /= np.sqrt(variance)
+    return filters

@@ -34,6 +34,15 @@ _RACE = 5  # candidates that are fitted at each step
 _PROMISING = 0.4  # share of the best score
 _RACE_ROUNDS = 3
 _OUT_OF_RACE = 2.5  # times the best cost after the first rounds
+#: The second of each pair likes to mend the formula of the first: it must close nearly all that is left.
+_MIMICS = (
+    ("backlash", "shaft_cubic_stiffness"),
+    ("backlash", "shaft_hysteresis"),
+    ("coulomb_friction", "shaft_hysteresis"),
+    ("shaft_hysteresis", "shaft_cubic_stiffness"),
+    ("torque_rate_limit", "shaft_cubic_stiffness"),
+)
+_MIMIC_SHARE = 0.85
 _RELATIVES = {
     "dead_time": ("actuator_lag",),
     "actuator_lag": ("dead_time",),
@@ -201,9 +210,10 @@ def _opened(best: Fit, opened: Hypothesis) -> Array:
 
 def accepted(problem: Problem, base: Fit, poorer: Fit, richer: Fit) -> bool:
     """Whether `richer` earns its further name."""
+    mimics = any({a, b} <= set(richer.hypothesis.ids) for a, b in _MIMICS)
     return (
         evidence(problem, poorer, richer) > LEAST_EVIDENCE
-        and _share(problem, poorer, richer) > _LEAST_SHARE
+        and _share(problem, poorer, richer) > (_MIMIC_SHARE if mimics else _LEAST_SHARE)
         and poorer.total - richer.total > _worthwhile(problem, base)
     )
 

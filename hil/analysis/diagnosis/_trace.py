@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
-from hil.core.channels import INPUT, OUTPUTS
+from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 
@@ -39,6 +39,7 @@ class Trace:
     measured: Array
     start: Array
     notes: tuple[str, ...]
+    first_wheel_angle_rad: float = 0.0
 
     def angles(self, gear_ratio: float) -> Array:
         """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds."""
@@ -49,7 +50,8 @@ class Trace:
             motor = wheel * gear_ratio
         speeds = np.column_stack([wheel, motor])
         turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
-        return np.concatenate([np.zeros((1, 2)), turned])
+        first = self.first_wheel_angle_rad * np.array([1.0, gear_ratio])
+        return first + np.concatenate([np.zeros((1, 2)), turned])
 
     @property
     def has(self) -> npt.NDArray[np.bool_]:
@@ -105,6 +107,7 @@ def trace_of(recording: Recording, name: str = "") -> Trace:
         blocks(samples, block),
         _start(samples, torque),
         tuple(notes),
+        float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
     )
 
 

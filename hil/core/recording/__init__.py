@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
+from hil.core.channels import WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording._mcap_reader import read_frames, read_mcap
 from hil.core.recording._mcap_writer import RecordingWriter
@@ -17,6 +21,7 @@ from hil.core.recording._tables_on_disk import (
     write_mdf,
     write_parquet,
 )
+from hil.core.result import RunResult
 
 #: Prefix of the metadata records that hold a run's segments, written as each begins.
 SEGMENT = "segment/"
@@ -51,6 +56,44 @@ def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = 
     return checked(reader(path), least_samples=least_samples, allow_missing=allow_missing)
 
 
+def driven_by_torque(recording: Recording) -> list[Recording]:
+    """The stretches of a run in which the motor torque alone drives the axle.
+
+    In a run of the project's own these are the segments during which the dynos simulate the vehicle; in
+    between they turn the wheels themselves. Any other recording is one stretch. A stretch's `source`
+    names its segment.
+    """
+    stored = recording.attachments.get("run.json")
+    if stored is None:
+        return [recording]
+    try:
+        segments = RunResult.model_validate_json(stored).segments
+    except ValueError as error:
+        raise BadInputError("its run.json is broken", where=str(recording.source)) from error
+    turned = _with_wheel_angle(recording)
+    parts = []
+    for segment in segments:
+        if segment.load == "vehicle":
+            part = turned.between(segment.start_s, segment.end_s)
+            part.source = recording.source.with_name(f"{recording.source.name}: {segment.id}")
+            parts.append(part)
+    if not parts:
+        raise BadInputError(
+            "has no segment during which the dynos simulate the vehicle",
+            where=str(recording.source),
+            fix="run a plan with steps or chirps of 'load: vehicle'",
+        )
+    return parts
+
+
+def _with_wheel_angle(recording: Recording) -> Recording:
+    """The recording with the wheel's angle since its start, at which the axle stood still."""
+    speed = np.nan_to_num(recording["wheel_speed_rad_s"])
+    steps = 0.5 * np.diff(recording.time_s) * (speed[1:] + speed[:-1])
+    angle = np.concatenate([[0.0], np.cumsum(steps)])
+    return dataclasses.replace(recording, channels={**recording.channels, WHEEL_ANGLE: angle})
+
+
 def write_recording(recording: Recording, path: Path) -> None:
     """Write `.csv`, `.parquet` or `.mf4`, whole or not at all."""
     writer = _WRITERS.get(path.suffix.lower())
@@ -65,6 +108,7 @@ __all__ = [
     "Recording",
     "RecordingWriter",
     "checked",
+    "driven_by_torque",
     "read_frames",
     "read_recording",
     "write_recording",
