@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup test lint bench figures lock clean
+.PHONY: run setup test test-slow blind lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance
@@ -29,7 +29,15 @@ lint: setup
 	$(BIN)/mypy
 
 test: lint
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 -m "not slow"
+
+# What takes minutes: the fixed part of the blind diagnosis set.
+test-slow: setup
+	$(BIN)/python -m pytest -n 2 -m slow
+
+# The whole blind diagnosis set: hundreds of cases, results in docs/reference/blind-results.md.
+blind: setup
+	$(BIN)/python -m tests.blind
 
 bench: setup
 	$(BIN)/python -m benchmarks

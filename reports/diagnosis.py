@@ -81,7 +81,10 @@ def diagnosis_html(found: Diagnosis, title: str) -> str:
     import jinja2
 
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("reports"), autoescape=True, trim_blocks=True, undefined=jinja2.StrictUndefined
+        loader=jinja2.PackageLoader("reports"),
+        autoescape=True,
+        trim_blocks=True,
+        undefined=jinja2.StrictUndefined,
     )
     return environment.get_template("diagnosis.html.j2").render(
         title=title,
@@ -130,7 +133,9 @@ def _lead(found: Diagnosis) -> str:
     worst = max(
         ((name, g.gap / max(g.noise_floor, 1e-12)) for name, g in found.gap_after.items()), key=lambda p: p[1]
     )
-    return f"With the model given back, the gap is at most {worst[1]:.2f} times the noise ({_short(worst[0])})."
+    return (
+        f"With the model given back, the gap is at most {worst[1]:.2f} times the noise ({_short(worst[0])})."
+    )
 
 
 def _short(channel: str) -> str:
@@ -154,7 +159,12 @@ def _parts(found: Diagnosis) -> list[Part]:
             maps=tuple(_maps(found)),
         ),
         *_overlays(found),
-        Part("parameters", "Parameters of the model", "", (_parameters(found),) if found.parameter_updates else ()),
+        Part(
+            "parameters",
+            "Parameters of the model",
+            "",
+            (_parameters(found),) if found.parameter_updates else (),
+        ),
         Part(
             "consequences",
             "What it does to the acceptance figures",
@@ -167,7 +177,12 @@ def _parts(found: Diagnosis) -> list[Part]:
             "Expected drop: of the squared error in noise variances, by the linearised score.",
             (_considered(found),) if found.considered else (),
         ),
-        Part("alternatives", "Other names for the same gap", "", (_alternatives(found),) if found.alternatives else ()),
+        Part(
+            "alternatives",
+            "Other names for the same gap",
+            "",
+            (_alternatives(found),) if found.alternatives else (),
+        ),
     ]
 
 
@@ -202,7 +217,9 @@ def _effects(found: Diagnosis) -> Table:
 def _gaps(found: Diagnosis) -> list[Table]:
     tables = []
     pairs = (("fitted recordings", found.gap_before, found.gap_after),)
-    held = (("held-out recordings", found.holdout_before, found.holdout_after),) if found.holdout_after else ()
+    held = (
+        (("held-out recordings", found.holdout_before, found.holdout_after),) if found.holdout_after else ()
+    )
     for name, before, after in (*pairs, *held):
         rows = tuple(
             (
@@ -236,7 +253,8 @@ def _maps(found: Diagnosis) -> list[Map]:
 
 def _conditions(when: str, gaps: GapMap) -> Map:
     rows = tuple(
-        (channel, tuple(_cell(v) for v in gaps.by_condition[:, column])) for column, channel in enumerate(OUTPUTS)
+        (channel, tuple(_cell(v) for v in gaps.by_condition[:, column]))
+        for column, channel in enumerate(OUTPUTS)
     )
     return Map(f"operating conditions, {when}", ("channel", *CONDITIONS), rows)
 
@@ -255,7 +273,9 @@ def _overlays(found: Diagnosis) -> list[Part]:
         if np.isfinite(best.measured[0, column]):
             figures += [_in_time(best, column, channel), _in_frequency(best, column, channel)]
     text = f"Recording {best.name}, where the gap was largest: the {_WINDOW_S:g} s around its worst moment, and the "
-    return [Part("overlays", "Measured and simulated", text + "spectra of the errors.", figures=tuple(figures))]
+    return [
+        Part("overlays", "Measured and simulated", text + "spectra of the errors.", figures=tuple(figures))
+    ]
 
 
 def _worst(overlay: Overlay) -> float:
@@ -288,7 +308,9 @@ def _in_frequency(o: Overlay, column: int, channel: str) -> Figure:
         traces.append(Trace(Label(name), f[inside], np.sqrt(density[inside]), role))
     unit = f"{CHANNELS[channel].unit}/√Hz"
     title = Label(f"{channel}, spectrum of the error")
-    return Figure(f"spectrum-{channel}", title, "Frequency", "Hz", Label("error"), unit, tuple(traces), logarithmic=True)
+    return Figure(
+        f"spectrum-{channel}", title, "Frequency", "Hz", Label("error"), unit, tuple(traces), logarithmic=True
+    )
 
 
 def _parameters(found: Diagnosis) -> Table:
@@ -328,7 +350,9 @@ def _considered(found: Diagnosis) -> Table:
 
 
 def _alternatives(found: Diagnosis) -> Table:
-    rows = tuple((a.use.id, f"{a.confidence:.1%}", a.separating_test, a.plan or "") for a in found.alternatives)
+    rows = tuple(
+        (a.use.id, f"{a.confidence:.1%}", a.separating_test, a.plan or "") for a in found.alternatives
+    )
     return Table(("effect", "confidence", "separating test", "plan"), rows)
 
 

@@ -24,7 +24,9 @@ def command(
     out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
     holdout: Annotated[
         list[Path] | None,
-        typer.Option("--holdout", help="Recording that no fit sees, only the final figures; may be repeated."),
+        typer.Option(
+            "--holdout", help="Recording that no fit sees, only the final figures; may be repeated."
+        ),
     ] = None,
     json_: Annotated[bool, typer.Option("--json", help="Print diagnosis.json and nothing else.")] = False,
 ) -> None:
@@ -67,7 +69,9 @@ def text_of(found: Diagnosis, out: Path) -> str:
     lines = [f"verdict: {found.verdict}"]
     for e in found.effects:
         values = ", ".join(
-            f"{name} = {value}" if isinstance(value, str) else f"{name} = {value:.5g}"
+            f"{name} = {value}"
+            if isinstance(value, str)
+            else f"{name} = {value:.5g}"
             + (f" ± {e.standard_error[name]:.2g}" if name in e.standard_error else "")
             for name, value in e.use.values.items()
         )

@@ -8,10 +8,12 @@ from hil.analysis.diagnosis._fit import Fit
 from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._result import Alternative
 from hil.analysis.diagnosis._search import Found, evidence
+from hil.analysis.diagnosis._separating import separating_plan
 from hil.core.effects import EFFECTS
 
 _HALF_MARGIN = 12.0  # evidence over a rival at which it is about one in ten
 _FLOOR = 0.005
+_WORTH_A_PLAN = 0.02
 
 
 def _odds(margin: float) -> float:
@@ -46,10 +48,26 @@ def alternatives_of(problem: Problem, found: Found, verdict: str) -> tuple[Alter
     """Other names worth knowing, with the experiment that would tell them apart."""
     kept = []
     for index in range(len(found.best.hypothesis.terms) if verdict == "named" else len(found.steps[:1])):
-        pairs = rivals(problem, found, index) if verdict == "named" else [(f, 0.0) for f in found.steps[0].fits[:2]]
+        pairs = (
+            rivals(problem, found, index)
+            if verdict == "named"
+            else [(f, 0.0) for f in found.steps[0].fits[:2]]
+        )
         total = 1.0 + sum(_odds(m) for _, m in pairs)
         for fit, margin in pairs:
             confidence = _odds(margin) / total if verdict == "named" else 0.05
             use = fit.hypothesis.model(fit.theta).effects[-1]
-            kept.append(Alternative(use, confidence, EFFECTS[use.id].shown_by))
+            text, plan = EFFECTS[use.id].shown_by, None
+            if confidence > _WORTH_A_PLAN:
+                rival = fit.hypothesis.model(fit.theta)
+                mine = found.steps[index].fits[0]
+                text, plan = separating_plan(
+                    mine.hypothesis.model(mine.theta),
+                    rival,
+                    problem.noise,
+                    max(float(np.max(np.abs(t.torque))) for t in problem.traces),
+                    (mine.hypothesis.ids[-1], use.id),
+                )
+            name = f"separate_{use.id}.yaml" if plan else None
+            kept.append(Alternative(use, confidence, text, name, plan))
     return tuple(sorted(kept, key=lambda a: -a.confidence)[:5])

@@ -22,14 +22,19 @@ def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
     An open-loop step of 20 N m from 5 rad/s wheel speed, with the model before and after.
     """
     torque = np.concatenate([np.zeros(1000), np.full(5000, _STEP_NM)])
-    result: dict[str, dict[str, float]] = {"overshoot_shaft_torque_percent": {}, "band_energy_motor_speed": {}}
+    result: dict[str, dict[str, float]] = {
+        "overshoot_shaft_torque_percent": {},
+        "band_energy_motor_speed": {},
+    }
     for name, model in (("before", before), ("after", after)):
         start = Start(5.0 * model.parameters["gear_ratio"], 5.0, 0.0)
         channels = simulate(model, torque, _DT, start)
         shaft, motor = channels["shaft_torque_nm"], channels["motor_speed_rad_s"]
         steady = float(np.mean(shaft[-2000:])) - float(np.mean(shaft[500:1000]))
         peak = float(np.max(shaft[1000:])) - float(np.mean(shaft[500:1000]))
-        result["overshoot_shaft_torque_percent"][name] = 100.0 * max(0.0, peak / steady - 1.0) if steady else 0.0
+        result["overshoot_shaft_torque_percent"][name] = (
+            100.0 * max(0.0, peak / steady - 1.0) if steady else 0.0
+        )
         result["band_energy_motor_speed"][name] = _band_energy(motor[1000:])
     return result
 

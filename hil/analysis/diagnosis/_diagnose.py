@@ -94,7 +94,9 @@ def _reweighted(problem: Problem, best: Fit) -> Fit:
         other = Problem(problem.traces, problem.noise, ratio, whitening=whitening_of(best.pieces))
         again = fit(other, best.hypothesis, best.starts, best.theta)
         best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
-        best.covariance = again.covariance
+        best.covariance = again.covariance / max(
+            1.0, best.cost / problem.rows
+        )  # its errors are white already
     return best
 
 
@@ -138,7 +140,9 @@ class _Judged:
         tail = tuple(rounded) if verdict == "named" else ()
         model = model.with_effects(*_lasting(model), *tail)
         held_before, held_after = self._held(kept)
-        effects = self._effects(kept, free, after, map_before, map_after, rounded) if verdict == "named" else ()
+        effects = (
+            self._effects(kept, free, after, map_before, map_after, rounded) if verdict == "named" else ()
+        )
         overlays = tuple(
             Overlay(t.name, t.dt, t.torque, t.samples, b, a)
             for t, b, a in zip(free.traces, before, after, strict=True)
@@ -236,9 +240,15 @@ class _Judged:
                 if use.id == "parameter_mismatch" and c.term < 0 and c.name == use.values["parameter"]:
                     standard["value"] = float(error) * float(use.values["value"])
             place = where(free, without, after, map_before, map_after)
-            named.append(NamedEffect(_clean(use), standard, confidence_of(self.problem, self.found, index), place))
+            named.append(
+                NamedEffect(_clean(use), standard, confidence_of(self.problem, self.found, index), place)
+            )
         for use in rounded:
-            place = Where((str(use.values["channel"]),), (0.0, round(0.5 / free.traces[0].dt, 1)), "at all operating conditions")
+            place = Where(
+                (str(use.values["channel"]),),
+                (0.0, round(0.5 / free.traces[0].dt, 1)),
+                "at all operating conditions",
+            )
             named.append(NamedEffect(use, {"step": 0.0}, 0.99, place))
         return tuple(named)
 
@@ -252,7 +262,9 @@ class _Judged:
                     continue
                 one = fitted.get(score.key)
                 left = None if one is None else float(np.sqrt(one.cost / self.problem.rows))
-                rows[score.key] = Considered(*score.key, float(score.gain), left, _reason(one, score.gain, step.fits))
+                rows[score.key] = Considered(
+                    *score.key, float(score.gain), left, _reason(one, score.gain, step.fits)
+                )
         return tuple(sorted(rows.values(), key=lambda c: -c.score))
 
 

@@ -209,7 +209,8 @@ def whitening_of(pieces: list[tuple[Array, Array, Array]]) -> Array:
         rows = [e[:, column] for e in errors]
         count = sum(len(e) for e in rows)
         products = [
-            sum(float(e[lag:] @ e[: len(e) - lag]) for e in rows) / count for lag in range(_WHITENING_ORDER + 1)
+            sum(float(e[lag:] @ e[: len(e) - lag]) for e in rows) / count
+            for lag in range(_WHITENING_ORDER + 1)
         ]
         if products[0] <= 0.0:
             continue

@@ -107,7 +107,13 @@ class Diagnosis:
             "holdout_gap": _gaps(self.holdout_before, self.holdout_after),
             "remaining_gap": self.signature,
             "considered": [
-                {"id": c.id, "about": c.about, "expected_drop": c.score, "gap_left": c.left, "reason": c.reason}
+                {
+                    "id": c.id,
+                    "about": c.about,
+                    "expected_drop": c.score,
+                    "gap_left": c.left,
+                    "reason": c.reason,
+                }
                 for c in self.considered
             ],
             "consequences": self.consequences,

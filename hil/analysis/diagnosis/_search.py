@@ -81,7 +81,9 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None]) -> F
     found = Found(first, first)
     while len(found.best.hypothesis.terms) < _MOST_EFFECTS:
         slack = 2.0 * np.sqrt(problem.rows)
-        if found.best.hypothesis.terms and _excess(problem, found.best) + slack < _worthwhile(problem, found.base):
+        if found.best.hypothesis.terms and _excess(problem, found.best) + slack < _worthwhile(
+            problem, found.base
+        ):
             break
         show(f"looking for effect {len(found.best.hypothesis.terms) + 1}")
         scores = screen(problem, found.best)

@@ -25,7 +25,9 @@ _NAMES = {
 }
 
 
-def separating_plan(one: Model, other: Model, noise: Array, torque_nm: float, names: tuple[str, str]) -> tuple[str, str]:
+def separating_plan(
+    one: Model, other: Model, noise: Array, torque_nm: float, names: tuple[str, str]
+) -> tuple[str, str]:
     """Text in words, and a plan file, of the stimulus at which two models differ most against the noise.
 
     Args:
@@ -38,11 +40,15 @@ def separating_plan(one: Model, other: Model, noise: Array, torque_nm: float, na
         start = Start(speed * one.parameters["gear_ratio"], speed, 0.0)
         a, b = simulate(one, torque, _DT, start), simulate(other, torque, _DT, start)
         difference = sum(
-            float(np.sum(((a[c] - b[c]) / noise[i]) ** 2)) for i, c in enumerate(OUTPUTS) if np.isfinite(noise[i])
+            float(np.sum(((a[c] - b[c]) / noise[i]) ** 2))
+            for i, c in enumerate(OUTPUTS)
+            if np.isfinite(noise[i])
         )
         if difference / len(torque) > most:
             best, most = name, difference / len(torque)
-    words = f"{_NAMES[best]}, up to {torque_nm:.0f} N m: the two differ by {np.sqrt(most):.1f} noise levels rms"
+    words = (
+        f"{_NAMES[best]}, up to {torque_nm:.0f} N m: the two differ by {np.sqrt(most):.1f} noise levels rms"
+    )
     return words, _plan(best, torque_nm, names)
 
 
@@ -62,7 +68,13 @@ def _stimuli(torque: float) -> dict[str, tuple[Array, float]]:
 
 def _plan(best: str, torque: float, names: tuple[str, str]) -> str:
     amplitude = round(torque, 2)
-    chirp: dict[str, Any] = {"segment": best, "quantity": "motor_torque", "from_hz": 0.1, "to_hz": 30, "duration_s": 60}
+    chirp: dict[str, Any] = {
+        "segment": best,
+        "quantity": "motor_torque",
+        "from_hz": 0.1,
+        "to_hz": 30,
+        "duration_s": 60,
+    }
     steps: dict[str, list[dict[str, Any]]] = {
         "chirp_large": [
             {"hold_speed": {"speed_km_h": 12, "duration_s": 2}},
@@ -74,7 +86,13 @@ def _plan(best: str, torque: float, names: tuple[str, str]) -> str:
         ],
         "chirp_biased": [
             {"hold_speed": {"speed_km_h": 6, "duration_s": 2}},
-            {"chirp": {**chirp, "amplitude_nm": round(0.35 * amplitude, 2), "bias_nm": round(0.6 * amplitude, 2)}},
+            {
+                "chirp": {
+                    **chirp,
+                    "amplitude_nm": round(0.35 * amplitude, 2),
+                    "bias_nm": round(0.6 * amplitude, 2),
+                }
+            },
         ],
         "stairs": [
             {
@@ -88,7 +106,7 @@ def _plan(best: str, torque: float, names: tuple[str, str]) -> str:
         ],
         "coast": [
             {"hold_speed": {"speed_km_h": 40, "duration_s": 3}},
-            {"coast": {"segment": "coast", "duration_s": 30}},
+            {"coast": {"duration_s": 30}},
         ],
     }
     plan = {

@@ -48,7 +48,9 @@ def where(problem: Problem, without: list[Array], with_: list[Array], before: Ga
     low, high = np.interp([0.1, 0.9], share, frequency)
     fall = np.nan_to_num(before.by_condition**2 - after.by_condition**2)[:, ranked[0]]
     condition = CONDITIONS[int(np.argmax(fall))]
-    spread = "at all operating conditions" if fall.max() < 2.0 * max(float(np.median(fall)), 1e-12) else condition
+    spread = (
+        "at all operating conditions" if fall.max() < 2.0 * max(float(np.median(fall)), 1e-12) else condition
+    )
     return Where(channels, (round(float(low), 2), round(float(high), 2)), spread)
 
 
@@ -69,7 +71,9 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
     around = float(np.median(density[max(1, top - 20) : top + 20]))
     words = [f"the gap is largest in {OUTPUTS[column]}"]
     line = density[top] > _LINE * around
-    orders = [(o.score, side, o.order) for side in ("wheel", "motor") for o in order_lines(problem, fit, side, 1)]  # type: ignore[arg-type]
+    orders = [
+        (o.score, side, o.order) for side in ("wheel", "motor") for o in order_lines(problem, fit, side, 1)
+    ]  # type: ignore[arg-type]
     excess = max(fit.cost - problem.rows, 1.0)
     strongest = max(orders, default=(0.0, "", 0.0))
     if strongest[0] > 0.4 * excess:

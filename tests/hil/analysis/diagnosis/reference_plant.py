@@ -27,7 +27,43 @@ BASE = {
     "torque_delay": 0.008,
 }
 CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
-_KEYS = ["motor_inertia", "gear_ratio", "shaft_stiffness", "shaft_damping", "wheel_inertia", "tyre_stiffness", "tyre_damping", "vehicle_inertia", "torque_delay", "lag", "gap", "cubic", "hyst_k", "hyst_slip", "coulomb", "stribeck", "friction_offset", "drag", "mount_j", "mount_k", "mount_c", "w_order", "w_amp", "w_phase", "m_order", "m_amp", "m_phase", "rolling", "aero", "rigid_tyre", "bouc_wen", "slip_coefficient", "torque_line_hz", "torque_line_nm", "drift"]
+_KEYS = [
+    "motor_inertia",
+    "gear_ratio",
+    "shaft_stiffness",
+    "shaft_damping",
+    "wheel_inertia",
+    "tyre_stiffness",
+    "tyre_damping",
+    "vehicle_inertia",
+    "torque_delay",
+    "lag",
+    "gap",
+    "cubic",
+    "hyst_k",
+    "hyst_slip",
+    "coulomb",
+    "stribeck",
+    "friction_offset",
+    "drag",
+    "mount_j",
+    "mount_k",
+    "mount_c",
+    "w_order",
+    "w_amp",
+    "w_phase",
+    "m_order",
+    "m_amp",
+    "m_phase",
+    "rolling",
+    "aero",
+    "rigid_tyre",
+    "bouc_wen",
+    "slip_coefficient",
+    "torque_line_hz",
+    "torque_line_nm",
+    "drift",
+]
 _I = {name: index for index, name in enumerate(_KEYS)}
 
 
