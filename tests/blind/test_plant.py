@@ -147,6 +147,12 @@ def test_friction_holds_small_torques_and_takes_its_part_of_large_ones():
     assert slope == pytest.approx(10.0 / (0.02 + 300.0 / 64.0), rel=1e-4)
 
 
+def test_friction_begins_settled_where_a_recording_begins_at_speed():
+    truth = Truth("rigid", RIGID, {"coulomb": 2.0})
+    _, out = true_outputs(truth, _open_loop(np.zeros(100), 20.0))
+    np.testing.assert_allclose(out[:, 2], -2.0 * 8.0 * (300.0 / 64.0) / (0.02 + 300.0 / 64.0), rtol=1e-9)
+
+
 def _bounce(force, mass, speed, gap):
     """Speed after a contact over speed before, with explicit steps of 1 µs."""
     x, v, h = gap, speed, 1e-6

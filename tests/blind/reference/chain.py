@@ -10,7 +10,7 @@ from numba import njit
 
 from tests.blind.reference.contact import SERIES, series_contact, shaft_torque
 from tests.blind.reference.controller import pi_torque
-from tests.blind.reference.friction import bristle_after, friction_torque, running_resistance
+from tests.blind.reference.friction import bristle_after, friction_torque, running_resistance, settled_bristle
 from tests.blind.reference.hysteresis import ELEMENTS, advance
 from tests.blind.reference.torque_path import acting, delayed
 
@@ -156,6 +156,7 @@ def simulate_chain(
     v[ROTOR] = wheel_speed * p.gear_ratio
     v[WHEEL] = v[VEHICLE] = v[ABSORBER] = wheel_speed
     x[ROTOR] = seat * p.half_gap * p.gear_ratio
+    inner[BRISTLE] = settled_bristle(p, v[ROTOR])
     lagged = torque = 0.0
     loop = np.zeros(2)
     loop[1] = wheel_speed

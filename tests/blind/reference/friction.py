@@ -29,6 +29,14 @@ def bristle_after(p: Any, bristle: float, speed: float, span_s: float) -> float:
 
 
 @njit(error_model="numpy")
+def settled_bristle(p: Any, speed: float) -> float:
+    """Bristle deflection in rad after a long time at `speed`: how a recording that starts at speed begins."""
+    if speed == 0.0 or p.coulomb <= 0.0:
+        return 0.0
+    return math.copysign(sliding_torque(p, speed) / p.bristle_stiffness, speed)
+
+
+@njit(error_model="numpy")
 def friction_torque(p: Any, bristle: float, speed: float) -> float:
     """Torque in N m against the rotor: bristles, their damping, and what is equal in both directions."""
     if p.coulomb <= 0.0:

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from tests.blind.reference.controller import pi_torque
-from tests.blind.reference.friction import bristle_after, friction_torque, running_resistance
+from tests.blind.reference.friction import bristle_after, friction_torque, running_resistance, settled_bristle
 from tests.blind.reference.torque_path import acting, delayed
 
 _ITERATIONS = 3
@@ -41,7 +41,7 @@ def simulate_rigid(
     out = np.empty((n, 3))
     h = sample_s / substeps
     speed, angle = wheel_speed * p.gear_ratio, 0.0
-    bristle = lagged = torque = 0.0
+    bristle, lagged, torque = settled_bristle(p, speed), 0.0, 0.0
     loop = np.zeros(2)
     loop[1] = wheel_speed
     for k in range(n):
