@@ -15,19 +15,18 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
-from hil.analysis.diagnosis import BANDS_HZ, CONDITIONS, Diagnosis, GapMap, Overlay
+from hil.analysis.diagnosis import BANDS_HZ, CONDITIONS, Diagnosis, GapMap, NamedEffect, Overlay
 from hil.core.channels import CHANNELS, OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import parameter_unit
 from reports import quantities, style
 from reports.figure import Figure, Trace
 from reports.labels import Label
-from reports.pdf import _font_directory as font_directory
+from reports.pdf import _font_directory, _known_characters, _spelled_out
 from reports.svg_figure import svg_figure
 
 Array = npt.NDArray[np.float64]
 
-_STANDARD = "a-2b"
 _HEADLINES = {
     "named": "Named: {names}",
     "none": "The model explains the data to the noise",
@@ -103,7 +102,7 @@ def diagnosis_pdf(found: Diagnosis, title: str) -> bytes:
     """The same on paper: PDF/A-2b. Every text reaches Typst as data."""
     import typst
 
-    data = {
+    data: dict[str, Any] = {
         "title": title,
         "headline": _headline(found),
         "tone": _TONES[found.verdict],
@@ -112,12 +111,13 @@ def diagnosis_pdf(found: Diagnosis, title: str) -> bytes:
         "parts": [_as_data(part) for part in _parts(found)],
         "colors": {name: tone.light for name, tone in style.SURFACE.items()},
     }
-    pdf = typst.compile(
+    data = _spelled_out(data, _known_characters())
+    pdf = typst.compile(  # type: ignore[misc]
         resources.files("reports").joinpath("templates/diagnosis.typ").read_bytes(),
-        font_paths=[font_directory()],
+        font_paths=[_font_directory()],
         ignore_system_fonts=True,
         sys_inputs={"report": json.dumps(data, ensure_ascii=False)},
-        pdf_standards=[_STANDARD],
+        pdf_standards=["a-2b"],
     )
     return bytes(pdf)
 
@@ -148,14 +148,14 @@ def _parts(found: Diagnosis) -> list[Part]:
         Part(
             "gap",
             "Gap per channel",
-            "Rms of measured minus simulated over rms of the measured channel around its mean. The noise floor "
-            "is the same ratio for the noise, estimated from the spectrum above all modes.",
+            "Rms of measured minus simulated over rms of the measured channel around its mean. The noise "
+            "floor is the same ratio for the noise, estimated from the spectrum above all modes.",
             tuple(_gaps(found)),
         ),
         Part(
             "map",
             "Where the gap is",
-            "Error over noise, 1 is noise alone: by recording and frequency band, and by operating condition.",
+            "Error over noise, 1 is noise alone: by recording and frequency band, and by condition.",
             maps=tuple(_maps(found)),
         ),
         *_overlays(found),
@@ -206,12 +206,15 @@ def _effects(found: Diagnosis) -> Table:
                     shown,
                     quantities.number(error) if error is not None else "",
                     f"{e.confidence:.0%}" if index == 0 else "",
-                    f"{', '.join(e.where.channels)}; {e.where.band_hz[0]:g}-{e.where.band_hz[1]:g} Hz; {e.where.condition}"
-                    if index == 0
-                    else "",
+                    _place(e) if index == 0 else "",
                 )
             )
     return Table(("effect", "parameter", "value", "standard error", "confidence", "where"), tuple(rows), 2)
+
+
+def _place(effect: NamedEffect) -> str:
+    low, high = effect.where.band_hz
+    return f"{', '.join(effect.where.channels)}; {low:g}-{high:g} Hz; {effect.where.condition}"
 
 
 def _gaps(found: Diagnosis) -> list[Table]:
@@ -272,7 +275,7 @@ def _overlays(found: Diagnosis) -> list[Part]:
     for column, channel in enumerate(OUTPUTS):
         if np.isfinite(best.measured[0, column]):
             figures += [_in_time(best, column, channel), _in_frequency(best, column, channel)]
-    text = f"Recording {best.name}, where the gap was largest: the {_WINDOW_S:g} s around its worst moment, and the "
+    text = f"Recording {best.name}, where the gap was largest: {_WINDOW_S:g} s at its worst moment, and the "
     return [
         Part("overlays", "Measured and simulated", text + "spectra of the errors.", figures=tuple(figures))
     ]
@@ -289,7 +292,7 @@ def _in_time(o: Overlay, column: int, channel: str) -> Figure:
     power = np.convolve((o.measured[:, column] - o.before[:, column]) ** 2, np.ones(size), "valid")
     first = int(np.argmax(power))
     window = slice(first, first + size)
-    t = np.arange(first, first + size) * o.dt
+    t = np.asarray(np.arange(first, first + size) * o.dt, dtype=float)
     traces = (
         Trace(Label("measured"), t, o.measured[window, column], "reference"),
         Trace(Label("model before"), t, o.before[window, column], "phase", "dash"),

@@ -275,7 +275,7 @@ def _run(torque, dt, p, start, substeps, transition, column, held, rising, angle
     n = torque.shape[0]
     acting = np.empty(n)
     _acting(torque, dt, p, acting)
-    whole = int(math.floor(p[P.TORQUE_DELAY] / dt + 1e-9))
+    whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     h = dt / substeps
     forced = p[P.FRICTION_OFFSET] != 0.0 or p[P.HALF_GAP] > 0.0 or p[P.HYSTERESIS_STIFFNESS] != 0.0
     forced = forced or p[P.COULOMB] != 0.0 or p[P.STRIBECK] != 0.0 or p[P.CUBIC] != 0.0
@@ -322,7 +322,7 @@ def _averaged(fine, dt, sensor, block, out):  # type: ignore[no-untyped-def]
     n = fine.shape[0]
     for c in range(3):
         late = sensor[c, DELAY] / dt
-        whole = int(math.floor(late))
+        whole = math.floor(late)
         part = late - whole
         for b in range(out.shape[0]):
             total = 0.0

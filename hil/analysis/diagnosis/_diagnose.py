@@ -22,7 +22,7 @@ from hil.analysis.diagnosis._gap import (
     simulated_samples,
 )
 from hil.analysis.diagnosis._problem import Problem, whitening_of
-from hil.analysis.diagnosis._quantization import grids
+from hil.analysis.diagnosis._quantization import coarse_noise, grids
 from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
 from hil.analysis.diagnosis._sanity import check
 from hil.analysis.diagnosis._search import Found, carried, colour, floor_of, search
@@ -34,7 +34,7 @@ from hil.core.recording import Recording
 
 Array = npt.NDArray[np.float64]
 
-_SMALL_EXCESS = 0.04  # of the noise power: below it, nothing is left to explain
+_SMALL_EXCESS = 0.2  # of the noise power: below it, coloured noise explains what is left
 _CLOSED = 0.9  # share of the gap's power that a named hypothesis closes at least ...
 _CLOSED_TO = 1.15  # ... unless it reaches the noise up to this factor
 _FAR_FROM_NOISE = 50.0
@@ -69,11 +69,11 @@ def diagnose(
     traces = [trace_of(r) for r in recordings]
     noise = _usable_noise(noise_levels(traces))
     notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + check(model, traces, noise)
-    problem = Problem(traces, noise, model.parameters["gear_ratio"])
+    rounded = grids(traces, noise)
+    problem = Problem(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
     hypothesis = Hypothesis(model)
     found = search(problem, hypothesis, show)
     show("judging")
-    rounded = grids(traces, noise)
     verdict = verdict_of(problem, found, bool(rounded))
     if verdict == "named":
         found.best = _reweighted(problem, found.best)
@@ -89,9 +89,8 @@ def _reweighted(problem: Problem, best: Fit) -> Fit:
     """
     if not best.hypothesis.terms or best.cost < _FAR_FROM_NOISE * problem.rows:
         return best
-    ratio = best.hypothesis.base.parameters["gear_ratio"]
     for _ in range(3):
-        other = Problem(problem.traces, problem.noise, ratio, whitening=whitening_of(best.pieces))
+        other = problem.again(whitening=whitening_of(best.pieces))
         again = fit(other, best.hypothesis, best.starts, best.theta)
         best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
         best.covariance = again.covariance / max(
@@ -171,8 +170,7 @@ class _Judged:
 
     def _free(self, kept: Fit) -> tuple[Problem, list[Array]]:
         """Ripples let go of the measured angle, refitted a little, and the simulation at full rate."""
-        ratio = kept.hypothesis.base.parameters["gear_ratio"]
-        free = Problem(self.problem.traces, self.problem.noise, ratio, steered=False)
+        free = self.problem.again(steered=False)
         if any(t.id in _RIPPLES for t in kept.hypothesis.terms):
             again = fit(free, kept.hypothesis, kept.starts, kept.theta, rounds=6)
             if again.cost < 1.3 * kept.cost:

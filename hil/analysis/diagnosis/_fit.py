@@ -40,6 +40,8 @@ class Fit:
 def box_step(matrix: Array, gradient: Array, lower: Array, upper: Array) -> Array:
     """Minimiser of ½xᵀMx - gᵀx within bounds, by an active set."""
     size = len(gradient)
+    if not (np.isfinite(matrix).all() and np.isfinite(gradient).all()):
+        return np.zeros(size)
     scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
     matrix, gradient = matrix * np.outer(scale, scale), gradient * scale
     lower, upper = lower / scale, upper / scale
@@ -121,7 +123,7 @@ def fit(
         if gain < enough:
             break
     matrix, _ = reduced(normals)
-    covariance = np.linalg.pinv(matrix + np.diag(precision), hermitian=True)
+    covariance = np.asarray(np.linalg.pinv(matrix + np.diag(precision), hermitian=True), dtype=float)
     return Fit(
         hypothesis,
         theta,

@@ -85,7 +85,7 @@ def channel_gaps(problem: Problem, simulated: list[Array]) -> dict[str, ChannelG
         error = measured - np.concatenate([s for _, s in pairs])
         spread = max(float(np.std(measured)), 1e-12)
         rms = float(np.sqrt(np.mean(error**2)))
-        gaps[channel] = ChannelGap(rms / spread, float(problem.noise[column]) / spread)
+        gaps[channel] = ChannelGap(rms / spread, float(problem.floor[column]) / spread)
     return gaps
 
 

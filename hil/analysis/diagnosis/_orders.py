@@ -19,6 +19,7 @@ from hil.analysis.diagnosis._trace import blocks
 from sim_backend.plant import pack, system
 
 Array = npt.NDArray[np.float64]
+Spectrum = npt.NDArray[np.complex128]
 
 _LARGEST_ORDER = {"wheel": 60.0, "motor": 60.0}
 _BINS_A_TURN = 8  # of the largest order
@@ -70,7 +71,7 @@ def order_lines(
 def _adjoint(slots: Array, error: Array, weights: Array, dt: float, side: str) -> tuple[Array, Array, Array]:
     """The error seen from the ripple's input, and the weighted power of the response over frequency."""
     size = len(error)
-    frequency = np.fft.rfftfreq(size, dt)
+    frequency = np.asarray(np.fft.rfftfreq(size, dt), dtype=float)
     inside = (frequency >= _FROM_HZ) & (frequency <= 60.0)
     responses = _responses(slots, frequency[inside], side)
     spectrum = np.fft.rfft(error, axis=0)
@@ -103,7 +104,7 @@ def _responses(slots: Array, frequency: Array, side: str) -> Array:
     return np.asarray(found)
 
 
-def _over_angle(angles: list[Array], images: list[Array], largest: float) -> tuple[Array, Array]:
+def _over_angle(angles: list[Array], images: list[Array], largest: float) -> tuple[Spectrum, Array]:
     low = min(float(a.min()) for a in angles)
     high = max(float(a.max()) for a in angles)
     width = 2 * np.pi / (largest * _BINS_A_TURN)
@@ -111,8 +112,8 @@ def _over_angle(angles: list[Array], images: list[Array], largest: float) -> tup
     bins = np.zeros(count)
     for angle, image in zip(angles, images, strict=True):
         bins += np.bincount(np.floor((angle - low) / width).astype(int), image, count)
-    spectrum = np.conj(np.fft.rfft(bins))
-    orders = 2 * np.pi * np.arange(len(spectrum)) / (count * width)
+    spectrum = np.asarray(np.conj(np.fft.rfft(bins)), dtype=np.complex128)
+    orders = np.asarray(2 * np.pi * np.arange(len(spectrum)) / (count * width), dtype=float)
     keep = orders <= largest
     return spectrum[keep], orders[keep]
 

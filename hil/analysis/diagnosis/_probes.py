@@ -93,7 +93,7 @@ def mismatches(hypothesis: Hypothesis) -> list[EffectUse]:
         for name in parameter_names(hypothesis.base.kind)
         if hypothesis.base.parameters[name] > 0.0
         and ("parameter_mismatch", name) not in taken
-        and not (name == "torque_delay")
+        and name != "torque_delay"
     ]
 
 
@@ -180,14 +180,22 @@ def _mount(scene: Scene) -> Iterator[Probe]:
     del scene
     for frequency in (3.0, 5.0, 7.0, 9.0, 12.0, 16.0, 21.0, 28.0, 38.0):
         for damping in (0.05, 0.2):
-            for inertia in (0.3, 3.0):
-                omega = 2 * np.pi * frequency
-                yield _fixed(
-                    "mount_mode",
-                    housing_inertia_kg_m2=inertia,
-                    mount_stiffness_nm_rad=inertia * omega**2,
-                    mount_damping_nms_rad=2 * damping * omega * inertia,
-                )
+            for inertia in (0.5, 5.0):
+                yield _bushes(2 * np.pi * frequency, damping, inertia)
+
+
+def _bushes(omega: float, damping: float, inertia: float) -> Probe:
+    """A mount mode; its response goes about with the inverse of its inertia at the same frequency."""
+
+    def values(share: float) -> Values:
+        heavy = inertia / share
+        return {
+            "housing_inertia_kg_m2": heavy,
+            "mount_stiffness_nm_rad": heavy * omega**2,
+            "mount_damping_nms_rad": 2 * damping * omega * heavy,
+        }
+
+    return Probe("mount_mode", (Direction(values(1.0), 0.02, 2.0),), lambda a: values(float(a[0])))
 
 
 def _tyre(scene: Scene) -> Iterator[Probe]:
@@ -245,16 +253,20 @@ def _sensors(id_: str) -> Callable[[Scene], Iterator[Probe]]:
         for column, channel in enumerate(OUTPUTS):
             if not any(t.has[column] for t in scene.problem.traces):
                 continue
-            rest = 1.0 if id_ == "sensor_gain" else 0.0
-            unit = units[id_]
-            lower = -60.0 if id_ != "channel_skew" else -20.0
-            yield Probe(
-                id_,
-                (Direction({"channel": channel, name: rest + unit}, lower, -lower * 3),),
-                lambda a, c=channel: {"channel": c, name: rest + unit * float(a[0])},  # type: ignore[misc]
-            )
+            yield _reading(id_, name, channel, units[id_])
 
     return make
+
+
+def _reading(id_: str, name: str, channel: str, unit: float) -> Probe:
+    """A sensor effect of one channel, linear around a true reading."""
+    rest = 1.0 if id_ == "sensor_gain" else 0.0
+    lower = -60.0 if id_ != "channel_skew" else -20.0
+
+    def start(a: Array) -> Values:
+        return {"channel": channel, name: rest + unit * float(a[0])}
+
+    return Probe(id_, (Direction({"channel": channel, name: rest + unit}, lower, -lower * 3),), start)
 
 
 _MAKERS: dict[str, Callable[[Scene], Iterator[Probe]]] = {

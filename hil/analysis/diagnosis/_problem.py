@@ -16,7 +16,8 @@ from sim_backend.plant import simulate_many
 Array = npt.NDArray[np.float64]
 
 STARTS = 3  # free initial values of each recording: motor speed, wheel speed, shaft torque
-_HUGE = 1e12
+_HUGE = 1e9
+_DIVERGED = 1e9  # noise levels
 _WHITENING_ORDER = 16
 _REST_SHARE = 0.1  # of a sample's noise: how still an axle at rest is
 _REST_SIGMAS = 4.0
@@ -35,7 +36,7 @@ class Normal:
 
 
 class Problem:
-    """Recordings with the noise levels that weigh them.
+    """Recordings with the noise levels that weigh them (`noise`) and those of single readings (`floor`).
 
     `weights` are trace by trace (3,): what one block's error is multiplied by, 0 for a missing channel.
     Ripples follow the measured angles (`steered`) while a hypothesis is sought: a simulated angle drifts off
@@ -50,8 +51,11 @@ class Problem:
         *,
         steered: bool = True,
         whitening: Array | None = None,
+        floor: Array | None = None,
     ) -> None:
         self.whitening = whitening
+        self.floor = noise if floor is None else floor
+        self.gear_ratio = gear_ratio
         self.angles = [t.angles(gear_ratio) if steered else None for t in traces]
         self.traces = traces
         self.noise = noise
@@ -61,10 +65,16 @@ class Problem:
         self.resting = [_rests(t, noise) for t in traces]
         self.rows = int(sum(np.count_nonzero(t.has) * len(t.measured) for t in traces))
 
+    def again(self, *, steered: bool = True, whitening: Array | None = None) -> Problem:
+        """The same recordings and weights, ripples steered or not, errors whitened or not."""
+        return Problem(
+            self.traces, self.noise, self.gear_ratio, steered=steered, whitening=whitening, floor=self.floor
+        )
+
     def first_starts(self, hypothesis: Hypothesis) -> list[Array]:
         """Initial values read from the recordings, completed by the model where a channel is missing."""
         ratio = hypothesis.base.parameters["gear_ratio"]
-        starts = []
+        starts: list[Array] = []
         for trace in self.traces:
             motor, wheel, shaft = trace.start
             if self.resting[len(starts)]:
@@ -87,13 +97,14 @@ class Problem:
         weights = self.weights[trace]
         difference = np.where(weights > 0, self.traces[trace].measured - simulated, 0.0)
         error = np.nan_to_num(difference * weights, nan=_HUGE, posinf=_HUGE, neginf=-_HUGE)
+        error = np.clip(error, -_HUGE, _HUGE)
         return self._whitened(error)
 
     def _whitened(self, error: Array) -> Array:
         """Errors (blocks x 3) through each channel's whitening filter, if there is one."""
         if self.whitening is None:
             return error
-        return np.column_stack([lfilter(w, 1.0, error[:, c]) for c, w in enumerate(self.whitening)])
+        return np.column_stack([lfilter(w, [1.0], error[:, c]) for c, w in enumerate(self.whitening)])
 
     def costs(self, points: list[tuple[Array, Array]], starts: list[Array]) -> Array:
         """Sum of squared errors of several points (slots, sensors); `starts`: per recording, points x 3."""
@@ -136,7 +147,8 @@ class Problem:
             if self.whitening is not None:
                 change = np.stack([self._whitened(one) for one in change])
             change = change.reshape(len(slots) - 1, -1)
-            np.nan_to_num(change, copy=False)
+            # a diverged simulation: no derivative that could be followed
+            change[~(np.abs(change).max(axis=1) < _DIVERGED)] = 0.0
             shared = (change[: len(coordinates)] / signed[:, None]).T
             initial = (change[len(coordinates) :] / steps[:, None]).T
             cost += float(error @ error) + float(start**2 @ self.start_precision(index))
@@ -150,7 +162,7 @@ class Problem:
         return Normal(n.shared, n.between, n.start + np.diag(precision), n.shared_gradient, gradient)
 
     def start_precision(self, trace: int) -> Array:
-        """How firmly a recording's initial values are held at zero: only the speeds of one that begins at rest.
+        """How firmly a recording's initial values are held at zero: the speeds of one that begins at rest.
 
         A frictionless model cannot tell an offset of one speed channel from one of the other; an axle at
         rest can.
@@ -186,9 +198,8 @@ def reduced(normals: list[Normal]) -> tuple[Array, Array]:
 
 def start_step(n: Normal, step: Array) -> Array:
     """The best change of a recording's start when the shared coordinates change by `step`."""
-    return np.asarray(
-        np.linalg.pinv(n.start, rcond=1e-10, hermitian=True) @ (n.start_gradient - n.between.T @ step)
-    )
+    inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
+    return np.asarray(inverse @ (n.start_gradient - n.between.T @ step))
 
 
 def _rests(trace: Trace, noise: Array) -> bool:

@@ -11,7 +11,9 @@ from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
 
-_LEAST_OF_NOISE = 0.5  # a finer grid than this share of the noise explains nothing
+_LEAST_OF_NOISE = 0.2  # a finer grid than this share of the noise explains nothing
+_COARSE = 1.0  # noise levels: a finer grid is dithered by the noise
+_ALIKE = 2.0  # root of the samples in a block
 _ON_GRID = 0.98
 _LEAST_LEVELS = 4
 
@@ -27,6 +29,17 @@ def grids(traces: list[Trace], noise: Array) -> list[EffectUse]:
         if step > _LEAST_OF_NOISE * float(noise[column]):
             found.append(EffectUse("sensor_quantization", {"channel": channel, "step": step}))
     return found
+
+
+def coarse_noise(noise: Array, rounded: list[EffectUse]) -> Array:
+    """Noise levels to weigh by: rounding errors of neighbouring samples are alike and do not average out."""
+    levels = noise.copy()
+    for use in rounded:
+        column = OUTPUTS.index(str(use.values["channel"]))
+        step = float(use.values["step"])
+        if step > _COARSE * levels[column]:
+            levels[column] = max(levels[column], _ALIKE * step / np.sqrt(12.0))
+    return levels
 
 
 def grid_step(values: Array) -> float:

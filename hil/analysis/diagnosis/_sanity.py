@@ -57,7 +57,7 @@ def _dead_or_clipped(trace: Trace, noise: Array) -> None:
                 and _plateau(at_end)
             ):
                 raise BadInputError(
-                    f"{name} looks clipped at {end:g}: {np.mean(at_end):.0%} of its samples read exactly this",
+                    f"{name} looks clipped at {end:g}: {np.mean(at_end):.0%} of its samples read this",
                     where=trace.name,
                     fix="widen the channel's range and record again",
                 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -77,7 +78,9 @@ def _index(hypothesis: Hypothesis, name: str) -> int:
     return names.index(name)
 
 
-def _gain(matrix: Array, gradient: Array, lower: Array, upper: Array, columns: Array) -> tuple[float, Array]:
+def _gain(
+    matrix: Array, gradient: Array, lower: Array, upper: Array, columns: npt.NDArray[np.int_]
+) -> tuple[float, Array]:
     """Drop of the squared error that `columns` can buy within their bounds, and their amounts."""
     m, g = matrix[np.ix_(columns, columns)], gradient[columns]
     x = box_step(m, g, lower, upper)
@@ -116,7 +119,7 @@ def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Arra
         matrix[:base, base:] += across.T
         gradient[:base] += mine.T @ free
         gradient[base:] += change @ free
-        for first, last in zip(groups[:-1], groups[1:], strict=True):
+        for first, last in pairwise(groups.tolist()):
             own = change[first:last] @ change[first:last].T - along[first:last] @ along[first:last].T
             matrix[base + first : base + last, base + first : base + last] += own
     return matrix, gradient

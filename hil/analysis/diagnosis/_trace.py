@@ -51,17 +51,18 @@ class Trace:
         speeds = np.column_stack([wheel, motor])
         turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
         first = self.first_wheel_angle_rad * np.array([1.0, gear_ratio])
-        return first + np.concatenate([np.zeros((1, 2)), turned])
+        return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]), dtype=float)
 
     @property
     def has(self) -> npt.NDArray[np.bool_]:
         """Which of the three channels were measured."""
-        return np.isfinite(self.measured[0])
+        return np.asarray(np.isfinite(self.measured[0]))
 
     @property
     def block_time_s(self) -> Array:
         """Time of each block's middle from the start of the recording, s."""
-        return (np.arange(len(self.measured)) * self.block + 0.5 * (self.block - 1)) * self.dt
+        middles = np.arange(len(self.measured)) * self.block + 0.5 * (self.block - 1)
+        return np.asarray(middles * self.dt, dtype=float)
 
 
 def trace_of(recording: Recording, name: str = "") -> Trace:
@@ -132,7 +133,7 @@ def noise_levels(traces: list[Trace]) -> Array:
     levels = np.full((len(traces), 3), np.nan)
     for row, trace in enumerate(traces):
         rate = 1.0 / trace.dt
-        for column in np.flatnonzero(trace.has):
+        for column in np.flatnonzero(trace.has).tolist():
             length = min(1024, len(trace.samples))
             f, density = signal.welch(trace.samples[:, column], rate, nperseg=length, average="median")
             inside = (f >= _FLOOR_BAND[0] * rate) & (f <= _FLOOR_BAND[1] * rate)

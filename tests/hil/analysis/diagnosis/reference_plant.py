@@ -93,7 +93,7 @@ def _integrate(torque, dt, p, start, out):
         stiffness = ks * (1.0 - p[34] * k / torque.shape[0])
         for s in range(sub):
             t = (k + s / sub) * dt - delay
-            i = int(math.floor(t / dt + 1e-9))
+            i = math.floor(t / dt + 1e-9)
             u = torque[max(i, 0)]
             if p[33] != 0.0:
                 u += p[33] * math.sin(2 * math.pi * p[32] * (k + s / sub) * dt)
@@ -221,7 +221,7 @@ def recordings(
     short: bool = False,
     only: tuple[str, ...] = (),
 ) -> list[Recording]:
-    """Noisy recordings of the hidden truth; base parameters are off by a relative sd of `off`, at most 2 %."""
+    """Noisy recordings of the hidden truth; base parameters are off by an sd of `off`, at most 2 %."""
     rng = np.random.default_rng(seed)
     p = np.zeros(len(_KEYS))
     for name, value in BASE.items():
