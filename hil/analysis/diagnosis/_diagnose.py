@@ -142,6 +142,8 @@ class _Judged:
         effects = (
             self._effects(kept, free, after, map_before, map_after, rounded) if verdict == "named" else ()
         )
+        if verdict == "named" and not effects:
+            verdict = "none"  # small corrections of parameters were all that was needed
         overlays = tuple(
             Overlay(t.name, t.dt, t.torque, t.samples, b, a)
             for t, b, a in zip(free.traces, before, after, strict=True)
@@ -205,7 +207,12 @@ class _Judged:
         """Corrections of base parameters beyond what noise explains, and all parameters as fitted."""
         errors = np.sqrt(np.maximum(np.diag(kept.covariance), 0.0))
         model = kept.hypothesis.model(kept.theta)
-        wrong = {t.values["parameter"] for t in kept.hypothesis.terms if t.id == "parameter_mismatch"}
+        base = kept.hypothesis.base.parameters
+        wrong = {
+            use.values["parameter"]
+            for use in model.effects
+            if use.id == "parameter_mismatch" and not _within_tolerance(use, base)
+        }
         updates = {}
         for c, value, error in zip(kept.hypothesis.coordinates(), kept.theta, errors, strict=True):
             if c.term >= 0 or c.name in wrong or abs(value) < 2.0 * error:
@@ -227,6 +234,8 @@ class _Judged:
         errors = np.sqrt(np.maximum(np.diag(kept.covariance) * max(1.0, kept.cost / self.problem.rows), 0.0))
         named = []
         for index, use in enumerate(uses):
+            if use.id == "parameter_mismatch" and _within_tolerance(use, kept.hypothesis.base.parameters):
+                continue  # a correction within the calibration tolerance is an update, not a finding
             fewer = kept.hypothesis.without(index)
             theta = carried(kept, fewer)
             without = simulated_samples(free, fewer, theta, kept.starts)
@@ -298,6 +307,12 @@ def _lasting(model: Model) -> list[EffectUse]:
             values = dict(_clean(use).values)
         lasting.append(EffectUse(use.id, values))
     return lasting
+
+
+def _within_tolerance(use: EffectUse, base: dict[str, float]) -> bool:
+    """Whether a parameter is off by no more than its stated calibration tolerance."""
+    ratio = float(use.values["value"]) / base[str(use.values["parameter"])]
+    return bool(abs(np.log(ratio)) <= TOLERANCE)
 
 
 __all__ = ["TOLERANCE", "diagnose", "key_of"]

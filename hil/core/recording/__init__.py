@@ -75,7 +75,7 @@ def driven_by_torque(recording: Recording) -> list[Recording]:
     for segment in segments:
         if segment.load == "vehicle":
             part = turned.between(segment.start_s, segment.end_s)
-            part.source = recording.source.with_name(f"{recording.source.name}: {segment.id}")
+            part.source = recording.source.with_name(f"{recording.source.stem} {segment.id}")
             parts.append(part)
     if not parts:
         raise BadInputError(
