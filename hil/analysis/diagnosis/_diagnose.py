@@ -143,7 +143,9 @@ class _Judged:
             self._effects(kept, free, after, map_before, map_after, rounded) if verdict == "named" else ()
         )
         if verdict == "named" and not effects:
-            verdict = "none"  # small corrections of parameters were all that was needed
+            # Small corrections of parameters were all that was found: do they explain the data?
+            left = (kept.cost - floor_of(self.problem, kept)) / self.problem.rows
+            verdict = "unknown" if left > _SMALL_EXCESS else "none"
         overlays = tuple(
             Overlay(t.name, t.dt, t.torque, t.samples, b, a)
             for t, b, a in zip(free.traces, before, after, strict=True)
