@@ -94,17 +94,6 @@ class DynoNode:
         if answer != sent:
             raise BenchError(f"{what} reads back as {answer:g}, {value:g} was written", where=self._where)
 
-    def number(self, index: int) -> float:
-        """Value of an object, read by SDO.
-
-        Raises:
-            BenchError: no answer.
-        """
-        try:
-            return float(self._node.sdo[index].raw)
-        except canopen.SdoError as error:
-            raise BenchError(f"object 0x{index:04X} cannot be read: {error}", where=self._where) from error
-
     def set_speed(self, speed_rad_s: float) -> None:
         """Remember the speed that the next command carries."""
         self._target_speed = speed_rad_s

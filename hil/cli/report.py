@@ -11,7 +11,7 @@ from hil.cli._output import console, print_criteria, print_json
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.recording import SEGMENT, Recording, read_recording
-from hil.core.result import CriterionResult, RunResult, Segment, Verdict
+from hil.core.result import RunResult, Segment, verdict_of
 from hil.engine import RECORDING
 from reports import write_reports
 from test_plans import judge, plan_from_text
@@ -64,7 +64,9 @@ def rejudged(recording: Recording) -> RunResult | None:
         ) from error
     plan = plan_from_text(text, f"{where}: plan.yaml", recording.source.parent, files_required=False)
     criteria = judge(plan, recording, stored.segments)
-    return stored.model_copy(update={"criteria": criteria, "verdict": _verdict(criteria, stored)})
+    return stored.model_copy(
+        update={"criteria": criteria, "verdict": verdict_of(criteria, stopped=bool(stored.reason))}
+    )
 
 
 def _stored(recording: Recording) -> RunResult:
@@ -87,9 +89,3 @@ def _stored(recording: Recording) -> RunResult:
         segments=tuple(segments),
         reason="the recording was cut off before the run had ended; nothing is known of its safe state",
     )
-
-
-def _verdict(criteria: tuple[CriterionResult, ...], stored: RunResult) -> Verdict:
-    if stored.reason or any(c.verdict == "error" for c in criteria):
-        return "error"
-    return "fail" if any(c.verdict == "fail" for c in criteria) else "pass"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -35,6 +36,14 @@ class CriterionResult(_Frozen):
         room = [self.upper - self.value] if self.upper is not None else []
         room += [self.value - self.lower] if self.lower is not None else []
         return min(room) if room else None
+
+
+def verdict_of(criteria: Iterable[CriterionResult], *, stopped: bool) -> Verdict:
+    """A run's verdict: error when something stopped it or a criterion has no value, else fail or pass."""
+    verdicts = {criterion.verdict for criterion in criteria}
+    if stopped or "error" in verdicts:
+        return "error"
+    return "fail" if "fail" in verdicts else "pass"
 
 
 class Segment(_Frozen):

@@ -52,7 +52,6 @@ class Rehearsal:
         self._bench = bench
         self._has_controller = False
         self._made: set[str] = set()
-        self.torque_limit_nm = bench.limits.motor_torque_nm
 
     def set_controller(self, file: Path) -> None:
         """The file must be readable and within the torque limit, or be made by an earlier step."""

@@ -17,7 +17,7 @@ from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
 from hil.core.files import make_directory
 from hil.core.model import Model, model_to_toml
 from hil.core.recording import Recording
-from hil.core.result import CriterionResult, RunResult, SafeState, Verdict
+from hil.core.result import CriterionResult, RunResult, SafeState, verdict_of
 from hil.engine.bench import Bench, open_bench
 from hil.engine.bench_file import BenchFile
 from hil.engine.conductor import BenchConductor
@@ -178,7 +178,7 @@ class _Run:
         if recording is not None:
             criteria = judge(request.plan, recording, self._conductor.segments)
         result = RunResult(
-            verdict=_verdict(criteria, self._error),
+            verdict=verdict_of(criteria, stopped=self._error is not None),
             plan=request.plan.name,
             bench=request.bench.name,
             real_time_factor=round(bench_time_s / max(wall_s, 1e-9), 2),
@@ -242,13 +242,6 @@ class _Run:
         writer.describe("versions", versions())
         dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
         writer.describe("calibration", dates)
-
-
-def _verdict(criteria: tuple[CriterionResult, ...], error: HilError | None) -> Verdict:
-    verdicts = {c.verdict for c in criteria}
-    if error is not None or "error" in verdicts:
-        return "error"
-    return "fail" if "fail" in verdicts else "pass"
 
 
 @contextlib.contextmanager

@@ -9,10 +9,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numba import prange
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
-from hil.core.compiled import compiled, compiled_parallel, inlined
+from hil.core.compiled import compiled, inlined
 from sim_backend.plant import _equations as E
 from sim_backend.plant import _slots as P
 
@@ -149,13 +148,6 @@ def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untype
         new = torque[k - whole] if k >= whole else start[3]
         old = torque[k - whole - 1] if k > whole else start[3]
         x, slewed = sample(x, p, slewed, old, new, late, dt, True, 0.0, longest_step)
-
-
-@compiled_parallel
-def run_many(torque, dt, parameters, start, longest_step, out):  # type: ignore[no-untyped-def]
-    """`run` for every row of `parameters`, in parallel; `out` is sets x n x OUTPUT_COLUMNS."""
-    for index in prange(parameters.shape[0]):
-        run(torque, dt, parameters[index], start, longest_step, out[index])
 
 
 def empty_output(samples: int) -> np.ndarray:
