@@ -12,8 +12,8 @@ from hil.core.model import Model, parameter_names
 from tests.blind.experiments import SAMPLE_S, Experiment, holdout_set, in_closed_loop, main_set
 from tests.blind.families import FAMILIES, RIGID, Hidden, Setting, fits
 from tests.blind.outsiders import OUTSIDERS, outsider_fits
-from tests.blind.plant import COARSE, Array, Truth, true_outputs
-from tests.blind.sizing import Ruler, largest_share, likeness
+from tests.blind.plant import Array, Truth
+from tests.blind.sizing import Bench, Ruler, largest_share, likeness
 from tests.blind.specs import SIZES, Spec
 
 _TYPICAL = {
@@ -80,19 +80,19 @@ def draw_case(seed: int, spec: Spec, length: float = 1.0) -> Case:
     base = Truth(kind, {name: value * _off(rng) for name, value in nominal.items()})
     scale = rng.uniform(0.8, 1.25)
     experiments, holdout = main_set(rng, scale, length), holdout_set(rng, scale, length)
-    plain = np.concatenate([true_outputs(base, e, substeps=COARSE)[1] for e in experiments])
-    deviation = np.std(plain, axis=0)
+    bench = Bench(base, experiments)
+    deviation = np.std(np.concatenate(bench.plain), axis=0)
     noise = NoiseLevel(
         deviation * np.exp(rng.uniform(np.log(0.005), np.log(0.02), 3)),
         rng.uniform(0.0, 0.15),
         rng.uniform(2.0, 15.0),
     )
     setting = Setting(kind, base.parameters, scale, dict(zip(OUTPUTS, deviation.tolist(), strict=True)))
-    hidden, share = _hidden(rng, spec, base, setting, experiments, noise)
+    hidden, share = _hidden(rng, spec, bench, setting, noise)
     if spec.group == "mismatch":
-        nominal, hidden, share = _mismatch(rng, base, nominal, experiments, noise)
+        nominal, hidden, share = _mismatch(rng, bench, nominal, noise)
     if spec.group == "one_recording":
-        experiments, hidden, share = _most_telling(rng, hidden[0], base, experiments, noise, share)
+        experiments, hidden, share = _most_telling(rng, hidden[0], bench, noise, share)
     if rng.uniform() < _CLOSED_LOOP_SHARE:
         experiments = [in_closed_loop(e, rng) for e in experiments]
     for one in hidden:
@@ -126,30 +126,28 @@ def _nominal(rng: np.random.Generator, kind: str) -> dict[str, float]:
 def _hidden(
     rng: np.random.Generator,
     spec: Spec,
-    base: Truth,
+    bench: Bench,
     setting: Setting,
-    experiments: list[Experiment],
     noise: NoiseLevel,
 ) -> tuple[tuple[Hidden, ...], float]:
     if spec.group in ("none", "mismatch"):
         return (), 0.0
     if spec.group == "pair":
-        return _pair(rng, spec, base, setting, experiments, noise)
-    return _sized(rng, spec, base, setting, experiments, noise)
+        return _pair(rng, spec, bench, setting, noise)
+    return _sized(rng, spec, bench, setting, noise)
 
 
 def _sized(
     rng: np.random.Generator,
     spec: Spec,
-    base: Truth,
+    bench: Bench,
     setting: Setting,
-    experiments: list[Experiment],
     noise: NoiseLevel,
 ) -> tuple[tuple[Hidden], float]:
     """The subject at the size that was asked for; drawn again when these outputs cannot show it."""
     outside = spec.group == "outside"
     draw = OUTSIDERS[spec.subject] if outside else FAMILIES[spec.subject]
-    ruler = Ruler(base, experiments, noise.deviations, _own_parameter(spec.subject))
+    ruler = Ruler(bench, noise.deviations, _own_parameter(spec.subject))
     wanted = share_of(SIZES[spec.size])
     best: tuple[float, Hidden, float] | None = None
     before: Hidden | None = None
@@ -162,7 +160,7 @@ def _sized(
         hidden = family.of_size(size)
         left = share
         if outside and 1.0 / _MISSED < share / wanted < _MISSED:
-            known = [FAMILIES[id](rng, setting) for id in FAMILIES if fits(id, base.kind)]
+            known = [FAMILIES[id](rng, setting) for id in FAMILIES if fits(id, bench.base.kind)]
             middles = [f.of_size(float(np.sqrt(f.smallest * f.largest))) for f in known]
             left = ruler.unexplained(ruler.residual(hidden), middles)
         missed = abs(np.log(max(left, 1e-9) / wanted))
@@ -187,14 +185,13 @@ def _own_parameter(id: str) -> str:
 def _pair(
     rng: np.random.Generator,
     spec: Spec,
-    base: Truth,
+    bench: Bench,
     setting: Setting,
-    experiments: list[Experiment],
     noise: NoiseLevel,
 ) -> tuple[tuple[Hidden, ...], float]:
     """Two effects, each large enough alone, whose traces differ."""
-    ruler = Ruler(base, experiments, noise.deviations)
-    names = RIGID if base.kind == "rigid" else [id for id in FAMILIES if fits(id, base.kind)]
+    ruler = Ruler(bench, noise.deviations)
+    names = RIGID if bench.base.kind == "rigid" else [id for id in FAMILIES if fits(id, bench.base.kind)]
     while True:
         first, second = (FAMILIES[str(id)](rng, setting) for id in rng.choice(names, 2, replace=False))
         if {first.id, second.id} in _NOT_TOGETHER:
@@ -202,8 +199,8 @@ def _pair(
         hidden, traces = [], []
         for family in (first, second):
             of_one = ruler
-            if _own_parameter(family.id) in base.parameters:
-                of_one = Ruler(base, experiments, noise.deviations, _own_parameter(family.id))
+            if _own_parameter(family.id) in bench.base.parameters:
+                of_one = Ruler(bench, noise.deviations, _own_parameter(family.id))
             size, _ = of_one.size_for(family, share_of(SIZES[spec.size]))
             hidden.append(family.of_size(size))
             traces.append(of_one.residual(hidden[-1]))
@@ -214,17 +211,17 @@ def _pair(
 
 def _mismatch(
     rng: np.random.Generator,
-    base: Truth,
+    bench: Bench,
     nominal: dict[str, float],
-    experiments: list[Experiment],
     noise: NoiseLevel,
 ) -> tuple[dict[str, float], tuple[Hidden, ...], float]:
     """One parameter of the model file is 3 to 10 % wrong, one that the outputs show."""
+    base = bench.base
     names = [name for name in base.parameters if name not in ("torque_delay", "gear_ratio", "viscous_drag")]
     best: tuple[float, str, float] = (0.0, "", 0.0)
     for name in rng.permutation(names):
         factor = 1.0 + rng.choice([-1.0, 1.0]) * rng.uniform(0.03, 0.1)
-        ruler = Ruler(base, experiments, noise.deviations, str(name))
+        ruler = Ruler(bench, noise.deviations, str(name))
         wrong = base.with_parameter(str(name), base.parameters[str(name)] * factor)
         share = ruler.share_of_truth(wrong)
         if share > best[0]:
@@ -243,18 +240,19 @@ def _mismatch(
 def _most_telling(
     rng: np.random.Generator,
     hidden: Hidden,
-    base: Truth,
-    experiments: list[Experiment],
+    bench: Bench,
     noise: NoiseLevel,
     share: float,
 ) -> tuple[list[Experiment], tuple[Hidden, ...], float]:
     """One of the two recordings that show the effect best."""
+    own = _own_parameter(hidden.id)
     shares = [
-        Ruler(base, [e], noise.deviations, _own_parameter(hidden.id)).share(hidden) for e in experiments
+        Ruler(bench.only(number), noise.deviations, own).share(hidden)
+        for number in range(len(bench.experiments))
     ]
     order = np.argsort(shares)[::-1]
     chosen = int(order[0] if rng.uniform() < 0.7 else order[1])
-    return [experiments[chosen]], (hidden,), max(shares[chosen], 0.0) or share
+    return [bench.experiments[chosen]], (hidden,), max(shares[chosen], 0.0) or share
 
 
 def duration_s(case: Case) -> float:

@@ -11,7 +11,7 @@ from hil.core.channels import OUTPUTS
 from tests.blind.experiments import SAMPLE_S, Experiment
 from tests.blind.reference.chain import simulate_chain
 from tests.blind.reference.controller import control
-from tests.blind.reference.layout import record
+from tests.blind.reference.layout import Constants, record
 from tests.blind.reference.rigid import simulate_rigid
 from tests.blind.sensors import Sensor
 
@@ -42,8 +42,8 @@ class Truth:
         return replace(self, laws=self.laws | other.laws, sensors=self.sensors + other.sensors)
 
 
-def constants(truth: Truth) -> np.void:
-    """The record that the compiled loops read."""
+def constants(truth: Truth) -> Constants:
+    """The constants that the compiled loops read."""
     values = {name: value for name, value in truth.parameters.items() if name != "torque_delay"}
     laws = dict(truth.laws)
     values["delay_s"] = truth.parameters["torque_delay"] + laws.pop("extra_delay_s", 0.0)

@@ -15,7 +15,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 
-from tests.blind.casefiles import write_case
+from tests.blind.casefiles import OpenFiles, drawn_case, open_answer, seal_answer, write_case
 from tests.blind.cases import draw_case
 from tests.blind.diagnosing import Diagnose, by_command_line, says_nothing
 from tests.blind.scoring import Score, score
@@ -28,18 +28,25 @@ _RESULTS = Path("docs/reference/blind-results.md")
 def run_case(
     seed: int, spec: Spec, diagnose: Diagnose, keep: Path | None = None, length: float = 1.0
 ) -> Score:
-    """Draw, measure, ask, open the answer, judge. With `keep`, the files stay in a directory of the case."""
-    case = draw_case(seed, spec, length)
+    """Draw, measure, ask, open the answer, judge. With `keep`, what was drawn stays and is used again."""
     with tempfile.TemporaryDirectory(prefix="blind-") as place:
-        directory = Path(place)
-        files, answer = write_case(case, directory)
-        reply = diagnose(files, directory / "out")
-        result = score(spec, case.truth.kind, answer, reply)
+        drawn = Path(place) / "drawn"
         if keep is not None:
-            target = keep / spec.key.replace("/", "-").replace(":", "-")
-            shutil.rmtree(target, ignore_errors=True)
-            shutil.copytree(directory, target)
-    return result
+            name = spec.key.replace("/", "-").replace(":", "-")
+            drawn = keep / f"seed-{seed}-length-{length:g}" / name
+        files = drawn_case(drawn) or _draw(seed, spec, length, drawn)
+        reply = diagnose(files, Path(place) / "out")
+        kind, answer = open_answer(drawn)
+        return score(spec, kind, answer, reply)
+
+
+def _draw(seed: int, spec: Spec, length: float, directory: Path) -> OpenFiles:
+    shutil.rmtree(directory, ignore_errors=True)
+    directory.mkdir(parents=True)
+    case = draw_case(seed, spec, length)
+    files, answer = write_case(case, directory)
+    seal_answer(directory, case.truth.kind, answer)
+    return files
 
 
 def run_all(
@@ -128,7 +135,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument(
         "--length", type=float, default=1.0, help="of the recordings; below 1 for a quick look"
     )
-    parser.add_argument("--keep", type=Path, help="directory in which every case's files are kept")
+    parser.add_argument("--keep", type=Path, help="directory of drawn cases, used again next time")
     parser.add_argument("--out", type=Path, default=_RESULTS, help="Markdown to write; a JSON goes beside it")
     parser.add_argument("--stand-in", action="store_true", help="do not ask hil diagnose: answer 'none'")
     return parser.parse_args(arguments)

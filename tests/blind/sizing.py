@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from copy import copy
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,37 @@ _CLOSE = 0.04  # relative: a size need not be met more closely
 _TRIALS = 9
 
 
+class Bench:
+    """A base plant and its experiments, simulated once however many rulers measure on them."""
+
+    def __init__(self, base: Truth, experiments: Sequence[Experiment]) -> None:
+        self.base = base
+        self.experiments = list(experiments)
+        self.plain = self.outputs(base)
+        self._slopes: dict[str, list[Array]] = {}
+
+    def outputs(self, truth: Truth) -> list[Array]:
+        """Samples x outputs of every experiment on `truth`."""
+        return [true_outputs(truth, e, substeps=COARSE)[1] for e in self.experiments]
+
+    def slopes(self, name: str) -> list[Array]:
+        """What a small step of a base parameter does to every experiment's outputs, every `_STRIDE`th."""
+        if name not in self._slopes:
+            # a quarter percent keeps the change linear; drag may be zero
+            value = self.base.parameters[name]
+            other = self.base.with_parameter(name, value + (2.5e-3 * value if value > 0.0 else 1e-4))
+            changed = zip(self.outputs(other), self.plain, strict=True)
+            self._slopes[name] = [(outputs - plain)[::_STRIDE] for outputs, plain in changed]
+        return self._slopes[name]
+
+    def only(self, number: int) -> Bench:
+        """The same with one of the experiments alone."""
+        one = copy(self)
+        one.experiments, one.plain = [self.experiments[number]], [self.plain[number]]
+        one._slopes = {name: [slopes[number]] for name, slopes in self._slopes.items()}
+        return one
+
+
 class Ruler:
     """Measures effects in units of the noise, for one base plant, its experiments and noise levels.
 
@@ -26,24 +58,22 @@ class Ruler:
     the initial speeds is projected out: what is left no refit of the base model can take away.
     """
 
-    def __init__(
-        self, base: Truth, experiments: Sequence[Experiment], noise: Array, not_fitted: str = ""
-    ) -> None:
-        self._base = base
-        self._experiments = list(experiments)
+    def __init__(self, bench: Bench, noise: Array, not_fitted: str = "") -> None:
+        self._bench = bench
         self._noise = noise
-        self._plain = [true_outputs(base, e, substeps=COARSE)[1] for e in self._experiments]
         self._span = np.linalg.qr(np.stack(self._sensitivities(not_fitted), axis=1))[0]
 
     def residual(self, *hidden: Hidden) -> Array:
         """What effects do to the outputs, in units of noise, projected; samples x 3 flattened."""
         laws = {name: value for h in hidden for name, value in h.laws.items()}
         sensors = tuple(s for h in hidden for s in h.sensors)
-        truth = Truth(self._base.kind, self._base.parameters, laws, sensors)
+        base = self._bench.base
+        truth = Truth(base.kind, base.parameters, laws, sensors)
         rows = []
-        for experiment, plain in zip(self._experiments, self._plain, strict=True):
-            outputs = true_outputs(truth, experiment, substeps=COARSE)[1] if laws else plain
-            rows.append(self._shown(read_by_sensors(truth, outputs, np.zeros_like(outputs)) - plain))
+        all_outputs = self._bench.outputs(truth) if laws else self._bench.plain
+        for outputs, plain in zip(all_outputs, self._bench.plain, strict=True):
+            change = read_by_sensors(truth, outputs, np.zeros_like(outputs)) - plain
+            rows.append(self._shown(change[::_STRIDE]))
         return self._projected(np.concatenate(rows))
 
     def share(self, *hidden: Hidden) -> float:
@@ -52,10 +82,8 @@ class Ruler:
 
     def share_of_truth(self, truth: Truth) -> float:
         """The share of the difference between another plant and the base plant."""
-        rows = [
-            self._shown(true_outputs(truth, e, substeps=COARSE)[1] - plain)
-            for e, plain in zip(self._experiments, self._plain, strict=True)
-        ]
+        changed = zip(self._bench.outputs(truth), self._bench.plain, strict=True)
+        rows = [self._shown((outputs - plain)[::_STRIDE]) for outputs, plain in changed]
         return largest_share(self._projected(np.concatenate(rows)))
 
     def size_for(self, family: Family, share: float) -> tuple[float, float]:
@@ -86,28 +114,20 @@ class Ruler:
     def _projected(self, change: Array) -> Array:
         return np.asarray(change - self._span @ (self._span.T @ change))
 
-    def _shown(self, outputs: Array) -> Array:
-        return np.asarray((outputs[::_STRIDE] / self._noise).ravel())
+    def _shown(self, change: Array) -> Array:
+        return np.asarray((change / self._noise).ravel())
 
     def _sensitivities(self, not_fitted: str) -> list[Array]:
-        columns = []
-        for name, value in self._base.parameters.items():
-            if name == not_fitted:
-                continue
-            # a quarter percent keeps the change linear; drag may be zero
-            step = 2.5e-3 * value if value > 0.0 else 1e-4
-            other = self._base.with_parameter(name, value + step)
-            columns.append(
-                np.concatenate(
-                    [
-                        self._shown(true_outputs(other, e, substeps=COARSE)[1] - plain) / 2.5e-3
-                        for e, plain in zip(self._experiments, self._plain, strict=True)
-                    ]
-                )
-            )
-        speed = np.array([self._base.parameters["gear_ratio"], 1.0, 0.0])
-        for number in range(len(self._plain)):
-            rows = [np.tile(speed * (i == number), (len(p), 1)) for i, p in enumerate(self._plain)]
+        bench = self._bench
+        columns = [
+            np.concatenate([self._shown(slope) / 2.5e-3 for slope in bench.slopes(name)])
+            for name in bench.base.parameters
+            if name != not_fitted
+        ]
+        speed = np.array([bench.base.parameters["gear_ratio"], 1.0, 0.0])
+        lengths = [len(plain[::_STRIDE]) for plain in bench.plain]
+        for number in range(len(lengths)):
+            rows = [np.tile(speed * (i == number), (length, 1)) for i, length in enumerate(lengths)]
             columns.append(np.concatenate([self._shown(r) for r in rows]))
         return columns
 

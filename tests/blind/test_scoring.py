@@ -116,7 +116,7 @@ def test_a_case_is_the_same_again_and_its_files_hold_no_answer(tmp_path):
         case = draw_case(5, spec, 0.1)
         (tmp_path / name).mkdir()
         files, answer = write_case(case, tmp_path / name)
-        texts.append({p.name: p.read_text() for p in (tmp_path / name).iterdir()})
+        texts.append({p.name: p.read_text() for p in (tmp_path / name).rglob("*.*")})
         model = load_model(files.model)
         assert not model.effects
         assert not model.meta
@@ -128,9 +128,13 @@ def test_a_case_is_the_same_again_and_its_files_hold_no_answer(tmp_path):
 
 
 def test_a_run_with_a_stand_in_writes_both_files(tmp_path):
-    result = run_case(2, Spec("none", "none", "none", 0), says_nothing, tmp_path / "kept", 0.1)
+    spec = Spec("none", "none", "none", 0)
+    result = run_case(2, spec, says_nothing, tmp_path / "kept", 0.1)
     assert result.right
-    assert (tmp_path / "kept" / "none-none-none-0" / "model.toml").exists()
+    (model,) = (tmp_path / "kept").rglob("model.toml")
+    drawn_at = model.stat().st_mtime_ns
+    assert run_case(2, spec, says_nothing, tmp_path / "kept", 0.1) == result  # drawn once, asked again
+    assert model.stat().st_mtime_ns == drawn_at
     out = tmp_path / "results.md"
     assert main(["--stand-in", "--group", "none", "--cases", "1", "--length", "0.1", "--out", str(out)]) == 0
     assert "| none | 1 | 100 |" in out.read_text()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -14,19 +14,48 @@ from tests.blind.reference.friction import bristle_after, friction_torque, runni
 from tests.blind.reference.hysteresis import ELEMENTS, advance
 from tests.blind.reference.torque_path import acting, delayed
 
-ROTOR, HOUSING, WHEEL, VEHICLE, ABSORBER = range(5)
-BRISTLE, DEFLECTION, WOUND, SHAFT = range(4)
 _ITERATIONS = 2  # contraction is below 0.01 at 50 µs: two leave less than 1e-6
 
 
+class Chain(NamedTuple):
+    """Angles, speeds or accelerations of the bodies."""
+
+    rotor: float
+    housing: float
+    wheel: float
+    vehicle: float
+    absorber: float
+
+
+class Inner(NamedTuple):
+    """Bristle, tyre deflection and twist of the shafts in rad; shaft torque in N m."""
+
+    bristle: float
+    deflection: float
+    wound: float
+    shaft: float
+
+
 @njit(error_model="numpy")
-def _twist(p: Any, x: np.ndarray) -> float:
+def _ahead(x: Chain, v: Chain, span_s: float) -> Any:
+    """`x` after `span_s` at the rates `v`."""
+    return Chain(
+        x.rotor + span_s * v.rotor,
+        x.housing + span_s * v.housing,
+        x.wheel + span_s * v.wheel,
+        x.vehicle + span_s * v.vehicle,
+        x.absorber + span_s * v.absorber,
+    )
+
+
+@njit(error_model="numpy")
+def _twist(p: Any, x: Chain) -> float:
     """Twist (or its rate): gear output against wheel; the gear turns with the housing."""
-    return x[HOUSING] + (x[ROTOR] - x[HOUSING]) / p.gear_ratio - x[WHEEL]
+    return x.housing + (x.rotor - x.housing) / p.gear_ratio - x.wheel
 
 
 @njit(error_model="numpy")
-def _through_shafts(p: Any, x: np.ndarray, v: np.ndarray, wound: float, span_s: float, time_s: float) -> Any:
+def _through_shafts(p: Any, x: Chain, v: Chain, wound: float, span_s: float, time_s: float) -> Any:
     """(twist of the shafts, torque in N m) at `x`, `v`, a time `span_s` after they had the twist `wound`."""
     twist, rate = _twist(p, x), _twist(p, v)
     if p.half_gap > 0.0 and p.contact_form == SERIES:
@@ -43,34 +72,27 @@ def _with_ripple(p: Any, torque: float, wheel_angle: float) -> float:
 
 
 @njit(error_model="numpy")
-def _accelerations(
-    p: Any,
-    x: np.ndarray,
-    v: np.ndarray,
-    drive: float,
-    shaft: float,
-    tyre: float,
-    time_s: float,
-    a: np.ndarray,
-) -> None:
-    """Write accelerations in rad/s²: `drive` between housing and rotor, `shaft` and `tyre` on the wheel."""
-    a[ROTOR] = (drive - shaft / p.gear_ratio) / p.motor_inertia
+def _accelerations(p: Any, x: Chain, v: Chain, drive: float, shaft: float, tyre: float, time_s: float) -> Any:
+    """Accelerations in rad/s²: `drive` between housing and rotor, `shaft` and `tyre` on the wheel."""
+    housing = vehicle = absorber = 0.0
+    rotor = (drive - shaft / p.gear_ratio) / p.motor_inertia
     if p.has_mount > 0.0:
-        stiffness = p.mount_stiffness * (1.0 + p.mount_speed_stiffening * abs(v[WHEEL]))
-        bushes = stiffness * x[HOUSING] + p.mount_damping * v[HOUSING]
-        a[HOUSING] = (-drive - shaft * (1.0 - 1.0 / p.gear_ratio) - bushes) / p.housing_inertia
-    wheel = shaft
+        stiffness = p.mount_stiffness * (1.0 + p.mount_speed_stiffening * abs(v.wheel))
+        bushes = stiffness * x.housing + p.mount_damping * v.housing
+        housing = (-drive - shaft * (1.0 - 1.0 / p.gear_ratio) - bushes) / p.housing_inertia
+    onto_wheel = shaft
     if p.tone_nm > 0.0:
-        wheel += p.tone_nm * math.sin(2.0 * math.pi * p.tone_hz * time_s)
+        onto_wheel += p.tone_nm * math.sin(2.0 * math.pi * p.tone_hz * time_s)
     if p.absorber_inertia > 0.0:
-        held = p.absorber_stiffness * (x[WHEEL] - x[ABSORBER]) + p.absorber_damping * (v[WHEEL] - v[ABSORBER])
-        a[ABSORBER] = held / p.absorber_inertia
-        wheel -= held
+        held = p.absorber_stiffness * (x.wheel - x.absorber) + p.absorber_damping * (v.wheel - v.absorber)
+        absorber = held / p.absorber_inertia
+        onto_wheel -= held
     if p.has_tyre > 0.0:
-        a[WHEEL] = (wheel - tyre) / p.wheel_inertia
-        a[VEHICLE] = (tyre - running_resistance(p, v[VEHICLE])) / p.vehicle_inertia
+        wheel = (onto_wheel - tyre) / p.wheel_inertia
+        vehicle = (tyre - running_resistance(p, v.vehicle)) / p.vehicle_inertia
     else:
-        a[WHEEL] = (wheel - running_resistance(p, v[WHEEL])) / p.vehicle_inertia
+        wheel = (onto_wheel - running_resistance(p, v.wheel)) / p.vehicle_inertia
+    return Chain(rotor, housing, wheel, vehicle, absorber)
 
 
 @njit(error_model="numpy")
@@ -82,55 +104,57 @@ def _tyre_after(p: Any, deflection: float, slip_speed: float, span_s: float) -> 
     return steady + (deflection - steady) * math.exp(-abs(slip_speed) * span_s / p.slip_angle)
 
 
-@njit(error_model="numpy")
+@njit(error_model="numpy", forceinline=True)
 def _step(
     p: Any,
-    x: np.ndarray,
-    v: np.ndarray,
-    a: np.ndarray,
-    inner: np.ndarray,
+    x: Chain,
+    v: Chain,
+    a: Chain,
+    inner: Inner,
     memory: np.ndarray,
+    memory_mid: np.ndarray,
     torque: float,
     start_s: float,
     h: float,
-    work: Any,
-) -> None:
-    """Advance the chain by `h` s at a constant motor torque: iterate for the middle of the step.
+) -> Any:
+    """Angles, speeds, accelerations and inner state after `h` s at a constant motor torque.
 
-    x, v, a: angles, speeds, last accelerations; inner: bristle, tyre deflection, twist of the shafts,
-    shaft torque at the end; memory: of the hysteresis; work: arrays for the middle of the step.
+    Iterates for the middle of the step. `a` are the last accelerations; `inner.shaft` is the torque at the
+    end; `memory` of the hysteresis is changed in place.
     """
-    x_mid, v_mid, memory_mid = work
     middle = start_s + 0.5 * h
-    for j in range(5):
-        v_mid[j] = v[j] + 0.5 * h * a[j]  # with the last acceleration, a good first guess
+    v_mid = _ahead(v, a, 0.5 * h)  # with the last acceleration, a good first guess
     for _ in range(_ITERATIONS):
-        for j in range(5):
-            x_mid[j] = x[j] + 0.5 * h * v_mid[j]
-        relative = v_mid[ROTOR] - v_mid[HOUSING]
-        friction = friction_torque(p, bristle_after(p, inner[BRISTLE], relative, 0.5 * h), relative)
+        x_mid = _ahead(x, v_mid, 0.5 * h)
+        relative = v_mid.rotor - v_mid.housing
+        friction = friction_torque(p, bristle_after(p, inner.bristle, relative, 0.5 * h), relative)
         drive = torque - friction - p.viscous_drag * relative
         if p.motor_amplitude > 0.0:
-            drive += p.motor_amplitude * math.sin(p.motor_order * x_mid[ROTOR] + p.motor_phase)
+            drive += p.motor_amplitude * math.sin(p.motor_order * x_mid.rotor + p.motor_phase)
         beside = advance(p, memory, memory_mid, _twist(p, v_mid), 0.5 * h)
-        through = _through_shafts(p, x_mid, v_mid, inner[WOUND], 0.5 * h, middle)[1]
-        shaft = _with_ripple(p, through + beside, x_mid[WHEEL])
-        slip = v_mid[WHEEL] - v_mid[VEHICLE]
-        tyre = p.tyre_stiffness * _tyre_after(p, inner[DEFLECTION], slip, 0.5 * h) + p.tyre_damping * slip
-        _accelerations(p, x_mid, v_mid, drive, shaft, tyre, middle, a)
-        for j in range(5):
-            v_mid[j] = v[j] + 0.5 * h * a[j]
-    inner[BRISTLE] = bristle_after(p, inner[BRISTLE], v_mid[ROTOR] - v_mid[HOUSING], h)
-    inner[DEFLECTION] = _tyre_after(p, inner[DEFLECTION], v_mid[WHEEL] - v_mid[VEHICLE], h)
+        through = _through_shafts(p, x_mid, v_mid, inner.wound, 0.5 * h, middle)[1]
+        shaft = _with_ripple(p, through + beside, x_mid.wheel)
+        slip = v_mid.wheel - v_mid.vehicle
+        tyre = p.tyre_stiffness * _tyre_after(p, inner.deflection, slip, 0.5 * h) + p.tyre_damping * slip
+        a = _accelerations(p, x_mid, v_mid, drive, shaft, tyre, middle)
+        v_mid = _ahead(v, a, 0.5 * h)
+    bristle = bristle_after(p, inner.bristle, v_mid.rotor - v_mid.housing, h)
+    deflection = _tyre_after(p, inner.deflection, v_mid.wheel - v_mid.vehicle, h)
     beside = advance(p, memory, memory_mid, _twist(p, v_mid), h)
-    memory[:] = memory_mid
-    for j in range(5):
-        x[j] += h * v_mid[j]
-        v[j] = 2.0 * v_mid[j] - v[j]
+    if p.hysteresis > 0.0:
+        memory[:] = memory_mid
+    x = _ahead(x, v_mid, h)
+    v = Chain(
+        2.0 * v_mid.rotor - v.rotor,
+        2.0 * v_mid.housing - v.housing,
+        2.0 * v_mid.wheel - v.wheel,
+        2.0 * v_mid.vehicle - v.vehicle,
+        2.0 * v_mid.absorber - v.absorber,
+    )
     # over the whole step the mean rate counts; a spring's torque needs the rate at its end
     play = p.half_gap > 0.0 and p.contact_form == SERIES
-    inner[WOUND], through = _through_shafts(p, x, v_mid if play else v, inner[WOUND], h, start_s + h)
-    inner[SHAFT] = _with_ripple(p, through + beside, x[WHEEL])
+    wound, through = _through_shafts(p, x, v_mid if play else v, inner.wound, h, start_s + h)
+    return x, v, a, Inner(bristle, deflection, wound, _with_ripple(p, through + beside, x.wheel))
 
 
 @njit(error_model="numpy")
@@ -151,27 +175,27 @@ def simulate_chain(
     """
     out = np.empty((len(ref), 3))
     h = sample_s / substeps
-    x, v, a, inner, memory = np.zeros(5), np.zeros(5), np.zeros(5), np.zeros(4), np.zeros(ELEMENTS)
-    work = (np.zeros(5), np.zeros(5), np.zeros(ELEMENTS))
-    v[ROTOR] = wheel_speed * p.gear_ratio
-    v[WHEEL] = v[VEHICLE] = v[ABSORBER] = wheel_speed
-    x[ROTOR] = seat * p.half_gap * p.gear_ratio
-    inner[BRISTLE] = settled_bristle(p, v[ROTOR])
+    memory, memory_mid = np.zeros(ELEMENTS), np.zeros(ELEMENTS)
+    x = Chain(seat * p.half_gap * p.gear_ratio, 0.0, 0.0, 0.0, 0.0)
+    v = Chain(wheel_speed * p.gear_ratio, 0.0, wheel_speed, wheel_speed, wheel_speed)
+    a = Chain(0.0, 0.0, 0.0, 0.0, 0.0)
+    inner = Inner(settled_bristle(p, v.rotor), 0.0, 0.0, 0.0)
+    smooth = p.lag_s > 0.0 or not math.isinf(p.rate_nm_s)
     lagged = torque = 0.0
     loop = np.zeros(2)
     loop[1] = wheel_speed
     for k in range(len(ref)):
         time_s = k * sample_s
-        out[k, 0] = v[ROTOR] - v[HOUSING]
-        out[k, 1] = v[WHEEL]
-        out[k, 2] = inner[SHAFT]
+        out[k, 0] = v.rotor - v.housing
+        out[k, 1] = v.wheel
+        out[k, 2] = inner.shaft
         if control.proportional > 0.0:
-            ref[k] = pi_torque(control, loop, ref[k], target[k], v[WHEEL] + wheel_noise[k], sample_s)
+            ref[k] = pi_torque(control, loop, ref[k], target[k], v.wheel + wheel_noise[k], sample_s)
         for i in range(substeps):
             start = time_s + i * h
             request = delayed(ref[: k + 1], start - p.delay_s, start + h - p.delay_s, sample_s)
             before = torque
             lagged, torque = acting(p, request, lagged, before, start + 0.5 * h, h)
-            smooth = p.lag_s > 0.0 or not math.isinf(p.rate_nm_s)
-            _step(p, x, v, a, inner, memory, 0.5 * (before + torque) if smooth else torque, start, h, work)
+            mean = 0.5 * (before + torque) if smooth else torque
+            x, v, a, inner = _step(p, x, v, a, inner, memory, memory_mid, mean, start, h)
     return out

@@ -1,11 +1,10 @@
-"""The constants of a reference plant, as one record that the compiled loops read by name."""
+"""The constants of a reference plant, as one tuple that the compiled loops read by name."""
 
 from __future__ import annotations
 
 import math
+from collections import namedtuple
 from collections.abc import Mapping
-
-import numpy as np
 
 #: name: value that switches the law off (or has no influence). SI units; wheel side except the rotor's.
 OFF: dict[str, float] = {
@@ -70,11 +69,12 @@ OFF: dict[str, float] = {
     "tone_hz": 0.0,
 }
 
-RECORD = np.dtype([(name, np.float64) for name in OFF])
+#: A named tuple and not an array's record: compiled code keeps it in registers, no store can change it.
+Constants = namedtuple("Constants", OFF)  # type: ignore[misc]
 
 
-def record(values: Mapping[str, float]) -> np.void:
-    """A record with `values`, everything else switched off.
+def record(values: Mapping[str, float]) -> Constants:
+    """Constants with `values`, everything else switched off.
 
     Raises:
         KeyError: a name that no law reads.
@@ -82,6 +82,4 @@ def record(values: Mapping[str, float]) -> np.void:
     unknown = set(values) - set(OFF)
     if unknown:
         raise KeyError(f"no law reads {sorted(unknown)}")
-    merged = OFF | dict(values)
-    rows: np.ndarray = np.array([tuple(merged[name] for name in OFF)], dtype=RECORD)
-    return rows[0]
+    return Constants(**{name: float(value) for name, value in (OFF | dict(values)).items()})
