@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from hil.analysis.diagnosis import Diagnosis, diagnose
+from hil.analysis.diagnosis import LEAST_SAMPLES, Diagnosis, diagnose
 from hil.cli._together import progress, to_json, write_together
+from hil.core.errors import BadInputError
 from hil.core.model import load_model, model_to_toml
 from hil.core.recording import Recording, driven_by_torque, read_recording
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
 
-_LEAST_SAMPLES = 200
+_FILES = ("model.toml", "diagnosis.json", "report.html", "report.pdf")
+_WORTH_A_LINE = 0.02
 
 
 def command(
@@ -35,19 +39,59 @@ def command(
     Writes model.toml, diagnosis.json, report.html and report.pdf, all or none.
     """
     base = load_model(model)
+    _refuse_twice(recordings, holdout or [])
+    _refuse_place(out)
     with progress() as show:
-        read = [part for path in recordings for part in driven_by_torque(_read(path, show))]
-        held = [part for path in holdout or [] for part in driven_by_torque(_read(path, show))]
+        read = _read(recordings, show)
+        held = _read(holdout or [], show)
         found = diagnose(base, read, held, show=show)
         show("writing the report")
-        files = output_files(found, f"{model.stem}: {found.verdict}")
+        files = output_files(found, model.name)
         write_together(out, files)
     typer.echo(to_json(found.as_json()) if json_ else text_of(found, out))
 
 
-def _read(path: Path, show) -> Recording:  # type: ignore[no-untyped-def]
-    show(f"reading {path.name}")
-    return read_recording(path, least_samples=_LEAST_SAMPLES)
+def _refuse_twice(recordings: list[Path], holdout: list[Path]) -> None:
+    """A recording counts once, and one that a fit has seen is not held out.
+
+    Raises:
+        BadInputError: names the file.
+    """
+    seen: dict[Path, str] = {}
+    for role, paths in (("a recording", recordings), ("--holdout", holdout)):
+        for path in paths:
+            other = seen.setdefault(path.resolve(), role)
+            if other != role:
+                raise BadInputError(
+                    "is given both as a recording and as --holdout",
+                    where=str(path),
+                    fix="what a fit has seen proves nothing: hold another recording back",
+                )
+        if len({path.resolve() for path in paths}) < len(paths):
+            twice = next(p for p in paths if sum(p.resolve() == q.resolve() for q in paths) > 1)
+            raise BadInputError(f"is given twice as {role}", where=str(twice), fix="give it once")
+
+
+def _refuse_place(out: Path) -> None:
+    """Say before the long work that `out` cannot become a directory or cannot be written.
+
+    Raises:
+        BadInputError: names the place.
+    """
+    there = next(place for place in (out, *out.absolute().parents) if place.exists())
+    if not there.is_dir() or not os.access(there, os.W_OK):
+        what = "is not a directory" if not there.is_dir() else "cannot be written"
+        raise BadInputError(what, where=str(there), fix="choose another place with --out")
+
+
+def _read(paths: list[Path], show: Callable[[str], None]) -> list[Recording]:
+    """The stretches of all files that can be explained: driven by torque alone."""
+    parts = []
+    for path in paths:
+        show(f"reading {path.name}")
+        whole = read_recording(path, least_samples=LEAST_SAMPLES)
+        parts += driven_by_torque(whole)
+    return parts
 
 
 def output_files(found: Diagnosis, title: str) -> dict[str, bytes]:
@@ -81,8 +125,11 @@ def text_of(found: Diagnosis, out: Path) -> str:
     if found.signature:
         lines.append(f"  {found.signature}")
     for a in found.alternatives:
-        if a.confidence >= 0.02:
-            lines.append(f"  or {a.use.id} ({a.confidence:.0%}); to tell: {a.plan or a.separating_test}")
+        if a.confidence >= _WORTH_A_LINE and found.verdict != "none":
+            about = a.use.values.get("channel", a.use.values.get("parameter"))
+            name = f"{a.use.id} of {about}" if about else a.use.id
+            test = f"hil run {out / a.plan}" if a.plan else a.separating_test
+            lines.append(f"  or {name} ({a.confidence:.0%}); to tell: {test}")
     lines += ["", f"{'gap':<22}{'before':>10}{'after':>10}{'noise':>10}"]
     for name, after in found.gap_after.items():
         before = found.gap_before[name]
@@ -91,5 +138,6 @@ def text_of(found: Diagnosis, out: Path) -> str:
         before = found.holdout_before[name]
         lines.append(f"{name + ' (held)':<22}{before.gap:>10.4g}{after.gap:>10.4g}{after.noise_floor:>10.4g}")
     lines += [f"note: {note}" for note in found.notes]
-    lines += ["", f"written to {out}: model.toml, diagnosis.json, report.html, report.pdf"]
+    plans = sorted({a.plan for a in found.alternatives if a.plan and a.plan_text})
+    lines += ["", f"written to {out}: {', '.join([*_FILES, *plans])}"]
     return "\n".join(lines)

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import math
 
-from hil.core.compiled import inlined
+from hil.core.compiled import compiled, inlined
 from sim_backend.plant import _slots as P
+from sim_backend.plant._friction import friction_level, friction_torque, has_friction
 
-# Width of the smooth sign functions: small against any speed of interest, large enough for 0.1 ms steps.
-_FRICTION_WIDTH_RAD_S = 0.2
-_STRIBECK_WIDTH_RAD_S = 2.0
-_ROLLING_WIDTH_RAD_S = 0.05
+# Width of a smooth sign function: small against any speed of interest, large enough for 0.1 ms steps.
+ROLLING_WIDTH_RAD_S = 0.05
 _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel while the dyno leads
 
 # State vector
@@ -34,7 +33,7 @@ _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel 
 STATES = 10
 
 
-@inlined
+@compiled
 def shaft_torque(x, p):  # type: ignore[no-untyped-def]
     """T_s in N m from the state: stiffness (backlash, cubic), damping, hysteresis, wheel-order ripple."""
     v = x[HOUSING_SPEED] + (x[ROTOR_SPEED] - x[HOUSING_SPEED]) / p[P.GEAR_RATIO] - x[WHEEL_SPEED]
@@ -60,65 +59,83 @@ def shaft_torque(x, p):  # type: ignore[no-untyped-def]
     return torque
 
 
-@inlined
-def rotor_losses(x, p):  # type: ignore[no-untyped-def]
-    """Friction, drag and ripple on the rotor in N m, against positive motion."""
-    speed = x[ROTOR_SPEED] - x[HOUSING_SPEED]
-    loss = p[P.DRAG] * speed + p[P.FRICTION_OFFSET]
-    if p[P.COULOMB] != 0.0 or p[P.STRIBECK] != 0.0:
-        ratio = speed / _STRIBECK_WIDTH_RAD_S
-        level = p[P.COULOMB] + p[P.STRIBECK] * math.exp(-ratio * ratio)
-        loss += level * math.tanh(speed / _FRICTION_WIDTH_RAD_S)
+@compiled
+def relative_speed(x):  # type: ignore[no-untyped-def]
+    """Rotor against housing in rad/s: what the motor's sensor sees and what friction acts on."""
+    return x[ROTOR_SPEED] - x[HOUSING_SPEED]
+
+
+@compiled
+def smooth_losses(x, p):  # type: ignore[no-untyped-def]
+    """Drag and ripple on the rotor in N m, against positive motion: all losses but dry friction."""
+    loss = p[P.DRAG] * relative_speed(x) + p[P.FRICTION_OFFSET]
     if p[P.MOTOR_ORDER_AMPLITUDE] != 0.0:
         angle = p[P.GEAR_RATIO] * (x[TWIST] + x[WHEEL_ANGLE] - x[HOUSING_ANGLE])
         loss -= p[P.MOTOR_ORDER_AMPLITUDE] * math.sin(p[P.MOTOR_ORDER] * angle + p[P.MOTOR_ORDER_PHASE])
     return loss
 
 
-@inlined
+@compiled
 def running_resistance(speed, p):  # type: ignore[no-untyped-def]
     """Load on the vehicle inertia in N m at a wheel-side speed in rad/s."""
     if p[P.ROLLING] == 0.0 and p[P.AERO] == 0.0:
         return 0.0
-    return p[P.ROLLING] * math.tanh(speed / _ROLLING_WIDTH_RAD_S) + p[P.AERO] * speed * abs(speed)
+    return p[P.ROLLING] * math.tanh(speed / ROLLING_WIDTH_RAD_S) + p[P.AERO] * speed * abs(speed)
 
 
-@inlined
+@compiled
 def tyre_torque(x, p):  # type: ignore[no-untyped-def]
     """Torque that the tyre/road coupling takes from the wheel, in N m."""
     return p[P.TYRE_STIFFNESS] * x[TYRE_TWIST] + p[P.TYRE_DAMPING] * (x[WHEEL_SPEED] - x[VEHICLE_SPEED])
 
 
-@inlined
-def rigid_acceleration(x, p, torque, load):  # type: ignore[no-untyped-def]
+@compiled
+def rigid_acceleration(x, p, torque, load, direction):  # type: ignore[no-untyped-def]
     """Rotor acceleration in rad/s² of the one-mass model, with a wheel-side load in N m."""
     n = p[P.GEAR_RATIO]
     inertia = p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / (n * n)
-    return (torque - rotor_losses(x, p) - load / n) / inertia
+    driving = torque - smooth_losses(x, p) - load / n
+    if has_friction(p):
+        driving -= friction_torque(direction, driving, friction_level(relative_speed(x), p))
+    return driving / inertia
 
 
 @inlined
-def derivative(x, p, torque, coupled, load):  # type: ignore[no-untyped-def]
-    """dx/dt; `torque` acts on the rotor (before the lag), `load` on the wheel unless coupled."""
+def derivative(x, p, torque, coupled, load, direction):  # type: ignore[no-untyped-def]
+    """dx/dt; `torque` acts on the rotor (before the lag), `load` on the wheel unless coupled.
+
+    Dry friction acts against `direction`, which a whole step shares: the sign of the speed, 0 at standstill.
+    """
     lagged = 0.0
     if p[P.LAG] > 0.0:
         lagged = (torque - x[LAGGED]) / p[P.LAG]
         torque = x[LAGGED]
     n = p[P.GEAR_RATIO]
-    relative = x[ROTOR_SPEED] - x[HOUSING_SPEED]
     if p[P.KIND] == P.RIGID:
         wheel_load = running_resistance(x[WHEEL_SPEED], p) if coupled else load
-        rotor = rigid_acceleration(x, p, torque, wheel_load)
+        rotor = rigid_acceleration(x, p, torque, wheel_load, direction)
         return (rotor, 0.0, rotor / n, 0.0, rotor / n, x[WHEEL_SPEED], lagged, 0.0, 0.0, 0.0)
-    v = x[HOUSING_SPEED] + relative / n - x[WHEEL_SPEED]
+    v = x[HOUSING_SPEED] + relative_speed(x) / n - x[WHEEL_SPEED]
     shaft = shaft_torque(x, p)
-    loss = rotor_losses(x, p)
-    rotor = (torque - loss - shaft / n) / p[P.MOTOR_INERTIA]
+    driving = torque - smooth_losses(x, p) - shaft / n
+    bushes = 0.0
+    if p[P.HOUSING_INERTIA] > 0.0:
+        bushes = p[P.MOUNT_STIFFNESS] * x[HOUSING_ANGLE] + p[P.MOUNT_DAMPING] * x[HOUSING_SPEED]
+    sticks = False
+    if has_friction(p):
+        holding = driving
+        if p[P.HOUSING_INERTIA] > 0.0:  # then both turn as one
+            share = p[P.MOTOR_INERTIA] / (p[P.MOTOR_INERTIA] + p[P.HOUSING_INERTIA])
+            holding += share * (shaft + bushes)
+        friction = friction_torque(direction, holding, friction_level(relative_speed(x), p))
+        sticks = direction == 0.0 and friction == holding
+        driving -= friction
+    rotor = driving / p[P.MOTOR_INERTIA]
     housing = 0.0
     if p[P.HOUSING_INERTIA] > 0.0:
-        reaction = loss - torque + shaft / n - shaft
-        bushes = p[P.MOUNT_STIFFNESS] * x[HOUSING_ANGLE] + p[P.MOUNT_DAMPING] * x[HOUSING_SPEED]
-        housing = (reaction - bushes) / p[P.HOUSING_INERTIA]
+        housing = -(driving + shaft + bushes) / p[P.HOUSING_INERTIA]
+    if sticks:
+        rotor = housing
     slip = 0.0
     if p[P.HYSTERESIS_STIFFNESS] != 0.0:
         ratio = x[SLIP] / p[P.HYSTERESIS_SLIP]

@@ -8,10 +8,12 @@ Source: S. M. Cox, P. C. Matthews, J. Comput. Phys. 176 (2002) 430-455.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
 
+from hil.core.compiled import compiled
 from sim_backend.plant import _slots as P
 
 Array = npt.NDArray[np.float64]
@@ -19,6 +21,7 @@ Array = npt.NDArray[np.float64]
 ROTOR, TWIST, WHEEL, TYRE, VEHICLE, LAGGED, HOUSING_ANGLE, HOUSING = range(8)
 STATES = 8
 INPUTS = 4
+_TERMS = 18  # of the series: at a norm of 0.5 the rest is below 1e-17, whatever the units
 
 
 def system(p: Array) -> tuple[Array, Array]:
@@ -74,18 +77,43 @@ def _chain(p: Array, a: Array, b: Array) -> None:
     b[VEHICLE] = np.array([0.0, 0.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
 
 
-def held_step(a: Array, b: Array, duration: float) -> tuple[Array, Array, Array]:
-    """Transition over `duration`, effect of inputs held, and of inputs that rise from 0 to 1 over it."""
-    size = STATES + 2 * INPUTS
-    block = np.zeros((size, size))
-    block[:STATES, :STATES], block[:STATES, STATES : STATES + INPUTS] = a, b
-    block[STATES : STATES + INPUTS, STATES + INPUTS :] = np.eye(INPUTS) / max(duration, 1e-12)
-    power = np.asarray(expm(block * duration))
-    return (
-        power[:STATES, :STATES],
-        power[:STATES, STATES : STATES + INPUTS],
-        power[:STATES, STATES + INPUTS :],
-    )
+@compiled
+def _product(a, b):  # type: ignore[no-untyped-def]
+    out = np.zeros((a.shape[0], b.shape[1]))
+    for i in range(a.shape[0]):
+        for k in range(a.shape[1]):
+            for j in range(b.shape[1]):
+                out[i, j] += a[i, k] * b[k, j]
+    return out
+
+
+@compiled
+def held_step(a, b, duration):  # type: ignore[no-untyped-def]
+    """Transition over `duration`, effect of inputs held, and of inputs that rise from 0 to 1 over it.
+
+    A Taylor series over a small part of the duration, doubled until it is whole. Written out, because a
+    linear algebra library's threads cost many times what products of matrices this small do.
+    Source: N. J. Higham, Functions of Matrices, SIAM 2008, ch. 10.
+    """
+    square = _product(a, a)
+    # of the fourth power, since a itself mixes units: its norm says little about how large a power gets
+    norm = duration * np.abs(_product(square, square)).sum(axis=0).max() ** 0.25
+    part, doublings = duration, 0
+    while 0.5 < norm < math.inf:
+        part, norm, doublings = 0.5 * part, 0.5 * norm, doublings + 1
+    one, z = np.eye(STATES), part * a
+    # exp(z), phi_1 = (exp(z) - 1)/z and phi_2 = (phi_1 - 1)/z
+    phi_2 = one.copy()
+    for k in range(_TERMS, 2, -1):
+        phi_2 = one + _product(z, phi_2) / k
+    phi_2 *= 0.5
+    phi_1 = one + _product(z, phi_2)
+    power = one + _product(z, phi_1)
+    for _ in range(doublings):
+        phi_2 = 0.25 * (_product(power, phi_2) + phi_1 + phi_2)
+        phi_1 = 0.5 * (_product(power, phi_1) + phi_1)
+        power = _product(power, power)
+    return power, duration * _product(phi_1, b), duration * _product(phi_2, b)
 
 
 def step_matrices(p: Array, dt: float, substeps: int) -> tuple[Array, Array, Array, Array]:

@@ -1,7 +1,7 @@
 """The compiled integrator: classical Runge-Kutta at a fixed step, torque held between controller samples.
 
 Dead time is exact: the held torque switches at t_k + delay, and the step grid is laid so that the switch
-falls on a step's border.
+falls on a step's border. With dry friction, so does the instant at which the rotor stops.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 from hil.core.compiled import compiled, inlined
 from sim_backend.plant import _equations as E
 from sim_backend.plant import _slots as P
+from sim_backend.plant._friction import has_friction
 
 # Columns of the kernel's output
 OUT_MOTOR_SPEED, OUT_WHEEL_SPEED, OUT_SHAFT_TORQUE, OUT_MOTOR_TORQUE, OUT_VEHICLE_SPEED, OUT_LOAD = range(6)
@@ -46,16 +47,36 @@ def _moved(x, h, k):  # type: ignore[no-untyped-def]
     )
 
 
+@inlined
+def _step(x, p, torque, coupled, load, h, direction):  # type: ignore[no-untyped-def]
+    """One Runge-Kutta step of `h` seconds; dry friction keeps its direction over it."""
+    k1 = E.derivative(x, p, torque, coupled, load, direction)
+    k2 = E.derivative(_moved(x, 0.5 * h, k1), p, torque, coupled, load, direction)
+    k3 = E.derivative(_moved(x, 0.5 * h, k2), p, torque, coupled, load, direction)
+    k4 = E.derivative(_moved(x, h, k3), p, torque, coupled, load, direction)
+    return _moved(_moved(_moved(_moved(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
+
+
 @compiled
 def _steps(x, p, torque, coupled, load, duration, count):  # type: ignore[no-untyped-def]
-    """`count` Runge-Kutta steps over `duration` seconds with constant inputs."""
-    h = duration / count
-    for _ in range(count):
-        k1 = E.derivative(x, p, torque, coupled, load)
-        k2 = E.derivative(_moved(x, 0.5 * h, k1), p, torque, coupled, load)
-        k3 = E.derivative(_moved(x, 0.5 * h, k2), p, torque, coupled, load)
-        k4 = E.derivative(_moved(x, h, k3), p, torque, coupled, load)
-        x = _moved(_moved(_moved(_moved(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
+    """`count` steps over `duration` seconds with constant inputs.
+
+    A step in which dry friction stops the rotor is cut there: it then sticks or turns the other way.
+    """
+    whole = duration / count
+    h, done, cut = whole, 0, False
+    while done < count:
+        before = E.relative_speed(x)
+        y = _step(x, p, torque, coupled, load, h, before)
+        after = E.relative_speed(y)
+        if cut:
+            x = (y[E.HOUSING_SPEED], y[1], y[2], y[3], y[4], y[5], y[6], y[7], y[8], y[9])
+            h, cut = whole - h, False
+        elif before * after < 0.0 and has_friction(p):
+            h, cut = h * before / (before - after), True
+        else:
+            x = y
+            h, done = whole, done + 1
     return x
 
 
@@ -97,11 +118,11 @@ def sample(x, p, slewed, old, new, late, dt, coupled, load, longest_step):  # ty
 def outputs(x, p, slewed, coupled, load, row):  # type: ignore[no-untyped-def]
     """Fill `row` with the measurable quantities of a state."""
     acting = x[E.LAGGED] if p[P.LAG] > 0.0 else slewed
-    row[OUT_MOTOR_SPEED] = x[E.ROTOR_SPEED] - x[E.HOUSING_SPEED]
+    row[OUT_MOTOR_SPEED] = E.relative_speed(x)
     row[OUT_WHEEL_SPEED] = x[E.WHEEL_SPEED]
     if p[P.KIND] == P.RIGID:
         outside = E.running_resistance(x[E.WHEEL_SPEED], p) if coupled else load
-        wheel = E.rigid_acceleration(x, p, acting, outside) / p[P.GEAR_RATIO]
+        wheel = E.rigid_acceleration(x, p, acting, outside, E.relative_speed(x)) / p[P.GEAR_RATIO]
         row[OUT_SHAFT_TORQUE] = p[P.VEHICLE_INERTIA] * wheel + outside
     else:
         row[OUT_SHAFT_TORQUE] = E.shaft_torque(x, p)

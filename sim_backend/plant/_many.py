@@ -1,7 +1,6 @@
 """Replays one torque through many models at once, averaged over blocks of samples: for fits.
 
-Same equations as the step-by-step kernel, except that dry friction truly sticks: an elastic contact of a
-fraction of a milliradian that slips at the friction torque, where the kernel has a steep smooth sign.
+Same equations as the step-by-step kernel; the linear part moves exactly, the nonlinear forces are inputs.
 """
 
 from __future__ import annotations
@@ -14,19 +13,16 @@ import numpy.typing as npt
 from numba import prange
 
 from hil.core.compiled import compiled, compiled_parallel, inlined
+from sim_backend.plant import _held_forces as F
 from sim_backend.plant import _slots as P
+from sim_backend.plant._friction import friction_level, has_friction, mean_friction
 from sim_backend.plant._held_linear import STATES, step_matrices
+from sim_backend.plant._kernel import as_tuple
 
 Array = npt.NDArray[np.float64]
 
 CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 GAIN, OFFSET, DELAY = range(3)
-
-_STICK_RATE_RAD_S = 250.0  # of the rotor on its sticking contact: above all modes, below 1 / step
-_STICK_DAMPING = 0.7
-_STRIBECK_WIDTH_RAD_S = 2.0
-_ROLLING_WIDTH_RAD_S = 0.05
-_SLIP, _STICK, _WHEEL_ANGLE, _MOTOR_ANGLE = range(4)  # further states, of the nonlinear forces alone
 
 
 def ideal_sensors(sets: int) -> Array:
@@ -62,13 +58,13 @@ def simulate_many(
     substeps = np.array([_substeps(p) for p in parameters])
     most = int(substeps.max())
     transition = np.zeros((sets, STATES, STATES))
-    torque = np.zeros((sets, most, 2, STATES))
+    torque = np.zeros((sets, 2 * most, STATES))
     held, rising = np.zeros((sets, 3, STATES)), np.zeros((sets, 3, STATES))
     for index, p in enumerate(parameters):
         used = int(substeps[index])
         matrices = _matrices(p[_LINEAR].tobytes(), dt, used)
         transition[index], held[index], rising[index] = matrices[0], matrices[2], matrices[3]
-        torque[index, :used] = matrices[1]
+        torque[index, : 2 * used] = matrices[1].reshape(-1, STATES)
     out = np.empty((sets, len(torque_nm) // block, len(CHANNELS)))
     _run_all(
         np.ascontiguousarray(torque_nm, dtype=float),
@@ -103,8 +99,7 @@ _LINEAR = [
     P.MOUNT_STIFFNESS,
     P.MOUNT_DAMPING,
 ]
-_STATELESS = [P.CUBIC, P.WHEEL_ORDER_AMPLITUDE, P.MOTOR_ORDER_AMPLITUDE, P.ROLLING, P.AERO]
-_ABRUPT = [P.HALF_GAP, P.HYSTERESIS_STIFFNESS, P.COULOMB, P.STRIBECK]
+_ABRUPT = [P.HALF_GAP, P.HYSTERESIS_STIFFNESS]
 
 
 @lru_cache(maxsize=512)
@@ -140,180 +135,116 @@ def _acting(torque, dt, p, out):  # type: ignore[no-untyped-def]
             slewed = moved
 
 
-@inlined
-def _friction_level(speed, p):  # type: ignore[no-untyped-def]
-    ratio = speed / _STRIBECK_WIDTH_RAD_S
-    return p[P.COULOMB] + p[P.STRIBECK] * math.exp(-ratio * ratio)
+@compiled
+def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
+    if p[P.KIND] == P.RIGID:
+        wheel = start[0] / p[P.GEAR_RATIO]
+        return (start[0], 0.0, wheel, 0.0, wheel, acting, 0.0, 0.0)
+    twist = start[2] / p[P.SHAFT_STIFFNESS]
+    if p[P.HALF_GAP] > 0.0:
+        # a small torque may lie anywhere in the gap: let it come smoothly to one side
+        twist += p[P.HALF_GAP] * math.tanh(start[2] / 2.0)
+    tyre = start[2] / p[P.TYRE_STIFFNESS] if p[P.KIND] == P.THREE_INERTIA else 0.0
+    return (start[0], twist, start[1], tyre, start[1], acting, 0.0, 0.0)
 
 
 @inlined
-def _twist_rate(x, p):  # type: ignore[no-untyped-def]
-    return x[7] + (x[0] - x[7]) / p[P.GEAR_RATIO] - x[2]
-
-
-@inlined
-def _forces(x, further, p):  # type: ignore[no-untyped-def]
-    """Extra shaft torque, extra rotor loss and load on the vehicle, in N m."""
-    shaft = 0.0
-    if p[P.KIND] != P.RIGID:
-        v = _twist_rate(x, p)
-        e = x[1]
-        gap = p[P.HALF_GAP]
-        if gap > 0.0:
-            linear = p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v
-            if e > gap:
-                e -= gap
-                shaft = max(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v) - linear
-            elif e < -gap:
-                e += gap
-                shaft = min(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v) - linear
-            else:
-                e = 0.0
-                shaft = -linear
-        shaft += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * further[_SLIP]
-        if p[P.WHEEL_ORDER_AMPLITUDE] != 0.0:
-            shaft += p[P.WHEEL_ORDER_AMPLITUDE] * math.sin(
-                p[P.WHEEL_ORDER] * further[_WHEEL_ANGLE] + p[P.WHEEL_ORDER_PHASE]
-            )
-    loss = p[P.FRICTION_OFFSET]
-    speed = x[0] - x[7]
-    if p[P.COULOMB] != 0.0 or p[P.STRIBECK] != 0.0:
-        level = _friction_level(speed, p)
-        share = further[_STICK]
-        loss += level * share
-        if abs(share) < 1.0:
-            inertia = p[P.MOTOR_INERTIA]
-            if p[P.KIND] == P.RIGID:
-                inertia += p[P.VEHICLE_INERTIA] / (p[P.GEAR_RATIO] * p[P.GEAR_RATIO])
-            damping = 2.0 * _STICK_DAMPING * _STICK_RATE_RAD_S * inertia * speed
-            loss += min(max(damping, -0.5 * level), 0.5 * level)
-    if p[P.MOTOR_ORDER_AMPLITUDE] != 0.0:
-        angle = p[P.MOTOR_ORDER] * further[_MOTOR_ANGLE] + p[P.MOTOR_ORDER_PHASE]
-        loss -= p[P.MOTOR_ORDER_AMPLITUDE] * math.sin(angle)
-    load = 0.0
-    if p[P.ROLLING] != 0.0 or p[P.AERO] != 0.0:
-        at = x[4]
-        load = p[P.ROLLING] * math.tanh(at / _ROLLING_WIDTH_RAD_S) + p[P.AERO] * at * abs(at)
-    return shaft, loss, load
-
-
-@inlined
-def _follow(old, x, further, h, p):  # type: ignore[no-untyped-def]
-    """Further states after a step in which the main state goes from `old` to `x`."""
-    angle = further[_WHEEL_ANGLE] + 0.5 * h * (old[2] + x[2])
-    slipped, stuck = further[_SLIP], further[_STICK]
-    if p[P.HYSTERESIS_STIFFNESS] != 0.0:
-        v = 0.5 * (_twist_rate(old, p) + _twist_rate(x, p))
-        slip = p[P.HYSTERESIS_SLIP]
-        ratio = further[_SLIP] / slip
-        if ratio * v <= 0.0:
-            slipped += h * v
-        else:
-            # r' = (v / slip)·(1 - r²) has the solution tanh: no step is too long for it
-            rise = math.tanh(h * v / slip)
-            slipped = slip * (ratio + rise) / (1.0 + ratio * rise)
-        slipped = min(max(slipped, -slip), slip)
-    level = p[P.COULOMB] + p[P.STRIBECK]
-    if level > 0.0:
-        inertia = p[P.MOTOR_INERTIA]
-        if p[P.KIND] == P.RIGID:
-            inertia += p[P.VEHICLE_INERTIA] / (p[P.GEAR_RATIO] * p[P.GEAR_RATIO])
-        stretch = level / (inertia * _STICK_RATE_RAD_S * _STICK_RATE_RAD_S)
-        speed = 0.5 * (old[0] - old[7] + x[0] - x[7])
-        stuck = min(max(stuck + h * speed / stretch, -1.0), 1.0)
-    return slipped, stuck, angle, p[P.GEAR_RATIO] * (x[1] + angle - x[6])
-
-
-@inlined
-def _at(angles, at, dt, further):  # type: ignore[no-untyped-def]
-    """Further states with the given angles at the time `at`, if any are given."""
-    if angles.shape[0] == 0:
-        return further
-    k = min(int(at / dt), angles.shape[0] - 2)
-    part = at / dt - k
+def _plus(y, matrix, row, s):  # type: ignore[no-untyped-def]
+    """State y + s·(row of the matrix). States are tuples: the compiler keeps them in registers."""
     return (
-        further[0],
-        further[1],
-        angles[k, 0] + part * (angles[k + 1, 0] - angles[k, 0]),
-        angles[k, 1] + part * (angles[k + 1, 1] - angles[k, 1]),
+        y[0] + s * matrix[row, 0],
+        y[1] + s * matrix[row, 1],
+        y[2] + s * matrix[row, 2],
+        y[3] + s * matrix[row, 3],
+        y[4] + s * matrix[row, 4],
+        y[5] + s * matrix[row, 5],
+        y[6] + s * matrix[row, 6],
+        y[7] + s * matrix[row, 7],
     )
 
 
-@compiled
-def _first_state(p, start, acting, x):  # type: ignore[no-untyped-def]
-    x[:] = 0.0
-    x[0], x[2], x[5] = start[0], start[1], acting
-    if p[P.KIND] == P.RIGID:
-        x[2] = start[0] / p[P.GEAR_RATIO]
-    else:
-        twist = start[2] / p[P.SHAFT_STIFFNESS]
-        if p[P.HALF_GAP] > 0.0:
-            # a small torque may lie anywhere in the gap: let it come smoothly to one side
-            twist += p[P.HALF_GAP] * math.tanh(start[2] / 2.0)
-        x[1] = twist
-    if p[P.KIND] == P.THREE_INERTIA:
-        x[3] = start[2] / p[P.TYRE_STIFFNESS]
-    x[4] = x[2]
+@inlined
+def _moved(x, sub, old, new, column, transition):  # type: ignore[no-untyped-def]
+    """State after substep `sub` from `x` without any nonlinear force."""
+    y = _plus((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), column, 2 * sub, old)
+    y = _plus(y, column, 2 * sub + 1, new)
+    y = _plus(y, transition, 0, x[0])
+    y = _plus(y, transition, 1, x[1])
+    y = _plus(y, transition, 2, x[2])
+    y = _plus(y, transition, 3, x[3])
+    y = _plus(y, transition, 4, x[4])
+    y = _plus(y, transition, 5, x[5])
+    y = _plus(y, transition, 6, x[6])
+    return _plus(y, transition, 7, x[7])
 
 
 @compiled
-def _observe(x, f, p, acting, row):  # type: ignore[no-untyped-def]
-    row[0] = x[0] - x[7]
-    row[1] = x[2]
-    if p[P.KIND] == P.RIGID:
-        n = p[P.GEAR_RATIO]
-        inertia = p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / (n * n)
-        rotor = (acting - f[1] - p[P.DRAG] * x[0] - f[2] / n) / inertia
-        row[2] = p[P.VEHICLE_INERTIA] * rotor / n + f[2]
-    else:
-        row[2] = p[P.SHAFT_STIFFNESS] * x[1] + p[P.SHAFT_DAMPING] * _twist_rate(x, p) + f[0]
-
-
-@compiled
-def _run(torque, dt, p, start, substeps, transition, column, held, rising, angles, fine):  # type: ignore[no-untyped-def]
-    """One model over the whole recording into `fine` (n x 3)."""
-    n = torque.shape[0]
-    acting = np.empty(n)
-    _acting(torque, dt, p, acting)
-    whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
-    h = dt / substeps
-    forced = p[P.FRICTION_OFFSET] != 0.0 or p[P.HALF_GAP] > 0.0 or p[P.HYSTERESIS_STIFFNESS] != 0.0
-    forced = forced or p[P.COULOMB] != 0.0 or p[P.STRIBECK] != 0.0 or p[P.CUBIC] != 0.0
-    forced = forced or p[P.WHEEL_ORDER_AMPLITUDE] != 0.0 or p[P.MOTOR_ORDER_AMPLITUDE] != 0.0
-    forced = forced or p[P.ROLLING] != 0.0 or p[P.AERO] != 0.0
-    x, y, z = np.zeros(STATES), np.zeros(STATES), np.zeros(STATES)
-    further, f = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
-    _first_state(p, start, acting[0], x)
-    if forced:
-        if x[0] != 0.0:
-            further = (0.0, math.tanh(x[0] / 0.2), 0.0, p[P.GEAR_RATIO] * x[1])
-        f = _forces(x, further, p)
-    for k in range(n):
+def _run_linear(acting, whole, p, x, substeps, column, transition, fine):  # type: ignore[no-untyped-def]
+    for k in range(acting.shape[0]):
         new = acting[max(k - whole, 0)]
         old = acting[max(k - whole - 1, 0)]
-        _observe(x, f, p, old, fine[k])
+        fine[k, 0] = x[0] - x[7]
+        fine[k, 1] = x[2]
+        fine[k, 2] = F.shaft_torque(x, (0.0, 0.0, 0.0), p, old)
         for sub in range(substeps):
-            for i in range(8):
-                y[i] = column[sub, 0, i] * old + column[sub, 1, i] * new
-            for j in range(8):
-                xj = x[j]
-                for i in range(8):
-                    y[i] += transition[j, i] * xj
-            if forced:
-                for i in range(8):
-                    y[i] += held[0, i] * f[0] + held[1, i] * f[1] + held[2, i] * f[2]
-                later = k * dt + (sub + 1) * h
-                g = _forces(y, _at(angles, later, dt, _follow(x, y, further, h, p)), p)
-                for i in range(8):
-                    z[i] = y[i] + rising[0, i] * (g[0] - f[0])
-                    z[i] += rising[1, i] * (g[1] - f[1]) + rising[2, i] * (g[2] - f[2])
-                further = _at(angles, later, dt, _follow(x, z, further, h, p))
-                f = _forces(z, further, p)
-                for i in range(8):
-                    x[i] = z[i]
-            else:
-                for i in range(8):
-                    x[i] = y[i]
+            x = _moved(x, sub, old, new, column, transition)
+
+
+@compiled
+def _run_forced(acting, whole, p, x, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+    varies, dry, turns = F.varies(p), has_friction(p), F.turns(p)
+    varies = varies or p[P.STRIBECK] != 0.0  # with the speed
+    gain = held[1, 7] - held[1, 0]  # of the relative speed: what a loss of 1 N m takes off it in a step
+    slip, friction = 0.0, 0.0
+    at = (0.0, p[P.GEAR_RATIO] * x[1])
+    if angles.shape[0] > 0:
+        at = (angles[0, 0], angles[0, 1])
+    f = F.forces(x, slip, at, p)
+    for k in range(acting.shape[0]):
+        new = acting[max(k - whole, 0)]
+        old = acting[max(k - whole - 1, 0)]
+        fine[k, 0] = x[0] - x[7]
+        fine[k, 1] = x[2]
+        fine[k, 2] = F.shaft_torque(x, f, p, old)
+        for sub in range(substeps):
+            y = _moved(x, sub, old, new, column, transition)
+            y = _plus(_plus(_plus(y, held, 0, f[0]), held, 1, f[1]), held, 2, f[2])
+            before = x[0] - x[7]
+            if dry:
+                level = friction_level(before, p)
+                friction = mean_friction(before, y[0] - y[7], gain, level)
+                y = _plus(y, held, 1, friction)
+            if varies:
+                part = (sub + 1.0) / substeps
+                later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
+                g = F.forces(y, F.slipped(slip, x, y, h, p), later, p)
+                middle = 0.5 * (before + y[0] - y[7])
+                y = _plus(_plus(y, rising, 0, g[0] - f[0]), rising, 1, g[1] - f[1])
+                y = _plus(y, rising, 2, g[2] - f[2])
+                if dry:
+                    level = friction_level(middle, p)
+                    free = y[0] - y[7] + gain * friction
+                    y = _plus(y, held, 1, mean_friction(before, free, gain, level) - friction)
+                if turns:
+                    at = F.angles_at(angles, k, part, x, y, at, h, p)
+                slip = F.slipped(slip, x, y, h, p)
+                f = F.forces(y, slip, at, p)
+            x = y
+
+
+@compiled
+def _run(torque, dt, vector, start, substeps, transition, column, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+    """One model over the whole recording into `fine` (n x 3)."""
+    p = as_tuple(vector)
+    acting = np.empty(torque.shape[0])
+    _acting(torque, dt, p, acting)
+    x = _first_state(p, start, acting[0])
+    whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
+    if F.varies(p) or has_friction(p) or p[P.FRICTION_OFFSET] != 0.0:
+        h = dt / substeps
+        _run_forced(acting, whole, p, x, h, substeps, column, transition, held, rising, angles, fine)
+    else:
+        _run_linear(acting, whole, p, x, substeps, column, transition, fine)
 
 
 @compiled

@@ -9,11 +9,14 @@ from hil.analysis.diagnosis._result import (
     NamedEffect,
     Overlay,
 )
+from hil.analysis.diagnosis._sanity import examine
+from hil.analysis.diagnosis._trace import LEAST_SAMPLES, unbroken
 from hil.analysis.diagnosis._words import Where
 
 __all__ = [
     "BANDS_HZ",
     "CONDITIONS",
+    "LEAST_SAMPLES",
     "Alternative",
     "ChannelGap",
     "Considered",
@@ -23,4 +26,6 @@ __all__ = [
     "Overlay",
     "Where",
     "diagnose",
+    "examine",
+    "unbroken",
 ]

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from hil.analysis.diagnosis._coordinates import key_of
 from hil.analysis.diagnosis._fit import Fit
 from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._result import Alternative
-from hil.analysis.diagnosis._search import Found, evidence
+from hil.analysis.diagnosis._search import Found
 from hil.analysis.diagnosis._separating import separating_plan
 from hil.core.effects import EFFECTS
+from hil.core.model import EffectUse
 
 _HALF_MARGIN = 12.0  # evidence over a rival at which it is about one in ten
 _FLOOR = 0.005
@@ -21,53 +23,78 @@ def _odds(margin: float) -> float:
     return float(np.exp(-np.clip(margin, 0.0, 400.0) / (_HALF_MARGIN / 2.2)))
 
 
-def rivals(problem: Problem, found: Found, index: int) -> list[tuple[Fit, float]]:
-    """Fits of other effects in place of effect `index`, with the evidence against each."""
-    if index >= len(found.steps):
-        return []
+def rivals(found: Found, index: int) -> list[tuple[Fit, float]]:
+    """Fits of as many effects without effect `index`, with the evidence against each, closest first."""
     best = found.best
-    named = set(best.hypothesis.keys)
-    step = found.steps[index]
-    same_size = [f for f in step.fits if f.hypothesis.keys[-1] not in named]
-    reference = next((f for f in step.fits if f.hypothesis.keys[-1] in named), None)
-    if reference is None:
-        return []
-    return [(f, evidence(problem, f, reference)) for f in same_size]
+    key = best.hypothesis.keys[index]
+    kept: dict[frozenset[tuple[str, str]], tuple[Fit, float]] = {}
+    for step in found.steps:
+        for one in step.fits:
+            if len(one.hypothesis.terms) == len(best.hypothesis.terms) and key not in one.hypothesis.keys:
+                margin = found.evidence.between(one, best)
+                kept.setdefault(frozenset(one.hypothesis.keys), (one, margin))
+    return sorted(kept.values(), key=lambda pair: pair[1])
 
 
-def confidence_of(problem: Problem, found: Found, index: int) -> float:
+def confidence_of(found: Found, index: int) -> float:
     """Chance that effect number `index` of the accepted hypothesis is rightly named."""
-    weight = sum(_odds(margin) for _, margin in rivals(problem, found, index))
+    weight = sum(_odds(margin) for _, margin in rivals(found, index))
     sure = 1.0 / (1.0 + weight)
-    left = float(np.sqrt(max(found.best.cost / problem.rows, 1.0)))
-    closing = 1.0 - _FLOOR if left < 1.1 else 0.97 if left < 1.6 else 0.9
+    worst = found.evidence.worst(found.best)
+    closing = 1.0 - _FLOOR if worst < 1.05 else 0.97 if worst < 1.2 else 0.9
     return sure * closing
 
 
-def alternatives_of(problem: Problem, found: Found, verdict: str) -> tuple[Alternative, ...]:
+def alternatives_of(found: Found, verdict: str) -> tuple[Alternative, ...]:
     """Other names worth knowing, with the experiment that would tell them apart."""
-    kept = []
-    for index in range(len(found.best.hypothesis.terms) if verdict == "named" else len(found.steps[:1])):
-        pairs = (
-            rivals(problem, found, index)
-            if verdict == "named"
-            else [(f, 0.0) for f in found.steps[0].fits[:2]]
-        )
-        total = 1.0 + sum(_odds(m) for _, m in pairs)
-        for fit, margin in pairs:
-            confidence = _odds(margin) / total if verdict == "named" else 0.05
-            use = fit.hypothesis.model(fit.theta).effects[-1]
-            text, plan = EFFECTS[use.id].shown_by, None
-            if confidence > _WORTH_A_PLAN:
-                rival = fit.hypothesis.model(fit.theta)
-                mine = found.steps[index].fits[0]
-                text, plan = separating_plan(
-                    mine.hypothesis.model(mine.theta),
-                    rival,
-                    problem.noise,
-                    max(float(np.max(np.abs(t.torque))) for t in problem.traces),
-                    (mine.hypothesis.ids[-1], use.id),
-                )
-            name = f"separate_{use.id}.yaml" if plan else None
-            kept.append(Alternative(use, confidence, text, name, plan))
-    return tuple(sorted(kept, key=lambda a: -a.confidence)[:5])
+    kept: dict[tuple[str, str], Alternative] = {}
+    for mine, one, confidence in _others(found, verdict):
+        others = [u for u, k in _uses(one) if k not in mine.hypothesis.keys]
+        if mine is one:
+            others = [u for u, _ in _uses(one)]
+        if not others or key_of(others[0]) in kept:
+            continue
+        use = others[0]
+        text, plan = EFFECTS[use.id].shown_by, None
+        if confidence > _WORTH_A_PLAN and mine is not one:
+            problem = found.evidence.problem
+            text, plan = separating_plan(
+                mine.hypothesis.model(mine.theta),
+                one.hypothesis.model(one.theta),
+                problem.noise,
+                max(float(np.max(np.abs(t.torque))) for t in problem.traces),
+                (mine.hypothesis.ids[-1], use.id),
+                speed_rad_s=max(_largest(problem, 1), _largest(problem, 0) / problem.gear_ratio),
+                shaft_torque_nm=_largest(problem, 2) or None,
+            )
+        name = "_".join(part for part in ("separate", *key_of(use)) if part) + ".yaml" if plan else None
+        kept[key_of(use)] = Alternative(use, confidence, text, name, plan)
+    return tuple(sorted(kept.values(), key=lambda a: -a.confidence)[:5])
+
+
+def _largest(problem: Problem, column: int) -> float:
+    """Largest value of a channel in the recordings, 0 where it was not measured."""
+    return max(float(np.max(np.abs(np.nan_to_num(t.measured[:, column])))) for t in problem.traces)
+
+
+def _others(found: Found, verdict: str) -> list[tuple[Fit, Fit, float]]:
+    """(what it is held against, rival, its confidence)."""
+    if verdict == "none":
+        return []
+    if verdict == "named":
+        pairs = []
+        for index in range(len(found.best.hypothesis.terms)):
+            against = rivals(found, index)
+            total = 1.0 + sum(_odds(margin) for _, margin in against)
+            pairs += [(found.best, one, _odds(margin) / total) for one, margin in against]
+        return pairs
+    if not found.steps or not found.steps[0].fits:
+        return []
+    first, *rest = found.steps[0].fits
+    second = rest[0] if rest else first
+    return [(second, first, 0.05), (first, second, 0.05)]
+
+
+def _uses(one: Fit) -> list[tuple[EffectUse, tuple[str, str]]]:
+    uses = one.hypothesis.model(one.theta).effects[len(one.hypothesis.base.effects) :]
+    return [(use, key_of(use)) for use in uses]

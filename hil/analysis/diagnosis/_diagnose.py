@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis._alignment import align, has_ripple
 from hil.analysis.diagnosis._confidence import alternatives_of, confidence_of
 from hil.analysis.diagnosis._consequences import consequences, loop_area
 from hil.analysis.diagnosis._coordinates import TOLERANCE, Hypothesis, key_of
@@ -22,11 +23,11 @@ from hil.analysis.diagnosis._gap import (
     simulated_samples,
 )
 from hil.analysis.diagnosis._problem import Problem, whitening_of
-from hil.analysis.diagnosis._quantization import coarse_noise, grids
+from hil.analysis.diagnosis._quantization import coarse_noise, grids, rounding_of
 from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
-from hil.analysis.diagnosis._sanity import check
-from hil.analysis.diagnosis._search import Found, carried, colour, floor_of, search
-from hil.analysis.diagnosis._trace import Trace, noise_levels, trace_of
+from hil.analysis.diagnosis._sanity import check, examine
+from hil.analysis.diagnosis._search import LEAST_EVIDENCE, Found, carried, search
+from hil.analysis.diagnosis._trace import Trace, noise_levels, trace_of, unbroken
 from hil.analysis.diagnosis._words import Where, signature, where
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
@@ -34,11 +35,11 @@ from hil.core.recording import Recording
 
 Array = npt.NDArray[np.float64]
 
-_SMALL_EXCESS = 0.2  # of the noise power: below it, coloured noise explains what is left
-_CLOSED = 0.9  # share of the gap's power that a named hypothesis closes at least ...
-_CLOSED_TO = 1.15  # ... unless it reaches the noise up to this factor
+#: Named effects close at least this share of the gap's power, and leave at most this factor over the noise:
+#: a large effect may be closed less finely, because its formula is never quite that of the axle.
+_SHUT = ((0.5, 1.03), (0.95, 1.15), (0.97, 1.6), (0.995, np.inf))
+_MORE = 0.001  # of the share for each further name
 _FAR_FROM_NOISE = 50.0
-_RIPPLES = ("wheel_order_disturbance", "motor_order_ripple")
 
 
 def diagnose(
@@ -66,18 +67,20 @@ def diagnose(
             fix="give the chain that `hil identify` writes as physical.toml",
         )
     show("reading the noise")
-    traces = [trace_of(r) for r in recordings]
+    traces = [trace_of(piece) for r in recordings for piece in unbroken(r)]
+    examine(model, holdout)
+    held = [trace_of(piece) for r in holdout for piece in unbroken(r)]
     noise = _usable_noise(noise_levels(traces))
     notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + check(model, traces, noise)
     rounded = grids(traces, noise)
     problem = Problem(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
     hypothesis = Hypothesis(model)
-    found = search(problem, hypothesis, show)
+    found = search(problem, hypothesis, show, rounding_of(problem, rounded))
     show("judging")
-    verdict = verdict_of(problem, found, bool(rounded))
+    verdict = verdict_of(found, bool(rounded))
     if verdict == "named":
         found.best = _reweighted(problem, found.best)
-    judged = _Judged(problem, found, verdict, [trace_of(r) for r in holdout])
+    judged = _Judged(problem, found, verdict, held)
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)
 
 
@@ -104,15 +107,15 @@ def _usable_noise(noise: Array) -> Array:
     return np.where(np.isfinite(noise), np.maximum(noise, 1e-6), np.nan)
 
 
-def verdict_of(problem: Problem, found: Found, rounded: bool) -> Verdict:
+def verdict_of(found: Found, rounded: bool) -> Verdict:
     """Named if the accepted effects close the gap, unknown if a gap stays, else none."""
-    base, best = found.base, found.best
-    first = (base.cost - floor_of(problem, base)) / problem.rows
-    left = (best.cost - floor_of(problem, best)) / problem.rows
+    evidence, best = found.evidence, found.best
     if best.hypothesis.terms:
-        closed = 1.0 - max(left, 0.0) / max(first, 1e-9)
-        return "named" if closed > _CLOSED or np.sqrt(1.0 + max(left, 0.0)) < _CLOSED_TO else "unknown"
-    if left > _SMALL_EXCESS and colour(base) > 1.2:
+        share, worst = evidence.share(best), evidence.worst(best)
+        several = len(best.hypothesis.terms) - 1
+        shut = any(share > least + _MORE * several and worst < most for least, most in _SHUT)
+        return "named" if shut else "unknown"
+    if not evidence.closed(best):
         return "unknown"
     return "named" if rounded else "none"
 
@@ -130,25 +133,25 @@ class _Judged:
         base, best = self.found.base, self.found.best
         verdict = self.verdict
         kept = best if verdict == "named" and best.hypothesis.terms else base
-        free, after = self._free(kept)
-        before = self._nominal(free)
-        map_before, map_after = gap_map(free, before), gap_map(free, after)
+        problem = self.problem
+        colouring = self.found.evidence.colouring(self.found.best)
+        problem.floor = problem.floor * colouring
+        after = simulated_samples(problem, kept.hypothesis, kept.theta, kept.starts)
+        before = self._nominal(problem)
+        map_before, map_after = gap_map(problem, before), gap_map(problem, after)
         model = kept.hypothesis.model(kept.theta)
         updates, kept_parameters = self._updates(kept)
         model = model.with_parameters(**kept_parameters)
         tail = tuple(rounded) if verdict == "named" else ()
         model = model.with_effects(*_lasting(model), *tail)
         held_before, held_after = self._held(kept)
-        effects = (
-            self._effects(kept, free, after, map_before, map_after, rounded) if verdict == "named" else ()
-        )
+        effects = self._effects(kept, after, map_before, map_after, rounded) if verdict == "named" else ()
         if verdict == "named" and not effects:
             # Small corrections of parameters were all that was found: do they explain the data?
-            left = (kept.cost - floor_of(self.problem, kept)) / self.problem.rows
-            verdict = "unknown" if left > _SMALL_EXCESS else "none"
+            verdict = "none" if self.found.evidence.closed(kept) else "unknown"
         overlays = tuple(
             Overlay(t.name, t.dt, t.torque, t.samples, b, a)
-            for t, b, a in zip(free.traces, before, after, strict=True)
+            for t, b, a in zip(problem.traces, before, after, strict=True)
         )
         return Diagnosis(
             verdict=verdict,
@@ -156,10 +159,10 @@ class _Judged:
             model=model,
             effects=effects,
             parameter_updates=updates,
-            alternatives=alternatives_of(self.problem, self.found, verdict),
+            alternatives=alternatives_of(self.found, verdict),
             considered=self._considered(kept),
-            gap_before=channel_gaps(free, before),
-            gap_after=channel_gaps(free, after),
+            gap_before=channel_gaps(problem, before),
+            gap_after=channel_gaps(problem, after),
             holdout_before=held_before,
             holdout_after=held_after,
             map_before=map_before,
@@ -171,17 +174,6 @@ class _Judged:
             loop_area_j=loop_area(model),
             consequences=consequences(base.hypothesis.base, model),
         )
-
-    def _free(self, kept: Fit) -> tuple[Problem, list[Array]]:
-        """Ripples let go of the measured angle, refitted a little, and the simulation at full rate."""
-        free = self.problem.again(steered=False)
-        if any(t.id in _RIPPLES for t in kept.hypothesis.terms):
-            again = fit(free, kept.hypothesis, kept.starts, kept.theta, rounds=6)
-            if again.cost < 1.3 * kept.cost:
-                kept.theta, kept.starts = again.theta, again.starts
-            else:
-                free = self.problem
-        return free, simulated_samples(free, kept.hypothesis, kept.theta, kept.starts)
 
     def _nominal(self, problem: Problem) -> list[Array]:
         """The base model as it came, from its best initial values."""
@@ -195,13 +187,17 @@ class _Judged:
             return {}, {}
         ratio = kept.hypothesis.base.parameters["gear_ratio"]
         noise = _usable_noise(noise_levels(self.holdout))
-        problem = Problem(self.holdout, noise, ratio, steered=False)
+        colouring = self.found.evidence.colouring(self.found.best)
+        problem = Problem(self.holdout, noise, ratio, floor=noise * colouring)
         gaps = []
         for hypothesis, theta in (
             (self.found.base.hypothesis, self.found.base.hypothesis.start()),
             (kept.hypothesis, kept.theta),
         ):
             starts = settled_starts(problem, hypothesis, theta, problem.first_starts(hypothesis))
+            if has_ripple(hypothesis):
+                align(problem, hypothesis, theta, starts)
+                starts = settled_starts(problem, hypothesis, theta, starts)
             gaps.append(channel_gaps(problem, simulated_samples(problem, hypothesis, theta, starts)))
         return gaps[0], gaps[1]
 
@@ -226,7 +222,6 @@ class _Judged:
     def _effects(
         self,
         kept: Fit,
-        free: Problem,
         after: list[Array],
         map_before: GapMap,
         map_after: GapMap,
@@ -240,7 +235,7 @@ class _Judged:
                 continue  # a correction within the calibration tolerance is an update, not a finding
             fewer = kept.hypothesis.without(index)
             theta = carried(kept, fewer)
-            without = simulated_samples(free, fewer, theta, kept.starts)
+            without = simulated_samples(self.problem, fewer, theta, kept.starts)
             standard = {}
             for c, error in zip(kept.hypothesis.coordinates(), errors, strict=True):
                 if c.term == index:
@@ -248,14 +243,12 @@ class _Judged:
                     standard[c.name] = float(error * (abs(value) if c.scale == "log" else 1.0))
                 if use.id == "parameter_mismatch" and c.term < 0 and c.name == use.values["parameter"]:
                     standard["value"] = float(error) * float(use.values["value"])
-            place = where(free, without, after, map_before, map_after)
-            named.append(
-                NamedEffect(_clean(use), standard, confidence_of(self.problem, self.found, index), place)
-            )
+            place = where(self.problem, without, after, map_before, map_after)
+            named.append(NamedEffect(_clean(use), standard, confidence_of(self.found, index), place))
         for use in rounded:
             place = Where(
                 (str(use.values["channel"]),),
-                (0.0, round(0.5 / free.traces[0].dt, 1)),
+                (0.0, round(0.5 / self.problem.traces[0].dt, 1)),
                 "at all operating conditions",
             )
             named.append(NamedEffect(use, {"step": 0.0}, 0.99, place))
@@ -278,7 +271,7 @@ class _Judged:
 
 
 def _reason(one: Fit | None, gain: float, fits: list[Fit]) -> str:
-    if gain < 45.0:
+    if gain < LEAST_EVIDENCE:
         return "no evidence: the drop is what noise would give"
     if one is None:
         return "explains far less than the best by its linearised score; not fitted"

@@ -119,7 +119,7 @@ def _band_ratios(error: Array, dt: float) -> Array:
 def conditions_of(samples: Array, torque: Array, dt: float) -> Array:
     """Which samples belong to each of `CONDITIONS`, as 0/1, conditions x samples; each to one alone."""
     speed = np.abs(np.where(np.isfinite(samples[:, 0]), samples[:, 0], samples[:, 1]))
-    fastest = max(float(np.nanmax(speed)), 1e-9)
+    fastest = max(float(np.max(np.nan_to_num(speed), initial=0.0)), 1e-9)
     largest = max(float(np.max(np.abs(torque))), 1e-9)
     flips = np.flatnonzero(np.diff(np.sign(torque)) != 0)
     near_flip = np.zeros(len(torque))

@@ -99,7 +99,9 @@ def _responses(slots: Array, frequency: Array, side: str) -> Array:
         s[:, None, None] * np.eye(len(a)) - a, np.broadcast_to(column[:, None], (len(s), len(a), 1))
     )
     found = (c @ states)[:, :, 0]
-    if side == "wheel":
+    if slots[P.KIND] == P.RIGID:
+        found[:, 2] = slots[P.VEHICLE_INERTIA] * s * found[:, 1]
+    elif side == "wheel":
         found[:, 2] += 1.0
     return np.asarray(found)
 

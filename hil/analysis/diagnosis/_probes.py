@@ -103,26 +103,46 @@ def _scaled(id_: str, name: str, unit: float, lower: float, upper: float, **othe
     return Probe(id_, (direction,), lambda a: {**others, name: float(a[0]) * unit})
 
 
+_STRETCH = (0.5, 1.6)  # how far a response may be stretched to stand for a neighbouring size
+
+
 def _fixed(id_: str, **values: float | str) -> Probe:
-    return Probe(id_, (Direction(dict(values)),), lambda _: dict(values))
+    """An effect of one size; neighbouring sizes look alike, whatever their numbers are."""
+    return Probe(id_, (Direction(dict(values), *_STRETCH),), lambda _: dict(values))
+
+
+def _sized(id_: str, name: str, size: float, lower: float = _STRETCH[0]) -> Probe:
+    """An effect whose response goes about with its one number near `size`."""
+    return _scaled(id_, name, size, lower, _STRETCH[1])
 
 
 def _dead_time(scene: Scene) -> Iterator[Probe]:
     del scene
     yield _scaled("dead_time", "extra_delay_s", 5e-4, 0.0, 8.0)
     for delay in (0.003, 0.008, 0.016, 0.03):
-        yield _fixed("dead_time", extra_delay_s=delay)
+        yield _sized("dead_time", "extra_delay_s", delay)
 
 
 def _lag(scene: Scene) -> Iterator[Probe]:
     del scene
-    for constant in (0.001, 0.003, 0.008, 0.02, 0.05):
-        yield _fixed("actuator_lag", time_constant_s=constant)
+    yield _sized("actuator_lag", "time_constant_s", 0.001, 0.02)
+    for constant in (0.002, 0.004, 0.008, 0.016, 0.032, 0.064):
+        yield _sized("actuator_lag", "time_constant_s", constant)
 
 
 def _saturation(scene: Scene) -> Iterator[Probe]:
     for share in (0.97, 0.92, 0.85, 0.75, 0.65, 0.55, 0.45, 0.35, 0.25):
-        yield _fixed("torque_saturation", limit_nm=share * scene.torque)
+        yield _clipped(scene.torque, share)
+
+
+def _clipped(torque: float, share: float) -> Probe:
+    """A saturation; its response goes about with what it cuts off."""
+    direction = Direction({"limit_nm": share * torque}, *_STRETCH)
+    return Probe(
+        "torque_saturation",
+        (direction,),
+        lambda a: {"limit_nm": max(1.0 - float(a[0]) * (1.0 - share), 0.05) * torque},
+    )
 
 
 def _rate_limit(scene: Scene) -> Iterator[Probe]:
@@ -132,13 +152,13 @@ def _rate_limit(scene: Scene) -> Iterator[Probe]:
 
 def _deadband(scene: Scene) -> Iterator[Probe]:
     for share in (0.004, 0.012, 0.03, 0.07, 0.15):
-        yield _fixed("torque_deadband", half_width_nm=share * scene.torque)
+        yield _sized("torque_deadband", "half_width_nm", share * scene.torque, 0.2)
 
 
 def _backlash(scene: Scene) -> Iterator[Probe]:
     del scene
-    for gap in np.geomspace(5e-4, 0.12, 11):
-        yield _fixed("backlash", half_gap_rad=float(gap))
+    for gap in np.geomspace(2e-4, 0.12, 12):
+        yield _sized("backlash", "half_gap_rad", float(gap), 0.2)
 
 
 def _cubic(scene: Scene) -> Iterator[Probe]:
@@ -147,7 +167,7 @@ def _cubic(scene: Scene) -> Iterator[Probe]:
     unit = stiffness / twist**2
     yield _scaled("shaft_cubic_stiffness", "coefficient_nm_rad3", 0.01 * unit, -20.0, 20.0)
     for share in (-0.3, -0.15, 0.15, 0.4, 1.0):
-        yield _fixed("shaft_cubic_stiffness", coefficient_nm_rad3=share * unit)
+        yield _sized("shaft_cubic_stiffness", "coefficient_nm_rad3", share * unit)
 
 
 def _hysteresis(scene: Scene) -> Iterator[Probe]:
@@ -178,10 +198,9 @@ def _drag(scene: Scene) -> Iterator[Probe]:
 
 def _mount(scene: Scene) -> Iterator[Probe]:
     del scene
-    for frequency in (3.0, 5.0, 7.0, 9.0, 12.0, 16.0, 21.0, 28.0, 38.0):
+    for frequency in np.geomspace(2.5, 40.0, 14):
         for damping in (0.05, 0.2):
-            for inertia in (0.5, 5.0):
-                yield _bushes(2 * np.pi * frequency, damping, inertia)
+            yield _bushes(2 * np.pi * float(frequency), damping, 2.0)
 
 
 def _bushes(omega: float, damping: float, inertia: float) -> Probe:
@@ -195,7 +214,7 @@ def _bushes(omega: float, damping: float, inertia: float) -> Probe:
             "mount_damping_nms_rad": 2 * damping * omega * heavy,
         }
 
-    return Probe("mount_mode", (Direction(values(1.0), 0.02, 2.0),), lambda a: values(float(a[0])))
+    return Probe("mount_mode", (Direction(values(1.0), 0.02, 4.0),), lambda a: values(float(a[0])))
 
 
 def _tyre(scene: Scene) -> Iterator[Probe]:

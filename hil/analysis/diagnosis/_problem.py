@@ -39,8 +39,8 @@ class Problem:
     """Recordings with the noise levels that weigh them (`noise`) and those of single readings (`floor`).
 
     `weights` are trace by trace (3,): what one block's error is multiplied by, 0 for a missing channel.
-    Ripples follow the measured angles (`steered`) while a hypothesis is sought: a simulated angle drifts off
-    as long as the model is not right, and takes the ripple's phase with it.
+    Ripples follow the measured angles (`_alignment` corrects them): a simulated angle drifts off as long as
+    the model is not right, and takes the ripple's phase with it.
     """
 
     def __init__(
@@ -49,27 +49,27 @@ class Problem:
         noise: Array,
         gear_ratio: float,
         *,
-        steered: bool = True,
         whitening: Array | None = None,
         floor: Array | None = None,
     ) -> None:
         self.whitening = whitening
         self.floor = noise if floor is None else floor
         self.gear_ratio = gear_ratio
-        self.angles = [t.angles(gear_ratio) if steered else None for t in traces]
+        self.angles = [t.angles(gear_ratio) for t in traces]
         self.traces = traces
         self.noise = noise
         self.weights = [
             np.where(t.has, np.sqrt(t.block) / np.where(noise > 0, noise, np.inf), 0.0) for t in traces
         ]
         self.resting = [_rests(t, noise) for t in traces]
+        self.channels = int(np.count_nonzero(np.any([t.has for t in traces], axis=0)))
         self.rows = int(sum(np.count_nonzero(t.has) * len(t.measured) for t in traces))
 
-    def again(self, *, steered: bool = True, whitening: Array | None = None) -> Problem:
-        """The same recordings and weights, ripples steered or not, errors whitened or not."""
-        return Problem(
-            self.traces, self.noise, self.gear_ratio, steered=steered, whitening=whitening, floor=self.floor
-        )
+    def again(self, *, whitening: Array | None = None) -> Problem:
+        """The same recordings, weights and angles, errors whitened or not."""
+        other = Problem(self.traces, self.noise, self.gear_ratio, whitening=whitening, floor=self.floor)
+        other.angles = self.angles
+        return other
 
     def first_starts(self, hypothesis: Hypothesis) -> list[Array]:
         """Initial values read from the recordings, completed by the model where a channel is missing."""

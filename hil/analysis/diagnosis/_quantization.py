@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._trace import Trace
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
@@ -40,6 +41,19 @@ def coarse_noise(noise: Array, rounded: list[EffectUse]) -> Array:
         if step > _COARSE * levels[column]:
             levels[column] = max(levels[column], _ALIKE * step / np.sqrt(12.0))
     return levels
+
+
+def rounding_of(problem: Problem, rounded: list[EffectUse]) -> Array:
+    """Power that rounding leaves in the weighted block means of each channel at most, shape (3,).
+
+    A slow signal keeps its rounding error over a whole block: step² / 12.
+    """
+    power = np.zeros(3)
+    for use in rounded:
+        column = OUTPUTS.index(str(use.values["channel"]))
+        weight = max(float(w[column]) for w in problem.weights)
+        power[column] = (float(use.values["step"]) * weight) ** 2 / 12.0
+    return power
 
 
 def grid_step(values: Array) -> float:

@@ -1,133 +1,271 @@
-"""Data that no physics can explain: refused by name before anything is fitted."""
+"""Data that no physics can explain: refused by name before anything is fitted.
+
+Play, twist, friction and offsets bend what two channels have to do with each other; they must not be
+taken for a wrong channel. So angles are compared, not speeds (play and twist stay within a few
+hundredths of a rad whatever the speed), a constant speed error is left out, and a factor is called
+wrong only where every way to see it says so.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._trace import Trace
-from hil.core.channels import OUTPUTS
+from hil.analysis.diagnosis._broken_channels import refuse_broken_channels
+from hil.analysis.diagnosis._trace import Trace, noise_levels, trace_of
+from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
+from hil.core.recording import Recording
 
 Array = npt.NDArray[np.float64]
 
-_INVERTED = -0.5
-_RATIO_OFF = 0.3
-_CLIPPED_SHARE = 0.03
+_MOTOR, _WHEEL, _SHAFT = OUTPUTS
+_INVERTED = -0.5  # correlation
+_RELATED = 0.5
+_RATIO = (0.62, 1.6)  # motor over wheel speed, over the gear ratio: beyond any error of a parameter or gain
+_APART_RAD = 0.2  # wheel side: smaller turns are lost in play and twist ...
+_TURNED_RAD = 0.6  # ... and a ratio needs larger ones, rms
+_FAST_RAD_S = 5.0  # wheel side: several times any offset
+_RPM = 60.0 / (2 * np.pi)
+_SLOW_S = 0.5
+_PUSHED_RAD = (0.1, 0.02)  # of motor and wheel, wheel side, rms: play is between torque and the motor
+_AGAINST = -0.6  # correlation with what the torque does
+_LIKE = (0.5, 2.0)
+_TOO_FAST = 4.0
+_TORQUE_OFF = 3.0
 _MOVES = 5.0  # noise levels
+_NOISE_ALONE = 1.3  # noise levels
+_DEAD_SHARE = 0.05  # of what the other channel says
 
 
 def check(model: Model, traces: list[Trace], noise: Array) -> list[str]:
-    """Refuse recordings that cannot belong to the model; what is merely odd is returned as notes.
+    """Refuse recordings that cannot belong to the model; recordings in which nothing moves make a note.
+
+    Args:
+        noise: standard deviation of each output per sample, shape (3,), NaN for a missing one.
 
     Raises:
-        BadInputError: a channel is dead, clipped, inverted, or swapped, or the gear ratio is wrong.
+        BadInputError: a channel is dead, clipped, inverted, swapped with another or in another unit, the
+            gear ratio is wrong, or nothing is excited.
     """
-    if not any(float(np.ptp(t.torque)) > 0 for t in traces):
-        raise BadInputError(
-            "motor_torque_ref_nm never changes in any recording", fix="record a chirp or steps"
-        )
-    for trace in traces:
-        _dead_or_clipped(trace, noise)
-    ratio = model.parameters.get("gear_ratio")
-    if ratio:
-        _speeds(traces, ratio, noise)
-        _torque(traces, ratio, noise)
-    return []
+    notes = refuse_broken_channels(traces, noise)
+    wrong = {t.source: error for t in traces if (error := _wrong(model, [t], noise)) is not None}
+    for error in wrong.values():
+        alike = [source for source, other in wrong.items() if _kind(other) == _kind(error)]
+        raise BadInputError(error.what, where=", ".join(alike), fix=error.fix)
+    together = _wrong(model, traces, noise)
+    if together is not None:
+        raise together
+    return notes
 
 
-def _dead_or_clipped(trace: Trace, noise: Array) -> None:
-    for column in np.flatnonzero(trace.has):
-        values = trace.samples[:, column]
-        name = OUTPUTS[column]
-        if float(np.ptp(values)) == 0.0 and float(np.ptp(trace.torque)) > 0.0:
-            raise BadInputError(
-                f"{name} looks dead: it reads {values[0]:g} throughout",
-                where=trace.name,
-                fix="mend the channel, or leave it out of the recording",
-            )
-        for end in (values.max(), values.min()):
-            at_end = values == end
-            steady = np.ptp(values) < 20 * max(float(noise[column]), 1e-12)
-            if (
-                np.mean(at_end) > _CLIPPED_SHARE
-                and not steady
-                and abs(end) > 0.2 * np.ptp(values)
-                and _plateau(at_end)
-            ):
-                raise BadInputError(
-                    f"{name} looks clipped at {end:g}: {np.mean(at_end):.0%} of its samples read this",
-                    where=trace.name,
-                    fix="widen the channel's range and record again",
-                )
+def examine(model: Model, recordings: Sequence[Recording]) -> list[str]:
+    """`check` of recordings as they come from a file.
+
+    Raises:
+        BadInputError: like `check`, and where a recording is too short or too slowly sampled.
+    """
+    traces = [trace_of(r) for r in recordings]
+    return check(model, traces, np.fmax(noise_levels(traces), 1e-6)) if traces else []
 
 
-def _plateau(at_end: npt.NDArray[np.bool_]) -> bool:
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], at_end.astype(int), [0]])))
-    return bool(np.max(edges[1::2] - edges[::2]) > 20)
+def _kind(error: BadInputError) -> str:
+    """What is wrong, without its numbers."""
+    return error.what.split(":")[0]
 
 
-def _speeds(traces: list[Trace], ratio: float, noise: Array) -> None:
+def _wrong(model: Model, traces: list[Trace], noise: Array) -> BadInputError | None:
+    """What does not go together in `traces`, seen together."""
+    ratio, inertia = _ratio_and_inertia(model)
+    pushes = {OUTPUTS[i]: _push(traces, i, (ratio, 1.0)[i], ratio / inertia) for i in (0, 1)}
+    return _speeds(traces, ratio, noise, pushes) or _pushed(pushes) or _shaft(traces, ratio, noise)
+
+
+def _ratio_and_inertia(model: Model) -> tuple[float, float]:
+    """Gear ratio, and all that turns, wheel side, kg m²."""
+    p = model.parameters
+    inertia = p["motor_inertia"] * p["gear_ratio"] ** 2 + p.get("wheel_inertia", 0.0) + p["vehicle_inertia"]
+    return p["gear_ratio"], inertia
+
+
+@dataclass
+class _Pair:
+    """Sums of squares and of products of two things that go together: `y` should equal `x`."""
+
+    xx: float = 0.0
+    yy: float = 0.0
+    xy: float = 0.0
+    count: int = 0
+
+    def add(self, x: Array, y: Array) -> None:
+        self.xx, self.yy, self.xy = self.xx + float(x @ x), self.yy + float(y @ y), self.xy + float(x @ y)
+        self.count += len(x)
+
+    @property
+    def correlation(self) -> float:
+        return self.xy / max(float(np.sqrt(self.xx * self.yy)), 1e-30)
+
+    @property
+    def factor(self) -> float:
+        """How much larger y is than x; noise in either makes no difference to first order."""
+        return float(np.sqrt(self.yy / max(self.xx, 1e-30)))
+
+    @property
+    def sizes(self) -> tuple[float, float]:
+        """Rms of x and of y."""
+        count = max(self.count, 1)
+        return float(np.sqrt(self.xx / count)), float(np.sqrt(self.yy / count))
+
+
+def _speeds(
+    traces: list[Trace], ratio: float, noise: Array, pushes: dict[str, _Pair]
+) -> BadInputError | None:
     """Motor speed against wheel speed: sign, order of magnitude, ratio."""
-    both = [t.measured[:, :2] for t in traces if t.has[0] and t.has[1]]
-    if not both:
-        return
-    speeds = np.concatenate(both)
-    motor, wheel = speeds[:, 0], speeds[:, 1]
-    if np.std(wheel) < _MOVES * noise[1] and np.std(motor) < _MOVES * noise[0]:
-        return
-    slope = float(motor @ wheel / max(float(wheel @ wheel), 1e-12))
-    if np.std(motor) > 0 and slope < 0 and np.corrcoef(motor, wheel)[0, 1] < _INVERTED:
-        channel = _inverted_speed(traces)
-        raise BadInputError(f"{channel} looks inverted", fix="turn the sign of the channel")
-    if abs(slope * ratio - 1.0) < _RATIO_OFF and abs(ratio - 1.0) > _RATIO_OFF:
-        raise BadInputError(
-            "motor_speed_rad_s and wheel_speed_rad_s look swapped", fix="exchange the two columns"
+    uneven, even = _Pair(), _Pair()
+    both = [t for t in traces if t.has[0] and t.has[1]]
+    for t in both:
+        wheel, motor = t.measured[:, 1], t.measured[:, 0] / ratio
+        step = t.block * t.dt
+        turns = np.column_stack([_around(1, np.cumsum(v) * step) for v in (wheel, motor)])
+        uneven.add(*turns[np.abs(turns).max(axis=1) > _APART_RAD].T)
+        mean = np.array([wheel.mean()]), np.array([motor.mean()])
+        if max(abs(mean[0][0]), abs(mean[1][0])) > _FAST_RAD_S:
+            even.add(*mean)
+    seen = [p for p in (uneven, even) if p.count]
+    if not seen:
+        return None
+    for column, other in ((0, 1), (1, 0)):
+        sizes = [(p.sizes[1], p.sizes[0])[column] / (p.sizes[1], p.sizes[0])[other] for p in seen]
+        if max(sizes) < _DEAD_SHARE and all(_noise_alone(t, column, noise) for t in both):
+            return _dead(OUTPUTS[column])
+    if all(p.correlation < _INVERTED for p in seen):
+        channel = min((_MOTOR, _WHEEL), key=lambda c: pushes[c].correlation)
+        if not any(p.count for p in pushes.values()):
+            channel = f"either {_MOTOR} or {_WHEEL}"
+        return BadInputError(f"{channel} looks inverted", fix="turn the sign of the channel")
+    if all(abs(p.correlation) < _RELATED for p in seen):
+        return BadInputError(
+            f"{_MOTOR} and {_WHEEL} have nothing to do with each other",
+            fix="are both from one axle, and in step?",
         )
-    if abs(slope / ratio - 1.0) > _RATIO_OFF:
-        raise BadInputError(
-            f"the gear ratio looks wrong: motor over wheel speed is {slope:.3g}, the model has {ratio:.3g}",
-            fix="is it the model of another axle, or a speed in rpm?",
-        )
+    factors = [p.factor for p in seen]
+    if even.count == 0 and max(uneven.sizes) < _TURNED_RAD:
+        return None
+    if all(f > _RATIO[1] for f in factors) or all(f < _RATIO[0] for f in factors):
+        return _wrong_ratio(factors[0], ratio)
+    return None
 
 
-def _inverted_speed(traces: list[Trace]) -> str:
-    """The speed channel that falls when torque pushes."""
-    pull = [0.0, 0.0]
+def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
+    """`factor` is motor over wheel speed, over the model's gear ratio."""
+    if _RATIO[0] < factor * ratio**2 < _RATIO[1]:
+        return BadInputError(f"{_MOTOR} and {_WHEEL} look swapped", fix="exchange the two columns")
+    for channel, expected in ((_MOTOR, _RPM), (_WHEEL, 1.0 / _RPM)):
+        if abs(factor / expected - 1.0) < 0.1:
+            return BadInputError(
+                f"{channel} looks like rpm: motor over wheel speed is {factor * ratio:.3g}, "
+                f"the model's gear ratio is {ratio:.3g}",
+                fix="multiply it by 2π/60; or is it the model of another axle?",
+            )
+    return BadInputError(
+        f"the gear ratio looks wrong: motor over wheel speed is {factor * ratio:.3g}, "
+        f"the model has {ratio:.3g}",
+        fix="is it the model of another axle, or a speed in another unit?",
+    )
+
+
+def _push(traces: list[Trace], column: int, ratio: float, per_impulse: float) -> _Pair:
+    """How far the axle turned by a speed (y), and by the torque's impulse (x), rad wheel side.
+
+    Even turning and an even change of speed are left out: offsets, friction, resistance.
+
+    Args:
+        ratio: of the speed to the wheel's.
+        per_impulse: wheel speed for 1 N m s of motor torque.
+    """
+    pair = _Pair()
     for t in traces:
-        count = len(t.measured)
-        torque = t.torque[: count * t.block].reshape(count, t.block).mean(axis=1)
-        for column in range(2):
-            rise = np.gradient(t.measured[:, column])
-            pull[column] += float(np.sum((torque - torque.mean()) * rise))
-    return OUTPUTS[int(np.argmin(pull))]
+        if t.has[column]:
+            count, step = len(t.measured), t.block * t.dt
+            impulse = np.cumsum(t.torque)[t.block - 1 : count * t.block : t.block] * t.dt
+            turned = np.cumsum(t.measured[:, column]) * step
+            pushed = _around(2, np.cumsum(impulse) * step * per_impulse)
+            if np.std(pushed) > _PUSHED_RAD[column]:
+                pair.add(pushed, _around(2, turned / ratio))
+    return pair
 
 
-def _torque(traces: list[Trace], ratio: float, noise: Array) -> None:
+def _pushed(pushes: dict[str, _Pair]) -> BadInputError | None:
+    """Whether torque moves the axle the right way, and no more than it can."""
+    told = {c: p for c, p in pushes.items() if p.count}
+    against = [c for c, p in told.items() if p.correlation < _AGAINST and _LIKE[0] < p.factor < _LIKE[1]]
+    if len(against) == len(OUTPUTS[:2]):
+        return BadInputError(
+            f"{INPUT} looks inverted: both speeds fall when torque pushes", fix="turn the sign of the channel"
+        )
+    if against:
+        return BadInputError(
+            f"{against[0]} looks inverted: it falls when torque pushes",
+            fix=f"turn the sign of the channel, or of {INPUT}",
+        )
+    for channel, pair in told.items():
+        if pair.correlation > -_AGAINST and pair.factor > _TOO_FAST:
+            return BadInputError(
+                f"{channel} changes {pair.factor:.3g} times as fast as the torque can make it",
+                fix="is it in rpm, or the model of another axle?",
+            )
+    return None
+
+
+def _shaft(traces: list[Trace], ratio: float, noise: Array) -> BadInputError | None:
     """Shaft torque against motor torque at low frequency: sign and order of magnitude."""
-    products, squares = 0.0, 0.0
-    for t in traces:
-        if not t.has[2]:
-            continue
-        length = max(1, round(0.5 / t.dt))
+    pair = _Pair()
+    having = [t for t in traces if t.has[2]]
+    for t in having:
+        length = max(1, round(_SLOW_S / t.dt))
         count = len(t.torque) // length
-        if count < 3:
-            continue
-        torque = t.torque[: count * length].reshape(count, length).mean(axis=1)
-        shaft = t.samples[: count * length, 2].reshape(count, length).mean(axis=1)
-        products += float((torque - torque.mean()) @ (shaft - shaft.mean()))
-        squares += float((torque - torque.mean()) @ (torque - torque.mean()))
-    if squares <= 1e-9:
-        return
-    slope = products / squares / ratio
-    if abs(slope) * ratio * np.sqrt(squares) < _MOVES * noise[2]:
-        return
-    if slope < -0.3:
-        raise BadInputError("shaft_torque_nm looks inverted", fix="turn the sign of the channel")
-    if not 0.3 < slope < 3.0:
-        raise BadInputError(
-            f"shaft_torque_nm is {slope * ratio:.3g} times the motor torque at low frequency, the model has "
+        if count >= 3:
+            torque = t.torque[: count * length].reshape(count, length).mean(axis=1) * ratio
+            shaft = t.samples[: count * length, 2].reshape(count, length).mean(axis=1)
+            pair.add(torque - torque.mean(), shaft - shaft.mean())
+    if not pair.count or max(pair.sizes) < _MOVES * noise[2]:
+        return None
+    alone = abs(pair.correlation) < _RELATED and all(_noise_alone(t, 2, noise) for t in having)
+    if alone and _moves(traces, noise):
+        return _dead(_SHAFT)
+    if pair.correlation < _INVERTED and 1 / _TOO_FAST < pair.factor < _TOO_FAST:
+        return BadInputError(f"{_SHAFT} looks inverted", fix="turn the sign of the channel")
+    slope = pair.xy / pair.xx
+    if abs(pair.correlation) > _RELATED and not 1 / _TORQUE_OFF < pair.factor < _TORQUE_OFF:
+        return BadInputError(
+            f"{_SHAFT} is {slope * ratio:.3g} times the motor torque at low frequency, the model has "
             f"{ratio:.3g}",
-            fix="is the channel one side only, or in another unit?",
+            fix="is the channel in another unit, or on the motor side of the gear?",
         )
+    return None
+
+
+def _noise_alone(trace: Trace, column: int, noise: Array) -> bool:
+    return bool(np.std(trace.samples[:, column]) < _NOISE_ALONE * noise[column])
+
+
+def _moves(traces: list[Trace], noise: Array) -> bool:
+    """Whether any speed does more than read noise."""
+    return any(np.std(t.measured[:, c]) > _MOVES * noise[c] for t in traces for c in (0, 1) if t.has[c])
+
+
+def _dead(channel: str) -> BadInputError:
+    return BadInputError(
+        f"{channel} looks dead: it reads nothing but noise while the axle moves",
+        fix="mend the channel, or leave it out of the recordings",
+    )
+
+
+def _around(degree: int, values: Array) -> Array:
+    """`values` (n,) without their best polynomial of `degree`."""
+    at = np.linspace(-1.0, 1.0, len(values))
+    return np.asarray(values - np.polynomial.Legendre.fit(at, values, min(degree, len(values) - 1))(at))

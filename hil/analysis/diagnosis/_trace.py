@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -15,7 +17,9 @@ from hil.core.recording import Recording
 Array = npt.NDArray[np.float64]
 
 LEAST_SAMPLES = 200
+_FIRST_STAMPS = 50
 _UNEVEN_SHARE = 0.01
+_NEAR_SHARE = 0.5  # of a sample: a reading this near to a point of the grid stands for it
 _FIT_RATE_HZ = 250.0  # of block means: driveline modes end below 60 Hz
 _FLOOR_BAND = (0.25, 0.48)  # of the sample rate: above all modes, what is left is noise
 _START_SAMPLES = 20
@@ -28,7 +32,7 @@ class Trace:
 
     `measured` is blocks x 3 in the order of `OUTPUTS` (NaN where a channel is missing), each the mean of
     `block` samples; `samples` is the same at full rate; `start` is motor speed, wheel speed (rad/s) and
-    shaft torque (N m) at the first sample, NaN where not measured.
+    shaft torque (N m) at the first sample, NaN where not measured. `source` is the file, for messages.
     """
 
     name: str
@@ -40,10 +44,14 @@ class Trace:
     start: Array
     notes: tuple[str, ...]
     first_wheel_angle_rad: float = 0.0
+    source: str = ""
 
     def angles(self, gear_ratio: float) -> Array:
-        """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds."""
-        motor, wheel = self.samples[:, 0], self.samples[:, 1]
+        """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
+
+        Where no speed was measured they stay at zero: no order can be seen.
+        """
+        motor, wheel = np.nan_to_num(self.samples[:, 0]), np.nan_to_num(self.samples[:, 1])
         if not self.has[1]:
             wheel = motor / gear_ratio
         if not self.has[0]:
@@ -65,8 +73,49 @@ class Trace:
         return np.asarray(middles * self.dt, dtype=float)
 
 
+def unbroken(recording: Recording) -> list[Recording]:
+    """The stretches of a recording between its gaps: nobody knows what the torque did in a gap.
+
+    Stretches too short for a diagnosis are left out; the first one's notes say what was cut.
+
+    Raises:
+        BadInputError: no stretch is long enough.
+    """
+    time = recording.time_s
+    if len(time) < 2:
+        return [recording]
+    steps = np.diff(time)
+    cuts = np.flatnonzero(steps > _GAP_SAMPLES * recording.sample_time_s) + 1
+    if not cuts.size:
+        return [recording]
+    pieces = [
+        _piece(recording, first, last)
+        for first, last in pairwise([0, *cuts.tolist(), len(time)])
+        if last - first >= LEAST_SAMPLES
+    ]
+    if not pieces:
+        raise BadInputError(
+            f"has {cuts.size} gaps, and no {LEAST_SAMPLES} samples without one between them",
+            where=str(recording.source),
+            fix="record again without gaps",
+        )
+    left_out = cuts.size + 1 - len(pieces)
+    note = f"cut at gaps: {cuts.size}, the longest of {steps.max():.3g} s at {time[np.argmax(steps)]:.4g} s"
+    pieces[0].notes.append(note + (f"; short stretches left out: {left_out}" if left_out else ""))
+    return pieces
+
+
+def _piece(recording: Recording, first: int, last: int) -> Recording:
+    """Samples `first` to `last` as a recording that is named after the time it begins at."""
+    channels = {name: values[first:last] for name, values in recording.channels.items()}
+    began = f" from {recording.time_s[first]:.4g} s" if first else ""
+    source = recording.source.with_name(f"{recording.source.stem}{began}{recording.source.suffix}")
+    notes = list(recording.notes) if first == 0 else []
+    return dataclasses.replace(recording, channels=channels, source=source, notes=notes)
+
+
 def trace_of(recording: Recording, name: str = "") -> Trace:
-    """Resample where time stamps are uneven, average to blocks.
+    """Put readings on even times, each as it is; interpolate only where none is near; average to blocks.
 
     Raises:
         BadInputError: too few samples, or sampled too slowly to see a driveline.
@@ -79,26 +128,24 @@ def trace_of(recording: Recording, name: str = "") -> Trace:
         raise BadInputError(
             f"is sampled every {dt * 1e3:g} ms: too slow for a driveline",
             where=where,
-            fix="record at 100 Hz or more, best at 1 kHz",
+            fix="record at 100 Hz or more, best at 1 kHz; or is time_s in another unit?",
         )
     notes = list(recording.notes)
-    grid = time
-    gaps = np.diff(time)
-    if np.max(np.abs(gaps - dt)) > _UNEVEN_SHARE * dt:
-        grid = time[0] + dt * np.arange(int(np.floor((time[-1] - time[0]) / dt + 0.5)) + 1)
-        note = f"time stamps are uneven: resampled every {dt * 1e3:g} ms"
-        if gaps.max() > _GAP_SAMPLES * dt:
-            note += f", with a gap of {gaps.max():.3g} s at {time[int(np.argmax(gaps))]:.3g} s bridged"
+    grid, dt = _even(time, dt)
+    nearest = _nearest(time, grid)
+    off = np.abs(time[nearest] - grid)
+    if off.max() > _UNEVEN_SHARE * dt:
+        note = f"time stamps are uneven: put on a grid of {dt * 1e3:.4g} ms"
+        if (gap := np.diff(time)).max() > _GAP_SAMPLES * dt:
+            note += f", with a gap of {gap.max():.3g} s at {time[int(np.argmax(gap))]:.3g} s bridged"
         notes.append(note)
-    else:
-        dt = float((time[-1] - time[0]) / (len(time) - 1))
-    held = np.clip(np.searchsorted(time, grid + 1e-9 * dt, side="right") - 1, 0, len(time) - 1)
+    missing = off > _NEAR_SHARE * dt
+    columns = [recording[INPUT], *(recording[c] for c in OUTPUTS if c in recording)]
+    on_grid = [np.where(missing, np.interp(grid, time, values), values[nearest]) for values in columns]
+    torque = np.ascontiguousarray(on_grid[0])
     samples = np.full((len(grid), 3), np.nan)
-    for column, channel in enumerate(OUTPUTS):
-        if channel in recording:
-            samples[:, column] = np.interp(grid, time, recording[channel])
+    samples[:, [c in recording for c in OUTPUTS]] = np.column_stack([*on_grid[1:]])
     block = max(1, round(1.0 / (_FIT_RATE_HZ * dt)))
-    torque = np.ascontiguousarray(recording[INPUT][held])
     return Trace(
         name or recording.source.stem,
         torque,
@@ -109,7 +156,32 @@ def trace_of(recording: Recording, name: str = "") -> Trace:
         _start(samples, torque),
         tuple(notes),
         float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
+        where,
     )
+
+
+def _even(time: Array, dt: float) -> tuple[Array, float]:
+    """Even times from the first to the last of `time`, about `dt` apart, and their exact distance.
+
+    The distance is a straight line through the stamps, over ever more of them: jitter and missing stamps
+    must not make the count of samples slip.
+    """
+    steps = np.diff(time)
+    dt = float(np.mean(steps[np.abs(steps - dt) < 0.5 * dt]))
+    seen = _FIRST_STAMPS
+    while seen < 4 * len(time):
+        passed = time[:seen] - time[0]
+        number = np.rint(passed / dt)
+        dt = float(np.polynomial.polynomial.polyfit(number, passed, 1)[1])
+        seen *= 4
+    count = max(1, round((time[-1] - time[0]) / dt))
+    return np.linspace(time[0], time[-1], count + 1), float(time[-1] - time[0]) / count
+
+
+def _nearest(time: Array, grid: Array) -> npt.NDArray[np.intp]:
+    """Index of the time stamp that lies nearest to each point of the grid."""
+    after = np.clip(np.searchsorted(time, grid), 1, len(time) - 1)
+    return np.asarray(after - (grid - time[after - 1] < time[after] - grid))
 
 
 def blocks(samples: Array, block: int) -> Array:

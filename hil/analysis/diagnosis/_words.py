@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +18,7 @@ from hil.core.channels import OUTPUTS
 Array = npt.NDArray[np.float64]
 
 _SEGMENT = 1024
+_SLOW_BINS = 2  # what lies below drifts, it is no line
 _LINE = 8.0  # a spectral line stands this far above its neighbours
 
 
@@ -32,16 +34,12 @@ class Where:
 def where(problem: Problem, without: list[Array], with_: list[Array], before: GapMap, after: GapMap) -> Where:
     """Where the simulation without an effect and with it (n x 3 each recording) differ most."""
     power = np.zeros(3)
-    density = np.zeros(0)
-    frequency = np.zeros(0)
+    frequency = _common_frequency([t.dt for t in problem.traces])
+    density = np.zeros(len(frequency))
     for trace, a, b in zip(problem.traces, without, with_, strict=True):
         change = np.where(trace.has, (b - a) / problem.noise, 0.0)
         power += np.sum(change**2, axis=0)
-        frequency, one = signal.welch(
-            change, 1 / trace.dt, nperseg=min(_SEGMENT, len(change)), axis=0, detrend=False
-        )
-        total = one.sum(axis=1) * len(change)
-        density = density + total if density.shape == total.shape else total
+        density += _density(change, trace.dt, frequency, False).sum(axis=1) * len(change)
     ranked = np.argsort(-power)
     channels = tuple(OUTPUTS[i] for i in ranked if power[i] > 0.3 * power[ranked[0]])
     share = np.cumsum(density) / max(float(density.sum()), 1e-30)
@@ -54,23 +52,33 @@ def where(problem: Problem, without: list[Array], with_: list[Array], before: Ga
     return Where(channels, (round(float(low), 2), round(float(high), 2)), spread)
 
 
+def _common_frequency(steps: list[float]) -> Array:
+    """Frequencies in Hz that recordings with these sample times have in common."""
+    return np.linspace(0.0, 0.5 / max(steps), _SEGMENT // 2 + 1)
+
+
+def _density(values: Array, step: float, frequency: Array, detrend: Literal["constant", False]) -> Array:
+    """Power density of `values` (n x 3), sampled every `step` seconds, at `frequency`."""
+    length = min(_SEGMENT, len(values))
+    own, density = signal.welch(values, 1 / step, nperseg=length, axis=0, detrend=detrend)
+    return np.column_stack([np.interp(frequency, own, column) for column in density.T])
+
+
 def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
     """What remains after `fit`: channel, frequency or order, condition, dependence on torque and speed."""
     power = np.zeros(3)
-    densities, frequency = [], np.zeros(0)
+    frequency = _common_frequency([t.dt * t.block for t in problem.traces])
+    densities = []
     for trace, (error, _, _) in zip(problem.traces, fit.pieces, strict=True):
         e = error.reshape(-1, 3)
         power += np.sum(e**2, axis=0) - len(e) * trace.has
-        frequency, one = signal.welch(e, 1 / (trace.dt * trace.block), nperseg=min(_SEGMENT, len(e)), axis=0)
-        densities.append(one)
+        densities.append(_density(e, trace.dt * trace.block, frequency, "constant"))
     column = int(np.argmax(power))
-    widest = max(len(d) for d in densities)
-    density = np.mean([d[:, column] for d in densities if len(d) == widest], axis=0)
-    frequency = np.linspace(0.0, float(frequency[-1]), widest)
+    density = np.mean([d[:, column] for d in densities], axis=0)
     top = 1 + int(np.argmax(density[1:]))
     around = float(np.median(density[max(1, top - 20) : top + 20]))
     words = [f"the gap is largest in {OUTPUTS[column]}"]
-    line = density[top] > _LINE * around
+    line = top > _SLOW_BINS and density[top] > _LINE * around
     orders = [
         (o.score, side, o.order) for side in ("wheel", "motor") for o in order_lines(problem, fit, side, 1)
     ]  # type: ignore[arg-type]

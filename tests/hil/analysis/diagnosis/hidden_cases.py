@@ -28,7 +28,7 @@ EFFECTS = (
     "sensor_quantization",
     "parameter_mismatch",
 )
-OUTSIDE = ("tyre_slip", "fixed_line", "stiffness_drift", "dyno_lag")
+OUTSIDE = ("tyre_slip", "fixed_line", "stiffness_drift")
 _NOISE = dict(zip(CHANNELS, (0.15, 0.02, 1.5), strict=True))
 _TYPICAL = dict(zip(CHANNELS, (30.0, 4.0, 120.0), strict=True))
 

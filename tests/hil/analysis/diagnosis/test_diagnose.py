@@ -10,14 +10,10 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis import Diagnosis, diagnose
-from hil.analysis.diagnosis._separating import separating_plan
 from hil.core.effects import EFFECTS
-from hil.core.errors import BadInputError
-from hil.core.model import EffectUse, Model, model_from_dict, model_to_toml
+from hil.core.model import Model, model_from_dict, model_to_toml
 from hil.core.recording import Recording
-from reports.diagnosis import diagnosis_html, diagnosis_pdf
 from sim_backend.plant import pack, system
-from test_plans.loading import load_plan
 from tests.hil.analysis import paper_plant
 from tests.hil.analysis.diagnosis.reference_plant import BASE, Truth, recordings
 
@@ -120,42 +116,3 @@ def wheel_misfit_db(model: Model) -> float:
     wheel = np.linalg.solve(resolvent, np.broadcast_to(b[:, :1], (300, len(a), 1)))[:, 2, 0]
     true = paper_plant.response("wheel_speed_rad_s", frequency)
     return float(np.sqrt(np.mean((20 * np.log10(np.abs(wheel / true))) ** 2)))
-
-
-def test_the_separating_test_is_a_plan_that_loads(tmp_path: Path) -> None:
-    lag = MODEL.with_effects(EffectUse("actuator_lag", {"time_constant_s": 0.004}))
-    delay = MODEL.with_effects(EffectUse("dead_time", {"extra_delay_s": 0.004}))
-    words, text = separating_plan(lag, delay, np.array([0.1, 0.02, 1.0]), 30.0, ("actuator_lag", "dead_time"))
-    assert "noise levels" in words
-    (tmp_path / "plan.yaml").write_text(text)
-    assert load_plan(tmp_path / "plan.yaml").name == "separate_actuator_lag_dead_time"
-
-
-def test_the_report_is_html_and_pdf_a() -> None:
-    found = diagnose(MODEL, recordings(Truth(), 1, short=True, only=("chirp_high", "steps")))
-    assert "Gap per channel" in diagnosis_html(found, "A title with <angle> brackets")
-    assert diagnosis_pdf(found, "A title with 軸").startswith(b"%PDF")
-
-
-def test_inverted_and_swapped_channels_are_refused_by_name() -> None:
-    good = recordings(Truth(), 6, short=True, only=("chirp_low", "steps"))
-    for recording in good:
-        recording.channels["wheel_speed_rad_s"] *= -1
-    with pytest.raises(BadInputError, match="wheel_speed_rad_s looks inverted"):
-        diagnose(MODEL, good)
-    for recording in good:
-        recording.channels["wheel_speed_rad_s"] *= -1
-        c = recording.channels
-        c["wheel_speed_rad_s"], c["motor_speed_rad_s"] = c["motor_speed_rad_s"], c["wheel_speed_rad_s"]
-    with pytest.raises(BadInputError, match="swapped"):
-        diagnose(MODEL, good)
-
-
-def test_a_wrong_gear_ratio_and_a_dead_channel_are_refused() -> None:
-    good = recordings(Truth(), 6, short=True, only=("chirp_low", "steps"))
-    with pytest.raises(BadInputError, match="gear ratio"):
-        diagnose(MODEL.with_parameters(gear_ratio=4.0), good)
-    for recording in good:
-        recording.channels["shaft_torque_nm"][:] = 3.0
-    with pytest.raises(BadInputError, match="shaft_torque_nm looks dead"):
-        diagnose(MODEL, good)

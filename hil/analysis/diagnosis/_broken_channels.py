@@ -1,0 +1,134 @@
+"""Channels that are broken in themselves: dead, clipped, or without anything to see."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._trace import Trace
+from hil.core.channels import INPUT, OUTPUTS
+from hil.core.errors import BadInputError
+
+Array = npt.NDArray[np.float64]
+
+_CLIPPED_SHARE = 0.03
+_PLATEAU_SAMPLES = 20
+_FROZEN_SAMPLES = 200
+_STEEP = 5.0  # a plateau is a clip where readings arrive and leave by this many steps of the reading
+_MOVES = 5.0  # noise levels of a block's mean
+
+
+def refuse_broken_channels(traces: list[Trace], noise: Array) -> list[str]:
+    """Refuse what a fit could not use; returns a note for each recording that tells nothing.
+
+    Args:
+        noise: standard deviation of each output per sample, shape (3,).
+
+    Raises:
+        BadInputError: names the channel and the recording.
+    """
+    for trace in traces:
+        for column in np.flatnonzero(trace.has).tolist():
+            _dead(trace, column)
+            _clipped(trace, column, float(noise[column]))
+            _frozen(trace, column)
+    moved = [_moved(trace, noise) for trace in traces]
+    for trace, moves in zip(traces, moved, strict=True):
+        if float(np.ptp(trace.torque)) == 0.0 and moves and not _slows_down(trace, noise):
+            raise BadInputError(
+                f"{INPUT} looks dead: it reads {trace.torque[0]:g} throughout, and yet the axle speeds up",
+                where=trace.source,
+                fix="mend the channel, or leave the recording out",
+            )
+    if not any(moved):
+        raise BadInputError(
+            "nothing moves in any recording: there is nothing to explain", fix="record a chirp or steps"
+        )
+    still = [t.name for t, moves in zip(traces, moved, strict=True) if not moves]
+    return [f"{name}: nothing moves, it tells nothing" for name in still]
+
+
+def _dead(trace: Trace, column: int) -> None:
+    values = trace.samples[:, column]
+    if float(np.ptp(values)) == 0.0 and float(np.ptp(trace.torque)) > 0.0:
+        raise BadInputError(
+            f"{OUTPUTS[column]} looks dead: it reads {values[0]:g} throughout",
+            where=trace.source,
+            fix="mend the channel, or leave it out of the recording",
+        )
+
+
+def _frozen(trace: Trace, column: int) -> None:
+    """A channel with noise never reads the same for long."""
+    values = trace.samples[:, column]
+    same = np.diff(values) == 0.0
+    first, last = _runs(same)
+    if not first.size or float(np.max(last - first)) < _FROZEN_SAMPLES:
+        return
+    longest = int(np.argmax(last - first))
+    begin, end = int(first[longest]), int(last[longest])
+    rest = np.delete(np.diff(values), np.arange(begin, end))
+    if len(rest) < _FROZEN_SAMPLES or np.mean(rest == 0.0) > 0.1 or np.mean(rest[1:] * rest[:-1] < 0) < 0.3:
+        return
+    raise BadInputError(
+        f"{OUTPUTS[column]} looks frozen: it reads {values[begin]:g} from {begin * trace.dt:.4g} s "
+        f"to {end * trace.dt:.4g} s",
+        where=trace.source,
+        fix="mend the channel, or cut this stretch out of the recording",
+    )
+
+
+def _runs(flags: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+    """Where runs of true begin, and where they end."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(int), [0]])))
+    return edges[::2], edges[1::2]
+
+
+def _clipped(trace: Trace, column: int, noise: float) -> None:
+    values = trace.samples[:, column]
+    for end in (float(values.max()), float(values.min())):
+        at_end = values == end
+        share = float(np.mean(at_end))
+        if share > _CLIPPED_SHARE and _cut_off(values, at_end, noise):
+            raise BadInputError(
+                f"{OUTPUTS[column]} looks clipped at {end:g}: {share:.0%} of its samples read this",
+                where=trace.source,
+                fix="widen the channel's range and record again",
+            )
+
+
+def _cut_off(values: Array, at_end: npt.NDArray[np.bool_], noise: float) -> bool:
+    """Whether readings run steeply into a plateau and steeply out of it: a signal that rests does neither."""
+    first, last = _runs(at_end)
+    reach = _PLATEAU_SAMPLES
+    whole = (last - first > reach) & (first >= reach) & (last + reach <= len(values))
+    if not whole.any():
+        return False
+    levels = np.unique(values)
+    step = max(float(np.min(np.diff(levels))), noise, 1e-6 * float(np.ptp(values)))
+    end = values[first[whole][0]]
+    before = np.abs(values[first[whole] - reach] - end)
+    after = np.abs(values[last[whole] + reach - 1] - end)
+    return bool(np.any(np.minimum(before, after) > _STEEP * step))
+
+
+def _moved(trace: Trace, noise: Array) -> bool:
+    """Whether any output does more than read noise."""
+    for column in np.flatnonzero(trace.has).tolist():
+        least = max(float(noise[column]), 1e-9) / np.sqrt(trace.block)
+        if float(np.std(trace.measured[:, column])) > 1.5 * least:
+            return True
+    return False
+
+
+def _slows_down(trace: Trace, noise: Array) -> bool:
+    """Whether no speed grows in magnitude by more than noise: the axle coasts."""
+    length = max(1, round(0.5 / (trace.dt * trace.block)))
+    for column in (0, 1):
+        if trace.has[column]:
+            count = len(trace.measured) // length
+            slow = np.abs(trace.measured[: count * length, column].reshape(count, length).mean(axis=1))
+            least = _MOVES * float(noise[column])
+            if count and float(np.max(slow - np.minimum.accumulate(slow))) > max(least, 0.05 * slow.max()):
+                return False
+    return True

@@ -1,0 +1,125 @@
+"""How much of an error is physics, and how much is noise, however coloured the noise is.
+
+Two things tell them apart. Noise of one sensor knows nothing of the other sensors nor of the request, while
+what is missing in the plant shows in several channels at once, and what is wrong in a sensor goes with what
+the channel shows: the multiple coherence of each channel's error with the other errors, the simulated
+channels and the request (Bendat and Piersol, Random Data, chapter 7). And noise of a sensor is the same all
+the time, while physics comes and goes with speed and torque: the mean of the error's spectrum over many
+short segments against its median. What is slower than a segment and stands far above the rest of the spectrum
+is drift of the simulation, not noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._fit import Fit
+from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._trace import blocks
+
+Array = npt.NDArray[np.float64]
+Spectra = npt.NDArray[np.complex128]
+
+_SEGMENT_S = 2.0
+_SLOW = 2  # frequencies slower than a segment, with the window's leakage ...
+_RED = 6.0  # ... and how far noise may rise towards them
+_LEAST_SEGMENTS = 12
+_KEPT = 1e-6  # of the largest: regressors that say the same count once
+_NEIGHBOURS = 1.9  # frequencies of a Hann window that count as one
+_ALIKE = 1.0 / 6.0  # correlation of neighbouring Hann segments at half overlap
+
+
+@dataclass(frozen=True)
+class Split:
+    """Mean squared weighted error of each channel (3,), 0 where not measured: physics, and noise.
+
+    `deviation` is the standard deviation that `physics` has where there is none.
+    """
+
+    physics: Array
+    noise: Array
+    deviation: Array
+
+    @property
+    def ratio(self) -> Array:
+        """Physics over noise, channel by channel."""
+        return self.physics / np.maximum(self.noise, 1e-12)
+
+
+def split(problem: Problem, one: Fit) -> Split:
+    """Split the errors of `one` over all recordings."""
+    spectra = _spectra(problem, one)
+    products = np.einsum("kfi,kfj->fij", spectra, spectra.conj()) / len(spectra)
+    segments = len(spectra) / (1.0 + 2.0 * _ALIKE**2)
+    physics, noise, deviation = np.zeros(3), np.zeros(3), np.zeros(3)
+    for column in range(3):
+        if not any(t.has[column] for t in problem.traces):
+            continue
+        power = products[:, column, column].real
+        known, variance = _explained(products, column, segments)
+        passing = power - np.median(np.abs(spectra[:, :, column]) ** 2, axis=0) / np.log(2.0)
+        passing[-1] = 0.0
+        slow = power[:_SLOW] - _RED * np.array([0.5, 1.0]) * float(np.mean(power[_SLOW : 3 * _SLOW]))
+        known[:_SLOW] = passing[:_SLOW] = np.maximum(known[:_SLOW], slow)
+        mine = known if np.sum(known) >= np.sum(passing) else passing
+        physics[column] = float(np.sum(mine))
+        noise[column] = float(np.sum(power)) - physics[column]
+        deviation[column] = float(np.sqrt(variance @ np.maximum(power - mine, 0.0) ** 2))
+    return Split(physics, noise, deviation)
+
+
+def _explained(products: Spectra, column: int, segments: float) -> tuple[Array, Array]:
+    """Power of `column` that the other signals explain at each frequency, freed of what chance explains.
+
+    With it the variance of that, in squares of the power that nothing explains.
+    """
+    others = [c for c in range(products.shape[1]) if c != column]
+    known = np.zeros(len(products))
+    variance = np.zeros(len(products))
+    for row, matrix in enumerate(products):
+        power = float(matrix[column, column].real)
+        if power <= 0.0:
+            continue
+        between = matrix[np.ix_(others, others)]
+        scale = np.sqrt(np.maximum(np.diag(between).real, 1e-300))
+        values, vectors = np.linalg.eigh(between / np.outer(scale, scale))
+        kept = values > _KEPT * values[-1]
+        seen = vectors[:, kept].conj().T @ (matrix[others, column] / scale)
+        share = min(float(np.sum(np.abs(seen) ** 2 / values[kept])) / power, 1.0)
+        chance = min(np.count_nonzero(kept) / segments, 0.9)
+        known[row] = power * (share - chance) / (1.0 - chance)
+        variance[row] = _NEIGHBOURS * np.count_nonzero(kept) / segments**2
+    return known, variance
+
+
+def _spectra(problem: Problem, one: Fit) -> Spectra:
+    """Segments x frequencies x signals; the segments' mean squares add up to the power over frequency."""
+    signals = [_signals(problem, one, index) for index in range(len(problem.traces))]
+    period = problem.traces[0].dt * problem.traces[0].block
+    shortest = min(len(s) for s in signals)
+    total = sum(len(s) for s in signals)
+    length = min(round(_SEGMENT_S / period), shortest, 2 * total // _LEAST_SEGMENTS)
+    window = np.hanning(length + 1)[:-1]
+    cut = []
+    for one_signals in signals:
+        starts = np.arange(0, len(one_signals) - length + 1, max(1, length // 2))
+        cut += [one_signals[s : s + length] for s in starts]
+    spectra = np.fft.rfft(np.stack(cut) * window[:, None], axis=1)
+    twice = np.full(spectra.shape[1], 2.0)
+    twice[0] = 1.0
+    if length % 2 == 0:
+        twice[-1] = 1.0
+    return np.asarray(spectra * np.sqrt(twice / (float(window @ window) * length))[:, None])
+
+
+def _signals(problem: Problem, one: Fit, index: int) -> Array:
+    """Weighted errors, weighted simulated channels, request: blocks x 7, 0 where not measured."""
+    trace = problem.traces[index]
+    error = one.pieces[index][0].reshape(-1, 3)
+    weights = problem.weights[index]
+    simulated = np.where(weights > 0, trace.measured * weights - error, 0.0)
+    request = blocks(trace.torque[:, None], trace.block)
+    return np.column_stack([error, simulated, request])

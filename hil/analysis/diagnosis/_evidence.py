@@ -1,0 +1,88 @@
+"""How much of a gap a fit leaves, and how firmly one fit is preferred to another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._coherence import Split, split
+from hil.analysis.diagnosis._fit import Fit
+from hil.analysis.diagnosis._problem import Problem
+
+Array = npt.NDArray[np.float64]
+
+NEARLY = 0.93  # share of the whole gap: once it is closed, what is left may be a formula that differs
+_SIGMAS = 5.0
+_NOTHING = 0.02  # of the noise power of a channel: 1 % of gap
+_SPAN = {1: 1, 2: 1, 3: 1.5, 5: 2.5, 8: 4, 13: 6.5, 21: 8}
+
+
+@dataclass
+class Evidence:
+    """Judges fits of one problem by what they leave.
+
+    `rounding` is the power per channel that rounding of its readings leaves, in noise variances.
+    """
+
+    problem: Problem
+    base: Fit
+    rounding: Array = field(default_factory=lambda: np.zeros(3))
+    _splits: dict[int, tuple[Fit, Split]] = field(default_factory=dict, repr=False)
+
+    def split(self, one: Fit) -> Split:
+        """Physics and noise in the errors of a fit."""
+        known = self._splits.get(id(one))
+        if known is None or known[0] is not one:
+            known = (one, split(self.problem, one))
+            self._splits[id(one)] = known
+        return known[1]
+
+    def physics(self, one: Fit) -> Array:
+        """Power of what is not noise in each channel, noise variances of a single reading."""
+        return np.asarray(np.maximum(self.split(one).physics - self.rounding, 0.0))
+
+    def left(self, one: Fit) -> float:
+        """The same over all channels."""
+        return float(np.sum(self.physics(one)))
+
+    def closed(self, one: Fit) -> bool:
+        """Whether nothing but noise is left, in every channel."""
+        parts = self.split(one)
+        limit = np.maximum(_SIGMAS * parts.deviation, _NOTHING * np.maximum(parts.noise, 1.0))
+        return bool(np.all(self.physics(one) <= limit))
+
+    def colouring(self, one: Fit) -> Array:
+        """Standard deviation of each channel's noise over that of its white part, shape (3,).
+
+        Slow noise does not average out within a block as white noise does.
+        """
+        block = self.problem.traces[0].block
+        return np.asarray(np.sqrt(1.0 + np.maximum(self.split(one).noise - 1.0, 0.0) / block))
+
+    def share(self, one: Fit) -> float:
+        """Share of the base model's gap that a fit closes."""
+        whole = self.left(self.base)
+        return 1.0 - self.left(one) / whole if whole > 0.0 else 0.0
+
+    def worst(self, one: Fit) -> float:
+        """Gap over noise floor of the channel that is worst off, 1 for noise alone."""
+        noise = np.maximum(self.split(one).noise, 1.0)
+        return float(np.max(np.sqrt(1.0 + self.physics(one) / noise)))
+
+    def between(self, poorer: Fit, richer: Fit) -> float:
+        """Twice the log-likelihood ratio, deflated by the correlation time of the richer fit's errors."""
+        ratio = max(poorer.total, 1.0) / max(richer.total, 1.0)
+        return float(self.problem.rows * np.log(max(ratio, 1e-9)) / colour(richer))
+
+
+def colour(one: Fit) -> float:
+    """How many neighbouring errors count as one: 1 for white errors, more for coloured ones."""
+    rise, power = 0.0, 0.0
+    for error, _, _ in one.pieces:
+        e = error.reshape(-1, 3)
+        power += float(np.sum(e * e))
+        for lag in (1, 2, 3, 5, 8, 13, 21):
+            rise += _SPAN[lag] * float(np.sum(e[lag:] * e[:-lag]))
+    return max(1.0, 1.0 + 2.0 * rise / max(power, 1e-12))

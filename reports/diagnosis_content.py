@@ -1,0 +1,280 @@
+"""What the report of a diagnosis says: sections with tables, maps (shaded tables) and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis import BANDS_HZ, CONDITIONS, Diagnosis, GapMap, NamedEffect
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
+from hil.core.model import parameter_unit
+from reports import quantities
+from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay
+from reports.figure import Figure
+from reports.labels import channel_label
+
+Array = npt.NDArray[np.float64]
+
+_HEADLINES = {
+    "named": "Named: {names}",
+    "none": "The model explains the data to the noise",
+    "unknown": "A gap that no known effect closes",
+}
+_MOST_CONSIDERED = 20
+_DARKEST = 30.0  # error over noise
+_FIGURES = {
+    "overshoot_shaft_torque_percent": "overshoot of the shaft torque, %",
+    "band_energy_motor_speed": "8-20 Hz energy of the motor speed, (rad/s)²",
+}
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of text under a head; columns from `numbers_from` to before `words_from` are numbers."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numbers_from: int = 1
+    words_from: int = 99
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One field of a map: its text, and how dark it is from 0 (noise) to 1."""
+
+    text: str
+    shade: float
+
+
+@dataclass(frozen=True)
+class Map:
+    """A shaded table."""
+
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, tuple[Cell, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A section of the report."""
+
+    id: str
+    title: str
+    text: str
+    tables: tuple[Table, ...] = ()
+    maps: tuple[Map, ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+
+def headline(found: Diagnosis) -> str:
+    """The verdict in one line."""
+    names = ", ".join(EFFECTS[e.use.id].title.lower() for e in found.effects)
+    return _HEADLINES[found.verdict].format(names=names)
+
+
+def lead(found: Diagnosis) -> str:
+    """The verdict in numbers."""
+    if found.verdict == "unknown":
+        return f"What is known of it: {found.signature}."
+    over = {c: g.gap / max(g.noise_floor, 1e-12) for c, g in found.gap_after.items()}
+    worst = max(over, key=lambda c: over[c])
+    before = found.gap_before[worst].gap / max(found.gap_before[worst].noise_floor, 1e-12)
+    name = channel_label(worst).text.lower()
+    if found.verdict == "none":
+        return f"The gap is at most {over[worst]:.2f} times the noise ({name})."
+    return (
+        f"With the model given back, the gap is at most {over[worst]:.2f} times the noise ({name}); "
+        f"with the model as it came, it is {before:.3g} times there."
+    )
+
+
+def parts(found: Diagnosis) -> list[Part]:
+    """All sections in order; one without tables, maps, figures and text has nothing to tell."""
+    overlay = shown_overlay(found)
+    return [
+        Part("effects", "Effects named", _effects_text(found), _if_any(_effects(found))),
+        Part(
+            "gap",
+            "Gap per channel",
+            "Rms of measured minus simulated over rms of the measured channel around its mean. The noise "
+            "floor is the same ratio for the noise, estimated from the spectrum above all modes.",
+            _gaps(found),
+        ),
+        Part(
+            "map",
+            "Where the gap is",
+            f"Error over noise. White: noise alone (1). Darkest: {_DARKEST:g} times the noise or more.",
+            maps=_maps(found),
+        ),
+        Part(
+            "overlays",
+            "Measured and simulated",
+            f"Recording {overlay.name}, which the new model changes most: {WINDOW_S:g} s where the old one "
+            "was worst, and the spectra of the errors.",
+            figures=overlay_figures(overlay),
+        ),
+        Part("parameters", "Parameters of the model", "", _if_any(_parameters(found))),
+        Part(
+            "consequences",
+            "What it does to the acceptance figures",
+            "Open-loop step of 20 N m, model before and after.",
+            (_consequences(found),),
+        ),
+        Part(
+            "considered",
+            "Considered and not named",
+            "Expected drop: of the squared error in noise variances, by the linearised score.",
+            _if_any(_considered(found)),
+        ),
+        Part("alternatives", "Other names for the same gap", "", _if_any(_alternatives(found))),
+    ]
+
+
+def _if_any(table: Table) -> tuple[Table, ...]:
+    return (table,) if table.rows else ()
+
+
+def _effects_text(found: Diagnosis) -> str:
+    if not found.effects:
+        return "None."
+    effects = [EFFECTS[id_] for id_ in dict.fromkeys(e.use.id for e in found.effects)]
+    return " ".join(f"{e.title}: {e.summary} {e.signature}" for e in effects)
+
+
+def _effects(found: Diagnosis) -> Table:
+    rows = []
+    for e in found.effects:
+        units = {p.name: p.unit for p in EFFECTS[e.use.id].parameters}
+        for index, (name, value) in enumerate(e.use.values.items()):
+            shown = value if isinstance(value, str) else quantities.quantity(value, units.get(name, ""))
+            error = e.standard_error.get(name)
+            rows.append(
+                (
+                    EFFECTS[e.use.id].title if index == 0 else "",
+                    name,
+                    shown,
+                    quantities.number(error, significant=2) if error is not None else "",
+                    f"{e.confidence:.0%}" if index == 0 else "",
+                    _place(e) if index == 0 else "",
+                )
+            )
+    return Table(("effect", "parameter", "value", "standard error", "confidence", "where"), tuple(rows), 2, 5)
+
+
+def _place(effect: NamedEffect) -> str:
+    low, high = effect.where.band_hz
+    channels = ", ".join(channel_label(c).text.lower() for c in effect.where.channels)
+    return f"{channels}; {low:g}-{high:g} Hz; {effect.where.condition}"
+
+
+def _gaps(found: Diagnosis) -> tuple[Table, ...]:
+    """One table for the fitted recordings, one for those held out."""
+    tables = []
+    for name, before, after in (
+        ("fitted recordings", found.gap_before, found.gap_after),
+        ("held-out recordings", found.holdout_before, found.holdout_after),
+    ):
+        rows = tuple(
+            (
+                channel_label(c).text,
+                quantities.number(before[c].gap, significant=3),
+                quantities.number(after[c].gap, significant=3),
+                quantities.number(after[c].noise_floor, significant=3),
+                f"{after[c].gap / max(after[c].noise_floor, 1e-12):.2f}",
+            )
+            for c in after
+        )
+        if rows:
+            tables.append(Table((name, "before", "after", "noise floor", "after / noise"), rows))
+    return tuple(tables)
+
+
+def _maps(found: Diagnosis) -> tuple[Map, ...]:
+    """Before and after side by side: by recording and band of each channel, then by condition."""
+    head = ("Hz", *(f"{low:g}-{high:g}" for low, high in BANDS_HZ))
+    both = (("before", found.map_before), ("after", found.map_after))
+    maps = []
+    for column, channel in enumerate(OUTPUTS):
+        if np.isfinite(found.map_before.by_band[:, column]).any():
+            for when, gaps in both:
+                cells = tuple(
+                    (name, tuple(map(_cell, gaps.by_band[row, column])))
+                    for row, name in enumerate(gaps.recordings)
+                )
+                maps.append(Map(f"{channel_label(channel).text}, {when}", head, cells))
+    maps += [_conditions(when, gaps) for when, gaps in both]
+    return tuple(maps)
+
+
+def _conditions(when: str, gaps: GapMap) -> Map:
+    rows = tuple(
+        (channel_label(channel).text, tuple(map(_cell, gaps.by_condition[:, column])))
+        for column, channel in enumerate(OUTPUTS)
+    )
+    return Map(f"Operating conditions, {when}", ("", *CONDITIONS), rows)
+
+
+def _cell(ratio: float) -> Cell:
+    if not np.isfinite(ratio):
+        return Cell(quantities.DASH, 0.0)
+    shade = float(np.clip(np.log(max(ratio, 1.0)) / np.log(_DARKEST), 0.0, 1.0))
+    return Cell(quantities.number(ratio, significant=2), round(shade, 3))
+
+
+def _parameters(found: Diagnosis) -> Table:
+    rows = tuple(
+        (
+            name,
+            quantities.number(old),
+            quantities.number(new),
+            quantities.number(error, significant=2),
+            f"{new / old - 1.0:+.2%}",
+            parameter_unit(name),
+        )
+        for name, (old, new, error) in found.parameter_updates.items()
+    )
+    return Table(("parameter", "from", "to", "standard error", "change", "unit"), rows, 1, 5)
+
+
+def _consequences(found: Diagnosis) -> Table:
+    rows = tuple(
+        (_FIGURES.get(name, name), quantities.number(v["before"]), quantities.number(v["after"]))
+        for name, v in found.consequences.items()
+    )
+    return Table(("figure", "before", "after"), rows)
+
+
+def _considered(found: Diagnosis) -> Table:
+    rows = tuple(
+        (
+            c.id + (f" ({c.about})" if c.about else ""),
+            quantities.number(float(f"{c.score:.3g}"), significant=3),
+            f"{c.left:.3g}" if c.left is not None else quantities.DASH,
+            c.reason,
+        )
+        for c in found.considered[:_MOST_CONSIDERED]
+    )
+    return Table(("effect", "expected drop", "gap left / noise", "why not"), rows, 1, 3)
+
+
+def _alternatives(found: Diagnosis) -> Table:
+    rows = tuple(
+        (_about(a.use.id, a.use.values), _percent(a.confidence), a.separating_test, a.plan or "")
+        for a in found.alternatives
+    )
+    return Table(("effect", "confidence", "separating test", "plan for hil run"), rows, 1, 2)
+
+
+def _percent(share: float) -> str:
+    return "<1%" if share < 0.005 else f"{share:.0%}"
+
+
+def _about(id_: str, values: Mapping[str, float | str]) -> str:
+    """An effect's id, with the channel or parameter that it speaks of."""
+    about = values.get("channel", values.get("parameter"))
+    return f"{id_} ({about})" if about else id_

@@ -1,0 +1,64 @@
+"""Figures of a diagnosis: one recording, measured and simulated before and after, in time and frequency."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import signal
+
+from hil.analysis.diagnosis import Diagnosis, Overlay
+from hil.core.channels import CHANNELS, OUTPUTS
+from reports.figure import Figure, Trace
+from reports.labels import Label, channel_label
+
+WINDOW_S = 1.5
+
+
+def shown_overlay(found: Diagnosis) -> Overlay:
+    """The recording on which the new model differs most from the old one."""
+    return max(found.overlays, key=_change)
+
+
+def overlay_figures(overlay: Overlay) -> tuple[Figure, ...]:
+    """Of each measured channel: `WINDOW_S` at the worst moment, and the spectrum of the error."""
+    figures = []
+    for column, channel in enumerate(OUTPUTS):
+        if np.isfinite(overlay.measured[0, column]):
+            figures += [_in_time(overlay, column, channel), _in_frequency(overlay, column, channel)]
+    return tuple(figures)
+
+
+def _change(overlay: Overlay) -> float:
+    """Mean square of what the new model changes, over the spread of the channel that it changes most."""
+    has = np.isfinite(overlay.measured[0])
+    change = np.mean((overlay.after - overlay.before)[:, has] ** 2, axis=0)
+    return float(np.max(change / (np.var(overlay.measured[:, has], axis=0) + 1e-12), initial=0.0))
+
+
+def _in_time(o: Overlay, column: int, channel: str) -> Figure:
+    size = max(10, round(WINDOW_S / o.dt))
+    power = np.convolve((o.measured[:, column] - o.before[:, column]) ** 2, np.ones(size), "valid")
+    first = int(np.argmax(power))
+    window = slice(first, first + size)
+    t = np.asarray(np.arange(first, first + size) * o.dt, dtype=float)
+    traces = (
+        Trace(Label("measured"), t, o.measured[window, column], "reference"),
+        Trace(Label("model before"), t, o.before[window, column], "phase", "dash"),
+        Trace(Label("model after"), t, o.after[window, column], "gain"),
+    )
+    unit = CHANNELS[channel].unit
+    label = channel_label(channel)
+    return Figure(f"time-{channel}", Label(label.text), "Time", "s", label, unit, traces)
+
+
+def _in_frequency(o: Overlay, column: int, channel: str) -> Figure:
+    traces = []
+    for name, simulated, role in (("error before", o.before, "phase"), ("error after", o.after, "gain")):
+        error = o.measured[:, column] - simulated[:, column]
+        f, density = signal.welch(error, 1 / o.dt, nperseg=min(4096, len(error)))
+        inside = (f > 0.2) & (f < 100.0)
+        traces.append(Trace(Label(name), f[inside], np.sqrt(density[inside]), role))
+    unit = f"{CHANNELS[channel].unit}/√Hz"
+    title = Label(f"{channel_label(channel).text}, spectrum of the error")
+    return Figure(
+        f"spectrum-{channel}", title, "Frequency", "Hz", Label("error"), unit, tuple(traces), logarithmic=True
+    )

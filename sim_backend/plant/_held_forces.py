@@ -1,0 +1,126 @@
+"""Nonlinear forces of the driveline as inputs of its linear part, for the kernel of many models.
+
+States stand as in `_held_linear`. The forces are those of `_equations`, without what is linear in them.
+"""
+
+from __future__ import annotations
+
+import math
+
+from hil.core.compiled import inlined
+from sim_backend.plant import _slots as P
+from sim_backend.plant._equations import ROLLING_WIDTH_RAD_S
+from sim_backend.plant._friction import friction_level, friction_torque
+
+_STANDSTILL_RAD_S = 1e-9  # what rounding leaves of zero
+
+
+@inlined
+def turns(p):  # type: ignore[no-untyped-def]
+    """Whether a force follows an angle of turning."""
+    return p[P.WHEEL_ORDER_AMPLITUDE] != 0.0 or p[P.MOTOR_ORDER_AMPLITUDE] != 0.0
+
+
+@inlined
+def varies(p):  # type: ignore[no-untyped-def]
+    """Whether any force but dry friction depends on the state."""
+    shaft = p[P.HALF_GAP] > 0.0 or p[P.HYSTERESIS_STIFFNESS] != 0.0 or p[P.CUBIC] != 0.0
+    return shaft or turns(p) or p[P.ROLLING] != 0.0 or p[P.AERO] != 0.0
+
+
+@inlined
+def _tanh(u):  # type: ignore[no-untyped-def]
+    """tanh(u) to 1e-10 of itself: the library's takes longer than all the rest of a step."""
+    if abs(u) < 0.5:  # continued fraction
+        s = u * u
+        return u * (945.0 + s * (105.0 + s)) / (945.0 + s * (420.0 + 15.0 * s))
+    return math.copysign(1.0, u) if abs(u) > 20.0 else math.tanh(u)
+
+
+@inlined
+def twist_rate(x, p):  # type: ignore[no-untyped-def]
+    """Of the shafts, rad/s on the wheel side."""
+    return x[7] + (x[0] - x[7]) / p[P.GEAR_RATIO] - x[2]
+
+
+@inlined
+def forces(x, slip, at, p):  # type: ignore[no-untyped-def]
+    """Extra shaft torque, extra rotor loss but dry friction, and load on the vehicle, in N m.
+
+    `slip` is the twist in rad of the hysteretic path, `at` holds the angles of wheel and rotor.
+    """
+    shaft = 0.0
+    if p[P.KIND] != P.RIGID:
+        e = x[1]
+        gap = p[P.HALF_GAP]
+        if gap > 0.0:
+            v = twist_rate(x, p)
+            linear = p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v
+            if e > gap:
+                e -= gap
+                shaft = max(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v) - linear
+            elif e < -gap:
+                e += gap
+                shaft = min(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v) - linear
+            else:
+                e = 0.0
+                shaft = -linear
+        shaft += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * slip
+        if p[P.WHEEL_ORDER_AMPLITUDE] != 0.0:
+            angle = p[P.WHEEL_ORDER] * at[0] + p[P.WHEEL_ORDER_PHASE]
+            shaft += p[P.WHEEL_ORDER_AMPLITUDE] * math.sin(angle)
+    loss = p[P.FRICTION_OFFSET]
+    if p[P.MOTOR_ORDER_AMPLITUDE] != 0.0:
+        angle = p[P.MOTOR_ORDER] * at[1] + p[P.MOTOR_ORDER_PHASE]
+        loss -= p[P.MOTOR_ORDER_AMPLITUDE] * math.sin(angle)
+    load = 0.0
+    if p[P.ROLLING] != 0.0 or p[P.AERO] != 0.0:
+        load = p[P.ROLLING] * _tanh(x[4] / ROLLING_WIDTH_RAD_S) + p[P.AERO] * x[4] * abs(x[4])
+    return shaft, loss, load
+
+
+@inlined
+def slipped(slip, old, x, h, p):  # type: ignore[no-untyped-def]
+    """Twist of the hysteretic path after a step of `h` seconds in which the state goes from `old` to `x`."""
+    if p[P.HYSTERESIS_STIFFNESS] == 0.0:
+        return slip
+    v = 0.5 * (twist_rate(old, p) + twist_rate(x, p))
+    largest = p[P.HYSTERESIS_SLIP]
+    ratio = slip / largest
+    if ratio * v <= 0.0:
+        slip += h * v
+    else:
+        # r' = (v / largest)·(1 - r²) has the solution tanh: no step is too long for it
+        rise = _tanh(h * v / largest)
+        slip = largest * (ratio + rise) / (1.0 + ratio * rise)
+    return min(max(slip, -largest), largest)
+
+
+@inlined
+def angles_at(angles, k, part, old, x, at, h, p):  # type: ignore[no-untyped-def]
+    """Angles of wheel and rotor in rad at sample `k` + `part`: measured (n x 2), or else as simulated."""
+    if angles.shape[0] == 0:
+        wheel = at[0] + 0.5 * h * (old[2] + x[2])
+        return wheel, p[P.GEAR_RATIO] * (x[1] + wheel - x[6])
+    left = min(k, angles.shape[0] - 2)
+    part += k - left
+    return (
+        angles[left, 0] + part * (angles[left + 1, 0] - angles[left, 0]),
+        angles[left, 1] + part * (angles[left + 1, 1] - angles[left, 1]),
+    )
+
+
+@inlined
+def shaft_torque(x, f, p, acting):  # type: ignore[no-untyped-def]
+    """Torque in N m that a state and its forces show on the wheel side; `acting` before the lag."""
+    if p[P.KIND] != P.RIGID:
+        return p[P.SHAFT_STIFFNESS] * x[1] + p[P.SHAFT_DAMPING] * twist_rate(x, p) + f[0]
+    n = p[P.GEAR_RATIO]
+    speed = x[0] - x[7]
+    if p[P.LAG] > 0.0:
+        acting = x[5]
+    driving = acting - f[1] - p[P.DRAG] * speed - f[2] / n
+    direction = speed if abs(speed) > _STANDSTILL_RAD_S else 0.0
+    driving -= friction_torque(direction, driving, friction_level(speed, p))
+    rotor = driving / (p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / (n * n))
+    return p[P.VEHICLE_INERTIA] * rotor / n + f[2]

@@ -1,0 +1,145 @@
+"""The report of a diagnosis: what it says, and that both forms of it are whole."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from lxml import html
+from pypdf import PdfReader
+
+from hil.analysis.diagnosis import (
+    BANDS_HZ,
+    CONDITIONS,
+    Alternative,
+    ChannelGap,
+    Considered,
+    Diagnosis,
+    GapMap,
+    NamedEffect,
+    Overlay,
+    Where,
+)
+from hil.core.channels import OUTPUTS
+from hil.core.model import EffectUse, load_model
+from reports.diagnosis import diagnosis_html, diagnosis_pdf
+from reports.diagnosis_content import headline, lead, parts
+
+MODEL = load_model(Path(__file__).parents[2] / "benches/three_inertia.toml")
+MOTOR, WHEEL, SHAFT = OUTPUTS
+SKEW = EffectUse("channel_skew", {"channel": MOTOR, "delay_s": 0.002})
+
+
+def _map(level: float) -> GapMap:
+    bands = np.full((2, 3, len(BANDS_HZ)), level)
+    bands[:, 1] = np.nan
+    conditions = np.full((len(CONDITIONS), 3), level)
+    conditions[0, 0] = np.nan
+    return GapMap(("one <b>", "two"), bands, conditions)
+
+
+@pytest.fixture(scope="module")
+def found() -> Diagnosis:
+    """Backlash named; no wheel speed measured; one recording held out."""
+    t = np.arange(3000) * 1e-3
+    swing = np.column_stack([np.sin(20 * t), np.full(3000, np.nan), 50 * np.sin(20 * t)])
+    place = Where((MOTOR, SHAFT), (6.0, 14.0), "torque reversals")
+    use = EffectUse("backlash", {"half_gap_rad": 0.0198})
+    gaps = {c: (ChannelGap(0.3, 0.02), ChannelGap(0.021, 0.02)) for c in (MOTOR, SHAFT)}
+    before, after = ({c: pair[i] for c, pair in gaps.items()} for i in (0, 1))
+    return Diagnosis(
+        verdict="named",
+        base=MODEL,
+        model=MODEL,
+        effects=(NamedEffect(use, {"half_gap_rad": 2e-4}, 0.97, place),),
+        parameter_updates={"vehicle_inertia": (303.0, 301.7, 0.4)},
+        alternatives=(
+            Alternative(SKEW, 0.03, "A chirp up to 30 Hz.", "separate_channel_skew.yaml", "name: x"),
+        ),
+        considered=(Considered("dead_time", "", 123456.0, None, "not fitted"),),
+        gap_before=before,
+        gap_after=after,
+        holdout_before=before,
+        holdout_after=after,
+        map_before=_map(500.0),
+        map_after=_map(1.0),
+        signature="",
+        overlays=(Overlay("one", 1e-3, np.zeros(3000), swing, 0.5 * swing, 0.99 * swing),),
+        notes=("one: cut at gaps: 1",),
+        consequences={"overshoot_shaft_torque_percent": {"before": 50.0, "after": 60.0}},
+    )
+
+
+def test_the_page_says_what_was_found_and_links_to_every_section(found: Diagnosis) -> None:
+    page = html.fromstring(diagnosis_html(found, "axle <i>.toml"))
+    text = " ".join(page.text_content().split())
+    for said in (
+        "axle <i>.toml",
+        "Named: backlash",
+        "97%",
+        "one <b>",
+        "cut at gaps: 1",
+        "held-out recordings",
+    ):
+        assert said in text
+    assert "channel_skew (motor_speed_rad_s)" in text
+    assert "separate_channel_skew.yaml" in text
+    links = [a.get("href").removeprefix("#") for a in page.xpath("//nav//a")]
+    assert links == [part.id for part in parts(found)]
+    assert all(page.get_element_by_id(link).tag == "section" for link in links)
+    assert len(page.xpath("//figure/img[starts-with(@src, 'data:image/svg+xml') and @alt]")) == 4
+    assert not page.xpath("//script")
+
+
+def test_maps_stand_in_pairs_and_shade_what_is_above_the_noise(found: Diagnosis) -> None:
+    (maps,) = (part.maps for part in parts(found) if part.maps)
+    assert [m.title for m in maps] == [
+        "Motor speed, before",
+        "Motor speed, after",
+        "Shaft torque, before",
+        "Shaft torque, after",
+        "Operating conditions, before",
+        "Operating conditions, after",
+    ]
+    shades = [{cell.shade for _, cells in m.rows for cell in cells} for m in maps[:4]]
+    assert shades == [{1.0}, {0.0}, {1.0}, {0.0}]
+    assert maps[4].rows[0][1][0].text == "–"
+
+
+def test_headline_and_lead_follow_the_verdict(found: Diagnosis) -> None:
+    assert "at most 1.05 times the noise" in lead(found)
+    assert "it is 15 times there" in lead(found)
+    none = dataclasses.replace(found, verdict="none", effects=())
+    assert headline(none) == "The model explains the data to the noise"
+    assert "as it came" not in lead(none)
+    unknown = dataclasses.replace(found, verdict="unknown", effects=(), signature="a line at 13 Hz")
+    assert headline(unknown) == "A gap that no known effect closes"
+    assert "a line at 13 Hz" in lead(unknown)
+
+
+def test_the_pdf_is_archivable_and_says_the_same(found: Diagnosis) -> None:
+    pdf = diagnosis_pdf(found, "A title with 軸")
+    reader = PdfReader(io.BytesIO(pdf))
+    assert "pdfaid" in str(reader.xmp_metadata.stream.get_data())
+    text = " ".join(" ".join(page.extract_text().split()) for page in reader.pages)
+    for said in ("Named: backlash", "Motor speed, before", "Considered and not named", "U+8EF8"):
+        assert said in text
+
+
+def test_a_report_without_effects_or_held_out_data_is_whole_too(found: Diagnosis) -> None:
+    bare = dataclasses.replace(
+        found,
+        verdict="unknown",
+        effects=(),
+        parameter_updates={},
+        alternatives=(),
+        considered=(),
+        holdout_before={},
+        holdout_after={},
+        signature="it lies between 1 and 3 Hz",
+    )
+    assert "held-out" not in diagnosis_html(bare, "t")
+    assert diagnosis_pdf(bare, "t").startswith(b"%PDF")
