@@ -90,7 +90,7 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
     b, a, z, gains, states = fir
     dt = gains[M.SAMPLE_TIME]
     coupled = _couple(x, drives, w)
-    state = (x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9])
+    state = (x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10])
     loads = 0.0
     for side in range(2):
         drive_load = D.load(drives[side], x[E.WHEEL_SPEED], 0.5 * w[DRIVE_INERTIA], dt)

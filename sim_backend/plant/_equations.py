@@ -11,6 +11,7 @@ import math
 
 from hil.core.compiled import compiled, inlined
 from sim_backend.plant import _slots as P
+from sim_backend.plant._backlash import gap_torque
 from sim_backend.plant._friction import friction_level, friction_torque, has_friction
 
 # Width of a smooth sign function: small against any speed of interest, large enough for 0.1 ms steps.
@@ -29,8 +30,9 @@ _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel 
     HOUSING_ANGLE,
     HOUSING_SPEED,
     SLIP,
-) = range(10)
-STATES = 10
+    SEAT,
+) = range(11)
+STATES = 11
 
 
 @compiled
@@ -38,17 +40,11 @@ def shaft_torque(x, p):  # type: ignore[no-untyped-def]
     """T_s in N m from the state: stiffness (backlash, cubic), damping, hysteresis, wheel-order ripple."""
     v = x[HOUSING_SPEED] + (x[ROTOR_SPEED] - x[HOUSING_SPEED]) / p[P.GEAR_RATIO] - x[WHEEL_SPEED]
     e = x[TWIST]
-    gap = p[P.HALF_GAP]
-    if gap > 0.0:
-        if e > gap:
-            e -= gap
-            torque = max(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v)
-        elif e < -gap:
-            e += gap
-            torque = min(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v)
-        else:
+    if p[P.HALF_GAP] > 0.0:
+        e -= x[SEAT]
+        torque = gap_torque(e, v, x[SEAT], p)
+        if abs(x[SEAT]) < p[P.HALF_GAP]:
             e = 0.0
-            torque = 0.0
     else:
         torque = p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v
     torque += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * x[SLIP]
@@ -114,7 +110,7 @@ def derivative(x, p, torque, coupled, load, direction):  # type: ignore[no-untyp
     if p[P.KIND] == P.RIGID:
         wheel_load = running_resistance(x[WHEEL_SPEED], p) if coupled else load
         rotor = rigid_acceleration(x, p, torque, wheel_load, direction)
-        return (rotor, 0.0, rotor / n, 0.0, rotor / n, x[WHEEL_SPEED], lagged, 0.0, 0.0, 0.0)
+        return (rotor, 0.0, rotor / n, 0.0, rotor / n, x[WHEEL_SPEED], lagged, 0.0, 0.0, 0.0, 0.0)
     v = x[HOUSING_SPEED] + relative_speed(x) / n - x[WHEEL_SPEED]
     shaft = shaft_torque(x, p)
     driving = torque - smooth_losses(x, p) - shaft / n
@@ -153,4 +149,4 @@ def derivative(x, p, torque, coupled, load, direction):  # type: ignore[no-untyp
         wheel = (shaft - load) / p[P.WHEEL_INERTIA]
         tyre = -_TRACKING_RATE_1_S * x[TYRE_TWIST]
         vehicle = wheel + _TRACKING_RATE_1_S * (x[WHEEL_SPEED] - x[VEHICLE_SPEED])
-    return (rotor, v, wheel, tyre, vehicle, x[WHEEL_SPEED], lagged, x[HOUSING_SPEED], housing, slip)
+    return (rotor, v, wheel, tyre, vehicle, x[WHEEL_SPEED], lagged, x[HOUSING_SPEED], housing, slip, 0.0)

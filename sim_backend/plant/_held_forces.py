@@ -9,9 +9,11 @@ import math
 
 from hil.core.compiled import inlined
 from sim_backend.plant import _slots as P
+from sim_backend.plant._backlash import gap_torque, moved_seat
 from sim_backend.plant._equations import ROLLING_WIDTH_RAD_S
 from sim_backend.plant._friction import friction_level, friction_torque
 
+SLIP, SEAT = range(2)  # of the memory
 _STANDSTILL_RAD_S = 1e-9  # what rounding leaves of zero
 
 
@@ -44,28 +46,22 @@ def twist_rate(x, p):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def forces(x, slip, at, p):  # type: ignore[no-untyped-def]
+def forces(x, memory, at, p):  # type: ignore[no-untyped-def]
     """Extra shaft torque, extra rotor loss but dry friction, and load on the vehicle, in N m.
 
-    `slip` is the twist in rad of the hysteretic path, `at` holds the angles of wheel and rotor.
+    `memory` holds what `remembered` returns, `at` the angles of wheel and rotor.
     """
     shaft = 0.0
     if p[P.KIND] != P.RIGID:
         e = x[1]
-        gap = p[P.HALF_GAP]
-        if gap > 0.0:
+        if p[P.HALF_GAP] > 0.0:
             v = twist_rate(x, p)
             linear = p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v
-            if e > gap:
-                e -= gap
-                shaft = max(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v) - linear
-            elif e < -gap:
-                e += gap
-                shaft = min(0.0, p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v) - linear
-            else:
+            e -= memory[SEAT]
+            shaft = gap_torque(e, v, memory[SEAT], p) - linear
+            if abs(memory[SEAT]) < p[P.HALF_GAP]:
                 e = 0.0
-                shaft = -linear
-        shaft += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * slip
+        shaft += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * memory[SLIP]
         if p[P.WHEEL_ORDER_AMPLITUDE] != 0.0:
             angle = p[P.WHEEL_ORDER] * at[0] + p[P.WHEEL_ORDER_PHASE]
             shaft += p[P.WHEEL_ORDER_AMPLITUDE] * math.sin(angle)
@@ -80,10 +76,17 @@ def forces(x, slip, at, p):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def slipped(slip, old, x, h, p):  # type: ignore[no-untyped-def]
-    """Twist of the hysteretic path after a step of `h` seconds in which the state goes from `old` to `x`."""
+def remembered(memory, old, x, h, p):  # type: ignore[no-untyped-def]
+    """Twist of the hysteretic path and seat of the shafts in the gap, rad, after a step of `h` seconds.
+
+    In the step the state goes from `old` to `x`.
+    """
+    seat = memory[SEAT]
+    if p[P.HALF_GAP] > 0.0:
+        seat = moved_seat(seat, old[1], x[1], h, p)
     if p[P.HYSTERESIS_STIFFNESS] == 0.0:
-        return slip
+        return memory[SLIP], seat
+    slip = memory[SLIP]
     v = 0.5 * (twist_rate(old, p) + twist_rate(x, p))
     largest = p[P.HYSTERESIS_SLIP]
     ratio = slip / largest
@@ -93,7 +96,7 @@ def slipped(slip, old, x, h, p):  # type: ignore[no-untyped-def]
         # r' = (v / largest)·(1 - r²) has the solution tanh: no step is too long for it
         rise = _tanh(h * v / largest)
         slip = largest * (ratio + rise) / (1.0 + ratio * rise)
-    return min(max(slip, -largest), largest)
+    return min(max(slip, -largest), largest), seat
 
 
 @inlined

@@ -14,6 +14,7 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 from hil.core.compiled import compiled, inlined
 from sim_backend.plant import _equations as E
 from sim_backend.plant import _slots as P
+from sim_backend.plant._backlash import moved_seat
 from sim_backend.plant._friction import has_friction
 
 # Columns of the kernel's output
@@ -44,6 +45,7 @@ def _moved(x, h, k):  # type: ignore[no-untyped-def]
         x[7] + h * k[7],
         x[8] + h * k[8],
         x[9] + h * k[9],
+        x[10] + h * k[10],
     )
 
 
@@ -54,7 +56,11 @@ def _step(x, p, torque, coupled, load, h, direction):  # type: ignore[no-untyped
     k2 = E.derivative(_moved(x, 0.5 * h, k1), p, torque, coupled, load, direction)
     k3 = E.derivative(_moved(x, 0.5 * h, k2), p, torque, coupled, load, direction)
     k4 = E.derivative(_moved(x, h, k3), p, torque, coupled, load, direction)
-    return _moved(_moved(_moved(_moved(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
+    y = _moved(_moved(_moved(_moved(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
+    if p[P.HALF_GAP] > 0.0 and p[P.KIND] != P.RIGID:
+        seat = moved_seat(x[E.SEAT], x[E.TWIST], y[E.TWIST], h, p)
+        y = (y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], y[8], y[9], seat)
+    return y
 
 
 @compiled
@@ -70,7 +76,7 @@ def _steps(x, p, torque, coupled, load, duration, count):  # type: ignore[no-unt
         y = _step(x, p, torque, coupled, load, h, before)
         after = E.relative_speed(y)
         if cut:
-            x = (y[E.HOUSING_SPEED], y[1], y[2], y[3], y[4], y[5], y[6], y[7], y[8], y[9])
+            x = (y[E.HOUSING_SPEED], y[1], y[2], y[3], y[4], y[5], y[6], y[7], y[8], y[9], y[10])
             h, cut = whole - h, False
         elif before * after < 0.0 and has_friction(p):
             h, cut = h * before / (before - after), True
@@ -139,16 +145,29 @@ def outputs(x, p, slewed, coupled, load, row):  # type: ignore[no-untyped-def]
 @compiled
 def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel_angle):  # type: ignore[no-untyped-def]
     """State that shows the given speeds (rad/s) and torques (N m), the road coupling at rest."""
-    twist = 0.0
+    twist, seat = 0.0, 0.0
     if p[P.KIND] != P.RIGID:
         twist = shaft_torque / p[P.SHAFT_STIFFNESS]
-        twist += math.copysign(p[P.HALF_GAP], twist) if twist != 0.0 else 0.0
+        seat = math.copysign(p[P.HALF_GAP], twist) if twist != 0.0 else 0.0
+        twist += seat
     tyre = 0.0
     if p[P.KIND] == P.THREE_INERTIA:
         tyre = shaft_torque / p[P.TYRE_STIFFNESS]
     if p[P.KIND] == P.RIGID:
         wheel_speed = motor_speed / p[P.GEAR_RATIO]
-    return (motor_speed, twist, wheel_speed, tyre, wheel_speed, wheel_angle, motor_torque, 0.0, 0.0, 0.0)
+    return (
+        motor_speed,
+        twist,
+        wheel_speed,
+        tyre,
+        wheel_speed,
+        wheel_angle,
+        motor_torque,
+        0.0,
+        0.0,
+        0.0,
+        seat,
+    )
 
 
 @compiled

@@ -24,6 +24,8 @@ Array = npt.NDArray[np.float64]
 CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 GAIN, OFFSET, DELAY = range(3)
 
+_SEATED_NM = 2.0  # a first shaft torque that surely is in contact
+
 
 def ideal_sensors(sets: int) -> Array:
     """Gain 1, offset 0, delay 0 s for each of the three channels: sets x 3 x 3."""
@@ -135,15 +137,19 @@ def _acting(torque, dt, p, out):  # type: ignore[no-untyped-def]
             slewed = moved
 
 
+@inlined
+def _first_seat(p, start):  # type: ignore[no-untyped-def]
+    """A small torque may lie anywhere in the gap: let it come smoothly to one side."""
+    return p[P.HALF_GAP] * min(max(start[2] / _SEATED_NM, -1.0), 1.0)
+
+
 @compiled
 def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
     if p[P.KIND] == P.RIGID:
         wheel = start[0] / p[P.GEAR_RATIO]
         return (start[0], 0.0, wheel, 0.0, wheel, acting, 0.0, 0.0)
     twist = start[2] / p[P.SHAFT_STIFFNESS]
-    if p[P.HALF_GAP] > 0.0:
-        # a small torque may lie anywhere in the gap: let it come smoothly to one side
-        twist += p[P.HALF_GAP] * math.tanh(start[2] / 2.0)
+    twist += _first_seat(p, start)
     tyre = start[2] / p[P.TYRE_STIFFNESS] if p[P.KIND] == P.THREE_INERTIA else 0.0
     return (start[0], twist, start[1], tyre, start[1], acting, 0.0, 0.0)
 
@@ -191,15 +197,15 @@ def _run_linear(acting, whole, p, x, substeps, column, transition, fine):  # typ
 
 
 @compiled
-def _run_forced(acting, whole, p, x, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+def _run_forced(acting, whole, p, x, seat, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
     varies, dry, turns = F.varies(p), has_friction(p), F.turns(p)
     varies = varies or p[P.STRIBECK] != 0.0  # with the speed
     gain = held[1, 7] - held[1, 0]  # of the relative speed: what a loss of 1 N m takes off it in a step
-    slip, friction = 0.0, 0.0
+    memory, friction = (0.0, seat), 0.0
     at = (0.0, p[P.GEAR_RATIO] * x[1])
     if angles.shape[0] > 0:
         at = (angles[0, 0], angles[0, 1])
-    f = F.forces(x, slip, at, p)
+    f = F.forces(x, memory, at, p)
     for k in range(acting.shape[0]):
         new = acting[max(k - whole, 0)]
         old = acting[max(k - whole - 1, 0)]
@@ -217,7 +223,7 @@ def _run_forced(acting, whole, p, x, h, substeps, column, transition, held, risi
             if varies:
                 part = (sub + 1.0) / substeps
                 later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
-                g = F.forces(y, F.slipped(slip, x, y, h, p), later, p)
+                g = F.forces(y, F.remembered(memory, x, y, h, p), later, p)
                 middle = 0.5 * (before + y[0] - y[7])
                 y = _plus(_plus(y, rising, 0, g[0] - f[0]), rising, 1, g[1] - f[1])
                 y = _plus(y, rising, 2, g[2] - f[2])
@@ -227,8 +233,8 @@ def _run_forced(acting, whole, p, x, h, substeps, column, transition, held, risi
                     y = _plus(y, held, 1, mean_friction(before, free, gain, level) - friction)
                 if turns:
                     at = F.angles_at(angles, k, part, x, y, at, h, p)
-                slip = F.slipped(slip, x, y, h, p)
-                f = F.forces(y, slip, at, p)
+                memory = F.remembered(memory, x, y, h, p)
+                f = F.forces(y, memory, at, p)
             x = y
 
 
@@ -241,8 +247,8 @@ def _run(torque, dt, vector, start, substeps, transition, column, held, rising, 
     x = _first_state(p, start, acting[0])
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     if F.varies(p) or has_friction(p) or p[P.FRICTION_OFFSET] != 0.0:
-        h = dt / substeps
-        _run_forced(acting, whole, p, x, h, substeps, column, transition, held, rising, angles, fine)
+        h, seat = dt / substeps, _first_seat(p, start)
+        _run_forced(acting, whole, p, x, seat, h, substeps, column, transition, held, rising, angles, fine)
     else:
         _run_linear(acting, whole, p, x, substeps, column, transition, fine)
 

@@ -25,7 +25,7 @@ Spectra = npt.NDArray[np.complex128]
 
 _SEGMENT_S = 2.0
 _SLOW = 2  # frequencies slower than a segment, with the window's leakage ...
-_RED = 6.0  # ... and how far noise may rise towards them
+_RED = 20.0  # ... and how far noise may rise towards them
 _LEAST_SEGMENTS = 12
 _KEPT = 1e-6  # of the largest: regressors that say the same count once
 _NEIGHBOURS = 1.9  # frequencies of a Hann window that count as one

@@ -16,6 +16,7 @@ Array = npt.NDArray[np.float64]
 NEARLY = 0.93  # share of the whole gap: once it is closed, what is left may be a formula that differs
 _SIGMAS = 5.0
 _NOTHING = 0.02  # of the noise power of a channel: 1 % of gap
+_SMALL, _SMALLISH = 1.03, 1.1  # gap over noise floor
 _SPAN = {1: 1, 2: 1, 3: 1.5, 5: 2.5, 8: 4, 13: 6.5, 21: 8}
 
 
@@ -52,6 +53,15 @@ class Evidence:
         parts = self.split(one)
         limit = np.maximum(_SIGMAS * parts.deviation, _NOTHING * np.maximum(parts.noise, 1.0))
         return bool(np.all(self.physics(one) <= limit))
+
+    def settled(self, one: Fit) -> bool:
+        """Whether so little is left that a formula differs, and no further effect is missing."""
+        if self.closed(one):
+            return True
+        worst = self.worst(one)
+        return bool(one.hypothesis.terms) and (
+            worst < _SMALL or (worst < _SMALLISH and self.share(one) > 0.99)
+        )
 
     def colouring(self, one: Fit) -> Array:
         """Standard deviation of each channel's noise over that of its white part, shape (3,).

@@ -198,9 +198,10 @@ def _drag(scene: Scene) -> Iterator[Probe]:
 
 def _mount(scene: Scene) -> Iterator[Probe]:
     del scene
-    for frequency in np.geomspace(2.5, 40.0, 14):
-        for damping in (0.05, 0.2):
-            yield _bushes(2 * np.pi * float(frequency), damping, 2.0)
+    for frequency in np.geomspace(2.5, 40.0, 16):
+        for damping in (0.04, 0.12, 0.35):
+            for inertia in (3.0, 30.0):
+                yield _bushes(2 * np.pi * float(frequency), damping, inertia)
 
 
 def _bushes(omega: float, damping: float, inertia: float) -> Probe:
@@ -214,7 +215,7 @@ def _bushes(omega: float, damping: float, inertia: float) -> Probe:
             "mount_damping_nms_rad": 2 * damping * omega * heavy,
         }
 
-    return Probe("mount_mode", (Direction(values(1.0), 0.02, 4.0),), lambda a: values(float(a[0])))
+    return Probe("mount_mode", (Direction(values(1.0), 0.05, 3.0),), lambda a: values(float(a[0])))
 
 
 def _tyre(scene: Scene) -> Iterator[Probe]:

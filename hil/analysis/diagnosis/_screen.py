@@ -33,8 +33,11 @@ class Score:
         return key_of(self.use)
 
 
-def screen(problem: Problem, fit: Fit) -> list[Score]:
-    """Every effect that can be added to `fit`, each at its best probe, most promising first."""
+def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Score]:
+    """Every effect that can be added to `fit`, each at its best probe, most promising first.
+
+    Gains count from the total `against`; from what the parameters alone can reach if None.
+    """
     candidates = probes(problem, fit)
     matrix, gradient = _products(problem, fit, candidates)
     base = len(fit.theta)
@@ -45,6 +48,8 @@ def screen(problem: Problem, fit: Fit) -> list[Score]:
     matrix[:base, :base] += np.diag(precision)
     gradient[:base] -= precision * fit.theta
     rest = _gain(matrix, gradient, lower, upper, np.arange(base))[0]
+    if against is not None:
+        rest = fit.total - against
     best: dict[tuple[str, str], Score] = {}
     at = base
     for probe in candidates:

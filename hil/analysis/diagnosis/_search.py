@@ -31,8 +31,11 @@ _LEAST_SHARE_OF_REST = 0.88  # ... and once nearly all is closed
 _PARENTS = (1, 3, 2)  # hypotheses that are grown to one, two, three effects
 _LEAST_SO_FAR = (0.0, 0.2, 0.6)  # share of the gap that is closed before a further effect is looked for
 _RIVAL = 1.5  # times what the best leaves: a rival that is grown further as well
+_PLAIN = 0.5  # share of the remaining gap: if no score promises that, nominal parameters are tried too
 _HOPE = 0.1  # share of the remaining gap that the best linearised score must promise
 _SIZES = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # of an effect, around what its probe says
+_ABRUPT = ("backlash", "torque_deadband", "torque_rate_limit", "torque_saturation")
+_OTHER_SIZES = (0.75, 1.3)
 _RACE = 5  # candidates that are fitted at each step
 _PROMISING = 0.4  # share of the best score
 _RACE_ROUNDS = 3
@@ -77,7 +80,7 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None], roun
     found = Found(first, first, Evidence(problem, first, rounding))
     frontier = [first]
     for number in range(_MOST_EFFECTS):
-        if found.evidence.closed(found.best):
+        if found.evidence.settled(found.best):
             break
         parents = [
             f for f in frontier[: _PARENTS[number]] if found.evidence.share(f) >= _LEAST_SO_FAR[number]
@@ -99,14 +102,33 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None], roun
 def grow(found: Found, parent: Fit) -> Step:
     """`parent` with each promising further effect."""
     problem = found.evidence.problem
-    scores = screen(problem, parent)
     blocks = problem.rows / max(problem.channels, 1)
+    scores = screen(problem, parent)
+    if not scores or scores[0].gain < _PLAIN * found.evidence.left(parent) * blocks:
+        scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
     if scores and scores[0].gain < max(_HOPE * found.evidence.left(parent) * blocks, LEAST_EVIDENCE):
         return Step(parent, scores, [])
     step = Step(parent, scores, _race(problem, parent, scores))
     if step.fits:
-        step.fits[0] = aligned(problem, _refined(found.evidence, step.fits[0]))
+        best = aligned(problem, _refined(found.evidence, step.fits[0]))
+        step.fits[0] = _polished(found.evidence, best)
     return step
+
+
+def _straightened(problem: Problem, parent: Fit) -> Fit:
+    """`parent` with nominal base parameters: bent ones make up for what is missing, and hide it."""
+    coordinates = parent.hypothesis.coordinates()
+    nominal = np.where([c.term < 0 for c in coordinates], parent.hypothesis.start(), parent.theta)
+    return fit(problem, parent.hypothesis, parent.starts, nominal, rounds=0)
+
+
+def _better(scores: list[Score], others: list[Score]) -> list[Score]:
+    """Every effect by the better of two scores, most promising first."""
+    best = {score.key: score for score in others}
+    for score in scores:
+        if score.key not in best or best[score.key].gain < score.gain:
+            best[score.key] = score
+    return sorted(best.values(), key=lambda s: -s.gain)
 
 
 def _rank(one: Fit) -> float:
@@ -225,6 +247,21 @@ def _refined(evidence: Evidence, best: Fit) -> Fit:
                     evidence.between(best, tried) > LEAST_EVIDENCE
                 ):
                     best = tried
+    return best
+
+
+def _polished(evidence: Evidence, best: Fit) -> Fit:
+    """From other sizes of the newest effect, if a gap is left: abrupt effects have false minima."""
+    if best.hypothesis.ids[-1] not in _ABRUPT or evidence.settled(best) or evidence.share(best) < 0.3:
+        return best
+    own = next(
+        i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
+    )
+    for factor in _OTHER_SIZES:
+        other = best.theta.copy()
+        other[own] += np.log(factor)
+        tried = fit(evidence.problem, best.hypothesis, best.starts, other)
+        best = min(best, tried, key=_rank)
     return best
 
 

@@ -1,0 +1,78 @@
+"""Free play against closed forms, and one kernel against the other."""
+
+import numpy as np
+import pytest
+
+from hil.core.model import EffectUse, Model
+from sim_backend.plant import Start, ideal_sensors, pack, simulate, simulate_many
+
+PLAIN = Model(
+    kind="two_inertia",
+    parameters={
+        "motor_inertia": 0.02,
+        "gear_ratio": 7.0,
+        "shaft_stiffness": 6000.0,
+        "shaft_damping": 20.0,
+        "vehicle_inertia": 300.0,
+        "torque_delay": 0.008,
+    },
+)
+
+
+def with_gap(half_gap_rad: float) -> Model:
+    return PLAIN.with_effects(EffectUse("backlash", {"half_gap_rad": half_gap_rad}))
+
+
+def chirp(seconds: float = 8.0) -> np.ndarray:
+    t = np.arange(0.0, seconds, 1e-3)
+    return 25.0 * np.sin(2 * np.pi * (0.5 * t + 0.7 * t**2))
+
+
+def many(model: Model, torque: np.ndarray, start: tuple[float, float, float]) -> np.ndarray:
+    return simulate_many(pack(model)[None], torque, 1e-3, np.array([start]), ideal_sensors(1))[0]
+
+
+def one(model: Model, torque: np.ndarray, start: tuple[float, float, float]) -> np.ndarray:
+    out = simulate(model, torque, 1e-3, start=Start(*start))
+    return np.column_stack(
+        [out[name] for name in ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")]
+    )
+
+
+@pytest.mark.parametrize("kernel", [one, many])
+def test_a_vanishing_gap_leaves_the_shaft(kernel):
+    torque = chirp()
+    plain, played = (kernel(m, torque, (0.0, 0.0, 0.0)) for m in (PLAIN, with_gap(1e-7)))
+    rms = np.sqrt(np.mean((played - plain) ** 2, axis=0)) / np.std(plain, axis=0)
+    assert np.all(rms < 2e-3)
+
+
+def test_both_kernels_see_the_same_gap():
+    torque = chirp()
+    a, b = (kernel(with_gap(0.003), torque, (0.0, 0.0, 60.0)) for kernel in (one, many))
+    rms = np.sqrt(np.mean((a - b) ** 2, axis=0)) / np.std(a, axis=0)
+    assert np.all(rms < 0.02)
+
+
+@pytest.mark.parametrize("kernel", [one, many])
+def test_nothing_is_carried_while_the_rotor_crosses_the_gap(kernel):
+    """Closed form: from the middle of the gap, at rest, a constant torque needs sqrt(2·J·n·gap / T)."""
+    torque = np.full(400, 0.5)
+    shaft = kernel(with_gap(0.02), torque, (0.0, 0.0, 0.0))[:, 2]
+    crossing = np.sqrt(2 * 0.02 * 7.0 * 0.02 / 0.5)
+    # the first value has acted since long before: no dead time at the start
+    first = int(np.argmax(shaft > 0.05)) * 1e-3
+    assert np.all(shaft[: int(1e3 * crossing) - 2] < 1e-9)
+    assert first == pytest.approx(crossing, abs=3e-3)
+
+
+@pytest.mark.parametrize("kernel", [one, many])
+def test_contact_never_pulls(kernel):
+    """A rotor thrown off keeps its speed until the other end of the gap is there."""
+    start = (14.0, 0.0, -50.0)
+    out = kernel(with_gap(0.02), np.zeros(100), start)
+    free = out[2:12]
+    assert np.all(free[:, 2] < 1e-9)
+    lost = np.flatnonzero(np.abs(out[:, 2]) < 1e-9)
+    assert lost.size > 5
+    assert np.ptp(out[lost[1:5], 0]) < 1e-3
