@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis._quantization import grid_step
 from hil.analysis.diagnosis._trace import Trace
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
@@ -29,7 +30,7 @@ def refuse_broken_channels(traces: list[Trace], noise: Array) -> list[str]:
     """
     for trace in traces:
         for column in np.flatnonzero(trace.has).tolist():
-            _dead(trace, column)
+            _dead(trace, column, traces)
             _clipped(trace, column, float(noise[column]))
             _frozen(trace, column)
     moved = [_moved(trace, noise) for trace in traces]
@@ -48,14 +49,29 @@ def refuse_broken_channels(traces: list[Trace], noise: Array) -> list[str]:
     return [f"{name}: nothing moves, it tells nothing" for name in still]
 
 
-def _dead(trace: Trace, column: int) -> None:
+def _dead(trace: Trace, column: int, traces: list[Trace]) -> None:
     values = trace.samples[:, column]
-    if float(np.ptp(values)) == 0.0 and float(np.ptp(trace.torque)) > 0.0:
-        raise BadInputError(
-            f"{OUTPUTS[column]} looks dead: it reads {values[0]:g} throughout",
-            where=trace.source,
-            fix="mend the channel, or leave it out of the recording",
-        )
+    if float(np.ptp(values)) > 0.0 or float(np.ptp(trace.torque)) == 0.0:
+        return
+    if _below_resolution(trace, column, [t for t in traces if t is not trace and t.has[column]]):
+        return
+    raise BadInputError(
+        f"{OUTPUTS[column]} looks dead: it reads {values[0]:g} throughout",
+        where=trace.source,
+        fix="mend the channel, or leave it out of the recording",
+    )
+
+
+def _below_resolution(trace: Trace, column: int, others: list[Trace]) -> bool:
+    """Whether a speed that is rounded in other recordings stands still as it moves by a step or two."""
+    other = 1 - column
+    if not others or other not in (0, 1) or not trace.has[other]:
+        return False
+    elsewhere = np.concatenate([t.samples for t in others])
+    step = grid_step(elsewhere[:, column])
+    size = np.std(elsewhere, axis=0)
+    moved = float(np.ptp(trace.measured[:, other]))
+    return bool(moved * size[column] < 3.0 * step * size[other])
 
 
 def _frozen(trace: Trace, column: int) -> None:

@@ -196,6 +196,7 @@ class _Judged:
         ):
             starts = settled_starts(problem, hypothesis, theta, problem.first_starts(hypothesis))
             if has_ripple(hypothesis):
+                problem.follow(hypothesis, theta)
                 align(problem, hypothesis, theta, starts)
                 starts = settled_starts(problem, hypothesis, theta, starts)
             gaps.append(channel_gaps(problem, simulated_samples(problem, hypothesis, theta, starts)))

@@ -19,7 +19,10 @@ _MOST_REFUSALS = 4
 
 @dataclass
 class Fit:
-    """A hypothesis at its best: `cost` is the sum of squared weighted errors (1 per row for pure noise)."""
+    """A hypothesis at its best: `cost` is the sum of squared weighted errors (1 per row for pure noise).
+
+    `angles` are those that its ripples, if any, follow.
+    """
 
     hypothesis: Hypothesis
     theta: Array
@@ -30,6 +33,7 @@ class Fit:
     normals: list[Normal] = field(repr=False)
     pieces: list[tuple[Array, Array, Array]] = field(repr=False)
     rounds: int = 0
+    angles: list[Array] = field(default_factory=list, repr=False)
 
     @property
     def total(self) -> float:
@@ -134,6 +138,7 @@ def fit(
         normals,
         pieces,
         done,
+        list(problem.angles),
     )
 
 

@@ -47,7 +47,7 @@ def order_lines(
     for index, trace in enumerate(problem.traces):
         error = fit.pieces[index][0].reshape(-1, 3)
         dt = trace.dt * trace.block
-        turned = trace.angles(fit.hypothesis.base.parameters["gear_ratio"])[:, 0 if side == "wheel" else 1]
+        turned = problem.angles[index][:, 0 if side == "wheel" else 1]
         angle = blocks(turned[:, None], trace.block)[:, 0]
         speed = np.gradient(angle, dt)
         image, frequency, power = _adjoint(

@@ -71,6 +71,11 @@ class Problem:
         other.angles = self.angles
         return other
 
+    def follow(self, hypothesis: Hypothesis, theta: Array) -> None:
+        """Integrate the angles anew from the speeds as the sensors of `hypothesis` read them."""
+        sensors = hypothesis.packed(theta)[1]
+        self.angles = [t.angles(self.gear_ratio, sensors) for t in self.traces]
+
     def first_starts(self, hypothesis: Hypothesis) -> list[Array]:
         """Initial values read from the recordings, completed by the model where a channel is missing."""
         ratio = hypothesis.base.parameters["gear_ratio"]

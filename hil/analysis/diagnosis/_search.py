@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._alignment import aligned
+from hil.analysis.diagnosis._alignment import aligned, has_ripple
 from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis._evidence import NEARLY, Evidence
 from hil.analysis.diagnosis._fit import Fit, fit
@@ -96,12 +96,18 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None], roun
             if found.evidence.share(found.best) > NEARLY:
                 enough = _RIVAL * found.evidence.left(found.best)
                 frontier = [f for f in frontier if found.evidence.left(f) <= enough]
-    return _needed(problem, found)
+    found = _needed(problem, found)
+    problem.angles = list(found.best.angles)
+    return found
 
 
 def grow(found: Found, parent: Fit) -> Step:
     """`parent` with each promising further effect."""
     problem = found.evidence.problem
+    if has_ripple(parent.hypothesis):
+        problem.angles = list(parent.angles)
+    else:
+        problem.follow(parent.hypothesis, parent.theta)
     blocks = problem.rows / max(problem.channels, 1)
     scores = screen(problem, parent)
     if not scores or scores[0].gain < _PLAIN * found.evidence.left(parent) * blocks:
@@ -156,6 +162,7 @@ def _needed(problem: Problem, found: Found) -> Found:
     """Drop effects that the later ones made needless."""
     best = found.best
     for index in range(len(best.hypothesis.terms) - 1):
+        problem.angles = list(best.angles)
         fewer = best.hypothesis.without(index)
         tried = fit(problem, fewer, best.starts, carried(best, fewer))
         if found.evidence.closed(tried) or not earned(found.evidence, tried, best):

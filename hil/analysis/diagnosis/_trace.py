@@ -13,6 +13,7 @@ from scipy import signal
 from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
+from sim_backend.plant import SENSOR_GAIN, SENSOR_OFFSET
 
 Array = npt.NDArray[np.float64]
 
@@ -46,12 +47,18 @@ class Trace:
     first_wheel_angle_rad: float = 0.0
     source: str = ""
 
-    def angles(self, gear_ratio: float) -> Array:
+    def angles(self, gear_ratio: float, sensors: Array | None = None) -> Array:
         """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
 
-        Where no speed was measured they stay at zero: no order can be seen.
+        Where no speed was measured they stay at zero: no order can be seen. Gain and offset of `sensors`
+        (3 x 3, as of `ideal_sensors`) are taken out.
         """
         motor, wheel = np.nan_to_num(self.samples[:, 0]), np.nan_to_num(self.samples[:, 1])
+        if sensors is not None:
+            motor, wheel = (
+                (v - row[SENSOR_OFFSET]) / row[SENSOR_GAIN]
+                for v, row in zip((motor, wheel), sensors, strict=False)
+            )
         if not self.has[1]:
             wheel = motor / gear_ratio
         if not self.has[0]:
