@@ -74,25 +74,36 @@ def split(problem: Problem, one: Fit) -> Split:
 def _explained(products: Spectra, column: int, segments: float) -> tuple[Array, Array]:
     """Power of `column` that the other signals explain at each frequency, freed of what chance explains.
 
-    With it the variance of that, in squares of the power that nothing explains.
+    With it the variance of that, in squares of the power that nothing explains. In a closed loop the
+    request, and all that is simulated from it, know the noise of the channel that is fed back: what these
+    explain is physics at most by as much as the channel itself shows at that frequency.
     """
-    others = [c for c in range(products.shape[1]) if c != column]
-    known = np.zeros(len(products))
-    variance = np.zeros(len(products))
+    size = products.shape[1]
+    errors = [c for c in range(3) if c != column]
+    others = [c for c in range(size) if c != column]
+    known, variance = np.zeros(len(products)), np.zeros(len(products))
     for row, matrix in enumerate(products):
-        power = float(matrix[column, column].real)
-        if power <= 0.0:
+        if float(matrix[column, column].real) <= 0.0:
             continue
-        between = matrix[np.ix_(others, others)]
-        scale = np.sqrt(np.maximum(np.diag(between).real, 1e-300))
-        values, vectors = np.linalg.eigh(between / np.outer(scale, scale))
-        kept = values > _KEPT * values[-1]
-        seen = vectors[:, kept].conj().T @ (matrix[others, column] / scale)
-        share = min(float(np.sum(np.abs(seen) ** 2 / values[kept])) / power, 1.0)
-        chance = min(np.count_nonzero(kept) / segments, 0.9)
-        known[row] = power * (share - chance) / (1.0 - chance)
-        variance[row] = _NEIGHBOURS * np.count_nonzero(kept) / segments**2
+        across, _ = _coherent(matrix, column, errors, segments)
+        altogether, rank = _coherent(matrix, column, others, segments)
+        shown = float(matrix[3 + column, 3 + column].real)
+        known[row] = max(across, min(altogether, across + shown))
+        variance[row] = _NEIGHBOURS * rank / segments**2
     return known, variance
+
+
+def _coherent(matrix: Spectra, column: int, others: list[int], segments: float) -> tuple[float, int]:
+    """Power of `column` that goes with `others`, less what chance gives; and how many these really are."""
+    power = float(matrix[column, column].real)
+    between = matrix[np.ix_(others, others)]
+    scale = np.sqrt(np.maximum(np.diag(between).real, 1e-300))
+    values, vectors = np.linalg.eigh(between / np.outer(scale, scale))
+    kept = values > _KEPT * values[-1]
+    seen = vectors[:, kept].conj().T @ (matrix[others, column] / scale)
+    share = min(float(np.sum(np.abs(seen) ** 2 / values[kept])) / power, 1.0)
+    chance = min(np.count_nonzero(kept) / segments, 0.9)
+    return power * (share - chance) / (1.0 - chance), int(np.count_nonzero(kept))
 
 
 def _spectra(problem: Problem, one: Fit) -> Spectra:
