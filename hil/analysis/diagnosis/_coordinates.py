@@ -40,6 +40,8 @@ _LINEAR = {
 _STEP = 1e-3  # of a finite difference, on a logarithmic scale or in typical sizes
 #: Beyond these an effect is no longer itself: a path that slips at 6 degrees is a spring.
 _UPPER = {"slip_rad": 0.1, "time_constant_s": 0.3}
+#: Contact comes and goes: the error is rough in the gap, and its slope must be taken over some of it.
+_COARSE_STEP = {"half_gap_rad": 0.03}
 _SAMPLE_S = 1e-3
 _FINE_STEP = {"order": 1e-3}
 
@@ -114,7 +116,8 @@ class Hypothesis:
                 found.append(Coordinate(parameter.name, index, "linear", lower, upper, step, np.inf))
             else:
                 low, high = np.log(max(lower, 1e-12)), np.log(max(upper, 1e-12))
-                found.append(Coordinate(parameter.name, index, "log", low, high, _STEP, np.inf))
+                step = _COARSE_STEP.get(parameter.name, _STEP)
+                found.append(Coordinate(parameter.name, index, "log", low, high, step, np.inf))
         return found
 
     def start(self) -> Array:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._alignment import aligned, has_ripple
+from hil.analysis.diagnosis._alignment import align, aligned, has_ripple
 from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis._evidence import NEARLY, Evidence
 from hil.analysis.diagnosis._fit import Fit, fit
@@ -35,7 +35,9 @@ _PLAIN = 0.5  # share of the remaining gap: if no score promises that, nominal p
 _HOPE = 0.1  # share of the remaining gap that the best linearised score must promise
 _SIZES = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # of an effect, around what its probe says
 _ABRUPT = ("backlash", "torque_deadband", "torque_rate_limit", "torque_saturation")
-_OTHER_SIZES = (0.75, 1.3)
+_OTHER_SIZES = (0.75, 1.0, 1.3)
+_PHASES = 12
+_WHOLE = 0.01  # relative: an order as near to a whole one may be it
 _RACE = 5  # candidates that are fitted at each step
 _PROMISING = 0.4  # share of the best score
 _RACE_ROUNDS = 3
@@ -116,16 +118,20 @@ def grow(found: Found, parent: Fit) -> Step:
         return Step(parent, scores, [])
     step = Step(parent, scores, _race(problem, parent, scores))
     if step.fits:
-        best = aligned(problem, _refined(found.evidence, step.fits[0]))
+        best = _in_order(found.evidence, _refined(found.evidence, step.fits[0]))
         step.fits[0] = _polished(found.evidence, best)
     return step
 
 
 def _straightened(problem: Problem, parent: Fit) -> Fit:
     """`parent` with nominal base parameters: bent ones make up for what is missing, and hide it."""
-    coordinates = parent.hypothesis.coordinates()
-    nominal = np.where([c.term < 0 for c in coordinates], parent.hypothesis.start(), parent.theta)
-    return fit(problem, parent.hypothesis, parent.starts, nominal, rounds=0)
+    return fit(problem, parent.hypothesis, parent.starts, _nominal(parent), rounds=0)
+
+
+def _nominal(one: Fit) -> Array:
+    """Its coordinates, those of the base model's parameters at their nominal values."""
+    of_base = [c.term < 0 for c in one.hypothesis.coordinates()]
+    return np.asarray(np.where(of_base, one.hypothesis.start(), one.theta))
 
 
 def _better(scores: list[Score], others: list[Score]) -> list[Score]:
@@ -264,12 +270,55 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
     own = next(
         i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
     )
+    first = best
     for factor in _OTHER_SIZES:
-        other = best.theta.copy()
+        other = _nominal(first)
         other[own] += np.log(factor)
-        tried = fit(evidence.problem, best.hypothesis, best.starts, other)
+        tried = fit(evidence.problem, best.hypothesis, evidence.base.starts, other)
         best = min(best, tried, key=_rank)
     return best
+
+
+def _in_order(evidence: Evidence, best: Fit) -> Fit:
+    """Ripples with their angles aligned; if a gap is left, from whole orders too: a drift hides in one."""
+    problem = evidence.problem
+    measured = list(problem.angles)
+    first = best
+    best = aligned(problem, best)
+    for index, c in enumerate(first.hypothesis.coordinates()):
+        whole = round(float(first.theta[index]))
+        if (
+            c.name != "order"
+            or not 0.0 < abs(first.theta[index] - whole) < _WHOLE * whole
+            or evidence.settled(best)
+        ):
+            continue
+        found = list(problem.angles)
+        problem.angles = list(measured)
+        theta = _in_phase(problem, first, index, whole)
+        align(problem, first.hypothesis, theta, first.starts)
+        other = aligned(problem, fit(problem, first.hypothesis, first.starts, theta))
+        if other.total < best.total:
+            best = other
+        else:
+            problem.angles = found
+    return best
+
+
+def _in_phase(problem: Problem, one: Fit, index: int, order: float) -> Array:
+    """Coordinates of `one` with another order, its number `index`, at the phase that suits it best."""
+    coordinates = one.hypothesis.coordinates()
+    phase = next(
+        i for i, c in enumerate(coordinates) if c.name == "phase_rad" and c.term == coordinates[index].term
+    )
+    tried = []
+    for turn in np.linspace(-np.pi, np.pi, _PHASES, endpoint=False):
+        theta = one.theta.copy()
+        theta[index], theta[phase] = order, turn
+        tried.append(theta)
+    starts = [np.tile(start, (len(tried), 1)) for start in one.starts]
+    costs = problem.costs([one.hypothesis.packed(theta) for theta in tried], starts)
+    return tried[int(np.argmin(costs))]
 
 
 def _opened(best: Fit, opened: Hypothesis) -> Array:
