@@ -20,11 +20,12 @@ Array = npt.NDArray[np.float64]
 
 #: Ripples, and the column of the angles (wheel, rotor) and of the channels that each follows.
 RIPPLES = {"wheel_order_disturbance": (0, 1), "motor_order_ripple": (1, 0)}
-_TERMS = 8
+_TERMS = (6, 40)  # at least, and at most
+_BENT = 0.1  # rad of ripple phase that the terms left out may amount to
 _SLOW_NOISE = 4.0  # power of a speed's noise at low frequency over that above all modes, at most
 _TURN = 0.02  # rad of ripple phase: a finite difference
 _LARGEST = 0.7  # rad of ripple phase: the most that one correction may be
-_ROUNDS = 2
+_ROUNDS = 3
 _AGAIN = 4
 
 
@@ -106,12 +107,13 @@ def _drift(problem: Problem, model: Model, index: int) -> tuple[list[Array], Arr
     samples = len(trace.torque)
     share = np.arange(samples) / samples
     shapes, deviations = [], []
-    for id_, (column, channel) in RIPPLES.items():
-        if not any(use.id == id_ for use in model.effects):
+    orders = _orders(model)
+    for column, channel in RIPPLES.values():
+        if orders[column] == 0.0:
             continue
         noise = float(problem.floor[channel])
         walk = noise * trace.dt * np.sqrt(samples * _SLOW_NOISE)
-        for term in range(_TERMS):
+        for term in range(int(np.clip((orders[column] * walk / (np.pi * _BENT)) ** 2, *_TERMS))):
             bend = (term + 0.5) * np.pi
             shape = np.zeros((samples, 2))
             shape[:, column] = np.sqrt(2.0) * np.sin(bend * share)

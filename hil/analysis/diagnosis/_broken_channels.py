@@ -13,6 +13,7 @@ from hil.core.errors import BadInputError
 Array = npt.NDArray[np.float64]
 
 _CLIPPED_SHARE = 0.03
+_FEW_LEVELS = 24
 _PLATEAU_SAMPLES = 20
 _FROZEN_SAMPLES = 200
 _STEEP = 5.0  # a plateau is a clip where readings arrive and leave by this many steps of the reading
@@ -100,7 +101,14 @@ def _runs(flags: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], npt.NDArr
     return edges[::2], edges[1::2]
 
 
+def coarse(trace: Trace, column: int) -> bool:
+    """Whether a channel is rounded to so few levels that it tells neither a ratio nor a plateau."""
+    return len(np.unique(trace.samples[:, column])) < _FEW_LEVELS
+
+
 def _clipped(trace: Trace, column: int, noise: float) -> None:
+    if coarse(trace, column):
+        return
     values = trace.samples[:, column]
     for end in (float(values.max()), float(values.min())):
         at_end = values == end

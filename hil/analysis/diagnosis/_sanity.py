@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._broken_channels import refuse_broken_channels
+from hil.analysis.diagnosis._broken_channels import coarse, refuse_broken_channels
 from hil.analysis.diagnosis._trace import Trace, noise_levels, trace_of
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
@@ -126,7 +126,7 @@ def _speeds(
 ) -> BadInputError | None:
     """Motor speed against wheel speed: sign, order of magnitude, ratio."""
     uneven, even = _Pair(), _Pair()
-    both = [t for t in traces if t.has[0] and t.has[1]]
+    both = [t for t in traces if t.has[0] and t.has[1] and not (coarse(t, 0) or coarse(t, 1))]
     for t in both:
         wheel, motor = t.measured[:, 1], t.measured[:, 0] / ratio
         step = t.block * t.dt

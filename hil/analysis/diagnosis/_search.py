@@ -13,55 +13,20 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._alignment import align, aligned, has_ripple
 from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis._evidence import NEARLY, Evidence
 from hil.analysis.diagnosis._fit import Fit, fit
+from hil.analysis.diagnosis._growth import LEAST_EVIDENCE, Step, carried, grow, rank
 from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._screen import Score, screen
-from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
 
-LEAST_EVIDENCE = 30.0  # drop of the squared error in noise variances, after deflation, a name
-_PRICE = 8.0  # of each parameter that an effect brings, when two effects explain the same
 _MOST_EFFECTS = 3
 _LEAST_SHARE = 0.6  # of the remaining gap that a further effect must close ...
 _LEAST_SHARE_OF_REST = 0.88  # ... and once nearly all is closed
 _PARENTS = (1, 3, 2)  # hypotheses that are grown to one, two, three effects
 _LEAST_SO_FAR = (0.0, 0.2, 0.6)  # share of the gap that is closed before a further effect is looked for
 _RIVAL = 1.5  # times what the best leaves: a rival that is grown further as well
-_PLAIN = 0.5  # share of the remaining gap: if no score promises that, nominal parameters are tried too
-_HOPE = 0.1  # share of the remaining gap that the best linearised score must promise
-_SIZES = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # of an effect, around what its probe says
-_ABRUPT = ("backlash", "torque_deadband", "torque_rate_limit", "torque_saturation")
-_OTHER_SIZES = (0.75, 1.0, 1.3)
-_PHASES = 12
-_WHOLE = 0.01  # relative: an order as near to a whole one may be it
-_RACE = 5  # candidates that are fitted at each step
-_PROMISING = 0.4  # share of the best score
-_RACE_ROUNDS = 3
-_OUT_OF_RACE = 2.5  # times the best cost after the first rounds
-_RELATIVES = {
-    "dead_time": ("actuator_lag", "channel_skew"),
-    "actuator_lag": ("dead_time", "channel_skew"),
-    "channel_skew": ("dead_time", "actuator_lag"),
-    "coulomb_friction": ("running_resistance",),
-    "running_resistance": ("coulomb_friction", "viscous_drag"),
-    "viscous_drag": ("running_resistance",),
-    "mount_mode": ("shaft_cubic_stiffness",),
-    "shaft_cubic_stiffness": ("shaft_hysteresis",),
-    "shaft_hysteresis": ("coulomb_friction",),
-}
-
-
-@dataclass
-class Step:
-    """One step: what was tried on top of `parent`, best first."""
-
-    parent: Fit
-    scores: list[Score]
-    fits: list[Fit]
 
 
 @dataclass
@@ -88,8 +53,8 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None], roun
             f for f in frontier[: _PARENTS[number]] if found.evidence.share(f) >= _LEAST_SO_FAR[number]
         ]
         show(f"looking for effect {number + 1}")
-        steps = [grow(found, parent) for parent in parents]
-        found.steps += sorted(steps, key=lambda s: min((_rank(f) for f in s.fits), default=np.inf))
+        steps = [grow(found.evidence, parent) for parent in parents]
+        found.steps += sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
         frontier = _distinct([one for s in steps for one in s.fits])
         if not frontier:
             break
@@ -103,54 +68,10 @@ def search(problem: Problem, base: Hypothesis, show: Callable[[str], None], roun
     return found
 
 
-def grow(found: Found, parent: Fit) -> Step:
-    """`parent` with each promising further effect."""
-    problem = found.evidence.problem
-    if has_ripple(parent.hypothesis):
-        problem.angles = list(parent.angles)
-    else:
-        problem.follow(parent.hypothesis, parent.theta)
-    blocks = problem.rows / max(problem.channels, 1)
-    scores = screen(problem, parent)
-    if not scores or scores[0].gain < _PLAIN * found.evidence.left(parent) * blocks:
-        scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
-    if scores and scores[0].gain < max(_HOPE * found.evidence.left(parent) * blocks, LEAST_EVIDENCE):
-        return Step(parent, scores, [])
-    step = Step(parent, scores, _race(problem, parent, scores))
-    if step.fits:
-        best = _in_order(found.evidence, _refined(found.evidence, step.fits[0]))
-        step.fits[0] = _polished(found.evidence, best)
-    return step
-
-
-def _straightened(problem: Problem, parent: Fit) -> Fit:
-    """`parent` with nominal base parameters: bent ones make up for what is missing, and hide it."""
-    return fit(problem, parent.hypothesis, parent.starts, _nominal(parent), rounds=0)
-
-
-def _nominal(one: Fit) -> Array:
-    """Its coordinates, those of the base model's parameters at their nominal values."""
-    of_base = [c.term < 0 for c in one.hypothesis.coordinates()]
-    return np.asarray(np.where(of_base, one.hypothesis.start(), one.theta))
-
-
-def _better(scores: list[Score], others: list[Score]) -> list[Score]:
-    """Every effect by the better of two scores, most promising first."""
-    best = {score.key: score for score in others}
-    for score in scores:
-        if score.key not in best or best[score.key].gain < score.gain:
-            best[score.key] = score
-    return sorted(best.values(), key=lambda s: -s.gain)
-
-
-def _rank(one: Fit) -> float:
-    return one.total + _PRICE * len(one.theta)
-
-
 def _distinct(fits: list[Fit]) -> list[Fit]:
     """Best first, the same set of effects once."""
     best: dict[frozenset[tuple[str, str]], Fit] = {}
-    for one in sorted(fits, key=_rank):
+    for one in sorted(fits, key=rank):
         best.setdefault(frozenset(one.hypothesis.keys), one)
     return list(best.values())
 
@@ -176,154 +97,3 @@ def _needed(problem: Problem, found: Found) -> Found:
             found.best = tried
             return found
     return found
-
-
-def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
-    """`parent` with one effect more, refitted from the most promising of a few sizes.
-
-    The base model's parameters may have been bent to make up for what is missing: their nominal values are
-    tried as well.
-    """
-    hypothesis = parent.hypothesis.with_term(use)
-    bent = carried(parent, hypothesis)
-    straight = np.where([c.term < 0 for c in hypothesis.coordinates()], hypothesis.start(), bent)
-    tried = [t for theta in (bent, straight) for t in _sizes(hypothesis, theta)]
-    starts = [np.tile(start, (len(tried), 1)) for start in parent.starts]
-    costs = problem.costs([hypothesis.packed(theta) for theta in tried], starts)
-    return fit(problem, hypothesis, parent.starts, tried[int(np.argmin(costs))], rounds=rounds)
-
-
-def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
-    """`theta` with the newest effect smaller and larger, if it has but one number."""
-    coordinates = hypothesis.coordinates()
-    own = [i for i, c in enumerate(coordinates) if c.term == len(hypothesis.terms) - 1]
-    if len(own) != 1:
-        return [theta]
-    found = []
-    for factor in _SIZES:
-        other = theta.copy()
-        c = coordinates[own[0]]
-        size = theta[own[0]] + np.log(factor) if c.scale == "log" else theta[own[0]] * factor
-        other[own[0]] = np.clip(size, c.lower, c.upper)
-        found.append(other)
-    return found
-
-
-def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
-    """Coordinates of `hypothesis`: those that `parent` has by their fitted values, others by their start."""
-    terms = {key_of(t): i for i, t in enumerate(parent.hypothesis.terms)}
-    known = {(c.name, c.term): v for c, v in zip(parent.hypothesis.coordinates(), parent.theta, strict=True)}
-    values = hypothesis.start()
-    wrong = {str(t.values["parameter"]) for t in hypothesis.terms if t.id == "parameter_mismatch"}
-    for index, c in enumerate(hypothesis.coordinates()):
-        term = -1 if c.term < 0 else terms.get(key_of(hypothesis.terms[c.term]), -2)
-        if term == -1 and c.name in wrong and ("parameter_mismatch", c.name) not in terms:
-            continue
-        values[index] = known.get((c.name, term), values[index])
-    return values
-
-
-def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
-    """Fits of the promising effects, best first; the hopeless are given up after a few rounds."""
-    chosen = _chosen(scores)
-    if not chosen:
-        return []
-    fits = [grown(problem, parent, score.use, _RACE_ROUNDS) for score in chosen]
-    floor = float(problem.rows)
-    best = min(f.total for f in fits)
-    finished = []
-    for one in fits:
-        if one.rounds >= _RACE_ROUNDS and one.total - floor < _OUT_OF_RACE * (best - floor) + 1e3:
-            finished.append(fit(problem, one.hypothesis, one.starts, one.theta))
-        else:
-            finished.append(one)
-    return sorted(finished, key=lambda f: f.total + _PRICE * len(f.theta))
-
-
-def _chosen(scores: list[Score]) -> list[Score]:
-    top = [s for s in scores[:_RACE] if s.gain > max(LEAST_EVIDENCE, _PROMISING * scores[0].gain)]
-    wanted = {name for s in top[:2] for name in _RELATIVES.get(s.key[0], ())}
-    have = {s.key[0] for s in top}
-    return top + [s for s in scores if s.key[0] in wanted - have and s.gain > 0.1 * scores[0].gain]
-
-
-def _refined(evidence: Evidence, best: Fit) -> Fit:
-    """Optional parameters of dry friction, where they pay."""
-    for term in best.hypothesis.terms:
-        if term.id == "coulomb_friction":
-            for names in (("stribeck_torque_nm",), ("offset_nm",)):
-                opened = Hypothesis(
-                    best.hypothesis.base, best.hypothesis.terms, (*best.hypothesis.open, *names)
-                )
-                tried = fit(evidence.problem, opened, best.starts, _opened(best, opened))
-                if evidence.left(tried) < 0.8 * evidence.left(best) and (
-                    evidence.between(best, tried) > LEAST_EVIDENCE
-                ):
-                    best = tried
-    return best
-
-
-def _polished(evidence: Evidence, best: Fit) -> Fit:
-    """From other sizes of the newest effect, if a gap is left: abrupt effects have false minima."""
-    if best.hypothesis.ids[-1] not in _ABRUPT or evidence.settled(best) or evidence.share(best) < 0.3:
-        return best
-    own = next(
-        i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
-    )
-    first = best
-    for factor in _OTHER_SIZES:
-        other = _nominal(first)
-        other[own] += np.log(factor)
-        tried = fit(evidence.problem, best.hypothesis, evidence.base.starts, other)
-        best = min(best, tried, key=_rank)
-    return best
-
-
-def _in_order(evidence: Evidence, best: Fit) -> Fit:
-    """Ripples with their angles aligned; if a gap is left, from whole orders too: a drift hides in one."""
-    problem = evidence.problem
-    measured = list(problem.angles)
-    first = best
-    best = aligned(problem, best)
-    for index, c in enumerate(first.hypothesis.coordinates()):
-        whole = round(float(first.theta[index]))
-        if (
-            c.name != "order"
-            or not 0.0 < abs(first.theta[index] - whole) < _WHOLE * whole
-            or evidence.settled(best)
-        ):
-            continue
-        found = list(problem.angles)
-        problem.angles = list(measured)
-        theta = _in_phase(problem, first, index, whole)
-        align(problem, first.hypothesis, theta, first.starts)
-        other = aligned(problem, fit(problem, first.hypothesis, first.starts, theta))
-        if other.total < best.total:
-            best = other
-        else:
-            problem.angles = found
-    return best
-
-
-def _in_phase(problem: Problem, one: Fit, index: int, order: float) -> Array:
-    """Coordinates of `one` with another order, its number `index`, at the phase that suits it best."""
-    coordinates = one.hypothesis.coordinates()
-    phase = next(
-        i for i, c in enumerate(coordinates) if c.name == "phase_rad" and c.term == coordinates[index].term
-    )
-    tried = []
-    for turn in np.linspace(-np.pi, np.pi, _PHASES, endpoint=False):
-        theta = one.theta.copy()
-        theta[index], theta[phase] = order, turn
-        tried.append(theta)
-    starts = [np.tile(start, (len(tried), 1)) for start in one.starts]
-    costs = problem.costs([one.hypothesis.packed(theta) for theta in tried], starts)
-    return tried[int(np.argmin(costs))]
-
-
-def _opened(best: Fit, opened: Hypothesis) -> Array:
-    known = {(c.name, c.term): v for c, v in zip(best.hypothesis.coordinates(), best.theta, strict=True)}
-    start = opened.start()
-    return np.array(
-        [known.get((c.name, c.term), s) for c, s in zip(opened.coordinates(), start, strict=True)]
-    )

@@ -223,3 +223,8 @@ def noise_levels(traces: list[Trace]) -> Array:
         if known.size:
             pooled[column] = float(np.median(known))
     return pooled
+
+
+def usable_noise(noise: Array) -> Array:
+    """A channel without any noise still needs a weight: a millionth of a unit."""
+    return np.where(np.isfinite(noise), np.maximum(noise, 1e-6), np.nan)

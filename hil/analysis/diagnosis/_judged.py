@@ -1,0 +1,222 @@
+"""What a search found, told: gaps before and after, effects with errors and places, what was rejected."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._alignment import align, has_ripple
+from hil.analysis.diagnosis._confidence import alternatives_of, confidence_of
+from hil.analysis.diagnosis._consequences import consequences, loop_area
+from hil.analysis.diagnosis._coordinates import TOLERANCE
+from hil.analysis.diagnosis._fit import Fit
+from hil.analysis.diagnosis._gap import (
+    ChannelGap,
+    GapMap,
+    channel_gaps,
+    gap_map,
+    settled_starts,
+    simulated_samples,
+)
+from hil.analysis.diagnosis._growth import LEAST_EVIDENCE, carried
+from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
+from hil.analysis.diagnosis._search import Found
+from hil.analysis.diagnosis._trace import Trace, noise_levels, usable_noise
+from hil.analysis.diagnosis._words import Where, signature, where
+from hil.core.model import EffectUse, Model
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass
+class Judged:
+    """What the search found, simulated and compared."""
+
+    problem: Problem
+    found: Found
+    verdict: Verdict
+    holdout: list[Trace]
+
+    def diagnosis(self, rounded: list[EffectUse], notes: list[str], seconds: float) -> Diagnosis:
+        base, best = self.found.base, self.found.best
+        verdict = self.verdict
+        kept = best if verdict == "named" and best.hypothesis.terms else base
+        problem = self.problem
+        colouring = self.found.evidence.colouring(self.found.best)
+        problem.floor = problem.floor * colouring
+        after = simulated_samples(problem, kept.hypothesis, kept.theta, kept.starts)
+        before = self._nominal(problem)
+        map_before, map_after = gap_map(problem, before), gap_map(problem, after)
+        model = kept.hypothesis.model(kept.theta)
+        updates, kept_parameters = self._updates(kept)
+        model = model.with_parameters(**kept_parameters)
+        tail = tuple(rounded) if verdict == "named" else ()
+        model = model.with_effects(*_lasting(model), *tail)
+        held_before, held_after = self._held(kept)
+        effects = self._effects(kept, after, map_before, map_after, rounded) if verdict == "named" else ()
+        if verdict == "named" and not effects:
+            # Small corrections of parameters were all that was found: do they explain the data?
+            verdict = "none" if self.found.evidence.closed(kept) else "unknown"
+        overlays = tuple(
+            Overlay(t.name, t.dt, t.torque, t.samples, b, a)
+            for t, b, a in zip(problem.traces, before, after, strict=True)
+        )
+        return Diagnosis(
+            verdict=verdict,
+            base=base.hypothesis.base,
+            model=model,
+            effects=effects,
+            parameter_updates=updates,
+            alternatives=alternatives_of(self.found, verdict),
+            considered=self._considered(kept),
+            gap_before=channel_gaps(problem, before),
+            gap_after=channel_gaps(problem, after),
+            holdout_before=held_before,
+            holdout_after=held_after,
+            map_before=map_before,
+            map_after=map_after,
+            signature=signature(self.problem, kept, map_after) if verdict == "unknown" else "",
+            overlays=overlays,
+            notes=tuple(notes),
+            seconds=seconds,
+            loop_area_j=loop_area(model),
+            consequences=consequences(base.hypothesis.base, model),
+        )
+
+    def _nominal(self, problem: Problem) -> list[Array]:
+        """The base model as it came, from its best initial values."""
+        hypothesis = self.found.base.hypothesis
+        theta = hypothesis.start()
+        starts = settled_starts(problem, hypothesis, theta, self.found.base.starts)
+        return simulated_samples(problem, hypothesis, theta, starts)
+
+    def _held(self, kept: Fit) -> tuple[dict[str, ChannelGap], dict[str, ChannelGap]]:
+        if not self.holdout:
+            return {}, {}
+        ratio = kept.hypothesis.base.parameters["gear_ratio"]
+        noise = usable_noise(noise_levels(self.holdout))
+        colouring = self.found.evidence.colouring(self.found.best)
+        problem = Problem(self.holdout, noise, ratio, floor=noise * colouring)
+        gaps = []
+        for hypothesis, theta in (
+            (self.found.base.hypothesis, self.found.base.hypothesis.start()),
+            (kept.hypothesis, kept.theta),
+        ):
+            starts = settled_starts(problem, hypothesis, theta, problem.first_starts(hypothesis))
+            if has_ripple(hypothesis):
+                problem.follow(hypothesis, theta)
+                align(problem, hypothesis, theta, starts)
+                starts = settled_starts(problem, hypothesis, theta, starts)
+            gaps.append(channel_gaps(problem, simulated_samples(problem, hypothesis, theta, starts)))
+        return gaps[0], gaps[1]
+
+    def _updates(self, kept: Fit) -> tuple[dict[str, tuple[float, float, float]], dict[str, float]]:
+        """Corrections of base parameters beyond what noise explains, and all parameters as fitted."""
+        errors = np.sqrt(np.maximum(np.diag(kept.covariance), 0.0))
+        model = kept.hypothesis.model(kept.theta)
+        base = kept.hypothesis.base.parameters
+        wrong = {
+            use.values["parameter"]
+            for use in model.effects
+            if use.id == "parameter_mismatch" and not _within_tolerance(use, base)
+        }
+        updates = {}
+        for c, value, error in zip(kept.hypothesis.coordinates(), kept.theta, errors, strict=True):
+            if c.term >= 0 or c.name in wrong or abs(value) < 2.0 * error:
+                continue
+            old, new = self.found.base.hypothesis.base.parameters[c.name], model.parameters[c.name]
+            updates[c.name] = (old, new, new * float(error))
+        return updates, dict(model.parameters)
+
+    def _effects(
+        self,
+        kept: Fit,
+        after: list[Array],
+        map_before: GapMap,
+        map_after: GapMap,
+        rounded: list[EffectUse],
+    ) -> tuple[NamedEffect, ...]:
+        uses = kept.hypothesis.model(kept.theta).effects[len(kept.hypothesis.base.effects) :]
+        errors = np.sqrt(np.maximum(np.diag(kept.covariance) * max(1.0, kept.cost / self.problem.rows), 0.0))
+        named = []
+        for index, use in enumerate(uses):
+            if use.id == "parameter_mismatch" and _within_tolerance(use, kept.hypothesis.base.parameters):
+                continue  # a correction within the calibration tolerance is an update, not a finding
+            fewer = kept.hypothesis.without(index)
+            theta = carried(kept, fewer)
+            without = simulated_samples(self.problem, fewer, theta, kept.starts)
+            standard = {}
+            for c, error in zip(kept.hypothesis.coordinates(), errors, strict=True):
+                if c.term == index:
+                    value = float(use.values[c.name])
+                    standard[c.name] = float(error * (abs(value) if c.scale == "log" else 1.0))
+                if use.id == "parameter_mismatch" and c.term < 0 and c.name == use.values["parameter"]:
+                    standard["value"] = float(error) * float(use.values["value"])
+            place = where(self.problem, without, after, map_before, map_after)
+            named.append(NamedEffect(_clean(use), standard, confidence_of(self.found, index), place))
+        for use in rounded:
+            place = Where(
+                (str(use.values["channel"]),),
+                (0.0, round(0.5 / self.problem.traces[0].dt, 1)),
+                "at all operating conditions",
+            )
+            named.append(NamedEffect(use, {"step": 0.0}, 0.99, place))
+        return tuple(named)
+
+    def _considered(self, kept: Fit) -> tuple[Considered, ...]:
+        named = set(kept.hypothesis.keys)
+        rows: dict[tuple[str, str], Considered] = {}
+        for step in self.found.steps:
+            fitted = {f.hypothesis.keys[-1]: f for f in step.fits}
+            for score in step.scores:
+                if score.key in named or score.key in rows:
+                    continue
+                one = fitted.get(score.key)
+                left = None if one is None else float(np.sqrt(one.cost / self.problem.rows))
+                rows[score.key] = Considered(
+                    *score.key, float(score.gain), left, _reason(one, score.gain, step.fits)
+                )
+        return tuple(sorted(rows.values(), key=lambda c: -c.score))
+
+
+def _reason(one: Fit | None, gain: float, fits: list[Fit]) -> str:
+    if gain < LEAST_EVIDENCE:
+        return "no evidence: the drop is what noise would give"
+    if one is None:
+        return "explains far less than the best by its linearised score; not fitted"
+    if fits and one is not fits[0]:
+        return f"leaves {np.sqrt(one.cost / fits[0].cost):.3g} times the gap of {fits[0].hypothesis.ids[-1]}"
+    return "closes too small a share of what is left"
+
+
+def _clean(use: EffectUse) -> EffectUse:
+    """Phases within ±π; optional values that were not fitted left out."""
+    values = dict(use.values)
+    if "phase_rad" in values:
+        values["phase_rad"] = float((float(values["phase_rad"]) + np.pi) % (2 * np.pi) - np.pi)
+    for name in ("stribeck_torque_nm", "offset_nm"):
+        if values.get(name) == 0.0:
+            del values[name]
+    return EffectUse(use.id, values)
+
+
+def _lasting(model: Model) -> list[EffectUse]:
+    """Effects that a model file keeps: a corrected parameter stands among the parameters."""
+    lasting = []
+    for use in model.effects:
+        if use.id == "parameter_mismatch":
+            continue
+        values = dict(use.values)
+        if "phase_rad" in values:
+            values = dict(_clean(use).values)
+        lasting.append(EffectUse(use.id, values))
+    return lasting
+
+
+def _within_tolerance(use: EffectUse, base: dict[str, float]) -> bool:
+    """Whether a parameter is off by no more than its stated calibration tolerance."""
+    ratio = float(use.values["value"]) / base[str(use.values["parameter"])]
+    return bool(abs(np.log(ratio)) <= TOLERANCE)
