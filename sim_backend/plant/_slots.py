@@ -97,7 +97,7 @@ def pack(model: Model) -> npt.NDArray[np.float64]:
     vector[list(_OFF_WHEN_INFINITE)] = np.inf
     vector[KIND] = _KINDS[model.kind]
     for name, value in model.parameters.items():
-        vector[_INDEX["viscous_drag.coefficient_nms_rad" if name == "viscous_drag" else name]] = value
+        vector[_slot(name)] = value
     seen: set[str] = set()
     for use in model.effects:
         if use.id in _SENSOR_EFFECTS or use.id == "parameter_mismatch":
@@ -108,8 +108,13 @@ def pack(model: Model) -> npt.NDArray[np.float64]:
         _place(vector, use.id, {name: float(value) for name, value in use.values.items()})
     for use in model.effects:
         if use.id == "parameter_mismatch":
-            vector[_INDEX[str(use.values["parameter"])]] = float(use.values["value"])
+            vector[_slot(str(use.values["parameter"]))] = float(use.values["value"])
     return vector
+
+
+def _slot(parameter: str) -> int:
+    """Where a parameter of a model stands; the drag of a rigid one is that of the effect."""
+    return _INDEX["viscous_drag.coefficient_nms_rad" if parameter == "viscous_drag" else parameter]
 
 
 def _place(vector: npt.NDArray[np.float64], effect: str, values: dict[str, float]) -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from hil.core.model import EffectUse, Model, load_model
 from hil.core.recording import Recording
-from sim_backend.plant import Start, replay, simulate
+from sim_backend.plant import Start, pack, replay, simulate
 
 BENCHES = Path(__file__).parents[3] / "benches"
 THREE = load_model(BENCHES / "three_inertia.toml").with_effects()
@@ -363,3 +363,12 @@ def test_uneven_time_stamps_are_resampled_and_said():
     np.testing.assert_allclose(
         got["motor_speed_rad_s"], truth["motor_speed_rad_s"][keep], rtol=1e-3, atol=1e-3
     )
+
+
+def test_a_wrong_drag_of_a_rigid_model_is_the_drag_itself():
+    parameters = {"motor_inertia": 0.02, "gear_ratio": 8.0, "vehicle_inertia": 300.0, "torque_delay": 0.006}
+    wrong = Model("rigid", {**parameters, "viscous_drag": 0.001}).with_effects(
+        EffectUse("parameter_mismatch", {"parameter": "viscous_drag", "value": 0.003})
+    )
+    right = Model("rigid", {**parameters, "viscous_drag": 0.003})
+    assert np.array_equal(pack(wrong), pack(right))
