@@ -23,6 +23,8 @@ from hil.core.recording import Recording
 #: Named effects close at least this share of the gap's power, and leave at most this factor over the noise:
 #: a large effect may be closed less finely, because its formula is never quite that of the axle.
 _SHUT = ((0.5, 1.03), (0.95, 1.15), (0.97, 1.6), (0.995, np.inf))
+_NOISELESS = 100.0  # gap over noise: what is left is a matter of formulas, not of noise
+_SHUT_NOISELESS = 0.9
 _MORE = 0.001  # of the share for each further name
 _FAR_FROM_NOISE = 50.0
 
@@ -92,6 +94,8 @@ def verdict_of(found: Found, rounded: bool) -> Verdict:
     evidence, best = found.evidence, found.best
     if best.hypothesis.terms:
         share, worst = evidence.share(best), evidence.worst(best)
+        if evidence.worst(found.base) > _NOISELESS:
+            return "named" if share > _SHUT_NOISELESS else "unknown"
         several = len(best.hypothesis.terms) - 1
         shut = any(share > least + _MORE * several and worst < most for least, most in _SHUT)
         return "named" if shut else "unknown"
