@@ -82,7 +82,8 @@ def _wrong(model: Model, traces: list[Trace], noise: Array) -> BadInputError | N
     """What does not go together in `traces`, seen together."""
     ratio, inertia = _ratio_and_inertia(model)
     pushes = {OUTPUTS[i]: _push(traces, i, (ratio, 1.0)[i], ratio / inertia) for i in (0, 1)}
-    return _speeds(traces, ratio, noise, pushes) or _pushed(pushes) or _shaft(traces, ratio, noise)
+    fine = [OUTPUTS[i] for i in (0, 1) if not any(coarse(t, i) for t in traces if t.has[i])]
+    return _speeds(traces, ratio, noise, pushes) or _pushed(pushes, fine) or _shaft(traces, ratio, noise)
 
 
 def _ratio_and_inertia(model: Model) -> tuple[float, float]:
@@ -199,8 +200,12 @@ def _push(traces: list[Trace], column: int, ratio: float, per_impulse: float) ->
     return pair
 
 
-def _pushed(pushes: dict[str, _Pair]) -> BadInputError | None:
-    """Whether torque moves the axle the right way, and no more than it can."""
+def _pushed(pushes: dict[str, _Pair], fine: list[str]) -> BadInputError | None:
+    """Whether torque moves the axle the right way, and no more than it can.
+
+    Args:
+        fine: channels that are not rounded coarsely: the turns of others come in steps of any size.
+    """
     told = {c: p for c, p in pushes.items() if p.count}
     against = [c for c, p in told.items() if p.correlation < _AGAINST and _LIKE[0] < p.factor < _LIKE[1]]
     if len(against) == len(OUTPUTS[:2]):
@@ -213,7 +218,7 @@ def _pushed(pushes: dict[str, _Pair]) -> BadInputError | None:
             fix=f"turn the sign of the channel, or of {INPUT}",
         )
     for channel, pair in told.items():
-        if pair.correlation > -_AGAINST and pair.factor > _TOO_FAST:
+        if channel in fine and pair.correlation > -_AGAINST and pair.factor > _TOO_FAST:
             return BadInputError(
                 f"{channel} changes {pair.factor:.3g} times as fast as the torque can make it",
                 fix="is it in rpm, or the model of another axle?",
