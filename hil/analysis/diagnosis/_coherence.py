@@ -43,11 +43,6 @@ class Split:
     noise: Array
     deviation: Array
 
-    @property
-    def ratio(self) -> Array:
-        """Physics over noise, channel by channel."""
-        return self.physics / np.maximum(self.noise, 1e-12)
-
 
 def split(problem: Problem, one: Fit) -> Split:
     """Split the errors of `one` over all recordings."""

@@ -13,9 +13,9 @@ from hil.analysis.diagnosis._judged import Judged
 from hil.analysis.diagnosis._problem import Problem, whitening_of
 from hil.analysis.diagnosis._quantization import coarse_noise, grids, rounding_of
 from hil.analysis.diagnosis._result import Diagnosis, Verdict
-from hil.analysis.diagnosis._sanity import check, examine
+from hil.analysis.diagnosis._sanity import examine
 from hil.analysis.diagnosis._search import Found, search
-from hil.analysis.diagnosis._trace import noise_levels, trace_of, unbroken, usable_noise
+from hil.analysis.diagnosis._trace import noise_levels, usable_noise
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
@@ -54,11 +54,10 @@ def diagnose(
             fix="give the chain that `hil identify` writes as physical.toml",
         )
     show("reading the noise")
-    traces = [trace_of(piece) for r in recordings for piece in unbroken(r)]
-    examine(model, holdout)
-    held = [trace_of(piece) for r in holdout for piece in unbroken(r)]
+    traces, found_odd = examine(model, recordings)
+    held, _ = examine(model, holdout)
+    notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + found_odd
     noise = usable_noise(noise_levels(traces))
-    notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + check(model, traces, noise)
     rounded = grids(traces, noise)
     problem = Problem(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
     hypothesis = Hypothesis(model)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import Coordinate, Hypothesis
+from hil.analysis.diagnosis._coordinates import Coordinate, Hypothesis, key_of
 from hil.analysis.diagnosis._problem import Normal, Problem, reduced, start_step
 
 Array = npt.NDArray[np.float64]
@@ -140,6 +140,20 @@ def fit(
         done,
         list(problem.angles),
     )
+
+
+def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
+    """Coordinates of `hypothesis`: those that `parent` has by their fitted values, others by their start."""
+    terms = {key_of(t): i for i, t in enumerate(parent.hypothesis.terms)}
+    known = {(c.name, c.term): v for c, v in zip(parent.hypothesis.coordinates(), parent.theta, strict=True)}
+    values = hypothesis.start()
+    wrong = {str(t.values["parameter"]) for t in hypothesis.terms if t.id == "parameter_mismatch"}
+    for index, c in enumerate(hypothesis.coordinates()):
+        term = -1 if c.term < 0 else terms.get(key_of(hypothesis.terms[c.term]), -2)
+        if term == -1 and c.name in wrong and ("parameter_mismatch", c.name) not in terms:
+            continue
+        values[index] = known.get((c.name, term), values[index])
+    return values
 
 
 def _bounds(coordinates: tuple[Coordinate, ...]) -> tuple[Array, Array]:

@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis._alignment import align, aligned, has_ripple
-from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
+from hil.analysis.diagnosis._coordinates import Hypothesis
 from hil.analysis.diagnosis._evidence import Evidence
-from hil.analysis.diagnosis._fit import Fit, fit
+from hil.analysis.diagnosis._fit import Fit, carried, fit
 from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._screen import Score, screen
 from hil.core.model import EffectUse
@@ -81,13 +81,14 @@ def grow(evidence: Evidence, parent: Fit) -> Step:
 
 def _straightened(problem: Problem, parent: Fit) -> Fit:
     """`parent` with nominal base parameters: bent ones make up for what is missing, and hide it."""
-    return fit(problem, parent.hypothesis, parent.starts, _nominal(parent), rounds=0)
+    nominal = _nominal(parent.hypothesis, parent.theta)
+    return fit(problem, parent.hypothesis, parent.starts, nominal, rounds=0)
 
 
-def _nominal(one: Fit) -> Array:
-    """Its coordinates, those of the base model's parameters at their nominal values."""
-    of_base = [c.term < 0 for c in one.hypothesis.coordinates()]
-    return np.asarray(np.where(of_base, one.hypothesis.start(), one.theta))
+def _nominal(hypothesis: Hypothesis, theta: Array) -> Array:
+    """`theta` with the base model's parameters at their nominal values."""
+    of_base = [c.term < 0 for c in hypothesis.coordinates()]
+    return np.asarray(np.where(of_base, hypothesis.start(), theta))
 
 
 def _better(scores: list[Score], others: list[Score]) -> list[Score]:
@@ -142,11 +143,15 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
     """
     hypothesis = parent.hypothesis.with_term(use)
     bent = carried(parent, hypothesis)
-    straight = np.where([c.term < 0 for c in hypothesis.coordinates()], hypothesis.start(), bent)
-    tried = [t for theta in (bent, straight) for t in _sizes(hypothesis, theta)]
-    starts = [np.tile(start, (len(tried), 1)) for start in parent.starts]
-    costs = problem.costs([hypothesis.packed(theta) for theta in tried], starts)
-    return fit(problem, hypothesis, parent.starts, tried[int(np.argmin(costs))], rounds=rounds)
+    tried = [t for theta in (bent, _nominal(hypothesis, bent)) for t in _sizes(hypothesis, theta)]
+    first = _cheapest(problem, hypothesis, tried, parent.starts)
+    return fit(problem, hypothesis, parent.starts, first, rounds=rounds)
+
+
+def _cheapest(problem: Problem, hypothesis: Hypothesis, tried: list[Array], starts: list[Array]) -> Array:
+    """Those of the coordinates `tried` that leave the smallest error, unfitted."""
+    each = [np.tile(start, (len(tried), 1)) for start in starts]
+    return tried[int(np.argmin(problem.costs([hypothesis.packed(theta) for theta in tried], each)))]
 
 
 def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
@@ -165,29 +170,15 @@ def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
     return found
 
 
-def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
-    """Coordinates of `hypothesis`: those that `parent` has by their fitted values, others by their start."""
-    terms = {key_of(t): i for i, t in enumerate(parent.hypothesis.terms)}
-    known = {(c.name, c.term): v for c, v in zip(parent.hypothesis.coordinates(), parent.theta, strict=True)}
-    values = hypothesis.start()
-    wrong = {str(t.values["parameter"]) for t in hypothesis.terms if t.id == "parameter_mismatch"}
-    for index, c in enumerate(hypothesis.coordinates()):
-        term = -1 if c.term < 0 else terms.get(key_of(hypothesis.terms[c.term]), -2)
-        if term == -1 and c.name in wrong and ("parameter_mismatch", c.name) not in terms:
-            continue
-        values[index] = known.get((c.name, term), values[index])
-    return values
-
-
 def _refined(evidence: Evidence, best: Fit) -> Fit:
     """Optional parameters of dry friction, where they pay."""
     for term in best.hypothesis.terms:
         if term.id == "coulomb_friction":
-            for names in (("stribeck_torque_nm",), ("offset_nm",)):
+            for name in ("stribeck_torque_nm", "offset_nm"):
                 opened = Hypothesis(
-                    best.hypothesis.base, best.hypothesis.terms, (*best.hypothesis.open, *names)
+                    best.hypothesis.base, best.hypothesis.terms, (*best.hypothesis.open, name)
                 )
-                tried = fit(evidence.problem, opened, best.starts, _opened(best, opened))
+                tried = fit(evidence.problem, opened, best.starts, carried(best, opened))
                 if evidence.left(tried) < 0.8 * evidence.left(best) and (
                     evidence.between(best, tried) > LEAST_EVIDENCE
                 ):
@@ -196,32 +187,28 @@ def _refined(evidence: Evidence, best: Fit) -> Fit:
 
 
 def _polished(evidence: Evidence, best: Fit) -> Fit:
-    """From other sizes of the newest effect, if a gap is left: abrupt effects have false minima."""
+    """From other sizes of the newest effect: abrupt effects have false minima.
+
+    Once no gap is left, only a little wider and narrower where play is: the place in the gap at the start
+    makes up for some of its width.
+    """
     if best.hypothesis.ids[-1] not in _ABRUPT or evidence.share(best) < 0.3:
         return best
+    coordinates = best.hypothesis.coordinates()
     if evidence.settled(best):
-        return _refitted_gap(evidence, best)
-    own = next(
-        i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
-    )
-    first = best
-    for factor in _OTHER_SIZES:
-        other = _nominal(first)
-        other[own] += np.log(factor)
-        tried = fit(evidence.problem, best.hypothesis, evidence.base.starts, other)
-        best = min(best, tried, key=rank)
-    return best
+        for index in [i for i, c in enumerate(coordinates) if c.name == "half_gap_rad"]:
+            best = _from_sizes(evidence, best, best.theta, index, _WIDTHS)
+        return best
+    own = next(i for i, c in enumerate(coordinates) if c.term == len(best.hypothesis.terms) - 1)
+    return _from_sizes(evidence, best, _nominal(best.hypothesis, best.theta), own, _OTHER_SIZES)
 
 
-def _refitted_gap(evidence: Evidence, best: Fit) -> Fit:
-    """A little wider and narrower: the place in the gap at the start makes up for some of its width."""
-    for index, c in enumerate(best.hypothesis.coordinates()):
-        if c.name == "half_gap_rad":
-            for factor in _WIDTHS:
-                other = best.theta.copy()
-                other[index] += np.log(factor)
-                tried = fit(evidence.problem, best.hypothesis, evidence.base.starts, other)
-                best = min(best, tried, key=rank)
+def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:
+    """The best of `best` and of fits from `theta` with its number `index` times each factor."""
+    for factor in factors:
+        other = theta.copy()
+        other[index] += np.log(factor)
+        best = min(best, fit(evidence.problem, best.hypothesis, evidence.base.starts, other), key=rank)
     return best
 
 
@@ -262,14 +249,4 @@ def _in_phase(problem: Problem, one: Fit, index: int, order: float) -> Array:
         theta = one.theta.copy()
         theta[index], theta[phase] = order, turn
         tried.append(theta)
-    starts = [np.tile(start, (len(tried), 1)) for start in one.starts]
-    costs = problem.costs([one.hypothesis.packed(theta) for theta in tried], starts)
-    return tried[int(np.argmin(costs))]
-
-
-def _opened(best: Fit, opened: Hypothesis) -> Array:
-    known = {(c.name, c.term): v for c, v in zip(best.hypothesis.coordinates(), best.theta, strict=True)}
-    start = opened.start()
-    return np.array(
-        [known.get((c.name, c.term), s) for c, s in zip(opened.coordinates(), start, strict=True)]
-    )
+    return _cheapest(problem, one.hypothesis, tried, one.starts)

@@ -11,7 +11,7 @@ from hil.analysis.diagnosis._alignment import align, has_ripple
 from hil.analysis.diagnosis._confidence import alternatives_of, confidence_of
 from hil.analysis.diagnosis._consequences import consequences, loop_area
 from hil.analysis.diagnosis._coordinates import TOLERANCE
-from hil.analysis.diagnosis._fit import Fit
+from hil.analysis.diagnosis._fit import Fit, carried
 from hil.analysis.diagnosis._gap import (
     ChannelGap,
     GapMap,
@@ -20,7 +20,7 @@ from hil.analysis.diagnosis._gap import (
     settled_starts,
     simulated_samples,
 )
-from hil.analysis.diagnosis._growth import LEAST_EVIDENCE, carried
+from hil.analysis.diagnosis._growth import LEAST_EVIDENCE
 from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
 from hil.analysis.diagnosis._search import Found

@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis._broken_channels import coarse, refuse_broken_channels
-from hil.analysis.diagnosis._trace import Trace, noise_levels, trace_of
+from hil.analysis.diagnosis._trace import Trace, noise_levels, trace_of, unbroken, usable_noise
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -63,14 +63,14 @@ def check(model: Model, traces: list[Trace], noise: Array) -> list[str]:
     return notes
 
 
-def examine(model: Model, recordings: Sequence[Recording]) -> list[str]:
-    """`check` of recordings as they come from a file.
+def examine(model: Model, recordings: Sequence[Recording]) -> tuple[list[Trace], list[str]]:
+    """Recordings as they come from a file made ready for fits, and what `check` notes on them.
 
     Raises:
         BadInputError: like `check`, and where a recording is too short or too slowly sampled.
     """
-    traces = [trace_of(r) for r in recordings]
-    return check(model, traces, np.fmax(noise_levels(traces), 1e-6)) if traces else []
+    traces = [trace_of(piece) for r in recordings for piece in unbroken(r)]
+    return traces, check(model, traces, usable_noise(noise_levels(traces))) if traces else []
 
 
 def _kind(error: BadInputError) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
-from hil.analysis.diagnosis._fit import Fit, box_step
+from hil.analysis.diagnosis._fit import Fit, box_step, carried
 from hil.analysis.diagnosis._probes import Probe, mismatches, probes
 from hil.analysis.diagnosis._problem import Problem
 from hil.core.model import EffectUse
@@ -101,8 +101,7 @@ def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Arra
     for probe in candidates:
         for direction in probe.directions:
             added = fit.hypothesis.with_term(EffectUse(probe.id, direction.values))
-            theta = np.concatenate([_carried(fit, added), added.start()[len(_carried(fit, added)) :]])
-            packed.append(added.packed(theta))
+            packed.append(added.packed(carried(fit, added)))
     slots = np.stack([p for p, _ in packed])
     sensors = np.stack([s for _, s in packed])
     base, size = len(fit.theta), len(fit.theta) + len(packed) - 1
@@ -128,9 +127,3 @@ def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Arra
             own = change[first:last] @ change[first:last].T - along[first:last] @ along[first:last].T
             matrix[base + first : base + last, base + first : base + last] += own
     return matrix, gradient
-
-
-def _carried(fit: Fit, added: Hypothesis) -> Array:
-    """Values of the coordinates that `added` shares with `fit`, in the order of `added`."""
-    known = {(c.name, c.term): v for c, v in zip(fit.hypothesis.coordinates(), fit.theta, strict=True)}
-    return np.array([known[(c.name, c.term)] for c in added.coordinates() if (c.name, c.term) in known])

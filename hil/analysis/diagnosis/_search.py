@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
+from hil.analysis.diagnosis._coordinates import Hypothesis
 from hil.analysis.diagnosis._evidence import NEARLY, Evidence
-from hil.analysis.diagnosis._fit import Fit, fit
-from hil.analysis.diagnosis._growth import LEAST_EVIDENCE, Step, carried, grow, rank
+from hil.analysis.diagnosis._fit import Fit, carried, fit
+from hil.analysis.diagnosis._growth import LEAST_EVIDENCE, Step, grow, rank
 from hil.analysis.diagnosis._problem import Problem
 
 Array = npt.NDArray[np.float64]
@@ -37,7 +37,6 @@ class Found:
     best: Fit
     evidence: Evidence
     steps: list[Step] = field(default_factory=list)
-    dropped: list[tuple[tuple[str, str], float]] = field(default_factory=list)
 
 
 def search(problem: Problem, base: Hypothesis, show: Callable[[str], None], rounding: Array) -> Found:
@@ -93,7 +92,6 @@ def _needed(problem: Problem, found: Found) -> Found:
         fewer = best.hypothesis.without(index)
         tried = fit(problem, fewer, best.starts, carried(best, fewer))
         if found.evidence.closed(tried) or not earned(found.evidence, tried, best):
-            found.dropped.append((key_of(best.hypothesis.terms[index]), tried.total - best.total))
             found.best = tried
             return found
     return found
