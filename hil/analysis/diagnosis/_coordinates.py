@@ -42,7 +42,6 @@ _STEP = 1e-3  # of a finite difference, on a logarithmic scale or in typical siz
 _UPPER = {"slip_rad": 0.1, "time_constant_s": 0.3}
 #: Contact comes and goes: the error is rough in the gap, and its slope must be taken over some of it.
 _COARSE_STEP = {"half_gap_rad": 0.03}
-_SAMPLE_S = 1e-3
 _FINE_STEP = {"order": 1e-3}
 
 
@@ -109,8 +108,6 @@ class Hypothesis:
             lower, upper = parameter.lower, min(parameter.upper, _UPPER.get(parameter.name, np.inf))
             if parameter.name in _LINEAR:
                 step = _FINE_STEP.get(parameter.name, _STEP) * _LINEAR[parameter.name]
-                if parameter.name == "extra_delay_s" and self.base.kind == "rigid":
-                    step = _SAMPLE_S  # shaft torque follows by whole samples
                 if parameter.name == "phase_rad":
                     lower, upper = -50.0, 50.0
                 found.append(Coordinate(parameter.name, index, "linear", lower, upper, step, np.inf))

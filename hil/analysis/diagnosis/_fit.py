@@ -9,12 +9,14 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis._coordinates import Coordinate, Hypothesis, key_of
 from hil.analysis.diagnosis._problem import Normal, Problem, reduced, start_step
+from hil.analysis.diagnosis._whole_samples import delay_by_samples
 
 Array = npt.NDArray[np.float64]
 
 _TRIALS = (1.0, 0.35)
 _MOST_ROUNDS = 14
 _MOST_REFUSALS = 4
+_WORTH_A_LEAP = 10.0  # drop of the squared error
 
 
 @dataclass
@@ -90,11 +92,68 @@ def fit(
         enough: stop when a step gains less than this in the sum of squared errors.
     """
     coordinates = hypothesis.coordinates()
-    theta = hypothesis.start() if theta is None else theta.copy()
-    starts = [s.copy() for s in (starts or problem.first_starts(hypothesis))]
     lower, upper = _bounds(coordinates)
-    theta = np.clip(theta, lower, upper)
+    theta = np.clip(hypothesis.start() if theta is None else theta, lower, upper)
+    starts = [s.copy() for s in (starts or problem.first_starts(hypothesis))]
     precision = np.array([1.0 / c.prior**2 for c in coordinates])
+    by_samples = delay_by_samples(hypothesis, problem.traces[0].dt) if rounds else None
+    done = 0
+    while True:
+        within = lower, upper
+        if by_samples is not None:
+            tried = [theta, *by_samples.leaps(theta, lower, upper)]
+            leapt = cheapest(problem, hypothesis, tried, starts, precision, lead=_WORTH_A_LEAP)
+            if done and leapt is theta:
+                break
+            theta = leapt
+            within = by_samples.within(theta, lower, upper)
+        reached = _descent(problem, hypothesis, (theta, starts), within, precision, rounds - done, enough)
+        theta, starts, done = reached.theta, reached.starts, done + reached.rounds
+        if by_samples is None or done >= rounds:
+            break
+    matrix, _ = reduced(reached.normals)
+    covariance = np.asarray(np.linalg.pinv(matrix + np.diag(precision), hermitian=True), dtype=float)
+    prior = float(precision @ theta**2)
+    angles = list(problem.angles)
+    return Fit(
+        hypothesis,
+        theta,
+        starts,
+        reached.cost,
+        prior,
+        covariance,
+        reached.normals,
+        reached.pieces,
+        done,
+        angles,
+    )
+
+
+@dataclass
+class _Reached:
+    """Where a descent ended."""
+
+    theta: Array
+    starts: list[Array]
+    cost: float
+    normals: list[Normal]
+    pieces: list[tuple[Array, Array, Array]]
+    rounds: int
+
+
+def _descent(
+    problem: Problem,
+    hypothesis: Hypothesis,
+    begin: tuple[Array, list[Array]],
+    bounds: tuple[Array, Array],
+    precision: Array,
+    rounds: int,
+    enough: float,
+) -> _Reached:
+    """Levenberg-Marquardt within bounds, from coordinates and starts."""
+    coordinates = hypothesis.coordinates()
+    lower, upper = bounds
+    theta, starts = np.clip(begin[0], lower, upper), begin[1]
     cost, normals, pieces = problem.linearised(hypothesis, theta, starts)
     damping, refusals, done = 1e-6, 0, 0
     while done < rounds:
@@ -126,20 +185,32 @@ def fit(
         cost, normals, pieces = problem.linearised(hypothesis, theta, starts)
         if gain < enough:
             break
-    matrix, _ = reduced(normals)
-    covariance = np.asarray(np.linalg.pinv(matrix + np.diag(precision), hermitian=True), dtype=float)
-    return Fit(
-        hypothesis,
-        theta,
-        starts,
-        cost,
-        float(precision @ theta**2),
-        covariance,
-        normals,
-        pieces,
-        done,
-        list(problem.angles),
-    )
+    return _Reached(theta, starts, cost, normals, pieces, done)
+
+
+def cheapest(
+    problem: Problem,
+    hypothesis: Hypothesis,
+    tried: list[Array],
+    starts: list[Array],
+    precision: Array | float = 0.0,
+    *,
+    lead: float = 0.0,
+) -> Array:
+    """Those of the coordinates `tried` that leave the smallest error, unfitted.
+
+    Args:
+        lead: what the others must gain over the first in the sum of squared errors.
+    """
+    each = [np.tile(start, (len(tried), 1)) for start in starts]
+    costs = problem.costs([hypothesis.packed(theta) for theta in tried], each)
+    costs += np.array([np.sum(precision * theta**2) for theta in tried])
+    costs[0] -= lead
+    return tried[int(np.argmin(costs))]
+
+
+def _bounds(coordinates: tuple[Coordinate, ...]) -> tuple[Array, Array]:
+    return np.array([c.lower for c in coordinates]), np.array([c.upper for c in coordinates])
 
 
 def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
@@ -154,10 +225,6 @@ def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
             continue
         values[index] = known.get((c.name, term), values[index])
     return values
-
-
-def _bounds(coordinates: tuple[Coordinate, ...]) -> tuple[Array, Array]:
-    return np.array([c.lower for c in coordinates]), np.array([c.upper for c in coordinates])
 
 
 def _limited(step: Array, coordinates: tuple[Coordinate, ...]) -> Array:

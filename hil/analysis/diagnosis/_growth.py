@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._alignment import align, aligned, has_ripple
+from hil.analysis.diagnosis._alignment import aligned, has_ripple
 from hil.analysis.diagnosis._coordinates import Hypothesis
 from hil.analysis.diagnosis._evidence import Evidence
-from hil.analysis.diagnosis._fit import Fit, carried, fit
+from hil.analysis.diagnosis._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._screen import Score, screen
 from hil.core.model import EffectUse
@@ -31,8 +31,6 @@ _SIZES = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # of an effect, around what its p
 _ABRUPT = ("backlash", "torque_deadband", "torque_rate_limit", "torque_saturation")
 _WIDTHS = (0.9, 1.1)
 _OTHER_SIZES = (0.75, 1.0, 1.3)
-_PHASES = 12
-_WHOLE = 0.01  # relative: an order as near to a whole one may be it
 _RACE = 5  # candidates that are fitted at each step
 _PROMISING = 0.4  # share of the best score
 _RACE_ROUNDS = 3
@@ -74,7 +72,7 @@ def grow(evidence: Evidence, parent: Fit) -> Step:
         return Step(parent, scores, [])
     step = Step(parent, scores, _race(problem, parent, scores))
     if step.fits:
-        best = _in_order(evidence, _refined(evidence, step.fits[0]))
+        best = aligned(problem, _refined(evidence, step.fits[0]))
         step.fits[0] = _polished(evidence, best)
     return step
 
@@ -144,14 +142,8 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
     hypothesis = parent.hypothesis.with_term(use)
     bent = carried(parent, hypothesis)
     tried = [t for theta in (bent, _nominal(hypothesis, bent)) for t in _sizes(hypothesis, theta)]
-    first = _cheapest(problem, hypothesis, tried, parent.starts)
+    first = cheapest(problem, hypothesis, tried, parent.starts)
     return fit(problem, hypothesis, parent.starts, first, rounds=rounds)
-
-
-def _cheapest(problem: Problem, hypothesis: Hypothesis, tried: list[Array], starts: list[Array]) -> Array:
-    """Those of the coordinates `tried` that leave the smallest error, unfitted."""
-    each = [np.tile(start, (len(tried), 1)) for start in starts]
-    return tried[int(np.argmin(problem.costs([hypothesis.packed(theta) for theta in tried], each)))]
 
 
 def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
@@ -210,43 +202,3 @@ def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors
         other[index] += np.log(factor)
         best = min(best, fit(evidence.problem, best.hypothesis, evidence.base.starts, other), key=rank)
     return best
-
-
-def _in_order(evidence: Evidence, best: Fit) -> Fit:
-    """Ripples with their angles aligned; if a gap is left, from whole orders too: a drift hides in one."""
-    problem = evidence.problem
-    measured = list(problem.angles)
-    first = best
-    best = aligned(problem, best)
-    for index, c in enumerate(first.hypothesis.coordinates()):
-        whole = round(float(first.theta[index]))
-        if (
-            c.name != "order"
-            or not 0.0 < abs(first.theta[index] - whole) < _WHOLE * whole
-            or evidence.settled(best)
-        ):
-            continue
-        found = list(problem.angles)
-        problem.angles = list(measured)
-        theta = _in_phase(problem, first, index, whole)
-        align(problem, first.hypothesis, theta, first.starts)
-        other = aligned(problem, fit(problem, first.hypothesis, first.starts, theta))
-        if other.total < best.total:
-            best = other
-        else:
-            problem.angles = found
-    return best
-
-
-def _in_phase(problem: Problem, one: Fit, index: int, order: float) -> Array:
-    """Coordinates of `one` with another order, its number `index`, at the phase that suits it best."""
-    coordinates = one.hypothesis.coordinates()
-    phase = next(
-        i for i, c in enumerate(coordinates) if c.name == "phase_rad" and c.term == coordinates[index].term
-    )
-    tried = []
-    for turn in np.linspace(-np.pi, np.pi, _PHASES, endpoint=False):
-        theta = one.theta.copy()
-        theta[index], theta[phase] = order, turn
-        tried.append(theta)
-    return _cheapest(problem, one.hypothesis, tried, one.starts)

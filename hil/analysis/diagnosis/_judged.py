@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._alignment import align, has_ripple
+from hil.analysis.diagnosis._alignment import has_ripple
 from hil.analysis.diagnosis._confidence import alternatives_of, confidence_of
 from hil.analysis.diagnosis._consequences import consequences, loop_area
 from hil.analysis.diagnosis._coordinates import TOLERANCE
@@ -25,6 +25,7 @@ from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
 from hil.analysis.diagnosis._search import Found
 from hil.analysis.diagnosis._trace import Trace, noise_levels, usable_noise
+from hil.analysis.diagnosis._tracking import track
 from hil.analysis.diagnosis._words import Where, signature, where
 from hil.core.model import EffectUse, Model
 
@@ -108,7 +109,7 @@ class Judged:
             starts = settled_starts(problem, hypothesis, theta, problem.first_starts(hypothesis))
             if has_ripple(hypothesis):
                 problem.follow(hypothesis, theta)
-                align(problem, hypothesis, theta, starts)
+                track(problem, hypothesis, theta, starts, known=True)
                 starts = settled_starts(problem, hypothesis, theta, starts)
             gaps.append(channel_gaps(problem, simulated_samples(problem, hypothesis, theta, starts)))
         return gaps[0], gaps[1]

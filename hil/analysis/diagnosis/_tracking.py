@@ -1,0 +1,203 @@
+"""Phase of a ripple over time, told by the ripple itself wherever it wanders.
+
+An angle integrated from a noisy speed is a random walk; a high order turns that into whole turns of phase, in
+which no search by slopes finds its way. So each short window of a recording says how well every phase fits,
+and the likeliest walk through all windows is found by dynamic programming (Viterbi), as a tracking
+tachometer does (Vold and Leuridan's order tracking, with a phase in place of an amplitude).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.linalg import solveh_banded
+
+from hil.analysis.diagnosis._coordinates import Hypothesis, sensors_of
+from hil.analysis.diagnosis._problem import Problem
+from hil.core.model import EffectUse, Model
+from sim_backend.plant import pack, simulate_many
+
+Array = npt.NDArray[np.float64]
+
+#: Ripples, and the column of the angles (wheel, rotor) and of the channels that each follows.
+RIPPLES = {"wheel_order_disturbance": (0, 1), "motor_order_ripple": (1, 0)}
+SLOW_NOISE = 4.0  # power of a speed's noise at low frequency over that above all modes, at most
+_WINDOW_S = 0.1
+_PHASES = 72
+_GRID = 2.0 * np.pi / _PHASES
+_REFINED = 5
+_LEAST_STEP = 0.05
+_START_RAD = 0.3  # how well the phase at the start is known once the ripple is
+_SOON_S = 1.0  # recordings that turn a ripple sooner than this say the same of its phase
+_NO_RIPPLE = 1e-9
+
+
+@dataclass(frozen=True)
+class _Windows:
+    """What each window of one recording says of a phase: products of the ripple's sine and cosine.
+
+    `own` is windows x 2 x 2, `seen` windows x 2, `times` (s) and `angle` (rad) are at the windows' middles.
+    """
+
+    own: Array
+    seen: Array
+    times: Array
+    angle: Array
+
+
+def track(
+    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array], *, known: bool = False
+) -> Array:
+    """Turn the angles of every recording to where the ripples of `hypothesis` say, in place.
+
+    Args:
+        known: phase and order of `theta` are right, all that is seen is drift of the angles.
+
+    Returns:
+        `theta`, unless `known` with what all recordings have in common put into phase and order.
+    """
+    theta = theta.copy()
+    coordinates = hypothesis.coordinates()
+    for term, use in enumerate(hypothesis.terms):
+        if use.id not in RIPPLES:
+            continue
+        model = hypothesis.model(theta)
+        column, channel = RIPPLES[use.id]
+        position = len(hypothesis.base.effects) + term
+        order = float(model.effects[position].values["order"])
+        windows = [_windows(problem, model, position, index, start) for index, start in enumerate(starts)]
+        walk = order**2 * float(problem.floor[channel]) ** 2 * SLOW_NOISE  # per sample squared, below per s
+        paths = []
+        for one, trace in zip(windows, problem.traces, strict=True):
+            step = max(walk * trace.dt, _LEAST_STEP**2) * _WINDOW_S
+            paths.append(_likeliest(one, step, _START_RAD if known else np.inf))
+        more, turn = (0.0, 0.0) if known else _common(windows, paths, order)
+        for index, (one, path) in enumerate(zip(windows, paths, strict=True)):
+            drift = path - turn - more * one.angle
+            drift -= 2.0 * np.pi * np.round(drift[0] / (2.0 * np.pi))
+            trace = problem.traces[index]
+            at = np.arange(len(trace.torque)) * trace.dt
+            angles = problem.angles[index].copy()
+            angles[:, column] += np.interp(at, one.times, drift) / (order + more)
+            problem.angles[index] = angles
+        for i, c in enumerate(coordinates):
+            if c.term == term and c.name in ("order", "phase_rad"):
+                theta[i] += more if c.name == "order" else turn
+    return theta
+
+
+def _windows(problem: Problem, model: Model, position: int, index: int, start: Array) -> _Windows:
+    trace = problem.traces[index]
+    use = model.effects[position]
+    phase = float(use.values["phase_rad"])
+    sets = []
+    for amplitude, turned in ((_NO_RIPPLE, phase), (None, phase), (None, phase + np.pi / 2)):
+        values = {**use.values, "phase_rad": turned}
+        if amplitude is not None:
+            values["amplitude_nm"] = amplitude
+        effects = list(model.effects)
+        effects[position] = EffectUse(use.id, values)
+        sets.append(pack(model.with_effects(*effects)))
+    sensors = np.tile(sensors_of(model), (3, 1, 1))
+    around = simulate_many(
+        np.stack(sets),
+        trace.torque,
+        trace.dt,
+        np.tile(start, (3, 1)),
+        sensors,
+        trace.block,
+        problem.angles[index],
+    )
+    error = problem.errors(index, around[0])
+    ripple = (around[1:] - around[0]) * problem.weights[index]
+    period = trace.dt * trace.block
+    length = max(4, round(_WINDOW_S / period))
+    count = max(1, len(error) // length)
+    length = min(length, len(error))
+    line = np.linalg.qr(np.column_stack([np.ones(length), np.linspace(-1.0, 1.0, length)]))[0]
+
+    def cut(values: Array) -> Array:
+        """Windows x rows x channels; a speed without its straight line, which earlier windows gave it."""
+        parts = values[: count * length].reshape(count, length, 3).copy()
+        parts[:, :, :2] -= np.einsum("nk,mk,wmc->wnc", line, line, parts[:, :, :2])
+        return parts
+
+    parts = np.stack([cut(one) for one in ripple])
+    own = np.einsum("awnc,bwnc->wab", parts, parts)
+    seen = np.einsum("awnc,wnc->wa", parts, cut(error))
+    middles = (np.arange(count) + 0.5) * length
+    samples = np.minimum((middles * trace.block).astype(int), len(trace.torque) - 1)
+    angle = problem.angles[index][samples, RIPPLES[use.id][0]]
+    return _Windows(own, seen, np.asarray(middles * period, dtype=float), angle)
+
+
+def _likeliest(windows: _Windows, step: float, start: float) -> Array:
+    """The likeliest phase (rad, unwrapped) in each window.
+
+    Args:
+        step: variance of the phase from window to window, rad².
+        start: standard deviation of the first one around zero, rad.
+    """
+    phases = 2.0 * np.pi * np.arange(_PHASES) / _PHASES
+    turned = np.stack([np.cos(phases), np.sin(phases)])
+    along = windows.seen @ turned
+    own = np.einsum("ap,wab,bp->wp", turned, windows.own, turned)
+    between = np.abs(np.angle(np.exp(1j * (phases[:, None] - phases[None, :]))))
+    moves = between**2 / step
+    path = np.zeros(len(along), int)
+    size = 1.0
+    for _ in range(2):
+        costs = size**2 * own - 2.0 * size * along
+        total = costs[0] + between[0] ** 2 / start**2
+        came_from = np.zeros(along.shape, int)
+        for w in range(1, len(costs)):
+            sums = total[:, None] + moves
+            came_from[w] = np.argmin(sums, axis=0)
+            total = sums[came_from[w], np.arange(_PHASES)] + costs[w]
+        path[-1] = int(np.argmin(total))
+        for w in range(len(costs) - 1, 0, -1):
+            path[w - 1] = came_from[w, path[w]]
+        at = np.arange(len(path))
+        size = max(float(np.sum(along[at, path])) / max(float(np.sum(own[at, path])), 1e-12), 0.1)
+    return _smoothed(windows, np.unwrap(phases[path]), size, step)
+
+
+def _smoothed(windows: _Windows, path: Array, size: float, step: float) -> Array:
+    """`path` moved off the grid of phases to the likeliest one near to it (Gauss-Newton)."""
+    bands = np.zeros((2, len(path)))
+    bands[0, 1:] = -1.0 / step
+    stiff = np.full(len(path), 2.0 / step)
+    stiff[[0, -1]] -= 1.0 / step
+    for _ in range(_REFINED):
+        turned = np.stack([np.cos(path), np.sin(path)], axis=1)
+        across = np.stack([-turned[:, 1], turned[:, 0]], axis=1)
+        left = windows.seen - size * np.einsum("wab,wb->wa", windows.own, turned)
+        pull = size * np.sum(across * left, axis=1)
+        bands[1] = size**2 * np.einsum("wa,wab,wb->w", across, windows.own, across) + stiff + 1e-9
+        steps = np.diff(path) / step
+        pull[:-1] += steps
+        pull[1:] -= steps
+        path = path + np.clip(solveh_banded(bands, pull), -_GRID, _GRID)
+    return np.asarray(path)
+
+
+def _common(windows: list[_Windows], paths: list[Array], order: float) -> tuple[float, float]:
+    """What all recordings say together: (correction of the order, of the phase in rad).
+
+    A ripple that has not turned yet looks like friction or an offset: the sooner a recording turns it, the
+    more its phase says.
+    """
+    turned, moved = 0.0, 0.0
+    for one, path in zip(windows, paths, strict=True):
+        turned += float(np.sum(np.diff(one.angle) ** 2))
+        moved += float(np.diff(one.angle) @ np.diff(path))
+    more = moved / turned if turned > 0.0 else 0.0
+    together = 0.0 + 0.0j
+    for one, path in zip(windows, paths, strict=True):
+        whole = np.abs(one.angle - one.angle[0]) * order > 2.0 * np.pi
+        if whole.any():
+            weight = 1.0 / (_SOON_S + float(one.times[np.argmax(whole)]))
+            together += weight * np.exp(1j * (path[0] - more * one.angle[0]))
+    return more, float(np.angle(together)) if together else 0.0

@@ -1,0 +1,88 @@
+"""Dead time of a rigid axle: its shaft torque shows the request late by whole samples, and nothing between.
+
+With no spring between, shaft torque jumps with every sample of the request. The error then jumps with the
+dead time wherever that crosses a sample: no slope leads across, so descents stay within a sample and the
+neighbouring ones are tried.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._coordinates import Hypothesis
+from hil.core.channels import OUTPUTS
+
+Array = npt.NDArray[np.float64]
+
+_EDGE = 1e-3  # of a sample: kept from either end
+_LEAPS = (-4, -3, -2, -1, 1, 2, 3, 4)
+
+
+@dataclass(frozen=True)
+class DelayBySamples:
+    """Where the dead time of a rigid hypothesis stands among its coordinates; `dt` in s is of a sample."""
+
+    hypothesis: Hypothesis
+    index: int
+    skew: int | None  # the coordinate of the delay of the shaft torque's own channel
+    dt: float
+
+    def within(self, theta: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
+        """Bounds of a descent from `theta`: those given, and of the sample that its dead time lies in."""
+        sample = np.floor(self._delay(theta) / self.dt + 1e-9)
+        ends = [self._at(theta, (sample + share) * self.dt) for share in (_EDGE, 1.0 - _EDGE)]
+        lower, upper = lower.copy(), upper.copy()
+        low, high = max(lower[self.index], ends[0]), min(upper[self.index], ends[1])
+        if low < high:
+            lower[self.index], upper[self.index] = low, high
+        return lower, upper
+
+    def leaps(self, theta: Array, lower: Array, upper: Array) -> list[Array]:
+        """`theta` with the dead time in other samples; with the channel's delay making up for it as well."""
+        found = []
+        delay = self._delay(theta)
+        sample = np.floor(delay / self.dt + 1e-9)
+        for more in _LEAPS:
+            low = self._at(theta, (sample + more + _EDGE) * self.dt)
+            high = self._at(theta, (sample + more + 1.0 - _EDGE) * self.dt)
+            if low > upper[self.index] or high < lower[self.index]:
+                continue
+            other = theta.copy()
+            middle = min(max(self._at(theta, (sample + more + 0.5) * self.dt), low), high)
+            other[self.index] = min(max(middle, lower[self.index]), upper[self.index])
+            found.append(other)
+            if self.skew is not None:
+                late = other.copy()
+                late[self.skew] -= more * self.dt
+                if lower[self.skew] <= late[self.skew] <= upper[self.skew]:
+                    found.append(late)
+        return found
+
+    def _delay(self, theta: Array) -> float:
+        model = self.hypothesis.model(theta)
+        extra = [float(use.values["extra_delay_s"]) for use in model.effects if use.id == "dead_time"]
+        return model.parameters["torque_delay"] + sum(extra)
+
+    def _at(self, theta: Array, delay: float) -> float:
+        """The coordinate that makes the dead time `delay` in s."""
+        c = self.hypothesis.coordinates()[self.index]
+        if c.scale == "linear":
+            return float(theta[self.index] + delay - self._delay(theta))
+        own = self.hypothesis.base.parameters[c.name] * float(np.exp(theta[self.index]))
+        return float(theta[self.index] + np.log(max(own + delay - self._delay(theta), 1e-9) / own))
+
+
+def delay_by_samples(hypothesis: Hypothesis, dt: float) -> DelayBySamples | None:
+    """The free dead time of a rigid hypothesis; None for other models, and where it is not free."""
+    if hypothesis.base.kind != "rigid":
+        return None
+    index, skew = None, None
+    for i, c in enumerate(hypothesis.coordinates()):
+        if c.name in ("torque_delay", "extra_delay_s"):
+            index = i
+        elif c.name == "delay_s" and hypothesis.terms[c.term].values["channel"] == OUTPUTS[2]:
+            skew = i
+    return None if index is None else DelayBySamples(hypothesis, index, skew, dt)
