@@ -14,6 +14,8 @@ Array = npt.NDArray[np.float64]
 
 _ROUNDS = 4
 _LITTLE = 0.02  # share of what is left: a round that gains less is the last
+_WHOLE = (0.002, 0.15)  # how far from a whole order another may be one that drift has bent
+_WORSE = 10.0  # by which a whole order may be worse in the sum of squared errors
 
 
 def has_ripple(hypothesis: Hypothesis) -> bool:
@@ -25,16 +27,41 @@ def aligned(problem: Problem, one: Fit) -> Fit:
     """The fit again after the angles of `problem` were corrected by what its ripples show."""
     if not has_ripple(one.hypothesis):
         return one
+    best = _in_turns(problem, one, one.theta)
+    for index, c in enumerate(best.hypothesis.coordinates()):
+        whole = float(np.round(best.theta[index]))
+        if c.name == "order" and whole > 0.0 and _WHOLE[0] < abs(best.theta[index] - whole) < _WHOLE[1]:
+            best = _with_whole_order(problem, best, index, whole)
+    return best
+
+
+def _in_turns(problem: Problem, one: Fit, theta: Array) -> Fit:
+    """Track and fit, from `theta`, while it makes `one` better."""
     for _ in range(_ROUNDS):
         before = list(problem.angles)
-        problem.follow(one.hypothesis, one.theta)
-        theta = track(problem, one.hypothesis, one.theta, one.starts)
+        problem.follow(one.hypothesis, theta)
+        theta = track(problem, one.hypothesis, theta, one.starts)
         again = fit(problem, one.hypothesis, one.starts, theta)
         if again.total >= one.total:
             problem.angles = before
             return one
         little = one.total - again.total < _LITTLE * (one.total - problem.rows)
-        one = again
+        one, theta = again, again.theta
         if little:
             break
     return one
+
+
+def _with_whole_order(problem: Problem, best: Fit, index: int, whole: float) -> Fit:
+    """`best` from a whole order, its number `index`: what turns with a shaft repeats with every turn."""
+    found = list(problem.angles)
+    theta = best.theta.copy()
+    theta[index] = whole
+    problem.follow(best.hypothesis, theta)
+    theta = track(problem, best.hypothesis, theta, best.starts, order_known=True)
+    first = fit(problem, best.hypothesis, best.starts, theta)
+    other = _in_turns(problem, first, first.theta)
+    if other.total < best.total + _WORSE:
+        return other
+    problem.angles = found
+    return best

@@ -17,6 +17,7 @@ from hil.analysis.diagnosis._evidence import Evidence
 from hil.analysis.diagnosis._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._screen import Score, screen
+from hil.analysis.diagnosis._tracking import RIPPLES, tracked_gain
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
@@ -68,6 +69,7 @@ def grow(evidence: Evidence, parent: Fit) -> Step:
     scores = screen(problem, parent)
     if not scores or scores[0].gain < _PLAIN * evidence.left(parent) * blocks:
         scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
+        scores = _better(scores, _followed(problem, parent, scores))
     if scores and scores[0].gain < max(_HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
         return Step(parent, scores, [])
     step = Step(parent, scores, _race(problem, parent, scores))
@@ -75,6 +77,12 @@ def grow(evidence: Evidence, parent: Fit) -> Step:
         best = aligned(problem, _refined(evidence, step.fits[0]))
         step.fits[0] = _polished(evidence, best)
     return step
+
+
+def _followed(problem: Problem, parent: Fit, scores: list[Score]) -> list[Score]:
+    """Ripples by what they promise once their phase is followed."""
+    ripples = [s.use for s in scores if s.key[0] in RIPPLES and s.gain > LEAST_EVIDENCE]
+    return [Score(use, tracked_gain(problem, parent, use)) for use in ripples]
 
 
 def _straightened(problem: Problem, parent: Fit) -> Fit:

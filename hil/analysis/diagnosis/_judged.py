@@ -109,7 +109,7 @@ class Judged:
             starts = settled_starts(problem, hypothesis, theta, problem.first_starts(hypothesis))
             if has_ripple(hypothesis):
                 problem.follow(hypothesis, theta)
-                track(problem, hypothesis, theta, starts, known=True)
+                track(problem, hypothesis, theta, starts, order_known=True, phase_known=True)
                 starts = settled_starts(problem, hypothesis, theta, starts)
             gaps.append(channel_gaps(problem, simulated_samples(problem, hypothesis, theta, starts)))
         return gaps[0], gaps[1]

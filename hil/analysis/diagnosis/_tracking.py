@@ -15,6 +15,7 @@ import numpy.typing as npt
 from scipy.linalg import solveh_banded
 
 from hil.analysis.diagnosis._coordinates import Hypothesis, sensors_of
+from hil.analysis.diagnosis._fit import Fit, carried
 from hil.analysis.diagnosis._problem import Problem
 from hil.core.model import EffectUse, Model
 from sim_backend.plant import pack, simulate_many
@@ -23,7 +24,7 @@ Array = npt.NDArray[np.float64]
 
 #: Ripples, and the column of the angles (wheel, rotor) and of the channels that each follows.
 RIPPLES = {"wheel_order_disturbance": (0, 1), "motor_order_ripple": (1, 0)}
-SLOW_NOISE = 4.0  # power of a speed's noise at low frequency over that above all modes, at most
+_SLOW_NOISE = 4.0  # power of a speed's noise at low frequency over that above all modes, at most
 _WINDOW_S = 0.1
 _PHASES = 72
 _GRID = 2.0 * np.pi / _PHASES
@@ -48,15 +49,21 @@ class _Windows:
 
 
 def track(
-    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array], *, known: bool = False
+    problem: Problem,
+    hypothesis: Hypothesis,
+    theta: Array,
+    starts: list[Array],
+    *,
+    order_known: bool = False,
+    phase_known: bool = False,
 ) -> Array:
     """Turn the angles of every recording to where the ripples of `hypothesis` say, in place.
 
     Args:
-        known: phase and order of `theta` are right, all that is seen is drift of the angles.
+        order_known, phase_known: those of `theta` are right, what differs is drift of the angles.
 
     Returns:
-        `theta`, unless `known` with what all recordings have in common put into phase and order.
+        `theta` with what all recordings have in common put into order and phase, where these are not known.
     """
     theta = theta.copy()
     coordinates = hypothesis.coordinates()
@@ -64,16 +71,16 @@ def track(
         if use.id not in RIPPLES:
             continue
         model = hypothesis.model(theta)
-        column, channel = RIPPLES[use.id]
+        column = RIPPLES[use.id][0]
         position = len(hypothesis.base.effects) + term
         order = float(model.effects[position].values["order"])
         windows = [_windows(problem, model, position, index, start) for index, start in enumerate(starts)]
-        walk = order**2 * float(problem.floor[channel]) ** 2 * SLOW_NOISE  # per sample squared, below per s
-        paths = []
-        for one, trace in zip(windows, problem.traces, strict=True):
-            step = max(walk * trace.dt, _LEAST_STEP**2) * _WINDOW_S
-            paths.append(_likeliest(one, step, _START_RAD if known else np.inf))
-        more, turn = (0.0, 0.0) if known else _common(windows, paths, order)
+        begin = _START_RAD if phase_known else np.inf
+        paths = [
+            _likeliest(w, _step(problem, model.effects[position], i), begin) for i, w in enumerate(windows)
+        ]
+        more = 0.0 if order_known else _common_order(windows, paths)
+        turn = 0.0 if phase_known else _common_phase(windows, paths, order, more)
         for index, (one, path) in enumerate(zip(windows, paths, strict=True)):
             drift = path - turn - more * one.angle
             drift -= 2.0 * np.pi * np.round(drift[0] / (2.0 * np.pi))
@@ -86,6 +93,27 @@ def track(
             if c.term == term and c.name in ("order", "phase_rad"):
                 theta[i] += more if c.name == "order" else turn
     return theta
+
+
+def tracked_gain(problem: Problem, parent: Fit, use: EffectUse) -> float:
+    """Drop of the squared error that a ripple promises on top of `parent` if its phase is followed."""
+    hypothesis = parent.hypothesis.with_term(use)
+    model = hypothesis.model(carried(parent, hypothesis))
+    seen, own = 0.0, 0.0
+    for index, start in enumerate(parent.starts):
+        windows = _windows(problem, model, len(model.effects) - 1, index, start)
+        path = _likeliest(windows, _step(problem, model.effects[-1], index), np.inf)
+        turned = np.stack([np.cos(path), np.sin(path)], axis=1)
+        seen += float(np.sum(windows.seen * turned))
+        own += float(np.einsum("wa,wab,wb->", turned, windows.own, turned))
+    return max(seen, 0.0) ** 2 / max(own, 1e-12)
+
+
+def _step(problem: Problem, use: EffectUse, index: int) -> float:
+    """Variance of a ripple's phase from window to window, rad², for the noise of the speed it follows."""
+    noise = float(problem.floor[RIPPLES[use.id][1]])
+    walk = float(use.values["order"]) ** 2 * noise**2 * _SLOW_NOISE * problem.traces[index].dt
+    return max(walk, _LEAST_STEP**2) * _WINDOW_S
 
 
 def _windows(problem: Problem, model: Model, position: int, index: int, start: Array) -> _Windows:
@@ -183,21 +211,23 @@ def _smoothed(windows: _Windows, path: Array, size: float, step: float) -> Array
     return np.asarray(path)
 
 
-def _common(windows: list[_Windows], paths: list[Array], order: float) -> tuple[float, float]:
-    """What all recordings say together: (correction of the order, of the phase in rad).
+def _common_order(windows: list[_Windows], paths: list[Array]) -> float:
+    """Correction of the order that all recordings say together."""
+    turned = sum(float(np.sum(np.diff(one.angle) ** 2)) for one in windows)
+    moved = sum(float(np.diff(w.angle) @ np.diff(p)) for w, p in zip(windows, paths, strict=True))
+    return moved / turned if turned > 0.0 else 0.0
+
+
+def _common_phase(windows: list[_Windows], paths: list[Array], order: float, more: float) -> float:
+    """Correction of the phase in rad that all recordings say together, the order corrected by `more`.
 
     A ripple that has not turned yet looks like friction or an offset: the sooner a recording turns it, the
     more its phase says.
     """
-    turned, moved = 0.0, 0.0
-    for one, path in zip(windows, paths, strict=True):
-        turned += float(np.sum(np.diff(one.angle) ** 2))
-        moved += float(np.diff(one.angle) @ np.diff(path))
-    more = moved / turned if turned > 0.0 else 0.0
     together = 0.0 + 0.0j
     for one, path in zip(windows, paths, strict=True):
         whole = np.abs(one.angle - one.angle[0]) * order > 2.0 * np.pi
         if whole.any():
             weight = 1.0 / (_SOON_S + float(one.times[np.argmax(whole)]))
             together += weight * np.exp(1j * (path[0] - more * one.angle[0]))
-    return more, float(np.angle(together)) if together else 0.0
+    return float(np.angle(together)) if together else 0.0
