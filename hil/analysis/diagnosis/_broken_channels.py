@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 
@@ -20,18 +22,19 @@ _STEEP = 5.0  # a plateau is a clip where readings arrive and leave by this many
 _MOVES = 5.0  # noise levels of a block's mean
 
 
-def refuse_broken_channels(traces: list[Trace], noise: Array) -> list[str]:
+def refuse_broken_channels(traces: list[Trace], noise: Array, beside: Sequence[Trace] = ()) -> list[str]:
     """Refuse what a fit could not use; returns a note for each recording that tells nothing.
 
     Args:
         noise: standard deviation of each output per sample, shape (3,).
+        beside: other recordings of the same channels, that are not checked.
 
     Raises:
         BadInputError: names the channel and the recording.
     """
     for trace in traces:
         for column in np.flatnonzero(trace.has).tolist():
-            _dead(trace, column, traces)
+            _dead(trace, column, [*traces, *beside])
             _clipped(trace, column, float(noise[column]))
             _frozen(trace, column)
     moved = [_moved(trace, noise) for trace in traces]

@@ -22,7 +22,7 @@ from hil.core.recording import Recording
 
 #: Named effects close at least this share of the gap's power, and leave at most this factor over the noise:
 #: a large effect may be closed less finely, because its formula is never quite that of the axle.
-_SHUT = ((0.5, 1.03), (0.95, 1.15), (0.97, 1.6), (0.995, np.inf))
+_SHUT = ((0.5, 1.03), (0.95, 1.6), (0.995, np.inf))
 _NOISELESS = 100.0  # gap over noise: what is left is a matter of formulas, not of noise
 _SHUT_NOISELESS = 0.9
 _MORE = 0.001  # of the share for each further name
@@ -55,7 +55,7 @@ def diagnose(
         )
     show("reading the noise")
     traces, found_odd = examine(model, recordings)
-    held, _ = examine(model, holdout)
+    held, _ = examine(model, holdout, traces)
     notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + found_odd
     noise = usable_noise(noise_levels(traces))
     rounded = grids(traces, noise)

@@ -100,7 +100,8 @@ class Judged:
         ratio = kept.hypothesis.base.parameters["gear_ratio"]
         noise = usable_noise(noise_levels(self.holdout))
         colouring = self.found.evidence.colouring(self.found.best)
-        problem = Problem(self.holdout, noise, ratio, floor=noise * colouring)
+        weighed = np.where(np.isfinite(self.problem.noise), self.problem.noise, noise)  # rounding included
+        problem = Problem(self.holdout, weighed, ratio, floor=noise * colouring)
         gaps = []
         for hypothesis, theta in (
             (self.found.base.hypothesis, self.found.base.hypothesis.start()),

@@ -10,7 +10,7 @@ from scipy.linalg import toeplitz
 from scipy.signal import lfilter
 
 from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._trace import Trace
+from hil.analysis.diagnosis._trace import LITTLE_TORQUE, Trace
 from sim_backend.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
@@ -22,6 +22,7 @@ _WHITENING_ORDER = 16
 _REST_SHARE = 0.1  # of a sample's noise: how still an axle at rest is
 _REST_SIGMAS = 4.0
 _REST_SAMPLES = 20
+_FINE = 2.0  # noise with rounding over that without
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ class Problem:
         self.weights = [
             np.where(t.has, np.sqrt(t.block) / np.where(noise > 0, noise, np.inf), 0.0) for t in traces
         ]
-        self.resting = [_rests(t, noise) for t in traces]
+        self.resting = [_rests(t, noise, self.floor) for t in traces]
         self.channels = int(np.count_nonzero(np.any([t.has for t in traces], axis=0)))
         self.rows = int(sum(np.count_nonzero(t.has) * len(t.measured) for t in traces))
 
@@ -207,10 +208,15 @@ def start_step(n: Normal, step: Array) -> Array:
     return np.asarray(inverse @ (n.start_gradient - n.between.T @ step))
 
 
-def _rests(trace: Trace, noise: Array) -> bool:
-    """Whether the recording begins at rest: a speed channel reads zero, and no torque is asked for."""
+def _rests(trace: Trace, noise: Array, floor: Array) -> bool:
+    """Whether the recording begins at rest: a speed channel reads zero, and no torque is asked for.
+
+    A channel whose rounding is coarser than its noise reads zero at many speeds.
+    """
     near = np.abs(trace.start[:2]) < _REST_SIGMAS * noise[:2] / np.sqrt(_REST_SAMPLES)
-    return bool(np.any(near & trace.has[:2]) and trace.torque[0] == 0.0)
+    tells = trace.has[:2] & (noise[:2] < _FINE * floor[:2])
+    idle = abs(trace.torque[0]) <= LITTLE_TORQUE * float(np.max(np.abs(trace.torque)))
+    return bool(np.any(near & tells) and idle)
 
 
 def whitening_of(pieces: list[tuple[Array, Array, Array]]) -> Array:

@@ -42,17 +42,18 @@ _NOISE_ALONE = 1.3  # noise levels
 _DEAD_SHARE = 0.05  # of what the other channel says
 
 
-def check(model: Model, traces: list[Trace], noise: Array) -> list[str]:
+def check(model: Model, traces: list[Trace], noise: Array, beside: Sequence[Trace] = ()) -> list[str]:
     """Refuse recordings that cannot belong to the model; recordings in which nothing moves make a note.
 
     Args:
         noise: standard deviation of each output per sample, shape (3,), NaN for a missing one.
+        beside: other recordings of the same channels, that are not checked.
 
     Raises:
         BadInputError: a channel is dead, clipped, inverted, swapped with another or in another unit, the
             gear ratio is wrong, or nothing is excited.
     """
-    notes = refuse_broken_channels(traces, noise)
+    notes = refuse_broken_channels(traces, noise, beside)
     wrong = {t.source: error for t in traces if (error := _wrong(model, [t], noise)) is not None}
     for error in wrong.values():
         alike = [source for source, other in wrong.items() if _kind(other) == _kind(error)]
@@ -63,14 +64,21 @@ def check(model: Model, traces: list[Trace], noise: Array) -> list[str]:
     return notes
 
 
-def examine(model: Model, recordings: Sequence[Recording]) -> tuple[list[Trace], list[str]]:
+def examine(
+    model: Model, recordings: Sequence[Recording], beside: Sequence[Trace] = ()
+) -> tuple[list[Trace], list[str]]:
     """Recordings as they come from a file made ready for fits, and what `check` notes on them.
+
+    Args:
+        beside: others of the same channels: a coarse rounding shows better in many.
 
     Raises:
         BadInputError: like `check`, and where a recording is too short or too slowly sampled.
     """
     traces = [trace_of(piece) for r in recordings for piece in unbroken(r)]
-    return traces, check(model, traces, usable_noise(noise_levels(traces))) if traces else []
+    if not traces:
+        return [], []
+    return traces, check(model, traces, usable_noise(noise_levels(traces)), beside)
 
 
 def _kind(error: BadInputError) -> str:

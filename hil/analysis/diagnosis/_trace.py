@@ -24,6 +24,7 @@ _NEAR_SHARE = 0.5  # of a sample: a reading this near to a point of the grid sta
 _FIT_RATE_HZ = 250.0  # of block means: driveline modes end below 60 Hz
 _FLOOR_BAND = (0.25, 0.48)  # of the sample rate: above all modes, what is left is noise
 _START_SAMPLES = 20
+LITTLE_TORQUE = 0.01  # of the largest
 _GAP_SAMPLES = 20.0
 
 
@@ -198,7 +199,9 @@ def blocks(samples: Array, block: int) -> Array:
 
 
 def _start(samples: Array, torque: Array) -> Array:
-    changed = np.flatnonzero(torque[:_START_SAMPLES] != torque[0])
+    """Readings before the torque does anything: a fed back torque is never quite zero."""
+    least = LITTLE_TORQUE * float(np.max(np.abs(torque)))
+    changed = np.flatnonzero(np.abs(torque[:_START_SAMPLES] - torque[0]) > least)
     count = max(3, int(changed[0]) if changed.size else min(_START_SAMPLES, len(torque)))
     return np.asarray(samples[:count].mean(axis=0))
 
