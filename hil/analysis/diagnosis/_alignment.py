@@ -15,7 +15,7 @@ Array = npt.NDArray[np.float64]
 _ROUNDS = 4
 _LITTLE = 0.02  # share of what is left: a round that gains less is the last
 _WHOLE = (0.002, 0.15)  # how far from a whole order another may be one that drift has bent
-_WORSE = 10.0  # by which a whole order may be worse in the sum of squared errors
+_WORSE = 1.02  # times what another order leaves: drift that was followed makes up for more than that
 
 
 def has_ripple(hypothesis: Hypothesis) -> bool:
@@ -35,12 +35,12 @@ def aligned(problem: Problem, one: Fit) -> Fit:
     return best
 
 
-def _in_turns(problem: Problem, one: Fit, theta: Array) -> Fit:
+def _in_turns(problem: Problem, one: Fit, theta: Array, *, order_known: bool = False) -> Fit:
     """Track and fit, from `theta`, while it makes `one` better."""
     for _ in range(_ROUNDS):
         before = list(problem.angles)
         problem.follow(one.hypothesis, theta)
-        theta = track(problem, one.hypothesis, theta, one.starts)
+        theta = track(problem, one.hypothesis, theta, one.starts, order_known=order_known)
         again = fit(problem, one.hypothesis, one.starts, theta)
         if again.total >= one.total:
             problem.angles = before
@@ -60,8 +60,8 @@ def _with_whole_order(problem: Problem, best: Fit, index: int, whole: float) -> 
     problem.follow(best.hypothesis, theta)
     theta = track(problem, best.hypothesis, theta, best.starts, order_known=True)
     first = fit(problem, best.hypothesis, best.starts, theta)
-    other = _in_turns(problem, first, first.theta)
-    if other.total < best.total + _WORSE:
+    other = _in_turns(problem, first, first.theta, order_known=True)
+    if other.total < _WORSE * best.total:
         return other
     problem.angles = found
     return best

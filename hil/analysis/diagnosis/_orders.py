@@ -22,6 +22,7 @@ Array = npt.NDArray[np.float64]
 Spectrum = npt.NDArray[np.complex128]
 
 _LARGEST_ORDER = {"wheel": 60.0, "motor": 60.0}
+_LEAST_ORDER = 0.5
 _BINS_A_TURN = 8  # of the largest order
 _FROM_HZ = 0.5
 _LEAST_ANGLE_RAD = 20.0
@@ -62,8 +63,9 @@ def order_lines(
         return []
     spectrum, orders = _over_angle(angles, images, _LARGEST_ORDER[side])
     energy = _expected(orders, speeds, powers)
-    # a bias of the start and slow drifts live at low orders: an order must turn a few times
-    usable = orders * reach > 8 * np.pi
+    # a bias of the start and slow drifts live at low orders: an order must turn a few times; and what
+    # turns with a shaft repeats with every turn
+    usable = (orders * reach > 8 * np.pi) & (orders > _LEAST_ORDER)
     score = np.where(usable & (energy > 0), 2.0 * np.abs(spectrum) ** 2 / np.maximum(energy, 1e-12), 0.0)
     return _peaks(score, orders, side, most, 2 * np.pi / reach)
 

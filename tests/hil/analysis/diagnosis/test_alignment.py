@@ -1,13 +1,18 @@
 """Ripples follow a measured angle that drifts: the ripple itself tells how."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from hil.analysis.diagnosis._alignment import aligned
 from hil.analysis.diagnosis._coordinates import Hypothesis
 from hil.analysis.diagnosis._fit import fit
 from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._screen import screen
 from hil.analysis.diagnosis._trace import noise_levels, trace_of
+from hil.analysis.diagnosis._tracking import track, tracked_gain
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
@@ -18,17 +23,24 @@ MODEL = Model("three_inertia", dict(BASE))
 RIPPLE = EffectUse("motor_order_ripple", {"order": 4.0, "amplitude_nm": 0.7, "phase_rad": 1.0})
 
 
-@pytest.fixture
-def problem(tmp_path) -> Problem:
+def recorded(ripple: EffectUse, path: Path, speed_noise: float = 1.0, slow: float = 0.0) -> Problem:
+    """One recording with a noisy motor speed; `slow`: standard deviation of its noise that drifts slowly."""
     rng = np.random.default_rng(4)
     time = np.arange(0.0, 20.0, 1e-3)
     torque = 12.0 + 8.0 * np.sin(2 * np.pi * (0.3 * time + 0.05 * time**2))
-    clean = simulate(MODEL.with_effects(RIPPLE), torque, 1e-3)
+    clean = simulate(MODEL.with_effects(ripple), torque, 1e-3)
     channels = {TIME: time, INPUT: torque}
-    for name, noise in zip(OUTPUTS, (1.0, 0.1, 1.0), strict=True):  # a noisy speed
+    for name, noise in zip(OUTPUTS, (speed_noise, 0.1, 1.0), strict=True):
         channels[name] = clean[name] + rng.normal(0.0, noise, len(time))
-    traces = [trace_of(Recording(channels, tmp_path / "one.csv"))]
+    wander = lfilter([np.sqrt(1.0 - 0.998**2)], [1.0, -0.998], rng.normal(0.0, slow, len(time)))
+    channels[OUTPUTS[0]] = channels[OUTPUTS[0]] + wander
+    traces = [trace_of(Recording(channels, path / "one.csv"))]
     return Problem(traces, noise_levels(traces), BASE["gear_ratio"])
+
+
+@pytest.fixture
+def problem(tmp_path) -> Problem:
+    return recorded(RIPPLE, tmp_path)
 
 
 def test_the_drift_of_the_angle_is_found_with_the_ripple(problem):
@@ -48,3 +60,41 @@ def test_without_a_ripple_nothing_is_moved(problem):
     one = fit(problem, Hypothesis(MODEL), rounds=1)
     assert aligned(problem, one) is one
     assert problem.angles[0] is first
+
+
+HIGH = EffectUse("motor_order_ripple", {"order": 12.0, "amplitude_nm": 0.7, "phase_rad": 1.0})
+
+
+def test_a_phase_that_wanders_by_turns_is_followed(tmp_path):
+    problem = recorded(HIGH, tmp_path, slow=0.5)
+    measured = problem.angles[0][:, 1].copy()
+    before = fit(problem, Hypothesis(MODEL, (HIGH,)))
+    after = aligned(problem, before)
+    values = after.hypothesis.model(after.theta).effects[-1].values
+    assert values["amplitude_nm"] == pytest.approx(0.7, rel=0.02)
+    assert values["order"] == pytest.approx(12.0, abs=0.01)
+    assert 12.0 * np.ptp(problem.angles[0][:, 1] - measured) > np.pi
+    assert after.cost - problem.rows < 0.1 * (before.cost - problem.rows)  # slow noise stays
+
+
+def test_an_order_bent_by_drift_is_straightened_to_a_whole_one(tmp_path):
+    problem = recorded(RIPPLE, tmp_path)
+    bent = EffectUse("motor_order_ripple", {"order": 4.01, "amplitude_nm": 0.7, "phase_rad": 1.0})
+    after = aligned(problem, fit(problem, Hypothesis(MODEL, (bent,)), rounds=0))
+    assert after.hypothesis.model(after.theta).effects[-1].values["order"] == pytest.approx(4.0, abs=0.003)
+
+
+def test_known_phase_and_order_are_left_alone(problem):
+    hypothesis = Hypothesis(MODEL, (RIPPLE,))
+    one = fit(problem, hypothesis, rounds=2)
+    theta = track(problem, hypothesis, one.theta, one.starts, order_known=True, phase_known=True)
+    assert np.array_equal(theta, one.theta)
+
+
+def test_a_followed_ripple_promises_more_than_one_that_is_not(tmp_path):
+    problem = recorded(HIGH, tmp_path, slow=0.5)
+    base = fit(problem, Hypothesis(MODEL))
+    plain = next(score.gain for score in screen(problem, base) if score.key[0] == HIGH.id)
+    assert tracked_gain(problem, base, HIGH) > 1.5 * plain
+    closed = base.cost - aligned(problem, fit(problem, Hypothesis(MODEL, (HIGH,)))).cost
+    assert tracked_gain(problem, base, HIGH) == pytest.approx(closed, rel=0.1)

@@ -1,0 +1,85 @@
+"""A rigid axle shows its dead time by whole samples: fits cross them."""
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis._coordinates import Hypothesis
+from hil.analysis.diagnosis._fit import Fit, fit
+from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._trace import noise_levels, trace_of
+from hil.analysis.diagnosis._whole_samples import delay_by_samples
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.model import EffectUse, Model
+from hil.core.recording import Recording
+from sim_backend.plant import simulate
+
+PARAMETERS = {
+    "motor_inertia": 0.02,
+    "gear_ratio": 10.0,
+    "vehicle_inertia": 300.0,
+    "viscous_drag": 0.002,
+    "torque_delay": 0.00805,
+}
+MODEL = Model("rigid", PARAMETERS)
+SHAFT = OUTPUTS[2]
+
+
+@pytest.fixture
+def fitted(tmp_path):
+    """Fits a hypothesis to what a true model shows."""
+
+    def run(true: Model, hypothesis: Hypothesis) -> tuple[Problem, Fit]:
+        rng = np.random.default_rng(2)
+        time = np.arange(0.0, 12.0, 1e-3)
+        torque = 20.0 * np.sin(2 * np.pi * (0.2 * time + 0.8 * time**2))
+        clean = simulate(true, torque, 1e-3)
+        channels = {TIME: time, INPUT: torque}
+        for name, noise in zip(OUTPUTS, (0.5, 0.05, 1.0), strict=True):
+            channels[name] = clean[name] + rng.normal(0.0, noise, len(time))
+        traces = [trace_of(Recording(channels, tmp_path / "one.csv"))]
+        problem = Problem(traces, noise_levels(traces), PARAMETERS["gear_ratio"])
+        return problem, fit(problem, hypothesis)
+
+    return run
+
+
+def test_a_dead_time_just_across_a_sample_is_found(fitted):
+    problem, one = fitted(MODEL.with_parameters(torque_delay=0.00795), Hypothesis(MODEL))
+    assert one.cost == pytest.approx(problem.rows, rel=0.05)
+    assert one.hypothesis.model(one.theta).parameters["torque_delay"] < 0.008
+
+
+@pytest.mark.parametrize("start", [0.0001, 0.002, 0.0055])
+def test_an_extra_dead_time_of_some_samples_is_found_from_anywhere(fitted, start):
+    extra = EffectUse("dead_time", {"extra_delay_s": 0.0034})
+    guess = EffectUse("dead_time", {"extra_delay_s": start})
+    problem, one = fitted(MODEL.with_effects(extra), Hypothesis(MODEL, (guess,)))
+    assert one.cost == pytest.approx(problem.rows, rel=0.05)
+    found = one.hypothesis.model(one.theta).effects[0].values["extra_delay_s"]
+    assert np.floor((found + 0.00805) * 1e3) == np.floor((0.0034 + 0.00805) * 1e3)
+
+
+def test_a_late_channel_makes_up_for_a_sample(fitted):
+    late = EffectUse("channel_skew", {"channel": SHAFT, "delay_s": 0.0032})
+    guess = EffectUse("channel_skew", {"channel": SHAFT, "delay_s": 0.001})
+    true = MODEL.with_parameters(torque_delay=0.00795).with_effects(late)
+    problem, one = fitted(true, Hypothesis(MODEL, (guess,)))
+    assert one.cost == pytest.approx(problem.rows, rel=0.05)
+
+
+def test_descents_stay_within_their_sample():
+    hypothesis = Hypothesis(MODEL)
+    by_samples = delay_by_samples(hypothesis, 1e-3)
+    assert by_samples is not None
+    theta = hypothesis.start()
+    wide = np.full(len(theta), 1.0)
+    lower, upper = by_samples.within(theta, -wide, wide)
+    ends = [hypothesis.model(end).parameters["torque_delay"] for end in (lower, upper)]
+    assert 0.008 < ends[0] < ends[1] < 0.009
+    leapt = [hypothesis.model(t).parameters["torque_delay"] for t in by_samples.leaps(theta, -wide, wide)]
+    assert sorted(int(delay * 1e3) for delay in leapt) == [4, 5, 6, 7, 9, 10, 11, 12]
+
+
+def test_models_with_springs_have_no_such_steps():
+    springs = {"shaft_stiffness": 6000.0, "shaft_damping": 20.0}
+    assert delay_by_samples(Hypothesis(Model("two_inertia", {**PARAMETERS, **springs})), 1e-3) is None
