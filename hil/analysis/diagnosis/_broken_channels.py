@@ -19,6 +19,7 @@ _FEW_LEVELS = 24
 _PLATEAU_SAMPLES = 20
 _FROZEN_SAMPLES = 200
 _STEEP = 5.0  # a plateau is a clip where readings arrive and leave by this many steps of the reading
+_TORQUE_MOVES = 0.25  # of its range
 _MOVES = 5.0  # noise levels of a block's mean
 
 
@@ -116,7 +117,7 @@ def _clipped(trace: Trace, column: int, noise: float) -> None:
     for end in (float(values.max()), float(values.min())):
         at_end = values == end
         share = float(np.mean(at_end))
-        if share > _CLIPPED_SHARE and _cut_off(values, at_end, noise):
+        if share > _CLIPPED_SHARE and _cut_off(values, at_end, noise, trace.torque):
             raise BadInputError(
                 f"{OUTPUTS[column]} looks clipped at {end:g}: {share:.0%} of its samples read this",
                 where=trace.source,
@@ -124,11 +125,18 @@ def _clipped(trace: Trace, column: int, noise: float) -> None:
             )
 
 
-def _cut_off(values: Array, at_end: npt.NDArray[np.bool_], noise: float) -> bool:
-    """Whether readings run steeply into a plateau and steeply out of it: a signal that rests does neither."""
+def _cut_off(values: Array, at_end: npt.NDArray[np.bool_], noise: float, torque: Array) -> bool:
+    """Whether readings run steeply into a plateau and steeply out of it: a signal that rests does neither.
+
+    A channel rounded more coarsely than its noise has plateaus of its own wherever the torque stays the same.
+    """
     first, last = _runs(at_end)
     reach = _PLATEAU_SAMPLES
     whole = (last - first > reach) & (first >= reach) & (last + reach <= len(values))
+    if grid_step(values) > noise:
+        # what the torque does in the last samples of a plateau shows only after it
+        moves = [float(np.ptp(torque[a : max(b - reach, a + 1)])) for a, b in zip(first, last, strict=True)]
+        whole &= np.array(moves) > _TORQUE_MOVES * float(np.ptp(torque))
     if not whole.any():
         return False
     levels = np.unique(values)
