@@ -19,6 +19,7 @@ _FEW_LEVELS = 24
 _PLATEAU_SAMPLES = 20
 _FROZEN_SAMPLES = 200
 _STEEP = 5.0  # a plateau is a clip where readings arrive and leave by this many steps of the reading
+_ROUNDED = 0.2  # of the noise, which rounding itself makes larger
 _TORQUE_MOVES = 0.25  # of its range
 _MOVES = 5.0  # noise levels of a block's mean
 
@@ -128,12 +129,12 @@ def _clipped(trace: Trace, column: int, noise: float) -> None:
 def _cut_off(values: Array, at_end: npt.NDArray[np.bool_], noise: float, torque: Array) -> bool:
     """Whether readings run steeply into a plateau and steeply out of it: a signal that rests does neither.
 
-    A channel rounded more coarsely than its noise has plateaus of its own wherever the torque stays the same.
+    A rounded channel has plateaus of its own wherever the torque stays the same.
     """
     first, last = _runs(at_end)
     reach = _PLATEAU_SAMPLES
     whole = (last - first > reach) & (first >= reach) & (last + reach <= len(values))
-    if grid_step(values) > noise:
+    if grid_step(values) > _ROUNDED * noise:
         # what the torque does in the last samples of a plateau shows only after it
         moves = [float(np.ptp(torque[a : max(b - reach, a + 1)])) for a, b in zip(first, last, strict=True)]
         whole &= np.array(moves) > _TORQUE_MOVES * float(np.ptp(torque))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import sys
 from collections.abc import Callable
@@ -12,10 +13,13 @@ import pandas as pd
 import pytest
 
 from hil.analysis.diagnosis import examine, unbroken
-from hil.analysis.diagnosis._trace import trace_of
+from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._trace import noise_levels, trace_of, usable_noise
 from hil.cli import main
-from hil.core.model import Model, save_model
+from hil.core.errors import BadInputError
+from hil.core.model import Model, parameter_names, save_model
 from hil.core.recording import Recording
+from sim_backend.plant import simulate
 from tests.hil.analysis.diagnosis.hidden_cases import EFFECTS, draw
 from tests.hil.analysis.diagnosis.reference_plant import BASE, CHANNELS, Truth, recordings
 
@@ -282,3 +286,54 @@ def test_a_recording_is_cut_at_its_gaps() -> None:
         "cut at gaps: 2, the longest of 0.301 s at 0.499 s; short stretches left out: 1"
     ]
     assert unbroken(pieces[1]) == [pieces[1]]
+
+
+def rounded(recording: Recording, channel: str, step: float) -> Recording:
+    channels = dict(recording.channels)
+    channels[channel] = np.round(channels[channel] / step) * step
+    return dataclasses.replace(recording, channels=channels)
+
+
+@pytest.mark.parametrize("step", [1.0, 3.0, 6.0])
+def test_coarse_wheel_speeds_are_data(step: float) -> None:
+    each = [rounded(r, WHEEL, step) for r in recordings(Truth(), 3, short=True)]
+    traces, _ = examine(MODEL, each)
+    held = [r for r in each if np.ptp(r[WHEEL]) == 0.0]
+    assert examine(MODEL, held or each, traces)[0]
+
+
+def test_a_flat_torque_rounded_is_no_clip_and_a_clipped_one_is() -> None:
+    time = np.arange(0.0, 8.0, 1e-3)
+    torque = 30.0 * np.sign(np.sin(2 * np.pi * 0.5 * time)) + 10.0 * np.sin(2 * np.pi * 0.1 * time)
+    rigid = Model("rigid", {k: BASE.get(k, 0.002) for k in parameter_names("rigid")})
+    clean = simulate(rigid, torque, 1e-3)
+    noise = np.random.default_rng(0).normal(size=(3, len(time))) * np.array([[0.3], [0.03], [0.5]])
+    channels = {"time_s": time, TORQUE: torque}
+    channels |= {c: clean[c] + n for c, n in zip(CHANNELS, noise, strict=True)}
+    good = Recording(channels, Path("steps.csv"))
+    assert examine(rigid, [rounded(good, SHAFT, 9.0)])[1] == []
+    chirp = 40.0 * np.sin(2 * np.pi * (0.2 * time + 0.1 * time**2))
+    channels[TORQUE] = chirp
+    seen = simulate(rigid, chirp, 1e-3)
+    channels |= {c: seen[c] + n for c, n in zip(CHANNELS, noise, strict=True)}
+    top = 0.6 * float(np.max(channels[SHAFT]))
+    channels[SHAFT] = np.clip(channels[SHAFT], -top, top)
+    with pytest.raises(BadInputError, match="looks clipped"):
+        examine(rigid, [rounded(Recording(channels, Path("chirp.csv")), SHAFT, top / 30.0)])
+
+
+def test_rest_is_seen_though_the_torque_is_never_quite_zero() -> None:
+    fed_back = [r for r in recordings(Truth(), 3, short=True) if abs(r[WHEEL][:20].mean()) < 0.05][:1]
+    for recording in fed_back:
+        channels = dict(recording.channels)
+        small = np.random.default_rng(1).normal(
+            0.0, 1e-3 * np.max(np.abs(channels[TORQUE])), len(channels[TORQUE])
+        )
+        channels[TORQUE] = channels[TORQUE] + small
+        channels[MOTOR] = channels[MOTOR] + 3.0  # an offset of one speed hides no rest
+        trace = trace_of(dataclasses.replace(recording, channels=channels))
+        noise = usable_noise(noise_levels([trace]))
+        assert Problem([trace], noise, BASE["gear_ratio"]).resting == [True]
+        coarse = noise * np.array([1.0, 50.0, 1.0])  # whose rounding reads zero at many speeds
+        assert Problem([trace], coarse, BASE["gear_ratio"], floor=noise).resting == [False]
+    assert fed_back
