@@ -20,7 +20,7 @@ _PLATEAU_SAMPLES = 20
 _FROZEN_SAMPLES = 200
 _STEEP = 5.0  # a plateau is a clip where readings arrive and leave by this many steps of the reading
 _ROUNDED = 0.2  # of the noise, which rounding itself makes larger
-_TORQUE_MOVES = 0.25  # of its range
+_TORQUE_MOVES = 0.1  # of its range
 _MOVES = 5.0  # noise levels of a block's mean
 
 
