@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis import BANDS_HZ, CONDITIONS, Diagnosis, GapMap, NamedEffect
+from hil.analysis.diagnosis import BANDS_HZ, BOOTSTRAP_DRAWS, CONDITIONS, Diagnosis, GapMap, NamedEffect
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import parameter_unit
@@ -143,7 +143,15 @@ def _effects_text(found: Diagnosis) -> str:
     if not found.effects:
         return "None."
     effects = [EFFECTS[id_] for id_ in dict.fromkeys(e.use.id for e in found.effects)]
-    return " ".join(f"{e.title}: {e.summary} {e.signature}" for e in effects)
+    said = " ".join(f"{e.title}: {e.summary} {e.signature}" for e in effects)
+    drops = [e.drop for e in found.effects if e.drop is not None]
+    if not drops or found.by_chance is None:
+        return said
+    least, chance = (quantities.number(x, significant=2) for x in (min(drops), found.by_chance))
+    return (
+        f"{said} Evidence: each takes {least} noise variances or more off the squared error; in "
+        f"{BOOTSTRAP_DRAWS} draws of noise alone no effect took more than {chance}."
+    )
 
 
 def _effects(found: Diagnosis) -> Table:

@@ -1,5 +1,6 @@
 """Why simulation and measurement differ: effects that a model lacks, found by name in recordings."""
 
+from hil.analysis.diagnosis._by_chance import BOOTSTRAP_DRAWS
 from hil.analysis.diagnosis._diagnose import diagnose
 from hil.analysis.diagnosis._gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
 from hil.analysis.diagnosis._result import (
@@ -15,6 +16,7 @@ from hil.analysis.diagnosis._words import Where
 
 __all__ = [
     "BANDS_HZ",
+    "BOOTSTRAP_DRAWS",
     "CONDITIONS",
     "LEAST_SAMPLES",
     "Alternative",

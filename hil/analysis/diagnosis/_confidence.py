@@ -36,6 +36,19 @@ def rivals(found: Found, index: int) -> list[tuple[Fit, float]]:
     return sorted(kept.values(), key=lambda pair: pair[1])
 
 
+def drop_of(found: Found, index: int) -> float:
+    """What effect number `index` takes off the squared error, in noise variances: its evidence."""
+    best = found.best
+    key = best.hypothesis.keys[index]
+    fewer = [
+        one.total
+        for step in found.steps
+        for one in step.fits
+        if key not in one.hypothesis.keys and set(one.hypothesis.keys) < set(best.hypothesis.keys)
+    ]
+    return min([found.base.total, *fewer]) - best.total
+
+
 def confidence_of(found: Found, index: int) -> float:
     """Chance that effect number `index` of the accepted hypothesis is rightly named."""
     weight = sum(_odds(margin) for _, margin in rivals(found, index))

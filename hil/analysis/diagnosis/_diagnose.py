@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from hil.analysis.diagnosis._by_chance import most_by_chance
+from hil.analysis.diagnosis._confidence import drop_of
 from hil.analysis.diagnosis._coordinates import Hypothesis
 from hil.analysis.diagnosis._fit import Fit, fit
 from hil.analysis.diagnosis._judged import Judged
@@ -67,9 +69,14 @@ def diagnose(
     found = search(problem, hypothesis, show, rounding_of(problem, rounded))
     show("judging")
     verdict = verdict_of(found, bool(rounded))
+    by_chance = None
+    if verdict == "named" and found.best.hypothesis.terms:
+        by_chance = most_by_chance(problem, found.best)
+        if min(drop_of(found, index) for index in range(len(found.best.hypothesis.terms))) <= by_chance:
+            verdict = "none" if found.evidence.closed(found.base) else "unknown"
     if verdict == "named":
         found.best = _reweighted(problem, found.best)
-    judged = Judged(problem, found, verdict, held)
+    judged = Judged(problem, found, verdict, held, by_chance)
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)
 
 

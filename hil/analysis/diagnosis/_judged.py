@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis._alignment import has_ripple
-from hil.analysis.diagnosis._confidence import alternatives_of, confidence_of
+from hil.analysis.diagnosis._confidence import alternatives_of, confidence_of, drop_of
 from hil.analysis.diagnosis._consequences import consequences, loop_area
 from hil.analysis.diagnosis._coordinates import TOLERANCE
 from hil.analysis.diagnosis._fit import Fit, carried
@@ -40,6 +40,7 @@ class Judged:
     found: Found
     verdict: Verdict
     holdout: list[Trace]
+    by_chance: float | None = None
 
     def diagnosis(self, rounded: list[EffectUse], notes: list[str], seconds: float) -> Diagnosis:
         base, best = self.found.base, self.found.best
@@ -83,6 +84,7 @@ class Judged:
             overlays=overlays,
             notes=tuple(notes),
             seconds=seconds,
+            by_chance=self.by_chance,
             loop_area_j=loop_area(model),
             consequences=consequences(base.hypothesis.base, model),
         )
@@ -158,7 +160,8 @@ class Judged:
                 if use.id == "parameter_mismatch" and c.term < 0 and c.name == use.values["parameter"]:
                     standard["value"] = float(error) * float(use.values["value"])
             place = where(self.problem, without, after, map_before, map_after)
-            named.append(NamedEffect(_clean(use), standard, confidence_of(self.found, index), place))
+            sure, drop = confidence_of(self.found, index), drop_of(self.found, index)
+            named.append(NamedEffect(_clean(use), standard, sure, place, drop))
         for use in rounded:
             place = Where(
                 (str(use.values["channel"]),),

@@ -18,12 +18,16 @@ Verdict = Literal["named", "none", "unknown"]
 
 @dataclass(frozen=True)
 class NamedEffect:
-    """An effect that the data show; `confidence` is the chance that the name is right."""
+    """An effect that the data show; `confidence` is the chance that the name is right.
+
+    `drop` is what it takes off the squared error, in noise variances; None where that says nothing.
+    """
 
     use: EffectUse
     standard_error: dict[str, float]
     confidence: float
     where: Where
+    drop: float | None = None
 
 
 @dataclass(frozen=True)
@@ -62,7 +66,11 @@ class Overlay:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """All that a diagnosis has to say; ratios of gaps are those of docs/reference/commands.md."""
+    """All that a diagnosis has to say; ratios of gaps are those of docs/reference/commands.md.
+
+    `by_chance` is the largest drop of the squared error that noise alone bought any effect, in
+    BOOTSTRAP_DRAWS draws.
+    """
 
     verdict: Verdict
     base: Model
@@ -81,6 +89,7 @@ class Diagnosis:
     overlays: tuple[Overlay, ...]
     notes: tuple[str, ...]
     seconds: float = 0.0
+    by_chance: float | None = None
     loop_area_j: float | None = None
     consequences: dict[str, dict[str, float]] = field(default_factory=dict)
 
@@ -116,6 +125,11 @@ class Diagnosis:
                 }
                 for c in self.considered
             ],
+            **(
+                {"evidence": {"drops": [e.drop for e in self.effects], "by_chance_at_most": self.by_chance}}
+                if self.by_chance is not None
+                else {}
+            ),
             "consequences": self.consequences,
             **({"loop_area_j": self.loop_area_j} if self.loop_area_j is not None else {}),
             "notes": list(self.notes),

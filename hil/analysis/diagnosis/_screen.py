@@ -39,7 +39,8 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
     Gains count from the total `against`; from what the parameters alone can reach if None.
     """
     candidates = probes(problem, fit)
-    matrix, gradient = _products(problem, fit, candidates)
+    matrix, gradients = products(problem, fit, candidates, [error[:, None] for error, _, _ in fit.pieces])
+    gradient = gradients[:, 0]
     base = len(fit.theta)
     coordinates = fit.hypothesis.coordinates()
     lower = np.array([c.lower for c in coordinates]) - fit.theta
@@ -60,7 +61,7 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
         gain, amounts = _gain(matrix, gradient, low, high, np.concatenate([np.arange(base), columns]))
         _keep(best, Score(probe.use(amounts[base:]), gain - rest))
     for use in mismatches(fit.hypothesis):
-        index = _index(fit.hypothesis, str(use.values["parameter"]))
+        index = index_of(fit.hypothesis, str(use.values["parameter"]))
         low, high = lower.copy(), upper.copy()
         low[index], high[index] = -_MISMATCH_REACH, _MISMATCH_REACH
         freed = matrix.copy()
@@ -78,7 +79,7 @@ def _keep(best: dict[tuple[str, str], Score], score: Score) -> None:
         best[score.key] = score
 
 
-def _index(hypothesis: Hypothesis, name: str) -> int:
+def index_of(hypothesis: Hypothesis, name: str) -> int:
     names = [c.name if c.term < 0 else "" for c in hypothesis.coordinates()]
     return names.index(name)
 
@@ -92,10 +93,13 @@ def _gain(
     return float(2 * g @ x - x @ m @ x), x
 
 
-def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Array, Array]:
-    """Products of all derivatives and probe responses with each other and the error, starts projected out.
+def products(problem: Problem, fit: Fit, candidates: list[Probe], errors: list[Array]) -> tuple[Array, Array]:
+    """Products of all derivatives and probe responses with each other and with errors, starts projected out.
 
     Products between different probes are left zero: no two are used together.
+
+    Args:
+        errors: of each recording, rows x as many as there are to compare with.
     """
     packed = [fit.hypothesis.packed(fit.theta)]
     for probe in candidates:
@@ -106,8 +110,9 @@ def _products(problem: Problem, fit: Fit, candidates: list[Probe]) -> tuple[Arra
     sensors = np.stack([s for _, s in packed])
     base, size = len(fit.theta), len(fit.theta) + len(packed) - 1
     groups = np.cumsum([0, *(len(p.directions) for p in candidates)])
-    matrix, gradient = np.zeros((size, size)), np.zeros(size)
-    for index, (error, shared, initial) in enumerate(fit.pieces):
+    matrix, gradient = np.zeros((size, size)), np.zeros((size, errors[0].shape[1]))
+    for index, (_, shared, initial) in enumerate(fit.pieces):
+        error = errors[index]
         starts = np.tile(fit.starts[index], (len(packed), 1))
         simulated = problem.outputs(index, slots, sensors, starts)
         change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(len(packed) - 1, -1)

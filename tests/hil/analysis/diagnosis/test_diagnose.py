@@ -87,6 +87,7 @@ def test_the_result_is_a_model_file_and_plain_json() -> None:
         "holdout_gap",
         "model",
     }
+    assert text["evidence"]["drops"][0] > 100.0 * text["evidence"]["by_chance_at_most"] > 0.0
     assert set(text["effects"][0]) == {"id", "parameters", "standard_error", "confidence", "where"}
     again = model_from_dict(tomllib.loads(model_to_toml(found.model)), "test")
     assert again.effects[0].id == "torque_saturation"

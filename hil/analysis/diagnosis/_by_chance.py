@@ -1,0 +1,63 @@
+"""What noise alone would seem to say: the false names that a parametric bootstrap finds.
+
+Theiler et al., Testing for nonlinearity in time series: the method of surrogate data, Physica D 58 (1992).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis._fit import Fit
+from hil.analysis.diagnosis._probes import mismatches, probes
+from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._screen import index_of, products
+
+Array = npt.NDArray[np.float64]
+
+BOOTSTRAP_DRAWS = 19  # one in twenty false names would be seen
+
+
+def most_by_chance(problem: Problem, fit: Fit, draws: int = BOOTSTRAP_DRAWS) -> float:
+    """The largest drop of the squared error that any effect would bring if the errors of `fit` were noise.
+
+    A parametric bootstrap of the linearised score: each draw has the spectra of the errors and phases of
+    chance, and every effect is held against it, base parameters and initial values refitted. Bounds are left
+    out, so it is rather too large than too small.
+    """
+    rng = np.random.default_rng(0)
+    candidates = probes(problem, fit)
+    surrogates = [_surrogates(error.reshape(-1, 3), draws, rng) for error, _, _ in fit.pieces]
+    matrix, gradients = products(problem, fit, candidates, surrogates)
+    base = len(fit.theta)
+    precision = np.array([1.0 / c.prior**2 for c in fit.hypothesis.coordinates()])
+    matrix[:base, :base] += np.diag(precision)
+    known = np.arange(base)
+    rest = _drops(matrix, gradients, known)
+    most = 0.0
+    at = base
+    for probe in candidates:
+        columns = np.concatenate([known, np.arange(at, at + len(probe.directions))])
+        at += len(probe.directions)
+        most = max(most, float(np.max(_drops(matrix, gradients, columns) - rest)))
+    for use in mismatches(fit.hypothesis):
+        index = index_of(fit.hypothesis, str(use.values["parameter"]))
+        freed = matrix.copy()
+        freed[index, index] -= precision[index]
+        most = max(most, float(np.max(_drops(freed, gradients, known) - rest)))
+    return most
+
+
+def _drops(matrix: Array, gradients: Array, columns: npt.NDArray[np.int_]) -> Array:
+    """Drop of the squared error that `columns` bring against each error, without bounds."""
+    pulls = gradients[columns]
+    found = np.linalg.lstsq(matrix[np.ix_(columns, columns)], pulls, rcond=1e-10)[0]
+    return np.asarray(np.sum(pulls * found, axis=0))
+
+
+def _surrogates(error: Array, draws: int, rng: np.random.Generator) -> Array:
+    """Noise with the spectra of `error` (blocks x 3) and phases of chance: rows x draws."""
+    spectrum = np.abs(np.fft.rfft(error, axis=0))
+    turned = np.exp(2j * np.pi * rng.random((draws, *spectrum.shape)))
+    drawn = np.fft.irfft(spectrum * turned, len(error), axis=1)
+    return np.asarray(drawn.reshape(draws, -1).T)
