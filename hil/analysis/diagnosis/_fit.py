@@ -113,7 +113,7 @@ def fit(
             break
     matrix, _ = reduced(reached.normals)
     covariance = np.asarray(np.linalg.pinv(matrix + np.diag(precision), hermitian=True), dtype=float)
-    prior = float(precision @ theta**2)
+    prior = float(precision @ theta**2) + (by_samples.coincidence(theta) if by_samples is not None else 0.0)
     angles = list(problem.angles)
     return Fit(
         hypothesis,

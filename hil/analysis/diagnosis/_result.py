@@ -1,4 +1,4 @@
-"""What a diagnosis found, and its form in `diagnosis.json` (docs/reference/commands.md)."""
+"""What a diagnosis found, and its form in `diagnosis.json` (docs/reference/diagnosis.md)."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Overlay:
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """All that a diagnosis has to say; ratios of gaps are those of docs/reference/commands.md.
+    """All that a diagnosis has to say; ratios of gaps are those of docs/reference/diagnosis.md.
 
     `by_chance` is the largest drop of the squared error that noise alone bought any effect, in
     BOOTSTRAP_DRAWS draws.

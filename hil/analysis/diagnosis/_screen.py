@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -39,7 +40,8 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
     Gains count from the total `against`; from what the parameters alone can reach if None.
     """
     candidates = probes(problem, fit)
-    matrix, gradients = products(problem, fit, candidates, [error[:, None] for error, _, _ in fit.pieces])
+    errors = {index: error[:, None] for index, (error, _, _) in enumerate(fit.pieces)}
+    matrix, gradients = products(problem, fit, candidates, errors)
     gradient = gradients[:, 0]
     base = len(fit.theta)
     coordinates = fit.hypothesis.coordinates()
@@ -93,13 +95,15 @@ def _gain(
     return float(2 * g @ x - x @ m @ x), x
 
 
-def products(problem: Problem, fit: Fit, candidates: list[Probe], errors: list[Array]) -> tuple[Array, Array]:
+def products(
+    problem: Problem, fit: Fit, candidates: list[Probe], errors: Mapping[int, Array]
+) -> tuple[Array, Array]:
     """Products of all derivatives and probe responses with each other and with errors, starts projected out.
 
     Products between different probes are left zero: no two are used together.
 
     Args:
-        errors: of each recording, rows x as many as there are to compare with.
+        errors: rows x as many as there are to compare with, of each recording that takes part.
     """
     packed = [fit.hypothesis.packed(fit.theta)]
     for probe in candidates:
@@ -110,9 +114,10 @@ def products(problem: Problem, fit: Fit, candidates: list[Probe], errors: list[A
     sensors = np.stack([s for _, s in packed])
     base, size = len(fit.theta), len(fit.theta) + len(packed) - 1
     groups = np.cumsum([0, *(len(p.directions) for p in candidates)])
-    matrix, gradient = np.zeros((size, size)), np.zeros((size, errors[0].shape[1]))
-    for index, (_, shared, initial) in enumerate(fit.pieces):
-        error = errors[index]
+    matrix = np.zeros((size, size))
+    gradient = np.zeros((size, next(iter(errors.values())).shape[1]))
+    for index, error in errors.items():
+        _, shared, initial = fit.pieces[index]
         starts = np.tile(fit.starts[index], (len(packed), 1))
         simulated = problem.outputs(index, slots, sensors, starts)
         change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(len(packed) - 1, -1)

@@ -12,12 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import Hypothesis
+from hil.analysis.diagnosis._coordinates import TOLERANCE, Hypothesis
 from hil.core.channels import OUTPUTS
 
 Array = npt.NDArray[np.float64]
 
 _EDGE = 1e-3  # of a sample: kept from either end
+_JUST = 0.02  # of a sample
+_COINCIDENCE = 50.0
 _LEAPS = (-4, -3, -2, -1, 1, 2, 3, 4)
 
 
@@ -41,18 +43,24 @@ class DelayBySamples:
         return lower, upper
 
     def leaps(self, theta: Array, lower: Array, upper: Array) -> list[Array]:
-        """`theta` with the dead time in other samples; with the channel's delay making up for it as well."""
+        """`theta` with the dead time in other samples; with the channel's delay making up for it as well.
+
+        A mere correction of the model's dead time stays within its calibration tolerance: more is a finding.
+        """
         found = []
+        least, most = float(lower[self.index]), float(upper[self.index])
+        if np.isfinite(self.hypothesis.coordinates()[self.index].prior):
+            least, most = max(least, -TOLERANCE), min(most, TOLERANCE)
         delay = self._delay(theta)
         sample = np.floor(delay / self.dt + 1e-9)
         for more in _LEAPS:
             low = self._at(theta, (sample + more + _EDGE) * self.dt)
             high = self._at(theta, (sample + more + 1.0 - _EDGE) * self.dt)
-            if low > upper[self.index] or high < lower[self.index]:
+            if low > most or high < least:
                 continue
             other = theta.copy()
             middle = min(max(self._at(theta, (sample + more + 0.5) * self.dt), low), high)
-            other[self.index] = min(max(middle, lower[self.index]), upper[self.index])
+            other[self.index] = min(max(middle, least), most)
             found.append(other)
             if self.skew is not None:
                 late = other.copy()
@@ -60,6 +68,13 @@ class DelayBySamples:
                 if lower[self.skew] <= late[self.skew] <= upper[self.skew]:
                     found.append(late)
         return found
+
+    def coincidence(self, theta: Array) -> float:
+        """Price in squared errors of a channel that is late by just a sample: dead time is by nature."""
+        if self.skew is None:
+            return 0.0
+        late = float(theta[self.skew]) / self.dt
+        return _COINCIDENCE if late > 0.5 and abs(late - round(late)) < _JUST else 0.0
 
     def _delay(self, theta: Array) -> float:
         model = self.hypothesis.model(theta)
