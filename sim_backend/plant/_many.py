@@ -116,8 +116,8 @@ def _substeps(p: Array) -> int:
 
 
 @compiled
-def _acting(torque, dt, p, out):  # type: ignore[no-untyped-def]
-    """Dead band, saturation, slew limit: the torque that acts over each sample, before the delay."""
+def _acting(torque, dt, p, out, ends):  # type: ignore[no-untyped-def]
+    """Dead band, saturation, slew limit: the torque over each sample and at its end, before the delay."""
     band, limit, reach = p[P.DEADBAND], p[P.SATURATION], p[P.RATE_LIMIT] * dt
     slewed = 0.0
     for k in range(torque.shape[0]):
@@ -135,6 +135,20 @@ def _acting(torque, dt, p, out):  # type: ignore[no-untyped-def]
             moved = slewed + math.copysign(reach, gap)
             out[k] = 0.5 * (slewed + moved)
             slewed = moved
+        ends[k] = slewed
+
+
+@compiled
+def _shown(acting, ends, dt, whole, p, out):  # type: ignore[no-untyped-def]
+    """The delayed torque at each sample's instant: what a rigid axle's shaft torque shows of it."""
+    reach = (1.0 + whole - p[P.TORQUE_DELAY] / dt) * p[P.RATE_LIMIT] * dt
+    for k in range(acting.shape[0]):
+        now = max(k - whole - 1, 0)
+        out[k] = acting[now]
+        if p[P.RATE_LIMIT] < math.inf:
+            before = ends[max(now - 1, 0)]
+            gap = ends[now] - before
+            out[k] = before + math.copysign(min(abs(gap), reach), gap)
 
 
 @inlined
@@ -185,19 +199,21 @@ def _moved(x, sub, old, new, column, transition):  # type: ignore[no-untyped-def
 
 
 @compiled
-def _run_linear(acting, whole, p, x, substeps, column, transition, fine):  # type: ignore[no-untyped-def]
+def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type: ignore[no-untyped-def]
+    acting, shown = drive
     for k in range(acting.shape[0]):
         new = acting[max(k - whole, 0)]
         old = acting[max(k - whole - 1, 0)]
         fine[k, 0] = x[0] - x[7]
         fine[k, 1] = x[2]
-        fine[k, 2] = F.shaft_torque(x, (0.0, 0.0, 0.0), p, old)
+        fine[k, 2] = F.shaft_torque(x, (0.0, 0.0, 0.0), p, shown[k])
         for sub in range(substeps):
             x = _moved(x, sub, old, new, column, transition)
 
 
 @compiled
-def _run_forced(acting, whole, p, x, seat, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+def _run_forced(drive, whole, p, x, seat, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+    acting, shown = drive
     varies, dry, turns = F.varies(p), has_friction(p), F.turns(p)
     varies = varies or p[P.STRIBECK] != 0.0  # with the speed
     gain = held[1, 7] - held[1, 0]  # of the relative speed: what a loss of 1 N m takes off it in a step
@@ -211,7 +227,7 @@ def _run_forced(acting, whole, p, x, seat, h, substeps, column, transition, held
         old = acting[max(k - whole - 1, 0)]
         fine[k, 0] = x[0] - x[7]
         fine[k, 1] = x[2]
-        fine[k, 2] = F.shaft_torque(x, f, p, old)
+        fine[k, 2] = F.shaft_torque(x, f, p, shown[k])
         for sub in range(substeps):
             y = _moved(x, sub, old, new, column, transition)
             y = _plus(_plus(_plus(y, held, 0, f[0]), held, 1, f[1]), held, 2, f[2])
@@ -242,15 +258,17 @@ def _run_forced(acting, whole, p, x, seat, h, substeps, column, transition, held
 def _run(torque, dt, vector, start, substeps, transition, column, held, rising, angles, fine):  # type: ignore[no-untyped-def]
     """One model over the whole recording into `fine` (n x 3)."""
     p = as_tuple(vector)
-    acting = np.empty(torque.shape[0])
-    _acting(torque, dt, p, acting)
+    acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(torque.shape[0])
+    _acting(torque, dt, p, acting, ends)
     x = _first_state(p, start, acting[0])
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
+    _shown(acting, ends, dt, whole, p, shown)
+    drive = (acting, shown)
     if F.varies(p) or has_friction(p) or p[P.FRICTION_OFFSET] != 0.0:
         h, seat = dt / substeps, _first_seat(p, start)
-        _run_forced(acting, whole, p, x, seat, h, substeps, column, transition, held, rising, angles, fine)
+        _run_forced(drive, whole, p, x, seat, h, substeps, column, transition, held, rising, angles, fine)
     else:
-        _run_linear(acting, whole, p, x, substeps, column, transition, fine)
+        _run_linear(drive, whole, p, x, substeps, column, transition, fine)
 
 
 @compiled

@@ -65,6 +65,17 @@ def test_the_smaller_kinds_agree_too(kind: str) -> None:
         assert np.allclose(found[:, column], expected[channel], rtol=1e-6, atol=1e-6), channel
 
 
+@pytest.mark.parametrize("delay", [0.008, 0.0083, 0.00895])
+def test_a_rigid_axle_shows_a_slewing_torque_at_each_instant(delay: float) -> None:
+    parameters = {k: BASE[k] for k in ("motor_inertia", "gear_ratio", "vehicle_inertia")}
+    model = Model("rigid", {**parameters, "viscous_drag": 0.01, "torque_delay": delay})
+    model = model.with_effects(EffectUse("torque_rate_limit", {"limit_nm_s": 400.0}))
+    expected = simulate(model, TORQUE, 1e-3)
+    found = simulate_many(pack(model)[None], TORQUE, 1e-3, np.zeros((1, 3)), ideal_sensors(1))[0]
+    apart = np.abs(found[:, 2] - expected[CHANNELS[2]])[20:]
+    assert np.max(apart) < 2e-3 * np.ptp(expected[CHANNELS[2]])
+
+
 def test_a_stuck_rotor_stays_where_it_is() -> None:
     model = MODEL.with_effects(
         EffectUse("coulomb_friction", {"torque_nm": 5.0, "stribeck_torque_nm": 0.0, "offset_nm": 0.0})
