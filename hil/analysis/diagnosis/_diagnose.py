@@ -13,7 +13,7 @@ from hil.analysis.diagnosis._coordinates import Hypothesis
 from hil.analysis.diagnosis._fit import Fit, fit
 from hil.analysis.diagnosis._judged import Judged
 from hil.analysis.diagnosis._problem import Problem, whitening_of
-from hil.analysis.diagnosis._quantization import coarse_noise, grids, rounding_of
+from hil.analysis.diagnosis._quantization import coarse_noise, grids
 from hil.analysis.diagnosis._result import Diagnosis, Verdict
 from hil.analysis.diagnosis._sanity import examine
 from hil.analysis.diagnosis._search import Found, search
@@ -66,7 +66,7 @@ def diagnose(
     rounded = grids(traces, noise)
     problem = Problem(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
     hypothesis = Hypothesis(model)
-    found = search(problem, hypothesis, show, rounding_of(problem, rounded))
+    found = search(problem, hypothesis, show, rounded)
     show("judging")
     verdict = verdict_of(found, bool(rounded))
     by_chance = None

@@ -19,6 +19,8 @@ from hil.core.model import EffectUse, Model, parameter_names
 Array = npt.NDArray[np.float64]
 Values = dict[str, float | str]
 
+_LATE_S = (0.008, 0.04)
+
 
 @dataclass(frozen=True)
 class Direction:
@@ -274,8 +276,19 @@ def _sensors(id_: str) -> Callable[[Scene], Iterator[Probe]]:
             if not any(t.has[column] for t in scene.problem.traces):
                 continue
             yield _reading(id_, name, channel, units[id_])
+            if id_ == "channel_skew":
+                yield from (_late(channel, delay) for delay in _LATE_S)
 
     return make
+
+
+def _late(channel: str, delay: float) -> Probe:
+    """A channel so late that its error is no longer like its slope."""
+
+    def start(a: Array) -> Values:
+        return {"channel": channel, "delay_s": delay * float(a[0])}
+
+    return Probe("channel_skew", (Direction({"channel": channel, "delay_s": delay}, 0.0, 2.0),), start)
 
 
 def _reading(id_: str, name: str, channel: str, unit: float) -> Probe:

@@ -7,7 +7,7 @@ need (without any one of them, all others refitted, the gap opens again).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,6 +18,8 @@ from hil.analysis.diagnosis._evidence import NEARLY, Evidence
 from hil.analysis.diagnosis._fit import Fit, carried, fit
 from hil.analysis.diagnosis._growth import LEAST_EVIDENCE, Step, grow, rank
 from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._quantization import rounding_of
+from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
 
@@ -39,10 +41,13 @@ class Found:
     steps: list[Step] = field(default_factory=list)
 
 
-def search(problem: Problem, base: Hypothesis, show: Callable[[str], None], rounding: Array) -> Found:
+def search(
+    problem: Problem, base: Hypothesis, show: Callable[[str], None], rounded: Sequence[EffectUse] = ()
+) -> Found:
     """Find the effects that the base model lacks: the fewest that close the gap."""
     show("fitting the base model")
     first = fit(problem, base)
+    rounding = rounding_of(problem, list(rounded), first)
     found = Found(first, first, Evidence(problem, first, rounding))
     frontier = [first]
     for number in range(_MOST_EFFECTS):
