@@ -8,7 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis import BANDS_HZ, BOOTSTRAP_DRAWS, CONDITIONS, Diagnosis, GapMap, NamedEffect
+from hil.analysis.diagnosis import (
+    BANDS_HZ,
+    BOOTSTRAP_DRAWS,
+    CONDITIONS,
+    ChannelGap,
+    Diagnosis,
+    GapMap,
+    NamedEffect,
+)
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import parameter_unit
@@ -81,16 +89,19 @@ def lead(found: Diagnosis) -> str:
     """The verdict in numbers."""
     if found.verdict == "unknown":
         return f"What is known of it: {found.signature}."
-    over = {c: g.gap / max(g.noise_floor, 1e-12) for c, g in found.gap_after.items()}
-    worst = max(over, key=lambda c: over[c])
-    before = found.gap_before[worst].gap / max(found.gap_before[worst].noise_floor, 1e-12)
+    before, after = _over_noise(found.gap_before), _over_noise(found.gap_after)
+    worst, left = max(before, key=lambda c: before[c]), max(after.values())
     name = channel_label(worst).text.lower()
     if found.verdict == "none":
-        return f"The gap is at most {over[worst]:.2f} times the noise ({name})."
+        return f"The gap is at most {left:.2f} times the noise."
     return (
-        f"With the model given back, the gap is at most {over[worst]:.2f} times the noise ({name}); "
-        f"with the model as it came, it is {before:.3g} times there."
+        f"The model as it came leaves a gap of up to {before[worst]:.3g} times the noise ({name}); the model "
+        f"given back leaves {left:.2f} times the noise at most."
     )
+
+
+def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
+    return {c: g.gap / max(g.noise_floor, 1e-12) for c, g in gaps.items()}
 
 
 def parts(found: Diagnosis) -> list[Part]:
@@ -167,7 +178,7 @@ def _effects(found: Diagnosis) -> Table:
                     name,
                     shown,
                     quantities.number(error, significant=2) if error is not None else "",
-                    f"{e.confidence:.0%}" if index == 0 else "",
+                    quantities.chance(e.confidence) if index == 0 else "",
                     _place(e) if index == 0 else "",
                 )
             )
@@ -272,14 +283,10 @@ def _considered(found: Diagnosis) -> Table:
 
 def _alternatives(found: Diagnosis) -> Table:
     rows = tuple(
-        (_about(a.use.id, a.use.values), _percent(a.confidence), a.separating_test, a.plan or "")
+        (_about(a.use.id, a.use.values), quantities.chance(a.confidence), a.separating_test, a.plan or "")
         for a in found.alternatives
     )
     return Table(("effect", "confidence", "separating test", "plan for hil run"), rows, 1, 2)
-
-
-def _percent(share: float) -> str:
-    return "<1%" if share < 0.005 else f"{share:.0%}"
 
 
 def _about(id_: str, values: Mapping[str, float | str]) -> str:

@@ -37,6 +37,11 @@ def number(value: float | None, decimals: int | None = None, significant: int = 
     return text.replace("-", MINUS)
 
 
+def chance(share: float) -> str:
+    """A probability in percent; nothing is quite certain."""
+    return "<1%" if share < 0.005 else ">99%" if share > 0.99 else f"{share:.0%}"
+
+
 def nominal(value: float | None, of: str = "") -> str:
     """A number that somebody chose (a limit, a speed, a parameter): as written, no digits added."""
     if value is None or not math.isfinite(value):

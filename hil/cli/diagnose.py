@@ -15,6 +15,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import load_model, model_to_toml
 from hil.core.recording import Recording, driven_by_torque, read_recording
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
+from reports.quantities import chance
 
 _FILES = ("model.toml", "diagnosis.json", "report.html", "report.pdf")
 _WORTH_A_LINE = 0.02
@@ -119,7 +120,7 @@ def text_of(found: Diagnosis, out: Path) -> str:
             + (f" ± {e.standard_error[name]:.2g}" if name in e.standard_error else "")
             for name, value in e.use.values.items()
         )
-        lines.append(f"  {e.use.id} ({e.confidence:.0%}): {values}")
+        lines.append(f"  {e.use.id} ({chance(e.confidence)}): {values}")
         low, high = e.where.band_hz
         lines.append(f"    seen in {', '.join(e.where.channels)}, {low:g}-{high:g} Hz, {e.where.condition}")
     if found.signature:
@@ -129,7 +130,7 @@ def text_of(found: Diagnosis, out: Path) -> str:
             about = a.use.values.get("channel", a.use.values.get("parameter"))
             name = f"{a.use.id} of {about}" if about else a.use.id
             test = f"hil run {out / a.plan}" if a.plan else a.separating_test
-            lines.append(f"  or {name} ({a.confidence:.0%}); to tell: {test}")
+            lines.append(f"  or {name} ({chance(a.confidence)}); to tell: {test}")
     lines += ["", f"{'gap':<22}{'before':>10}{'after':>10}{'noise':>10}"]
     for name, after in found.gap_after.items():
         before = found.gap_before[name]

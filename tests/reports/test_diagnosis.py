@@ -110,8 +110,8 @@ def test_maps_stand_in_pairs_and_shade_what_is_above_the_noise(found: Diagnosis)
 
 
 def test_headline_and_lead_follow_the_verdict(found: Diagnosis) -> None:
-    assert "at most 1.05 times the noise" in lead(found)
-    assert "it is 15 times there" in lead(found)
+    assert "up to 15 times the noise (motor speed)" in lead(found)
+    assert "leaves 1.05 times the noise at most" in lead(found)
     none = dataclasses.replace(found, verdict="none", effects=())
     assert headline(none) == "The model explains the data to the noise"
     assert "as it came" not in lead(none)

@@ -43,3 +43,8 @@ def test_a_quantity_keeps_number_and_unit_together() -> None:
 def test_file_sizes() -> None:
     assert quantities.file_size(54) == "54\u202fB"
     assert quantities.file_size(41_300_000) == "41.30\u202fMB"
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.001, "<1%"), (0.26, "26%"), (0.99, "99%"), (0.995, ">99%")])
+def test_nothing_is_quite_certain(share, said):
+    assert quantities.chance(share) == said
