@@ -29,7 +29,7 @@ _WINDOW_S = 0.1
 _PHASES = 72
 _GRID = 2.0 * np.pi / _PHASES
 _REFINED = 5
-_LEAST_STEP = 0.05
+_LEAST_STEP = 0.05  # rad of phase in a second: an order may be a little off as well
 _START_RAD = 0.3  # how well the phase at the start is known once the ripple is
 _SOON_S = 1.0  # recordings that turn a ripple sooner than this say the same of its phase
 _NO_RIPPLE = 1e-9
@@ -84,15 +84,19 @@ def track(
         for index, (one, path) in enumerate(zip(windows, paths, strict=True)):
             drift = path - turn - more * one.angle
             drift -= 2.0 * np.pi * np.round(drift[0] / (2.0 * np.pi))
-            trace = problem.traces[index]
-            at = np.arange(len(trace.torque)) * trace.dt
-            angles = problem.angles[index].copy()
-            angles[:, column] += np.interp(at, one.times, drift) / (order + more)
-            problem.angles[index] = angles
+            _turn(problem, index, column, one.times, drift / (order + more))
         for i, c in enumerate(coordinates):
             if c.term == term and c.name in ("order", "phase_rad"):
                 theta[i] += more if c.name == "order" else turn
     return theta
+
+
+def _turn(problem: Problem, index: int, column: int, times: Array, drift: Array) -> None:
+    """Add a drift in rad, given at `times` in s, to one column of a recording's angles."""
+    trace = problem.traces[index]
+    angles = problem.angles[index].copy()
+    angles[:, column] += np.interp(np.arange(len(trace.torque)) * trace.dt, times, drift)
+    problem.angles[index] = angles
 
 
 def tracked_gain(problem: Problem, parent: Fit, use: EffectUse) -> float:
