@@ -1,5 +1,11 @@
 """Controllers from models, the paper's way, and how well they hold."""
 
+from hil.analysis.control_design._acceptance import (
+    LARGEST_SENSITIVITY,
+    LEAST_GAIN_MARGIN_DB,
+    LEAST_PHASE_MARGIN_DEG,
+)
+from hil.analysis.control_design._closed_loop import closed_loop_poles
 from hil.analysis.control_design._design import design, measured_loop
 from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._laws import (
@@ -30,6 +36,9 @@ from hil.analysis.control_design._uncertainty import PlantSet, possible_plants
 
 __all__ = [
     "COMFORT_BAND_HZ",
+    "LARGEST_SENSITIVITY",
+    "LEAST_GAIN_MARGIN_DB",
+    "LEAST_PHASE_MARGIN_DEG",
     "Design",
     "DesignPlant",
     "DesignSpec",
@@ -43,6 +52,7 @@ __all__ = [
     "PlantSet",
     "Robustness",
     "TradeOff",
+    "closed_loop_poles",
     "design",
     "design_plant",
     "encirclements",

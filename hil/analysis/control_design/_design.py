@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.control_design._acceptance import refuse_unstable, warnings_of
 from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._laws import (
     feed_forward,
@@ -23,7 +24,7 @@ from hil.analysis.control_design._loop import (
     loop_grid,
     margins,
 )
-from hil.analysis.control_design._optimize import optimize
+from hil.analysis.control_design._optimize import Optimum, optimize
 from hil.analysis.control_design._plant import DesignPlant, design_plant
 from hil.analysis.control_design._spec import Design, DesignSpec, Loop, Robustness
 from hil.analysis.control_design._trade_off import trade_off
@@ -39,16 +40,29 @@ Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 
-def design(model: Model, spec: DesignSpec, *, progress: Callable[[str], None] = lambda _: None) -> Design:
+def design(
+    model: Model,
+    spec: DesignSpec,
+    *,
+    progress: Callable[[str], None] = lambda _: None,
+    unstable_too: bool = False,
+) -> Design:
     """Design the wheel speed control, its filters, and judge them.
 
+    Args:
+        model: the plant.
+        spec: what is asked for.
+        progress: told what is being done.
+        unstable_too: hand out an unstable loop as well, for comparisons; never load its controller.
+
     Raises:
-        BadInputError: the model lacks an output, a resonance or an inertia; values out of range; with
-            `optimise`, no controller keeps the limits.
+        BadInputError: the model lacks an output, a resonance or an inertia; values out of range; the
+            closed loop is unstable on the model; with `optimise`, no controller keeps the limits.
     """
     spec.check()
     plant = design_plant(model)
     motor = plant.functions[OUTPUTS[0]]
+    _check_notch(spec, plant.resonance_hz)
     notes = list(plant.notes)
     inertia = spec.inertia_kg_m2 or plant.inertia_kg_m2
     origin_poles = 2 if motor.denominator[-1] == 0 else 1
@@ -57,48 +71,26 @@ def design(model: Model, spec: DesignSpec, *, progress: Callable[[str], None] = 
     coarse = loop_grid(spec.sample_time_s, 700)
     plants = possible_plants(model, motor, coarse)
     held = plants.responses * hold_response(coarse, spec.sample_time_s)
-    optimum = None
-    if spec.optimise:
-        optimum = optimize(
-            coarse,
-            held,
-            inertia,
-            spec.sample_time_s,
-            limits=spec.limits,
-            objective=spec.objective,
-            origin_poles=origin_poles,
-            progress=progress,
-        )
-        spec = replace(
-            spec,
-            lead_deg=optimum.angle_deg,
-            lead_hz=optimum.frequency_hz,
-            pole_rad_s=optimum.pole_rad_s,
-            normalisation=optimum.normalisation,
-        )
+    optimum = _optimum(spec, coarse, held, inertia, origin_poles, progress)
+    if optimum is not None:
+        spec = _with_optimum(spec, optimum)
     progress("loops and margins")
-    gains = pole_assignment(inertia, spec.pole_rad_s)
-    wscs = _speed_controls(spec, gains, plant.resonance_hz)
+    wscs = _speed_controls(spec, pole_assignment(inertia, spec.pole_rad_s), plant.resonance_hz)
+    wsc = wscs[spec.stabilisation]
+    blocks = feedback_functions(wsc)
     response = motor.response(frequency)
     loops = [_loop("plant", (), frequency, response, hold, spec.sample_time_s, origin_poles - 1)]
-    for name, wsc in wscs.items():
-        blocks = feedback_functions(wsc)
-        loops.append(_loop(name, blocks, frequency, response, hold, spec.sample_time_s, origin_poles))
-    chart = trade_off(
-        frequency,
-        loops[1].sampled,
-        plant.resonance_hz,
-        spec.normalisation,
-        spec.sample_time_s,
-        origin_poles=origin_poles,
-    )
-    wsc = wscs[spec.stabilisation]
-    controller = _controller(model, spec, plant, wsc, notes)
-    blocks = feedback_functions(wsc)
-    robust = _robustness(coarse, held, blocks, spec.sample_time_s, origin_poles, plants.source)
+    for name, one in wscs.items():
+        parts = feedback_functions(one)
+        loops.append(_loop(name, parts, frequency, response, hold, spec.sample_time_s, origin_poles))
     chosen = next(loop for loop in loops if loop.name == spec.stabilisation)
-    if not chosen.margins.stable:
-        notes.append("the closed loop is UNSTABLE on this model: do not load this controller")
+    if not unstable_too:
+        refuse_unstable(motor, blocks, spec, chosen.margins)
+    at, step, pi = plant.resonance_hz, spec.sample_time_s, loops[1].sampled
+    chart = trade_off(frequency, pi, at, spec.normalisation, step, origin_poles=origin_poles)
+    robust = _robustness(coarse, held, blocks, step, origin_poles, plants.source)
+    warnings = warnings_of(chosen.margins, robust)
+    controller = _controller(model, spec, plant, wsc, notes, warnings)
     return Design(
         controller,
         plant,
@@ -112,6 +104,50 @@ def design(model: Model, spec: DesignSpec, *, progress: Callable[[str], None] = 
         optimum,
         _discrete(controller),
         tuple(notes),
+        warnings,
+    )
+
+
+def _check_notch(spec: DesignSpec, resonance_hz: float) -> None:
+    """Refuse a notch at a resonance that the RMCU cannot reach."""
+    half_rate = 0.5 / spec.sample_time_s
+    if spec.stabilisation == "gain" and spec.notch_hz is None and not resonance_hz < half_rate:
+        raise BadInputError(
+            f"the model's resonance at {resonance_hz:.4g} Hz lies above {half_rate:g} Hz, half the RMCU's "
+            "sampling rate: no notch can be made there",
+            fix="check the model's units, or give --notch-hz",
+        )
+
+
+def _optimum(
+    spec: DesignSpec,
+    frequency: Array,
+    held: ComplexArray,
+    inertia: float,
+    origin_poles: int,
+    progress: Callable[[str], None],
+) -> Optimum | None:
+    if not spec.optimise:
+        return None
+    return optimize(
+        frequency,
+        held,
+        inertia,
+        spec.sample_time_s,
+        limits=spec.limits,
+        objective=spec.objective,
+        origin_poles=origin_poles,
+        progress=progress,
+    )
+
+
+def _with_optimum(spec: DesignSpec, optimum: Optimum) -> DesignSpec:
+    return replace(
+        spec,
+        lead_deg=optimum.angle_deg,
+        lead_hz=optimum.frequency_hz,
+        pole_rad_s=optimum.pole_rad_s,
+        normalisation=optimum.normalisation,
     )
 
 
@@ -186,7 +222,14 @@ def _robustness(
     )
 
 
-def _controller(model: Model, spec: DesignSpec, plant: DesignPlant, wsc: Wsc, notes: list[str]) -> Controller:
+def _controller(
+    model: Model,
+    spec: DesignSpec,
+    plant: DesignPlant,
+    wsc: Wsc,
+    notes: list[str],
+    warnings: tuple[str, ...],
+) -> Controller:
     return Controller(
         name=spec.name or spec.stabilisation,
         sample_time_s=spec.sample_time_s,
@@ -205,6 +248,7 @@ def _controller(model: Model, spec: DesignSpec, plant: DesignPlant, wsc: Wsc, no
             wheel_inertia_kg_m2=_wheel_inertia(model, spec, plant, notes),
         ),
         plant=plant.filters,
+        meta={"warnings": list(warnings)} if warnings else {},
     )
 
 

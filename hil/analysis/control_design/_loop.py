@@ -126,6 +126,9 @@ def encirclements(loop: ComplexArray, origin_poles: int) -> npt.NDArray[np.int64
     """
     around = 1 + loop
     turn = np.sum(np.angle(around[..., 1:] / around[..., :-1]), axis=-1)
+    # A pole that is slow but not at the origin turns below the grid: what the asymptote at 0+ tells.
+    before = np.angle(around[..., 0] * np.exp(0.5j * np.pi * origin_poles))
+    turn = np.where(np.isfinite(turn + before), turn + before, -np.pi)
     missing = np.rint((origin_poles * np.pi / 2 - turn) / np.pi).astype(np.int64)
     return int(missing) if np.ndim(missing) == 0 else missing
 

@@ -22,6 +22,11 @@ Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 Stabilisation = Literal["phase", "gain"]
 
+LARGEST_LEAD_DEG = 85.0  # (6) gives α = 0 at 90 degrees
+LARGEST_NOTCH_WIDTH = 100.0
+LARGEST_SIZE = 1e6  # of inertias, torques, times, ratios in SI units: beyond, a unit is wrong
+SAMPLE_TIMES_S = (1e-6, 1.0)
+
 
 @dataclass(frozen=True)
 class DesignSpec:
@@ -56,22 +61,68 @@ class DesignSpec:
         """Refuse values that make no sense.
 
         Raises:
-            BadInputError: names the option of `hil design`.
+            BadInputError: names the option of `hil design`, the value and the range that is allowed.
         """
-        positive: dict[str, float | None] = {
-            "--pole": abs(self.pole_rad_s),
-            "--sample-time": self.sample_time_s,
-            "--torque-limit": self.torque_limit_nm,
-            "--inertia": self.inertia_kg_m2,
-            "--gear-ratio": self.gear_ratio,
-            "--wheel-inertia": self.wheel_inertia_kg_m2,
-            "--notch-hz": self.notch_hz,
-        }
-        for option, value in positive.items():
-            if value is not None and not (np.isfinite(value) and value > 0):
-                raise BadInputError(f"{option} is {value:g}", fix="give a positive number")
+        _within("sample_time_s", self.sample_time_s, SAMPLE_TIMES_S, "s")
+        half_rate = 0.5 / self.sample_time_s
+        _within("--pole", self.pole_rad_s, (0.0, 2 * np.pi * half_rate), "rad/s")
+        _within("--lead-deg", self.lead_deg, (0.0, LARGEST_LEAD_DEG), "degrees")
+        beyond = f"the RMCU samples at {2 * half_rate:g} Hz and cannot act faster than half of that"
+        _below("--lead-hz", self.lead_hz, half_rate, beyond)
+        if self.notch_hz is not None:
+            _below("--notch-hz", self.notch_hz, half_rate, beyond)
+        _within("--notch-width", self.notch_width, (0.0, LARGEST_NOTCH_WIDTH), "(ζ)")
+        if not 0.0 <= self.notch_depth <= 1.0:
+            raise BadInputError(
+                f"--notch-depth is {self.notch_depth:g}",
+                fix="it lies from 0 (nothing passes) to 1 (no notch)",
+            )
+        for option, value, unit in self._sizes():
+            if value is not None:
+                _within(option, value, (0.0, LARGEST_SIZE), unit)
+        self._check_limits()
         if self.optimise and self.stabilisation == "gain":
             raise BadInputError("--optimize searches a lead", fix="leave out --notch-hz")
+
+    def _sizes(self) -> tuple[tuple[str, float | None, str], ...]:
+        return (
+            ("--torque-limit", self.torque_limit_nm, "N m"),
+            ("--inertia", self.inertia_kg_m2, "kg m²"),
+            ("--gear-ratio", self.gear_ratio, "(motor speed / wheel speed)"),
+            ("--wheel-inertia", self.wheel_inertia_kg_m2, "kg m²"),
+            ("speed_filter_time_s", self.speed_filter_time_s, "s"),
+            ("feed_forward_time_s", self.feed_forward_time_s, "s"),
+            ("observer_time_s", self.observer_time_s, "s"),
+            ("wheel_radius_m", self.wheel_radius_m, "m"),
+            ("slip_floor_m_s", self.slip_floor_m_s, "m/s"),
+            ("slip_limit", self.slip_limit, "(slip)"),
+        )
+
+    def _check_limits(self) -> None:
+        limits = self.limits
+        if not 1.0 < limits.sensitivity_peak <= LARGEST_SIZE:
+            raise BadInputError(
+                f"--largest-sensitivity is {limits.sensitivity_peak:g}",
+                fix="it lies above 1: |S| is at least 1 somewhere in every loop; 1.5 to 2 is usual",
+            )
+        _within("gain_margin_db", limits.gain_margin_db, (0.0, LARGEST_SIZE), "dB")
+        _within("phase_margin_deg", limits.phase_margin_deg, (0.0, 180.0), "degrees")
+        _within("delay_margin_s", limits.delay_margin_s, (0.0, 1.0), "s")
+
+
+def _within(option: str, value: float, bounds: tuple[float, float], unit: str) -> None:
+    """Refuse what is not above the lower and at most at the upper bound; NaN and infinity are neither."""
+    low, high = bounds
+    if not low < value <= high:
+        number = "positive number" if low == 0.0 else f"number above {low:g}"
+        raise BadInputError(f"{option} is {value:g}", fix=f"give a {number} of at most {high:.6g} {unit}")
+
+
+def _below(option: str, value_hz: float, half_rate_hz: float, why: str) -> None:
+    if not 0.0 < value_hz < half_rate_hz:
+        raise BadInputError(
+            f"{option} is {value_hz:g}", fix=f"give a positive number below {half_rate_hz:g} Hz: {why}"
+        )
 
 
 @dataclass(frozen=True)
@@ -104,7 +155,7 @@ class Design:
 
     `loops` are, in this order: plant alone, PI, phase (PI and lead), gain (PI and notch), all on the
     grid `frequency_hz`; `chosen` names the one that the controller closes. `discrete` holds the RMCU's
-    filters by name.
+    filters by name. `warnings` are plain sentences on what the stable loop lacks; none when it is good.
     """
 
     controller: Controller
@@ -119,6 +170,7 @@ class Design:
     optimum: Optimum | None
     discrete: dict[str, DiscreteFilter]
     notes: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
 
     def loop(self, name: str) -> Loop:
         """One of the loops; KeyError if there is none of that name."""

@@ -66,6 +66,7 @@ def summary_of(found: Design, paper: Design | None, model: str, files: list[str]
             name: {"b": f.b, "a": f.a, "sample_time_s": f.sample_time_s, "powers": "ascending in z^-1"}
             for name, f in found.discrete.items()
         },
+        "warnings": list(found.warnings),
         "notes": list(found.notes),
         "files": files,
     }
@@ -89,9 +90,10 @@ def _loop(found: Design, name: str) -> dict[str, Any]:
 
 
 def text_of(found: Design, paper: Design | None, out: Path) -> str:
-    """What a person reads: gains, margins of every loop, the worst case, notes."""
+    """What a person reads: warnings first, then gains, margins of every loop, the worst case, notes."""
     wsc = found.controller.wsc
-    lines = [
+    lines = [f"WARNING: {warning}" for warning in found.warnings]
+    lines += [
         f"K_p {wsc.proportional_gain:.4f} N m s/rad, K_i {wsc.integral_gain:.4f} N m/rad "
         f"(p {found.spec.pole_rad_s:.3g} rad/s), resonance {found.plant.resonance_hz:.2f} Hz, "
         f"dead time {found.plant.delay_s * 1e3:.2f} ms"

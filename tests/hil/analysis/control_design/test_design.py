@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from hil.analysis.control_design import (
     optimize,
 )
 from hil.analysis.identification import Identification
+from hil.analysis.outputs.control_design import summary_of, text_of
 from hil.core.controller import controller_from_toml, controller_to_toml
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -116,18 +118,84 @@ def test_notch_instead_of_lead(paper_model: Model) -> None:
     assert "notch" in found.discrete
 
 
-def test_unstable_choice_is_said(paper_model: Model) -> None:
-    found = design(paper_model, DesignSpec(pole_rad_s=3.0))
-    assert not found.loop("phase").margins.stable
-    assert any("UNSTABLE" in note for note in found.notes)
+@pytest.mark.parametrize(
+    "choice",
+    [
+        {"pole_rad_s": 3.0},
+        {"pole_rad_s": 10.0, "stabilisation": "gain"},
+        {"lead_deg": 80.0, "normalisation": "dc"},
+    ],
+)
+def test_an_unstable_loop_is_refused_with_what_was_found(
+    paper_model: Model, choice: dict[str, object]
+) -> None:
+    spec = replace(DesignSpec(), **choice)  # type: ignore[arg-type]
+    with pytest.raises(BadInputError) as caught:
+        design(paper_model, spec)
+    assert "closed loop is unstable" in caught.value.what
+    assert "outside the unit circle, the worst at" in caught.value.what
+    assert "|S|max" in caught.value.what
+    assert "--pole" in caught.value.fix
+    compared = design(paper_model, spec, unstable_too=True)
+    assert not compared.loop(spec.stabilisation).margins.stable
+
+
+def test_a_good_loop_has_no_warnings(paper_design: Design, optimised_design: Design) -> None:
+    assert paper_design.warnings == optimised_design.warnings == ()
+    assert paper_design.controller.meta == {}
+
+
+def test_a_poor_loop_is_handed_out_with_warnings_first(paper_model: Model) -> None:
+    found = design(paper_model, DesignSpec(pole_rad_s=0.7))
+    assert found.loop("phase").margins.stable
+    summary = summary_of(found, None, "model.toml", [])
+    assert summary["warnings"] == list(found.warnings)
+    assert any("|S|max is" in w for w in found.warnings)
+    lines = text_of(found, None, Path("out")).splitlines()
+    assert lines[: len(found.warnings)] == [f"WARNING: {w}" for w in found.warnings]
+    again = controller_from_toml(controller_to_toml(found.controller), "again")
+    assert again.meta["warnings"] == list(found.warnings)
+
+
+def test_a_loop_that_the_uncertainty_upsets_says_so(paper_model: Model) -> None:
+    found = design(paper_model, DesignSpec(pole_rad_s=1.1))
+    assert found.robustness.stable_share < 1
+    assert any("unstable for" in warning for warning in found.warnings)
 
 
 @pytest.mark.parametrize(
-    "change", [{"pole_rad_s": 0.0}, {"torque_limit_nm": -1.0}, {"inertia_kg_m2": np.nan}]
+    ("option", "change"),
+    [
+        *(("--pole", {"pole_rad_s": v}) for v in (0.0, -1.0, np.nan, np.inf, 1e9)),
+        *(("--lead-deg", {"lead_deg": v}) for v in (0.0, -5.0, 90.0, np.nan, np.inf)),
+        *(("--lead-hz", {"lead_hz": v}) for v in (0.0, -5.0, 500.0, 5000.0, np.nan, np.inf)),
+        *(("--notch-hz", {"notch_hz": v, "stabilisation": "gain"}) for v in (0.0, 500.0, 5000.0, np.nan)),
+        *(("--notch-width", {"notch_width": v}) for v in (0.0, -1.0, np.inf, np.nan)),
+        *(("--notch-depth", {"notch_depth": v}) for v in (-0.1, 1.1, np.nan)),
+        *(("--torque-limit", {"torque_limit_nm": v}) for v in (0.0, -1.0, np.nan, np.inf)),
+        *(("--inertia", {"inertia_kg_m2": v}) for v in (0.0, -1.0, np.nan, np.inf)),
+        *(("--gear-ratio", {"gear_ratio": v}) for v in (0.0, -1.0, np.nan)),
+        *(("--wheel-inertia", {"wheel_inertia_kg_m2": v}) for v in (0.0, -1.0, np.inf)),
+        *(
+            ("--largest-sensitivity", {"limits": MarginLimits(sensitivity_peak=v)})
+            for v in (0.0, 1.0, -2.0, np.nan, np.inf)
+        ),
+        ("sample_time_s", {"sample_time_s": 0.0}),
+    ],
 )
-def test_impossible_values(paper_model: Model, change: dict[str, float]) -> None:
-    with pytest.raises(BadInputError, match="positive"):
+def test_a_value_out_of_range_is_refused_with_option_and_range(
+    paper_model: Model, option: str, change: dict[str, object]
+) -> None:
+    with pytest.raises(BadInputError) as caught:
         design(paper_model, replace(DesignSpec(), **change))  # type: ignore[arg-type]
+    assert option in caught.value.what
+    assert any(word in caught.value.fix for word in ("positive", "above", "lies from"))
+
+
+def test_a_notch_that_the_sampling_rate_cannot_reach_is_refused() -> None:
+    stiff = THREE | {"shaft_stiffness": 5e8, "shaft_damping": 1.0}
+    with pytest.raises(BadInputError, match="half the RMCU's sampling rate"):
+        design(Model("three_inertia", stiff), DesignSpec(stabilisation="gain"))
 
 
 def test_trade_off_rises_with_the_phase(paper_design: Design) -> None:
