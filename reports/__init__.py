@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hil.core.files import write_atomically
+from hil.core.files import replacing, write_atomically
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from reports.content import content
-from reports.html import html_text, input_texts, write_html
+from reports.html import html_text, input_texts, recording_named_in, write_html
 from reports.junit import junit_text, write_junit
 from reports.pdf import pdf_bytes, write_pdf
 from reports.sections import sections
@@ -18,26 +18,38 @@ HTML, PDF, JUNIT = "report.html", "report.pdf", "junit.xml"
 
 
 def write_reports(recording: Recording, result: RunResult | None, out: Path) -> dict[str, Path]:
-    """Write `report.html`, `report.pdf` and `junit.xml` into `out`; nothing is written if one cannot be made.
+    """Write `junit.xml`, `report.html` and `report.pdf` into `out`; nothing is written if one cannot be made.
 
     Without a result (a recording that another tool made) there is no verdict and no `junit.xml`.
 
     Returns:
-        Paths by 'html', 'pdf', 'junit'.
+        Paths by 'junit', 'html', 'pdf'.
 
     Raises:
         BadInputError: `out` cannot be written.
+        BenchError: the disk is full.
+    """
+    verdicts = junit_text(recording, result) if result is not None else None
+    written = write_documents(recording, result, out)
+    if verdicts is not None:
+        write_atomically(out / JUNIT, verdicts)
+        written["junit"] = out / JUNIT
+    return written
+
+
+def write_documents(recording: Recording, result: RunResult | None, out: Path) -> dict[str, Path]:
+    """Write `report.html` and `report.pdf` into `out`, both or none; paths by 'html', 'pdf'.
+
+    Raises:
+        BadInputError: `out` cannot be written.
+        BenchError: the disk is full.
     """
     report = content(recording, result)
-    contents: dict[str, tuple[Path, str | bytes]] = {
-        "html": (out / HTML, html_text(report, input_texts(recording))),
-        "pdf": (out / PDF, pdf_bytes(report)),
-    }
-    if result is not None:
-        contents["junit"] = (out / JUNIT, junit_text(recording, result))
-    for path, made in contents.values():
-        write_atomically(path, made)
-    return {name: path for name, (path, _) in contents.items()}
+    page, paper = html_text(report, input_texts(recording)), pdf_bytes(report)
+    with replacing(out / HTML) as html, replacing(out / PDF) as pdf:
+        html.write_text(page, encoding="utf-8")
+        pdf.write_bytes(paper)
+    return {"html": out / HTML, "pdf": out / PDF}
 
 
 def write_figures(recording: Recording, result: RunResult | None, out: Path) -> dict[str, Path]:
@@ -54,4 +66,15 @@ def write_figures(recording: Recording, result: RunResult | None, out: Path) -> 
     return paths
 
 
-__all__ = ["write_figures", "write_html", "write_junit", "write_pdf", "write_reports"]
+__all__ = [
+    "HTML",
+    "JUNIT",
+    "PDF",
+    "recording_named_in",
+    "write_documents",
+    "write_figures",
+    "write_html",
+    "write_junit",
+    "write_pdf",
+    "write_reports",
+]

@@ -16,7 +16,7 @@ from reports.labels import channel_label, channel_unit
 from reports.provenance import ControllerTable, Fact, StoredFile
 from reports.sections import sections
 
-_HEADLINE = {"pass": "Passed", "fail": "Failed", "error": "Error"}
+_HEADLINE = {"pass": "Passed", "fail": "Failed", "error": "Error", "unjudged": "Carried out, nothing judged"}
 _SAFE_STATE = {
     "confirmed": "The bench confirmed its safe state after the run.",
     "not_needed": "No safe state was needed.",
@@ -27,7 +27,10 @@ _SAFE_STATE = {
 
 @dataclass(frozen=True)
 class Banner:
-    """The verdict: `tone` is pass, fail, error or none; `alarm` is '' unless the bench may not be safe."""
+    """The verdict: `tone` is pass, fail, error, unjudged (carried out, no criterion) or none (no plan).
+
+    `alarm` is '' unless the bench may not be safe.
+    """
 
     tone: str
     headline: str
@@ -88,6 +91,7 @@ class Content:
     mark: str
     criteria: CriteriaTable | None
     warnings: tuple[str, ...]
+    damage: tuple[str, ...]
     controllers: ControllerTable | None
     segments: tuple[SegmentRow, ...]
     channels: tuple[ChannelRow, ...]
@@ -100,7 +104,7 @@ class Content:
     def unmet(self) -> tuple[CriterionRow, ...]:
         """Criteria that failed or could not be judged."""
         groups = self.criteria.groups if self.criteria else ()
-        return tuple(row for group in groups for row in group.rows if row.verdict != "pass")
+        return tuple(row for group in groups for row in group.rows if row.unmet)
 
 
 def content(recording: Recording, result: RunResult | None) -> Content:
@@ -122,6 +126,7 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         calibration=calibration,
         files=files,
         warnings=_warnings(calibration, files),
+        damage=tuple(recording.damage),
         source=recording.source.name,
         sha256=sha256,
         mark=" · ".join(part for part in marks if part),
@@ -145,18 +150,34 @@ def _banner(result: RunResult | None) -> Banner:
         return Banner("none", "Recording, not judged", (sentence,), "")
     unsafe = result.safe_state == "not_confirmed"
     verdict = "error" if unsafe else result.verdict  # a run that may have left the bench live did not pass
-    counts = count_by_verdict(result.criteria)
-    total = len(result.criteria)
-    sentences = [result.reason] if result.reason else []
-    sentences.append(f"{counts['pass']} of {total} criteria passed." if total else "No criteria were judged.")
-    if counts["fail"]:
-        sentences.append(f"{counts['fail']} failed.")
-    if counts["error"]:
-        sentences.append(f"{counts['error']} could not be judged.")
+    judged = any(criterion.has_limit for criterion in result.criteria)
+    tone = "unjudged" if verdict == "pass" and not judged else verdict
+    sentences = [*([result.reason] if result.reason else []), *_counts(result)]
     if not unsafe:
         sentences.append(_SAFE_STATE[result.safe_state])
     alarm = _SAFE_STATE["not_confirmed"] if unsafe else ""
-    return Banner(verdict, _HEADLINE[verdict], tuple(sentences), alarm)
+    return Banner(tone, _HEADLINE[tone], tuple(sentences), alarm)
+
+
+def _counts(result: RunResult) -> list[str]:
+    """What became of the criteria, in sentences."""
+    demanding = [criterion for criterion in result.criteria if criterion.has_limit]
+    if not demanding:
+        sentences = ["The plan has no criterion with a limit, so nothing is judged."]
+    else:
+        passed = sum(criterion.verdict == "pass" for criterion in demanding)
+        sentences = [f"{passed} of {len(demanding)} criteria passed."]
+    counts = count_by_verdict(result.criteria)
+    failed = sum(criterion.failed for criterion in result.criteria)
+    unsettled = counts["did_not_settle"]
+    told = {
+        f"{failed} failed.": failed,
+        f"{counts['not_judged']} not judged.": counts["not_judged"],
+        f"{counts['error']} could not be computed.": counts["error"],
+        f"{counts['informational']} informational.": counts["informational"],
+        f"{unsettled} did not settle.": unsettled,
+    }
+    return [*sentences, *(sentence for sentence, count in told.items() if count)]
 
 
 def _warnings(calibration: tuple[Fact, ...], files: tuple[StoredFile, ...]) -> tuple[str, ...]:

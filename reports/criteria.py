@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import get_args
 
-from hil.core.result import CriterionResult, RunResult, Segment
+from hil.core.result import CriterionResult, CriterionVerdict, RunResult, Segment
 from reports import quantities
 from reports.step_figures import controller_name
 
@@ -23,6 +24,7 @@ class CriterionRow:
     limit: str
     margin: str
     verdict: str
+    unmet: bool
     reason: str
     definition: int
 
@@ -57,8 +59,8 @@ def criteria_table(result: RunResult) -> CriteriaTable:
 
 
 def count_by_verdict(criteria: Iterable[CriterionResult]) -> dict[str, int]:
-    """How many passed, failed and could not be judged."""
-    counts = {"pass": 0, "fail": 0, "error": 0}
+    """How many have each verdict."""
+    counts = dict.fromkeys(get_args(CriterionVerdict), 0)
     for criterion in criteria:
         counts[criterion.verdict] += 1
     return counts
@@ -89,20 +91,32 @@ def _row(criterion: CriterionResult, definition: int) -> CriterionRow:
         value=quantities.number(criterion.value, decimals),
         unit=quantities.unit(criterion.unit),
         limit=_limit(criterion),
-        margin=quantities.number(criterion.margin, decimals),
+        margin=_margin(criterion.margin),
         verdict=criterion.verdict,
+        unmet=criterion.failed or criterion.verdict in ("error", "not_judged"),
         reason=criterion.reason,
         definition=definition,
     )
 
 
 def _decimals(criterion: CriterionResult) -> int:
-    """Four digits of the value, and more where the margin would round to nothing."""
+    """Four digits of the value, and more where its distance from a limit would round to nothing."""
     decimals = min(quantities.decimals_for(criterion.value), _USUAL_DECIMALS)
-    margin = criterion.margin
-    while margin and abs(margin) < 10.0**-decimals and decimals < _MOST_DECIMALS:
+    value, limits = criterion.value, (criterion.lower, criterion.upper)
+    room = min((abs(limit - value) for limit in limits if limit is not None), default=0.0) if value else 0.0
+    while room and room < 10.0**-decimals and decimals < _MOST_DECIMALS:
         decimals += 1
     return decimals
+
+
+def _margin(share: float | None) -> str:
+    """A margin in percent of the limit, never rounded across zero."""
+    if share is None:
+        return quantities.DASH
+    percent = 100 * share
+    if abs(percent) >= 0.05:
+        return quantities.quantity(percent, "%", 1)
+    return quantities.quantity(percent, "%", significant=1)
 
 
 def _bound(value: float | None) -> str:
@@ -117,5 +131,5 @@ def _limit(criterion: CriterionResult) -> str:
     if criterion.lower is not None and criterion.upper is not None:
         return f"{lower} to {upper}"
     if criterion.upper is not None:
-        return f"≤{quantities.THIN}{upper}"
+        return f"{'<' if criterion.below else '≤'}{quantities.THIN}{upper}"
     return f"≥{quantities.THIN}{lower}" if criterion.lower is not None else quantities.DASH

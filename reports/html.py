@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import html
 import json
+import re
 from importlib import resources
 from pathlib import Path
 
@@ -52,6 +54,17 @@ def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
         js=_template("report.js"),
     )
     return page.encode("utf-8", "replace").decode()  # half a surrogate pair from a broken event
+
+
+def recording_named_in(page: Path) -> str:
+    """File name of the recording that an existing report was made from; '' if it does not say."""
+    try:
+        with page.open(encoding="utf-8", errors="replace") as file:
+            head = file.read(4096)
+    except OSError:
+        return ""
+    found = re.search(r'<meta name="recording" content="([^"]*)">', head)
+    return html.unescape(found[1]) if found else ""
 
 
 def input_texts(recording: Recording) -> list[tuple[str, str]]:

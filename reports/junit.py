@@ -42,12 +42,13 @@ def junit_text(recording: Recording, result: RunResult) -> bytes:
         "tests": len(suite.findall("testcase")),
         "failures": len(suite.findall("testcase/failure")),
         "errors": len(suite.findall("testcase/error")),
+        "skipped": len(suite.findall("testcase/skipped")),
     }
     for element in (suite, root := ET.Element("testsuites")):
         for name, count in counts.items():
-            element.set(name, str(count))
+            if element is suite or name != "skipped":  # `testsuites` has no such attribute
+                element.set(name, str(count))
         element.set("time", f"{result.bench_time_s:.3f}")
-    suite.set("skipped", "0")
     started = recording.metadata.get("run", {}).get("started_at")
     if started:
         suite.set("timestamp", _clean(started))
@@ -74,10 +75,13 @@ def _properties(suite: ET.Element, recording: Recording, result: RunResult) -> N
 def _criterion(suite: ET.Element, criterion: CriterionResult, plan: str) -> None:
     group, _, metric = criterion.id.rpartition(".")
     case = _case(suite, f"{plan}.{group}" if group else plan, metric)
-    if criterion.verdict == "fail":
+    if criterion.failed:
         _outcome(case, "failure", in_words(criterion), criterion.definition)
     elif criterion.verdict == "error":
         _outcome(case, "error", in_words(criterion), criterion.definition)
+    elif criterion.verdict != "pass":  # counts as neither: the nearest that JUnit has is a skipped test
+        reason = f"{criterion.verdict.replace('_', ' ')}: {in_words(criterion)}"
+        ET.SubElement(case, "skipped", message=_clean(reason))
 
 
 def _case(suite: ET.Element, classname: str, name: str) -> ET.Element:

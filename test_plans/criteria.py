@@ -35,7 +35,7 @@ class CriterionKeys(Strict):
 
 
 class Criterion(Strict):
-    """One criterion of a plan. Without limits it is informational: reported, and always passed."""
+    """One criterion of a plan. Without limits it is informational: neither passed nor failed."""
 
     id: str
     segment: str

@@ -1,5 +1,30 @@
-"""How people ask: the `hil` command. Commands, outputs and exit codes: docs/reference/commands.md."""
+"""How people ask: the `hil` command. Commands, outputs and exit codes: docs/reference/commands.md.
 
-from hil.cli._app import main
+This module imports next to nothing, so that Ctrl-C during the slow imports is already answered.
+"""
+
+from __future__ import annotations
+
+import sys
+
+from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
+
+
+def main() -> None:
+    """Run the command line of this process and exit with its code."""
+    try:
+        INTERRUPTS.raise_from_now_on()
+        from hil.cli._app import run_command_line
+
+        code = run_command_line()
+        INTERRUPTS.ignore_from_now_on()
+    except BaseException:
+        if not INTERRUPTS.arrived:
+            raise
+        INTERRUPTS.ignore_from_now_on()
+        INTERRUPTS.tell()
+        code = EXIT_CODE
+    sys.exit(code)
+
 
 __all__ = ["main"]

@@ -7,12 +7,17 @@ import functools
 import importlib
 import os
 import sys
+import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import typer
 
-from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
+from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
+from hil.cli._streams import tolerate_outputs
+from hil.core.errors import BadInputError, BenchError, HilError
+from hil.core.files import of_the_system
 
 # name: (module, one line for `hil --help`). Modules are imported when their command is used.
 _COMMANDS = {
@@ -28,9 +33,21 @@ _COMMANDS = {
 }
 
 
-def main() -> None:
-    """Run the command line of this process and exit with its code."""
-    sys.exit(_guarded(sys.argv[1:]))
+def run_command_line() -> int:
+    """Carry out this process's command line; its exit code.
+
+    Errors become one message on standard error. A standard output that could not be written is a failure
+    of its own; one whose reader has gone is not.
+    """
+    out, _ = tolerate_outputs()
+    code = guarded(sys.argv[1:])
+    sys.stdout.flush()
+    if out.failure is not None:
+        reason = out.failure.strerror or str(out.failure)
+        print(f"error: standard output: {reason}\n  make room, or send the output elsewhere", file=sys.stderr)
+        code = code or BenchError.exit_code
+    sys.stderr.flush()
+    return code
 
 
 def _dispatch(arguments: list[str]) -> int:
@@ -53,12 +70,7 @@ def _dispatch(arguments: list[str]) -> int:
 def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
     @functools.wraps(command)
     def call(*args: Any, **kwargs: Any) -> None:
-        try:
-            code = command(*args, **kwargs)
-        except KeyboardInterrupt:
-            raise InterruptError("interrupted") from None
-        sys.stdout.flush()
-        raise SystemExit(code)
+        raise SystemExit(command(*args, **kwargs))
 
     return call
 
@@ -72,15 +84,42 @@ def _help() -> str:
     return "\n".join([head, *lines, "", "hil COMMAND --help tells about one of them."])
 
 
-def _guarded(arguments: list[str]) -> int:
+def guarded(arguments: list[str]) -> int:
+    """The exit code of a command line; every error is told in one message, none as a traceback."""
     try:
         return _dispatch(arguments)
+    except SystemExit as stop:
+        return stop.code if isinstance(stop.code, int) else 0
+    except KeyboardInterrupt:
+        return _interrupted()
     except HilError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return error.exit_code
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        return _told(error)
     except OSError as error:
-        print(f"error: {error.filename or ''}: {error.strerror or error}", file=sys.stderr)
-        return BenchError.exit_code
+        return _told(of_the_system(error))
+    except MemoryError:
+        return _told(BenchError("there is not enough memory", fix="give a shorter recording"))
+    except Exception as error:
+        return _interrupted() if INTERRUPTS.arrived else _told(_fault_of_ours(error))
+
+
+def _interrupted() -> int:
+    sys.stdout.flush()
+    INTERRUPTS.tell()
+    return EXIT_CODE
+
+
+def _told(error: HilError) -> int:
+    print(f"error: {error}", file=sys.stderr)
+    return error.exit_code
+
+
+def _fault_of_ours(error: Exception) -> BenchError:
+    """A mistake in the program: where it was, for whoever mends it; all of it if HIL_TRACEBACK is set."""
+    if os.environ.get("HIL_TRACEBACK"):
+        traceback.print_exception(error)
+    at = traceback.extract_tb(error.__traceback__)[-1]
+    return BenchError(
+        f"internal error: {type(error).__name__}: {error}",
+        where=f"{Path(at.filename).name}:{at.lineno}",
+        fix="please report it with the command and its input; HIL_TRACEBACK=1 shows more",
+    )

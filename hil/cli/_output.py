@@ -4,23 +4,44 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import sys
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Protocol
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from hil.core.result import CriterionResult
+from hil.core.recording import Recording
+from hil.core.result import CriterionResult, CriterionVerdict
 
-_STYLE = {"pass": "green", "fail": "bold red", "error": "bold red"}
+_STYLE: dict[CriterionVerdict, str] = {
+    "pass": "green",
+    "fail": "bold red",
+    "informational": "dim",
+    "did_not_settle": "yellow",
+    "not_judged": "magenta",
+    "error": "bold magenta",
+}
 
 
-def print_json(value: dict[str, Any]) -> None:
-    """The one JSON object of `--json`."""
-    json.dump(value, sys.stdout, indent=2, ensure_ascii=False)
-    sys.stdout.write("\n")
+class Show(Protocol):
+    """Shows what is being done, and how much of it is done if that is known (0 to 1)."""
+
+    def __call__(self, text: str, share: float | None = None) -> None:
+        """Show it."""
+
+
+def to_json(value: Mapping[str, Any], *, ascii_only: bool = False) -> str:
+    """JSON with two spaces of indent; infinities and NaN become null."""
+    return json.dumps(_plain(value), indent=2, ensure_ascii=ascii_only, allow_nan=False)
+
+
+def print_json(value: Mapping[str, Any]) -> None:
+    """The one JSON object of `--json`; on a stream that is not Unicode, with escapes."""
+    unicode = (sys.stdout.encoding or "ascii").lower().startswith("utf")
+    print(to_json(value, ascii_only=not unicode))
 
 
 def console() -> Console:
@@ -28,30 +49,56 @@ def console() -> Console:
     return Console(soft_wrap=False) if sys.stdout.isatty() else Console(width=140)
 
 
+def warn(text: str) -> None:
+    """What a person must know though the command goes on; on standard error."""
+    print(f"warning: {text}", file=sys.stderr)
+
+
+def warn_of_damage(recordings: Iterable[Recording]) -> None:
+    """Say what of recordings was lost or cannot be trusted."""
+    for recording in recordings:
+        for sentence in recording.damage:
+            warn(f"{recording.source}: {sentence}")
+
+
 @contextlib.contextmanager
-def progress(description: str) -> Iterator[Callable[[float, str], None]]:
-    """A bar on a terminal, nothing in a pipe; call it with (share done, what is going on)."""
+def progress(description: str) -> Iterator[Show]:
+    """A line on a terminal, nothing in a pipe."""
     if not sys.stderr.isatty():
-        yield lambda share, text: None
+        yield lambda text, share=None: None
         return
     bar = Progress(
-        TextColumn("{task.description}"),
+        SpinnerColumn(),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
-        TextColumn("{task.percentage:>3.0f} %  {task.fields[now]}"),
+        TextColumn("{task.fields[now]}", markup=False),
         TimeElapsedColumn(),
         console=Console(stderr=True),
         transient=True,
     )
     with bar:
-        task = bar.add_task(description, total=1.0, now="")
-        yield lambda share, text: bar.update(task, completed=share, now=text)
+        task = bar.add_task(description, total=None, now="")
+
+        def show(text: str, share: float | None = None) -> None:
+            bar.update(task, total=None if share is None else 1.0, completed=share or 0.0, now=text)
+
+        yield show
 
 
 def print_criteria(page: Console, criteria: tuple[CriterionResult, ...]) -> None:
-    """Criteria with value, limits, margin and verdict; below, why some could not be judged."""
+    """Criteria with value, limits, margin and verdict; below, why some have no value."""
     page.print(_table(criteria))
     for reason in _reasons(criteria):
         page.print(f"  {reason}", highlight=False, markup=False, soft_wrap=True)
+
+
+def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
+    """How many criteria with a limit passed, and what became of the others."""
+    judged = [c for c in criteria if c.has_limit]
+    passed = sum(c.verdict == "pass" for c in judged)
+    parts = [f"{passed} of {len(judged)} criteria passed"] if judged else ["nothing was judged"]
+    informational = sum(c.verdict == "informational" for c in criteria)
+    return ", ".join([*parts, f"{informational} informational"] if informational else parts)
 
 
 def _table(criteria: tuple[CriterionResult, ...]) -> Table:
@@ -63,22 +110,36 @@ def _table(criteria: tuple[CriterionResult, ...]) -> Table:
     table.add_column("verdict", no_wrap=True)
     for c in criteria:
         limits = [f"≥ {c.lower:.4g}"] if c.lower is not None else []
-        limits += [f"≤ {c.upper:.4g}"] if c.upper is not None else []
+        limits += [f"≤ {c.upper:.4g}"] if c.upper is not None and not c.below else []
+        limits += [f"< {c.upper:.4g}"] if c.upper is not None and c.below else []
         table.add_row(
             c.id,
             f"{c.value:.4g}" if c.value is not None else "-",
             " ".join(limits) or "-",
-            f"{c.margin:.4g}" if c.margin is not None else "-",
+            f"{c.margin:.1%}" if c.margin is not None else "-",
             c.unit,
-            f"[{_STYLE[c.verdict]}]{c.verdict}[/]",
+            f"[{_STYLE[c.verdict]}]{c.verdict.replace('_', ' ')}[/]",
         )
     return table
 
 
 def _reasons(criteria: tuple[CriterionResult, ...]) -> list[str]:
-    """Why criteria could not be judged, each reason once."""
-    found: dict[str, int] = {}
+    """Why criteria have no value, each reason once."""
+    found: dict[tuple[str, str], int] = {}
     for c in criteria:
         if c.reason:
-            found[c.reason] = found.get(c.reason, 0) + 1
-    return [f"{count} not judged: {reason}" for reason, count in found.items()]
+            key = (c.verdict.replace("_", " "), c.reason)
+            found[key] = found.get(key, 0) + 1
+    return [f"{count} {verdict}: {reason}" for (verdict, reason), count in found.items()]
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if hasattr(value, "tolist"):
+        return _plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

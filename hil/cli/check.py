@@ -34,7 +34,8 @@ def command(
         preflight(checked, file, Path(directory), datetime.datetime.now(datetime.UTC).date())
     pace = Pace(speed_ramp_m_s2=file.dyno.speed_ramp_m_s2, wheel_radius_m=file.vehicle.wheel_radius_m)
     duration_s = estimate_duration_s(checked, pace)
-    with progress("predicting by simulation"):
+    with progress(checked.name) as show:
+        show("predicting by simulation")
         predicted = forecast(checked, file)
     fits = all(value <= limit for value, limit in predicted.values())
     if as_json:

@@ -11,7 +11,8 @@ import typer
 from hil.analysis.control_design import DesignSpec, MarginLimits, Normalisation, Objective, design
 from hil.analysis.frequency_response import frf_from_csv
 from hil.analysis.outputs.control_design import output_files, summary_of, text_of
-from hil.cli._together import progress, to_json, write_together
+from hil.cli._output import print_json, progress, to_json
+from hil.cli._place import results_in
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
 
@@ -58,8 +59,11 @@ def command(
         Path | None, typer.Option("--frf", help="Measured responses; default: frf.csv beside the model.")
     ] = None,
     name: Annotated[str, typer.Option("--name", help="Name of the controller.")] = "",
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier design in --out.")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print design.json and nothing else.")] = False,
-) -> None:
+) -> int:
     """Gains, lead or notch, filters, Nyquist, sensitivity, margins and the trade-off chart for a model."""
     spec = DesignSpec(
         stabilisation="phase" if notch_hz is None else "gain",
@@ -79,22 +83,29 @@ def command(
         limits=MarginLimits(sensitivity_peak=largest_sensitivity),
         name=name,
     )
-    with progress() as show:
-        plant = load_model(model)
-        beside = model.parent / "frf.csv"
-        measured = frf_from_csv(frf) if frf else frf_from_csv(beside) if beside.is_file() else None
-        found = design(plant, spec, progress=show)
-        paper = (
-            design(plant, _as_in_the_paper(found.spec, found.controller.dfo.wheel_inertia_kg_m2))
-            if optimize
-            else None
-        )
-        show("figures")
-        files = output_files(found, measured)
-        summary = summary_of(found, paper, str(model), sorted(files))
-        files["design.json"] = (to_json(summary) + "\n").encode()
-        write_together(out, files)
-    typer.echo(to_json(summary) if json_ else text_of(found, paper, out))
+    plant = load_model(model)
+    beside = model.parent / "frf.csv"
+    responses = frf or (beside if beside.is_file() else None)
+    inputs = [model, *([responses] if responses else [])]
+    with results_in(
+        out, ("controller.toml", "design.json"), inputs=inputs, overwrite=overwrite, summary="design.json"
+    ) as place:
+        with progress("control design") as show:
+            measured = frf_from_csv(responses) if responses else None
+            found = design(plant, spec, progress=show)
+            paper = None
+            if optimize:
+                paper = design(plant, _as_in_the_paper(found.spec, found.controller.dfo.wheel_inertia_kg_m2))
+            show("figures")
+            files = output_files(found, measured)
+            summary = summary_of(found, paper, str(model), sorted(files))
+            files["design.json"] = (to_json(summary) + "\n").encode()
+        place.write(files, inputs)
+    if json_:
+        print_json(summary)
+    else:
+        print(text_of(found, paper, out))
+    return 0
 
 
 def _one_of(option: str, value: str, known: tuple[str, ...]) -> Any:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from hil.analysis.diagnosis import LEAST_SAMPLES, Diagnosis, diagnose
-from hil.cli._together import progress, to_json, write_together
+from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
+from hil.cli._place import results_in
 from hil.core.errors import BadInputError
 from hil.core.model import load_model, model_to_toml
 from hil.core.recording import Recording, driven_by_torque, read_recording
@@ -33,23 +33,35 @@ def command(
             "--holdout", help="Recording that no fit sees, only the final figures; may be repeated."
         ),
     ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier diagnosis in --out.")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print diagnosis.json and nothing else.")] = False,
-) -> None:
+) -> int:
     """Find where a model and recordings disagree, name the missing effect, add it to the model.
 
     Writes model.toml, diagnosis.json, report.html and report.pdf, all or none.
     """
     base = load_model(model)
     _refuse_twice(recordings, holdout or [])
-    _refuse_place(out)
-    with progress() as show:
-        read = _read(recordings, show)
-        held = _read(holdout or [], show)
-        found = diagnose(base, read, held, show=show)
-        show("writing the report")
-        files = output_files(found, model.name)
-        write_together(out, files)
-    typer.echo(to_json(found.as_json()) if json_ else text_of(found, out))
+    inputs = [model, *recordings, *(holdout or [])]
+    with results_in(out, _FILES, inputs=inputs, overwrite=overwrite, summary="diagnosis.json") as place:
+        with progress("diagnosis") as show:
+            read = _read(recordings, show)
+            held = _read(holdout or [], show)
+            found = diagnose(base, read, held, show=show)
+            show("writing the report")
+            files = output_files(found, model.name)
+        place.write(files, inputs)
+    if json_:
+        print_json(_summary(found, files))
+    else:
+        print(text_of(found, out))
+    return 0
+
+
+def _summary(found: Diagnosis, files: Iterable[str]) -> dict[str, Any]:
+    return {**found.as_json(), "files": sorted({*files, "diagnosis.json"})}
 
 
 def _refuse_twice(recordings: list[Path], holdout: list[Path]) -> None:
@@ -73,24 +85,13 @@ def _refuse_twice(recordings: list[Path], holdout: list[Path]) -> None:
             raise BadInputError(f"is given twice as {role}", where=str(twice), fix="give it once")
 
 
-def _refuse_place(out: Path) -> None:
-    """Say before the long work that `out` cannot become a directory or cannot be written.
-
-    Raises:
-        BadInputError: names the place.
-    """
-    there = next(place for place in (out, *out.absolute().parents) if place.exists())
-    if not there.is_dir() or not os.access(there, os.W_OK):
-        what = "is not a directory" if not there.is_dir() else "cannot be written"
-        raise BadInputError(what, where=str(there), fix="choose another place with --out")
-
-
-def _read(paths: list[Path], show: Callable[[str], None]) -> list[Recording]:
+def _read(paths: list[Path], show: Show) -> list[Recording]:
     """The stretches of all files that can be explained: driven by torque alone."""
     parts = []
     for path in paths:
         show(f"reading {path.name}")
         whole = read_recording(path, least_samples=LEAST_SAMPLES)
+        warn_of_damage([whole])
         parts += driven_by_torque(whole)
     return parts
 
@@ -99,13 +100,13 @@ def output_files(found: Diagnosis, title: str) -> dict[str, bytes]:
     """Names and contents of all that the command writes."""
     files = {
         "model.toml": model_to_toml(found.model).encode(),
-        "diagnosis.json": (to_json(found.as_json()) + "\n").encode(),
         "report.html": diagnosis_html(found, title).encode(),
         "report.pdf": diagnosis_pdf(found, title),
     }
     for a in found.alternatives:
         if a.plan and a.plan_text:
             files[a.plan] = a.plan_text.encode()
+    files["diagnosis.json"] = (to_json(_summary(found, files)) + "\n").encode()
     return files
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, get_args
 
@@ -11,7 +10,8 @@ import typer
 from hil.analysis.frequency_response import Experiment, Method, experiments_of
 from hil.analysis.identification import ORDERS, identify
 from hil.analysis.outputs.identification import output_files, summary_of, text_of
-from hil.cli._together import progress, to_json, write_together
+from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
+from hil.cli._place import refuse_missing, results_in
 from hil.core.channels import INPUT
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
@@ -55,31 +55,42 @@ def command(
             help="How long the input keeps a value; default: the sample time, at most 1 ms.",
         ),
     ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier identification in --out.")
+    ] = False,
     json_: Annotated[
         bool, typer.Option("--json", help="Print identification.json and nothing else.")
     ] = False,
-) -> None:
+) -> int:
     """Frequency responses, transfer functions with dead time, and the driveline chain of recordings."""
-    with progress() as show:
-        experiments = _experiments(recordings, segment or [], input_channel, to_hz, hold_ms, show)
-        found = identify(
-            experiments,
-            from_hz=from_hz,
-            to_hz=to_hz,
-            method=_method(method),
-            order=order,
-            gear_ratio=gear_ratio,
-            progress=show,
-        )
-        show("figures")
-        files = output_files(found)
-        summary = summary_of(found, experiments, sorted(files))
-        files["identification.json"] = (to_json(summary) + "\n").encode()
-        write_together(out, files)
+    chosen = _method(method)
+    for path in recordings:
+        refuse_missing(path)
+    names = ("identification.json", "model.toml", "physical.toml", "frf.csv")
+    with results_in(
+        out, names, inputs=recordings, overwrite=overwrite, summary="identification.json"
+    ) as place:
+        with progress("identification") as show:
+            experiments = _experiments(recordings, segment or [], input_channel, to_hz, hold_ms, show)
+            found = identify(
+                experiments,
+                from_hz=from_hz,
+                to_hz=to_hz,
+                method=chosen,
+                order=order,
+                gear_ratio=gear_ratio,
+                progress=show,
+            )
+            show("figures")
+            files = output_files(found)
+            summary = summary_of(found, experiments, sorted(files))
+            files["identification.json"] = (to_json(summary) + "\n").encode()
+        place.write(files, recordings)
     if json_:
-        typer.echo(to_json(summary))
+        print_json(summary)
     else:
-        typer.echo(text_of(found, summary, out))
+        print(text_of(found, summary, out))
+    return 0
 
 
 def _method(name: str) -> Method:
@@ -96,12 +107,13 @@ def _experiments(
     input_channel: str,
     to_hz: float | None,
     hold_ms: float | None,
-    show: Callable[[str], None],
+    show: Show,
 ) -> list[Experiment]:
     experiments: list[Experiment] = []
     for path in paths:
         show(f"reading {path.name}")
         recording = read_recording(path, least_samples=_LEAST_SAMPLES)
+        warn_of_damage([recording])
         experiments += experiments_of(
             recording,
             segments=segments,

@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import json
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from hil.cli._output import console, print_criteria, print_json
+from hil.cli._output import (
+    console,
+    count_in_words,
+    print_criteria,
+    print_json,
+    progress,
+    warn_of_damage,
+)
+from hil.cli._place import refuse_missing, results_in
+from hil.cli.run import RESULT
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.recording import SEGMENT, Recording, read_recording
 from hil.core.result import RunResult, Segment, verdict_of
 from hil.engine import RECORDING
-from reports import write_reports
+from reports import HTML, JUNIT, PDF, recording_named_in, write_reports
 from test_plans import judge, plan_from_text
 
 
@@ -22,31 +33,67 @@ def command(
         Path, typer.Argument(metavar="DIR_OR_RECORDING", help="a run's directory, or a recording")
     ],
     out: Annotated[Path | None, typer.Option(help="where to write; default: beside the recording")] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="replace the reports of another recording")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="print the result on stdout, nothing else")] = False,
 ) -> int:
     """Make the report again from a recording; the criteria are computed anew from its channels.
 
-    A recording that another tool made gets a report of its channels, without verdict.
+    Beside its own recording a report is renewed in place. A recording that another tool made gets a report
+    of its channels, without verdict.
     """
     path = source / RECORDING if source.is_dir() else source
-    recording = read_recording(path, allow_missing=True)
-    target = out or path.parent
-    result = rejudged(recording)
-    written = write_reports(recording, result, target)
-    files = {kind: file.name for kind, file in written.items()}
+    refuse_missing(path)
+    folder = out or path.parent
+    renewed = folder.resolve() == path.parent.resolve() and _belongs(folder, path.name)
+    names = (JUNIT, HTML, PDF, RESULT)
+    with results_in(folder, names, inputs=[path], overwrite=overwrite or renewed) as place:
+        with progress(path.name) as show:
+            show("reading")
+            recording = read_recording(path, allow_missing=True)
+            warn_of_damage([recording])
+            show("judging")
+            result = rejudged(recording)
+            show("writing the reports")
+            written = write_reports(recording, result, folder)
+        files = {kind: file.name for kind, file in written.items()}
+        if result is not None:
+            result = result.model_copy(update={"files": {"recording": path.name, **files}})
+            write_atomically(folder / RESULT, result.model_dump_json(indent=2) + "\n")
+        place.remove_stale([*files.values(), *([RESULT] if result else [])])
+    return _told(result, files, path, folder, as_json=as_json)
+
+
+def _belongs(folder: Path, recording: str) -> bool:
+    """Whether the reports in a folder, if any, are of the recording with this name beside them."""
+    if (folder / HTML).is_file() and recording_named_in(folder / HTML) != recording:
+        return False
+    try:
+        stored = json.loads((folder / RESULT).read_text(encoding="utf-8"))
+        return bool(stored["files"]["recording"] == recording)
+    except FileNotFoundError:
+        return True
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def _told(result: RunResult | None, files: dict[str, str], path: Path, folder: Path, *, as_json: bool) -> int:
+    page = folder / files["html"]
     if result is None:
         if as_json:
             print_json({"verdict": None, "files": files})
         else:
-            console().print(f"no plan in {path}: a report of its channels\nreport: {written['html']}")
+            console().print(f"no plan in {path}: a report of its channels\nreport: {page}", highlight=False)
         return 0
-    result = result.model_copy(update={"files": {"recording": path.name, **files}})
-    write_atomically(target / "result.json", result.model_dump_json(indent=2))
     if as_json:
         print_json(result.model_dump(mode="json"))
     else:
         print_criteria(console(), result.criteria)
-        console().print(f"\n{result.verdict.upper()}\nreport: {written['html']}", highlight=False)
+        verdict = f"{result.verdict.upper()}, {count_in_words(result.criteria)}"
+        console().print(f"\n{verdict}\nreport: {page}", highlight=False)
+        if result.reason:
+            print(f"error: {result.reason}", file=sys.stderr)
     return {"pass": 0, "fail": 1, "error": 1}[result.verdict]
 
 
@@ -64,9 +111,13 @@ def rejudged(recording: Recording) -> RunResult | None:
         ) from error
     plan = plan_from_text(text, f"{where}: plan.yaml", recording.source.parent, files_required=False)
     criteria = judge(plan, recording, stored.segments)
-    return stored.model_copy(
-        update={"criteria": criteria, "verdict": verdict_of(criteria, stopped=bool(stored.reason))}
-    )
+    reason = stored.reason
+    if recording.damage:  # what is lost or changed somewhere proves nothing anywhere
+        reason = "\n".join(
+            [*([reason] if reason else []), f"the recording is damaged: {recording.damage[0]}"]
+        )
+    verdict = verdict_of(criteria, stopped=reason != "")
+    return stored.model_copy(update={"criteria": criteria, "verdict": verdict, "reason": reason})
 
 
 def _stored(recording: Recording) -> RunResult:
@@ -74,18 +125,26 @@ def _stored(recording: Recording) -> RunResult:
     if "run.json" in recording.attachments:
         return RunResult.model_validate_json(recording.attachments["run.json"])
     run = recording.metadata.get("run", {})
+    last_s = float(recording.time_s[-1])
     segments = [
-        Segment.model_validate_json(table["json"])
+        _as_far_as_recorded(Segment.model_validate_json(table["json"]), last_s, recording.sample_time_s)
         for name, table in recording.metadata.items()
-        if name.startswith(SEGMENT)
+        if name.startswith(SEGMENT) and "json" in table
     ]
     return RunResult(
         verdict="error",
         plan=run.get("plan", "?"),
         bench=run.get("bench", "?"),
         real_time_factor=0.0,
-        bench_time_s=float(recording.time_s[-1]),
+        bench_time_s=last_s,
         safe_state="not_confirmed",
         segments=tuple(segments),
         reason="the recording was cut off before the run had ended; nothing is known of its safe state",
     )
+
+
+def _as_far_as_recorded(segment: Segment, last_s: float, sample_time_s: float) -> Segment:
+    """A segment ends with the recording; one that goes on after it was not recorded whole."""
+    if segment.end_s <= last_s + 1.5 * sample_time_s:
+        return segment
+    return segment.model_copy(update={"end_s": max(last_s, segment.start_s), "complete": False})

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-import datetime
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import typer
 
-from hil.cli._output import console, print_criteria, print_json, progress
-from hil.core.errors import HilError, InterruptError
+from hil.cli._interrupts import INTERRUPTS
+from hil.cli._output import Show, console, count_in_words, print_criteria, print_json, progress, warn
+from hil.cli._place import Place, results_in
+from hil.core.errors import BenchError, HilError, InterruptError
 from hil.core.files import write_atomically
 from hil.core.model import load_model
-from hil.core.recording import read_recording
+from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
-from hil.engine import DEFAULT_BENCH, RunOutcome, RunRequest, load_bench, run_plan
-from reports import write_reports
+from hil.engine import DEFAULT_BENCH, RECORDING, RunOutcome, RunRequest, StopRequest, load_bench, run_plan
+from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import load_plan
+
+T = TypeVar("T")
+RESULT = "result.json"
+NAMES = (RECORDING, RESULT, JUNIT, HTML, PDF)
 
 
 def command(
@@ -25,9 +31,19 @@ def command(
         str, typer.Argument(help="plan file, or the name of a shipped plan: acceptance, identification")
     ],
     bench: Annotated[str, typer.Option(help="bench file, or the name of a shipped bench")] = DEFAULT_BENCH,
-    out: Annotated[Path | None, typer.Option(help="directory for recording and reports")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
+    ] = None,
     model: Annotated[Path | None, typer.Option(help="model file for the simulated bench")] = None,
     operator: Annotated[str, typer.Option(help="who runs the bench; stands in the report")] = "",
+    yes: Annotated[
+        str,
+        typer.Option(
+            "--yes", metavar="NAME", help="who confirms every operator prompt; stands in the report"
+        ),
+    ] = "",
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print result.json on stdout, nothing else")
     ] = False,
@@ -36,65 +52,130 @@ def command(
 
     Exit code: 0 passed, 1 a criterion failed, 2 bad input, 3 the bench failed, 130 interrupted.
     """
-    checked = load_plan(plan)
+    checked, bench_file = load_plan(plan), load_bench(bench)
+    stop = StopRequest()
     request = RunRequest(
         plan=checked,
-        bench=load_bench(bench),
-        out=out or Path("out") / f"{checked.name}-{datetime.datetime.now().astimezone():%Y%m%d-%H%M%S}",
+        bench=bench_file,
+        out=Path(),
         model=load_model(model) if model else None,
         operator=operator,
-        ask=_ask,
+        ask=_ask if sys.stdin.isatty() else None,
+        confirmed_by=yes,
+        stop=stop,
     )
-    with progress(f"{checked.name} on {request.bench.name}") as show:
-        request.progress = show
-        outcome = run_plan(request)
-    result = _write(outcome, request.out)
-    if as_json:
-        print_json(result.model_dump(mode="json"))
-    else:
-        _print(result, request.out)
+    inputs = [bench_file.source, *([Path(plan)] if Path(plan).is_file() else []), *([model] if model else [])]
+    with (
+        results_in(
+            out, NAMES, inputs=inputs, overwrite=overwrite, default=checked.name, summary=RESULT
+        ) as place,
+        stop.by_signals(),  # from here to the result a signal only asks: nothing that was measured is lost
+    ):
+        request.out, request.replaces = place.folder, place.stale
+        with progress(f"{checked.name} on {bench_file.name}") as show:
+            request.progress = lambda share, text: show(text, share)
+            outcome = run_plan(request)
+        with progress(f"{checked.name} on {bench_file.name}") as show:
+            result = _Conclusion(place, outcome, stop).write(show)
+        if as_json:
+            print_json(result.model_dump(mode="json"))
+        else:
+            _print(result, place.folder)
+        return _exit_code(outcome, result)
+
+
+class _Conclusion:
+    """What is written once the bench is safe: the result first, then the slow reports."""
+
+    def __init__(self, place: Place, outcome: RunOutcome, stop: StopRequest) -> None:
+        self._place, self._outcome, self._stop = place, outcome, stop
+        self._files = {"recording": outcome.recording.name}
+        self._files |= {name: name for name in outcome.made}
+
+    def write(self, show: Show) -> RunResult:
+        """The result as it stands in result.json; `files` names what exists."""
+        show("writing the result")
+        recording = self._try(lambda: read_recording(self._outcome.recording, allow_missing=True))
+        if recording is not None:
+            self._add(lambda: {"junit": write_junit(recording, self._outcome.result, self._path(JUNIT))})
+        result = self._store()
+        if recording is not None and not self._asked_again():
+            show("writing the reports")
+            self._add(lambda: self._documents(recording, result))
+            result = self._store()
+        if self._asked_again() and "pdf" not in self._files:
+            error = InterruptError(
+                "interrupted before the reports were written",
+                where=str(self._place.folder),
+                fix=f"hil report {self._place.folder} makes them",
+            )
+            self._outcome.error = self._outcome.error or error
+        return result
+
+    def _asked_again(self) -> bool:
+        """Whether somebody asked to stop since the run ended, or twice while it was being ended."""
+        return self._stop.times > (1 if isinstance(self._outcome.error, InterruptError) else 0)
+
+    def _documents(self, recording: Recording, result: RunResult) -> dict[str, Path]:
+        try:
+            INTERRUPTS.raise_from_now_on()
+            return write_documents(recording, result, self._place.folder)
+        except KeyboardInterrupt:
+            self._stop.ask()
+            return {}
+        finally:
+            INTERRUPTS.ignore_from_now_on()
+
+    def _store(self) -> RunResult:
+        result = self._outcome.result.model_copy(update={"files": dict(self._files)})
+        self._try(lambda: write_atomically(self._path(RESULT), result.model_dump_json(indent=2) + "\n"))
+        return result
+
+    def _add(self, write: Callable[[], dict[str, Path]]) -> None:
+        written = self._try(write)
+        self._files |= {kind: path.name for kind, path in (written or {}).items()}
+
+    def _try(self, work: Callable[[], T]) -> T | None:
+        """The first failure is the run's error; the rest is still written."""
+        try:
+            return work()
+        except HilError as error:
+            self._outcome.error = self._outcome.error or error
+        except Exception as error:  # a mistake in a report must not cost the run its result
+            failure = BenchError(f"{type(error).__name__}: {error}", where="reports", fix="please report it")
+            self._outcome.error = self._outcome.error or failure
+        return None
+
+    def _path(self, name: str) -> Path:
+        return self._place.folder / name
+
+
+def _exit_code(outcome: RunOutcome, result: RunResult) -> int:
     if outcome.error is not None:
         print(f"error: {outcome.error}", file=sys.stderr)
-        return InterruptError.exit_code if result.safe_state == "not_needed" else _code(outcome.error, result)
+    if result.safe_state == "not_confirmed":
+        return BenchError.exit_code
+    if outcome.error is not None:
+        return outcome.error.exit_code
     return 0 if result.verdict == "pass" else 1
 
 
-def _code(error: HilError, result: RunResult) -> int:
-    return 3 if result.safe_state == "not_confirmed" else error.exit_code
-
-
-def _write(outcome: RunOutcome, out: Path) -> RunResult:
-    """Reports and result.json; what could not be written is missing from `files`, and said."""
-    files = {"recording": outcome.recording.name}
-    try:
-        written = write_reports(read_recording(outcome.recording, allow_missing=True), outcome.result, out)
-        files |= {kind: path.name for kind, path in written.items()}
-    except HilError as error:
-        outcome.error = outcome.error or error
-    result = outcome.result.model_copy(update={"files": files})
-    try:
-        write_atomically(out / "result.json", result.model_dump_json(indent=2))
-    except HilError as error:
-        outcome.error = outcome.error or error
-    return result
-
-
-def _print(result: RunResult, out: Path) -> None:
+def _print(result: RunResult, folder: Path) -> None:
     page = console()
     if result.criteria:
         print_criteria(page, result.criteria)
     page.print(
-        f"\n{result.plan} on {result.bench}: [bold]{result.verdict.upper()}[/]"
-        f"   safe state {result.safe_state}   {result.bench_time_s:.0f} s of bench time, "
-        f"{result.real_time_factor:.0f} x real time",
+        f"\n{result.plan} on {result.bench}: [bold]{result.verdict.upper()}[/], "
+        f"{count_in_words(result.criteria)}   safe state {result.safe_state.replace('_', ' ')}   "
+        f"{result.bench_time_s:.0f} s of bench time, {result.real_time_factor:.0f} x real time",
         highlight=False,
     )
-    report = out / result.files["html"] if "html" in result.files else out
-    page.print(f"report: {report}", highlight=False)
+    shown = "html" if "html" in result.files else "recording"
+    if shown == "recording":
+        warn("there is no report")
+    page.print(f"{'report' if shown == 'html' else shown}: {folder / result.files[shown]}", highlight=False)
 
 
 def _ask(text: str) -> None:
-    if not sys.stdin.isatty():
-        return  # no operator to ask: a CI job goes on
     print(f"\n{text}\nPress Enter to go on.", file=sys.stderr)
     sys.stdin.readline()

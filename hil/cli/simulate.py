@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._output import console, print_json
+from hil.cli._output import console, print_json, warn_of_damage
+from hil.cli._place import refuse_file
 from hil.core.model import load_model
 from hil.core.recording import read_recording, write_recording
 from sim_backend.plant import replay
@@ -17,6 +18,7 @@ def command(
     model: Annotated[Path, typer.Option(help="model file")],
     source: Annotated[Path, typer.Option("--input", help="recording with motor_torque_ref_nm")],
     out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet or .mf4")],
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
@@ -25,7 +27,11 @@ def command(
 
     The model's outputs are written at the recording's time stamps.
     """
-    simulated = replay(load_model(model), read_recording(source))
+    refuse_file(out, [source, model], overwrite=overwrite)
+    chosen = load_model(model)
+    recording = read_recording(source)
+    warn_of_damage([recording])
+    simulated = replay(chosen, recording)
     write_recording(simulated, out)
     if as_json:
         print_json(

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import tempfile
+import errno
+import secrets
 from collections.abc import Iterator
 from pathlib import Path
 
-from hil.core.errors import BadInputError
+from hil.core.errors import BadInputError, BenchError, HilError
+
+_DISK_FAILURES = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
 def read_text(path: Path) -> str:
@@ -34,24 +36,33 @@ def replacing(path: Path) -> Iterator[Path]:
     """A temporary path beside `path` that takes its place when the block ends well.
 
     Raises:
-        BadInputError: the directory cannot be written or the disk is full.
+        BadInputError: the place cannot be written.
+        BenchError: the disk is full or broken.
     """
-    temporary: Path | None = None
+    refuse_special(path)
+    temporary = path.with_name(f".{path.stem[:40]}.{secrets.token_hex(6)}{path.suffix}")
     try:
         make_directory(path.parent)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix)
-        os.close(handle)
-        temporary = Path(name)
         yield temporary
         temporary.chmod(0o644)
         temporary.replace(path)
     except OSError as error:
-        raise BadInputError(
-            f"cannot be written: {_reason(error)}", where=str(path), fix="choose another place with --out"
-        ) from error
+        raise _unwritable(path, error) from error
     finally:
-        if temporary is not None:
+        with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
+
+
+def refuse_special(path: Path) -> None:
+    """Refuse to put a file in the place of a directory or a device.
+
+    Raises:
+        BadInputError: something that is no regular file stands there.
+    """
+    with contextlib.suppress(OSError):
+        if path.exists() and not path.is_file():
+            what = "is a directory" if path.is_dir() else "is not a regular file"
+            raise BadInputError(what, where=str(path), fix="name a file with --out")
 
 
 def make_directory(path: Path) -> None:
@@ -64,6 +75,26 @@ def make_directory(path: Path) -> None:
             where=str(path),
             fix="choose another place with --out",
         ) from error
+
+
+def of_the_system(error: OSError) -> HilError:
+    """What the operating system refused, in our words: a full or broken disk is no mistake of the user's."""
+    kind = BenchError if error.errno in _DISK_FAILURES else BadInputError
+    return kind(
+        _reason(error), where=str(error.filename or ""), fix="look at the path, its rights and the disk"
+    )
+
+
+def _unwritable(path: Path, error: OSError) -> HilError:
+    if error.errno in _DISK_FAILURES:
+        return BenchError(
+            f"cannot be written: {_reason(error)}",
+            where=str(path),
+            fix="make room on the disk, then try again",
+        )
+    return BadInputError(
+        f"cannot be written: {_reason(error)}", where=str(path), fix="choose another place with --out"
+    )
 
 
 def _reason(error: OSError) -> str:

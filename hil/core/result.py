@@ -8,6 +8,9 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 Verdict = Literal["pass", "fail", "error"]
+#: `informational`: no limit. `did_not_settle`: a failure if it has a limit, else counts as neither.
+#: `not_judged`: its segment was not carried out whole. `error`: could not be computed.
+CriterionVerdict = Literal["pass", "fail", "informational", "did_not_settle", "not_judged", "error"]
 SafeState = Literal["confirmed", "not_confirmed", "not_needed"]
 
 
@@ -16,44 +19,66 @@ class _Frozen(BaseModel):
 
 
 class CriterionResult(_Frozen):
-    """One criterion with its value; `reason` says why there is no value (verdict error)."""
+    """One criterion with its value; `reason` says why there is none."""
 
     id: str
     value: float | None
     unit: str
     upper: float | None = None
     lower: float | None = None
-    verdict: Verdict
+    below: str = Field("", description="segment whose value is the upper limit, if it is a relative one")
+    verdict: CriterionVerdict
     title: str = ""
     definition: str = ""
     reason: str = ""
 
     @property
+    def has_limit(self) -> bool:
+        """Whether anything was demanded; a relative criterion demands even when its rival has no value."""
+        return self.upper is not None or self.lower is not None or self.below != ""
+
+    @property
+    def failed(self) -> bool:
+        """Beyond a limit, or never settled where a limit asks for it."""
+        return self.verdict == "fail" or (self.verdict == "did_not_settle" and self.has_limit)
+
+    @property
     def margin(self) -> float | None:
-        """Distance to the nearest limit, positive inside; None without a value or a limit."""
+        """Distance to the nearest limit as a share of that limit, positive inside.
+
+        None without a value or a limit, and for a limit of zero.
+        """
         if self.value is None:
             return None
-        room = [self.upper - self.value] if self.upper is not None else []
-        room += [self.value - self.lower] if self.lower is not None else []
-        return min(room) if room else None
+        room = [(self.upper - self.value, self.upper)] if self.upper is not None else []
+        room += [(self.value - self.lower, self.lower)] if self.lower is not None else []
+        shares = [distance / abs(limit) for distance, limit in room if limit != 0]
+        return min(shares) if shares else None
 
 
 def verdict_of(criteria: Iterable[CriterionResult], *, stopped: bool) -> Verdict:
-    """A run's verdict: error when something stopped it or a criterion has no value, else fail or pass."""
-    verdicts = {criterion.verdict for criterion in criteria}
-    if stopped or "error" in verdicts:
+    """A run's verdict: error when something stopped it or a criterion could not be judged, else fail or pass.
+
+    Criteria without a limit count as neither.
+    """
+    found = list(criteria)
+    if stopped or any(criterion.verdict in ("error", "not_judged") for criterion in found):
         return "error"
-    return "fail" if "fail" in verdicts else "pass"
+    return "fail" if any(criterion.failed for criterion in found) else "pass"
 
 
 class Segment(_Frozen):
-    """A named stretch of the recording; times are on the recording's `time_s`."""
+    """A named stretch of the recording; times are on the recording's `time_s`.
+
+    `end_s` is where it really ended: one that was stopped is not `complete`, and nothing is judged in it.
+    """
 
     id: str
     kind: str = "step"
     start_s: float
     step_s: float
     end_s: float
+    complete: bool = True
     controller: str = ""
     initial_speed_km_h: float = 0.0
     load: Literal["vehicle", "speed"] = Field(

@@ -3,14 +3,17 @@
 from hil.engine.bench import Bench, open_bench
 from hil.engine.bench_file import DEFAULT_BENCH, BenchFile, load_bench
 from hil.engine.run import RECORDING, RunOutcome, RunRequest, run_plan
+from hil.engine.stopping import STOP_SIGNALS, StopRequest
 
 __all__ = [
     "DEFAULT_BENCH",
     "RECORDING",
+    "STOP_SIGNALS",
     "Bench",
     "BenchFile",
     "RunOutcome",
     "RunRequest",
+    "StopRequest",
     "load_bench",
     "open_bench",
     "run_plan",

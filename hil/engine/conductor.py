@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -30,7 +31,7 @@ class BenchConductor:
 
     sample_time_s = TICK_S
 
-    def __init__(self, bench: Bench, recorder: Recorder, out: Path, ask: Callable[[str], None]) -> None:
+    def __init__(self, bench: Bench, recorder: Recorder, out: Path, ask: Callable[[str], str]) -> None:
         self._bench, self._recorder, self._out, self._ask = bench, recorder, out, ask
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
@@ -89,16 +90,23 @@ class BenchConductor:
         self._check.play(quantity, samples_nm, segment)
         rmcu, loop = self._bench.rmcu, self._bench.loop
         tail = np.linspace(samples_nm[-1], 0.0, round(_RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
-        start_s = loop.clock.now_s()
         if segment:
-            self._begin(segment, start_s, len(samples_nm))
-        for payload in rmcu.requests(quantity, np.concatenate([samples_nm, tail])):
-            rmcu.send(payload)
-            loop.step()
-        if rmcu.state == "fault":
-            raise BenchError(
-                f"the RMCU went to fault: {rmcu.fault}", where="RMCU", fix="see the recording's events"
-            )
+            self._begin(segment, loop.clock.now_s(), len(samples_nm))
+        sent = 0
+        try:
+            for payload in rmcu.requests(quantity, np.concatenate([samples_nm, tail])):
+                rmcu.send(payload)
+                loop.step()
+                if rmcu.state == "fault":
+                    raise BenchError(
+                        f"the RMCU went to fault: {rmcu.fault}",
+                        where="RMCU",
+                        fix="see the recording's events",
+                    )
+                sent += 1
+        finally:
+            if segment:
+                self._end(loop.clock.now_s(), complete=sent >= len(samples_nm))
         self._switch_off()
 
     def coast(self, duration_s: float) -> None:
@@ -114,7 +122,7 @@ class BenchConductor:
         """Ask the operator; the loop stands still meanwhile, so the RMCU is off and the dynos hold."""
         self._switch_off()
         self._event("prompt", text)
-        self._ask(text)
+        self._event("prompt", self._ask(text))
 
     def ramp_down(self, duration_s: float) -> None:
         """Torque off, then the dynos bring the wheels to standstill."""
@@ -164,6 +172,7 @@ class BenchConductor:
                 start_s=start_s,
                 step_s=round(start_s + planned.step_s, 6),
                 end_s=round(end_s, 6),
+                complete=False,
                 controller=self._controller.stabilization
                 if self._controller and planned.quantity == "driving_torque"
                 else "",
@@ -173,8 +182,21 @@ class BenchConductor:
                 reference_after=planned.reference_after,
             )
         )
-        self._recorder.writer.describe(SEGMENT + planned.id, {"json": self.segments[-1].model_dump_json()})
+        self._store_segment()
         self._event("segment", f"{planned.id} begins")
+
+    def _end(self, clock_s: float, *, complete: bool) -> None:
+        """A segment ends where it was stopped, and only one that was carried out whole can be judged."""
+        begun = self.segments[-1]
+        end_s = begun.end_s if complete else min(begun.end_s, self._recorder.recording_time(clock_s))
+        self.segments[-1] = begun.model_copy(update={"end_s": end_s, "complete": complete})
+        with contextlib.suppress(BenchError):  # a full disk is already being reported
+            self._store_segment()
+            self._event("segment", f"{begun.id} {'ends' if complete else 'was stopped'}")
+
+    def _store_segment(self) -> None:
+        segment = self.segments[-1]
+        self._recorder.writer.describe(SEGMENT + segment.id, {"json": segment.model_dump_json()})
 
     def _switch_off(self) -> None:
         rmcu, loop = self._bench.rmcu, self._bench.loop

@@ -16,12 +16,17 @@ from test_plans import Array, Plan, PlannedSegment, Quantity, Work, estimate_dur
 _BYTES_PER_SECOND = 250_000  # a recording takes some 170 kB for each second of bench time, and a report
 
 
-def preflight(plan: Plan, bench: BenchFile, out: Path, today: datetime.date) -> None:
+def preflight(
+    plan: Plan, bench: BenchFile, out: Path, today: datetime.date, *, somebody_answers: bool = True
+) -> None:
     """Refuse a run that could not end well.
+
+    Args:
+        somebody_answers: whether prompts reach an operator, or a person has confirmed them beforehand.
 
     Raises:
         BadInputError: expired calibration, a controller file that cannot be used, a request beyond the
-            bench's limits, or too little room on the disk.
+            bench's limits, a prompt that nobody can answer on hardware, or too little room on the disk.
     """
     for sensor, valid_until in bench.calibration.items():
         if valid_until < today:
@@ -33,6 +38,12 @@ def preflight(plan: Plan, bench: BenchFile, out: Path, today: datetime.date) -> 
     rehearsal = Rehearsal(bench)
     for step in (*plan.steps, *plan.finally_):
         step.carry_out(rehearsal)
+    if rehearsal.prompts and not somebody_answers and bench.simulation is None:
+        raise BadInputError(
+            f"the operator is asked '{rehearsal.prompts[0]}', and there is no terminal to ask on",
+            where=f"plan '{plan.name}'",
+            fix="run it from a terminal, or confirm beforehand with --yes 'your name'; the report prints it",
+        )
     needed = int(estimate_duration_s(plan) * _BYTES_PER_SECOND)
     free = shutil.disk_usage(out).free
     if free < needed:
@@ -52,6 +63,7 @@ class Rehearsal:
         self._bench = bench
         self._has_controller = False
         self._made: set[str] = set()
+        self.prompts: list[str] = []
 
     def set_controller(self, file: Path) -> None:
         """The file must be readable and within the torque limit, or be made by an earlier step."""
@@ -114,7 +126,8 @@ class Rehearsal:
         """Nothing to compare."""
 
     def prompt(self, text: str) -> None:
-        """Nothing to compare."""
+        """Remember what the operator will be asked."""
+        self.prompts.append(text)
 
     def ramp_down(self, duration_s: float) -> None:
         """Nothing to compare."""

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import datetime
-import signal
-import threading
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from types import FrameType
 
-from drivers import TICK_S, BusLoop
+from drivers import TICK_S
 from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
 from hil.core.files import make_directory
 from hil.core.model import Model, model_to_toml
@@ -26,6 +25,7 @@ from hil.engine.preflight import preflight
 from hil.engine.provenance import hashes, versions
 from hil.engine.recorder import Recorder
 from hil.engine.safety import reach_safe_state
+from hil.engine.stopping import StopRequest
 from test_plans import Plan, estimate_duration_s, judge
 
 RECORDING = "recording.mcap"
@@ -37,25 +37,34 @@ Progress = Callable[[float, str], None]
 
 @dataclass
 class RunOutcome:
-    """How a run ended; `error` is what stopped it, if anything did."""
+    """How a run ended; `error` is what stopped it, if anything; `made` are files of its analysis steps."""
 
     result: RunResult
     recording: Path
     error: HilError | None
     largest: dict[str, float]
+    made: tuple[str, ...] = ()
 
 
 @dataclass
 class RunRequest:
-    """A run to be carried out."""
+    """A run to be carried out.
+
+    `ask` shows an operator prompt and returns when it is confirmed; None means that nobody can be asked.
+    `confirmed_by` names who confirmed every prompt beforehand. `replaces` are files of an earlier run in
+    the same place: they are removed once nothing about plan and bench can keep this run from beginning.
+    """
 
     plan: Plan
     bench: BenchFile
     out: Path
     model: Model | None = None
     operator: str = ""
-    ask: Callable[[str], None] = lambda text: None
+    ask: Callable[[str], None] | None = None
+    confirmed_by: str = ""
     progress: Progress = lambda share, text: None
+    replaces: tuple[Path, ...] = ()
+    stop: StopRequest = field(default_factory=StopRequest)
 
 
 def run_plan(request: RunRequest) -> RunOutcome:
@@ -67,10 +76,16 @@ def run_plan(request: RunRequest) -> RunOutcome:
         BadInputError: before anything was moved: plan, bench or place cannot be used.
         BenchError: before anything was moved: the bench does not come up.
     """
-    make_directory(request.out)
-    preflight(request.plan, request.bench, request.out, datetime.datetime.now(datetime.UTC).date())
-    with open_bench(request.bench, model=request.model) as bench, _stop_signals(bench.loop):
-        return _Run(request, bench).carry_out()
+    with request.stop.by_signals():
+        make_directory(request.out)
+        today = datetime.datetime.now(datetime.UTC).date()
+        answers = request.ask is not None or request.confirmed_by != ""
+        preflight(request.plan, request.bench, request.out, today, somebody_answers=answers)
+        with open_bench(request.bench, model=request.model) as bench:
+            for path in request.replaces:
+                path.unlink(missing_ok=True)
+            with request.stop.telling(partial(setattr, bench.loop, "stop_requested", True)):
+                return _Run(request, bench).carry_out()
 
 
 class _Run:
@@ -88,7 +103,7 @@ class _Run:
         self._recorder = Recorder(request.out / RECORDING, self._bindings, buses, TICK_S)
         self._watch = LimitWatch(self._bindings, request.bench.limits, TICK_S)
         self._store_inputs()
-        self._conductor = BenchConductor(bench, self._recorder, request.out, request.ask)
+        self._conductor = BenchConductor(bench, self._recorder, request.out, self._prompt)
         bench.loop.on_block(self._recorder.take)
         bench.loop.on_block(self._watch.take)
         started = time.perf_counter()
@@ -100,6 +115,7 @@ class _Run:
         except HilError as error:
             self._fail(error)
         except Exception as error:  # a fault of ours must leave a safe bench and say what it was
+            self._try_event("traceback", traceback.format_exc())
             self._fail(BenchError(f"internal error: {type(error).__name__}: {error}", fix="please report it"))
         finally:
             # Also when the interpreter itself is going down: nobody may be left with torque on.
@@ -107,6 +123,16 @@ class _Run:
             self._watch.active = False  # its work is done: what is beyond a limit is being taken down
             self._unsafe = reach_safe_state(bench) if self._armed else []
         return self._finish(time.perf_counter() - started)
+
+    def _prompt(self, text: str) -> str:
+        """Have a prompt confirmed; says by whom or by what."""
+        request = self._request
+        if request.confirmed_by:
+            return f"confirmed beforehand by {request.confirmed_by}"
+        if request.ask is None:
+            return "nobody to ask: a simulated bench goes on"
+        request.ask(text)
+        return "confirmed by the operator"
 
     def _come_up(self) -> None:
         bench = self._bench
@@ -193,7 +219,7 @@ class _Run:
         except HilError as error:
             self._error = self._error or error
         largest = dict(self._watch.largest)
-        return RunOutcome(result, request.out / RECORDING, self._error, largest)
+        return RunOutcome(result, request.out / RECORDING, self._error, largest, tuple(self._conductor.made))
 
     def _recording(self) -> Recording | None:
         try:
@@ -236,28 +262,10 @@ class _Run:
                 "operator": operator,
                 "started_at": self._started_at.isoformat(timespec="seconds"),
                 "simulated": str(self._bench.simulated).lower(),
+                **({"prompts_confirmed_by": request.confirmed_by} if request.confirmed_by else {}),
             },
         )
         writer.describe("dut", request.bench.dut)
         writer.describe("versions", versions())
         dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
         writer.describe("calibration", dates)
-
-
-@contextlib.contextmanager
-def _stop_signals(loop: BusLoop) -> Iterator[None]:
-    """Ctrl-C and SIGTERM ask the loop to stop at its next tick instead of killing the process."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def request_stop(number: int, frame: FrameType | None) -> None:
-        del number, frame
-        loop.stop_requested = True
-
-    previous = {number: signal.signal(number, request_stop) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield
-    finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)

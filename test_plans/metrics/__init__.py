@@ -1,6 +1,6 @@
 """Metrics by name: one file a metric; other packages add theirs by entry point `hil.metrics`."""
 
-from test_plans.metrics._metric import ChannelName, Metric, NoValueError
+from test_plans.metrics._metric import ChannelName, DidNotSettleError, Metric, NoValueError
 from test_plans.metrics._window import WindowMetric
 from test_plans.metrics.band_energy import BandEnergy, BandEnergyMotorSpeed
 from test_plans.metrics.overshoot import (
@@ -38,6 +38,7 @@ __all__ = [
     "BandEnergy",
     "BandEnergyMotorSpeed",
     "ChannelName",
+    "DidNotSettleError",
     "Metric",
     "NoValueError",
     "Overshoot",

@@ -31,6 +31,10 @@ class NoValueError(Exception):
     """The metric has no value for this segment; the message says why."""
 
 
+class DidNotSettleError(NoValueError):
+    """The response was still moving at the end of the window: there is no settling time to tell."""
+
+
 class Metric(Strict, ABC):
     """One number of one segment; the fields are its parameters, keys of a criterion in YAML."""
 
@@ -52,6 +56,7 @@ class Metric(Strict, ABC):
 
         Raises:
             NoValueError: samples are missing, or the segment is too short.
+            DidNotSettleError: what is looked for had not come to rest.
             BadInputError: the recording has no such channel.
         """
 

@@ -72,9 +72,18 @@ class WindowMetric(Metric):
 
 
 def cut(
-    recording: Recording, segment: Segment, channel: str, start_s: float, end_s: float
+    recording: Recording,
+    segment: Segment,
+    channel: str,
+    start_s: float,
+    end_s: float,
+    *,
+    with_end: bool = True,
 ) -> tuple[Array, Array]:
     """Time stamps and values of `channel` with start_s <= time <= end_s, complete.
+
+    Args:
+        with_end: whether the sample at `end_s` itself belongs to the window.
 
     Raises:
         NoValueError: the segment or the recording is too short, or samples are missing or not finite.
@@ -92,7 +101,8 @@ def cut(
         )
     if end_s - start_s < spacing:
         raise NoValueError("the window is empty")
-    inside = (time >= start_s - 0.5 * spacing) & (time <= end_s + 0.5 * spacing)
+    last_s = end_s + (0.5 if with_end else -0.5) * spacing
+    inside = (time >= start_s - 0.5 * spacing) & (time < last_s)
     time, values = time[inside], values[inside]
     if len(time) < 2 or time[0] > start_s + grace or time[-1] < end_s - grace:
         raise NoValueError(f"the recording does not cover the window from {start_s:.3f} s to {end_s:.3f} s")

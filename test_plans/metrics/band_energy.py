@@ -12,7 +12,7 @@ from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.metrics._metric import ChannelName, NoValueError
-from test_plans.metrics._window import WindowMetric, evenly
+from test_plans.metrics._window import WindowMetric, cut
 
 
 class BandEnergy(WindowMetric):
@@ -38,29 +38,34 @@ class BandEnergy(WindowMetric):
     def definition(self) -> str:
         """How the spectrum is made and integrated."""
         return (
-            f"{self.subject} {self.window}: linear trend removed, Hann window, one-sided power spectral "
-            f"density (periodogram), integrated from {self.from_hz:g} to {self.to_hz:g} Hz, both edges "
-            "included. A sine of amplitude A within the band gives A²/2."
+            f"{self.subject} {self.window} (the sample at the end left out): linear trend removed, Hann "
+            f"window, one-sided power spectral density (periodogram), integrated from {self.from_hz:g} to "
+            f"{self.to_hz:g} Hz; a spectral line counts with the share of its width that lies in the band. "
+            "A sine of amplitude A within the band gives A²/2."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Sum of density times line spacing over the lines in the band (Parseval)."""
-        spacing, values = evenly(*self.samples(recording, segment))
+        """Sum of density times line spacing over the shares of lines in the band (Parseval)."""
+        start_s, end_s = self.bounds_s(segment)
+        time, values = cut(recording, segment, self.channel, start_s, end_s, with_end=False)
+        count = round((end_s - start_s) / recording.sample_time_s)
+        spacing = (end_s - start_s) / count
         if 2 * self.to_hz * spacing > 1 + 1e-9:
             raise NoValueError(f"{1 / spacing:.4g} samples a second do not reach {self.to_hz:g} Hz")
-        line_hz = 1 / (spacing * len(values))
+        line_hz = 1 / (end_s - start_s)
         if self.to_hz - self.from_hz < 2 * line_hz:
             raise NoValueError(f"the band is narrower than two spectral lines of {line_hz:.3g} Hz")
+        even = np.interp(start_s + spacing * np.arange(count), time, values)
         frequency, density = signal.periodogram(
-            signal.detrend(values, type="linear"),
+            signal.detrend(even, type="linear"),
             fs=1 / spacing,
             window="hann",
             detrend=False,
             scaling="density",
         )
-        edge = 1e-6 * line_hz
-        band = (frequency >= self.from_hz - edge) & (frequency <= self.to_hz + edge)
-        return float(np.sum(density[band]) * line_hz)
+        upper = np.minimum(frequency + 0.5 * line_hz, self.to_hz)
+        lower = np.maximum(frequency - 0.5 * line_hz, self.from_hz)
+        return float(density @ np.maximum(upper - lower, 0.0))
 
 
 class BandEnergyMotorSpeed(BandEnergy):

@@ -12,7 +12,7 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
 from test_plans.metrics import _reference
-from test_plans.metrics._metric import ChannelName, NoValueError
+from test_plans.metrics._metric import ChannelName, DidNotSettleError, NoValueError
 from test_plans.metrics._window import WindowMetric, cut, evenly
 
 _FILTER_ORDER = 2
@@ -22,8 +22,8 @@ class SettlingTime(WindowMetric):
     """Time from the step until the channel, low-pass filtered, stays within the band for good.
 
     The band lies around the filtered channel's mean over the last `mean_s` of the window. A channel that
-    is outside at the end of the window has not settled: its settling time is the window's length. The
-    filter runs forward and backward over the whole segment, so that it delays nothing.
+    leaves the band during that time has not settled, and has no settling time. The filter runs forward and
+    backward over the whole segment, so that it delays nothing.
     """
 
     name: ClassVar[str] = "settling_time"
@@ -49,11 +49,11 @@ class SettlingTime(WindowMetric):
             f"Time from the step after which {self.subject} stays within ±{self.band_percent:g} % of {size} "
             f"around its mean over the last {self.mean_s:g} s, {self.window}. The channel is low-pass "
             f"filtered at {self.low_pass_hz:g} Hz (Butterworth, order {_FILTER_ORDER}, forward and "
-            "backward). If it does not settle: the length of the window."
+            f"backward). Outside during the last {self.mean_s:g} s: did not settle."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
-        """Seconds after the step."""
+        """Seconds after the step; DidNotSettleError if it is outside during the last `mean_s`."""
         half_width = self.band_percent / 100 * _reference.step_size(segment, self.step_size)
         start, end = self.bounds_s(segment)
         if end - start <= self.mean_s:
@@ -70,6 +70,12 @@ class SettlingTime(WindowMetric):
         if not outside.size:
             return self.from_s
         settled = min(int(outside[-1]) + 1, len(grid) - 1)
+        if grid[settled] > end - self.mean_s:
+            raise DidNotSettleError(
+                f"did not settle: outside ±{half_width:.4g} {super().unit} around the mean of the last "
+                f"{self.mean_s:g} s until {grid[outside[-1]] - segment.step_s:.4g} s after the step, "
+                f"the window ends at {end - segment.step_s:.4g} s"
+            )
         return float(max(0.0, grid[settled] - segment.step_s))
 
     def objection(self, segment: PlannedSegment) -> str:

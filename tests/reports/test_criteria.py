@@ -45,7 +45,7 @@ def test_limits(result: RunResult, limits: dict[str, float], text: str) -> None:
 
 def test_a_narrow_miss_is_not_rounded_away(result: RunResult) -> None:
     narrow = row(result, value=564.0003, upper=564.0, verdict="fail")
-    assert narrow.margin.startswith("−0.0003")
+    assert narrow.margin == "−5\u202f×\u202f10⁻⁵\u202f%"  # -0.0003 of 564
     assert narrow.value != narrow.limit.removeprefix("≤\u202f")
 
 

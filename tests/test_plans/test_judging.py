@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hil.core.recording import Recording
-from hil.core.result import CriterionResult, Segment
+from hil.core.result import CriterionResult, Segment, verdict_of
 from test_plans import Metric, judge
 from tests.test_plans.signals import STEP as UP
 from tests.test_plans.signals import recording_of, time_axis
@@ -29,7 +29,7 @@ def result(recording: Recording, *segments: Segment, **keys: Any) -> CriterionRe
 @pytest.mark.parametrize(
     ("limits", "verdict"),
     [
-        ({}, "pass"),
+        ({}, "informational"),
         ({"upper": 400}, "pass"),
         ({"upper": 350}, "pass"),
         ({"upper": 349.9}, "fail"),
@@ -61,22 +61,57 @@ def test_below_means_lower_not_equal(mine: float, verdict: str) -> None:
     assert (judged.verdict, judged.value, judged.upper) == (verdict, mine, 350.0)
 
 
-def test_a_segment_that_was_not_recorded() -> None:
+def test_a_segment_that_was_not_carried_out() -> None:
     judged = result(constant(1.0), upper=2)
-    assert (judged.verdict, judged.value) == ("error", None)
-    assert judged.reason == "segment 'up' was not recorded"
+    assert (judged.verdict, judged.value) == ("not_judged", None)
+    assert judged.reason == "segment 'up' was not carried out"
 
 
 def test_the_value_stays_when_the_other_segment_is_missing() -> None:
     judged = result(constant(1.0), UP, below="other")
-    assert (judged.verdict, judged.value, judged.upper) == ("error", 1.0, None)
-    assert "'other' was not recorded" in judged.reason
+    assert (judged.verdict, judged.value, judged.upper) == ("not_judged", 1.0, None)
+    assert "'other' was not carried out" in judged.reason
 
 
-def test_a_segment_that_was_cut_short() -> None:
+def test_nothing_is_judged_in_a_segment_that_was_stopped() -> None:
+    stopped = UP.model_copy(update={"end_s": 22.0, "complete": False})
+    judged = result(constant(1.0), stopped, to_s=10, upper=2)  # the window itself would be whole
+    assert (judged.verdict, judged.value) == ("not_judged", None)
+    assert judged.reason == "segment 'up' was stopped after 20 s"
+
+
+def test_a_segment_shorter_than_the_window() -> None:
     judged = result(constant(1.0), UP.model_copy(update={"end_s": 5.0}), to_s=10)
     assert judged.verdict == "error"
     assert "the segment ends 2 s after the step, the window needs 10 s" in judged.reason
+
+
+RINGING = {"segment": "up", "metric": "settling_shaft_torque"}
+
+
+@pytest.mark.parametrize(
+    ("limits", "failed"),
+    [({}, False), ({"upper": 19.0}, True), ({"upper": 25.0}, True), ({"below": "other"}, True)],
+)
+def test_what_does_not_settle_fails_where_a_limit_asks_for_it(limits: dict[str, Any], failed: bool) -> None:
+    time = time_axis(50.0)
+    ringing = np.where(time < 24, 60 * np.sin(2 * np.pi * 8 * time), 0.0)
+    other = UP.model_copy(update={"id": "other", "start_s": 25.0, "step_s": 26.0, "end_s": 46.0})
+    plan = plan_of({"step": STEP}, {"step": STEP | {"segment": "other"}}, criteria=[RINGING | limits])
+    judged = judge(plan, recording_of(time, shaft_torque_nm=ringing), [UP, other])[0]
+    assert (judged.verdict, judged.value, judged.failed) == ("did_not_settle", None, failed)
+    assert verdict_of([judged], stopped=False) == ("fail" if failed else "pass")
+
+
+def test_what_settles_is_below_what_never_does() -> None:
+    time = time_axis(50.0)
+    ringing = np.where(time > 24.5, 60 * np.sin(2 * np.pi * 8 * time), 0.0)
+    other = UP.model_copy(update={"id": "other", "start_s": 25.0, "step_s": 26.0, "end_s": 46.0})
+    criterion = RINGING | {"below": "other"}
+    plan = plan_of({"step": STEP}, {"step": STEP | {"segment": "other"}}, criteria=[criterion])
+    judged = judge(plan, recording_of(time, shaft_torque_nm=ringing), [UP, other])[0]
+    assert (judged.verdict, judged.upper) == ("pass", None)
+    assert "did not settle" in judged.reason
 
 
 def test_missing_samples() -> None:
@@ -128,4 +163,4 @@ def test_a_metric_that_fails_costs_its_own_verdict_only(metric: Metric, says: st
     broken, fine = judge(plan, constant(1.0), [UP])
     assert broken.verdict == "error"
     assert says in broken.reason
-    assert fine.verdict == "pass"
+    assert fine.verdict == "informational"

@@ -33,14 +33,38 @@ def test_sines_add_up_and_those_outside_do_not_count() -> None:
     assert energy(inside + outside) == pytest.approx((0.5**2 + 0.3**2) / 2, rel=2e-3)
 
 
-def test_both_edges_are_included() -> None:
-    # 16 s of 1 kHz are 16001 samples: lines lie 0.0625 Hz apart, about, so take a window where they hit.
+def test_a_line_at_an_edge_counts_with_the_share_of_its_width_that_lies_in_the_band() -> None:
+    # 16 s give lines 0.0625 Hz apart: 8 Hz is one of them. A Hann-windowed sine on a line has 2/3 of its
+    # energy there and 1/6 on either side: half of the middle and one side are in the band.
+    speed = sine(time_axis(), 1.0, 8.0, 0.4)
+    assert energy(speed) == pytest.approx(0.5 * (0.5 * 2 / 3 + 1 / 6), rel=1e-3)
+
+
+@pytest.mark.parametrize("frequency_hz", [7.9995, 8.0, 8.0005, 20.0, 10.6])
+def test_one_sample_more_or_less_moves_a_line_at_the_edge_by_its_shift_alone(frequency_hz: float) -> None:
+    # A sample more moves a line near the edge by a hundredth of a line's width, and no more is allowed.
+    speed = sine(time_axis(), 1.0, frequency_hz, 0.4)
+    usual = energy(speed)
+    for to_s in (19.999, 20.001):
+        metric = BandEnergyMotorSpeed(to_s=to_s)
+        other = metric.compute(recording_of(time_axis(), motor_speed_rad_s=speed), STEP)
+        assert other == pytest.approx(usual, rel=0.025)
+
+
+def test_the_window_is_half_open() -> None:
+    speed = sine(time_axis(), 1.0, 12.0)
+    last = int(np.flatnonzero(np.isclose(time_axis(), STEP.step_s + 20.0))[0])
+    broken = speed.copy()
+    broken[last] = 1e3  # the sample at the window's end belongs to what follows
+    assert energy(broken) == energy(speed)
+    broken[last - 1] = 1e3
+    assert energy(broken) != energy(speed)
+
+
+def test_lost_samples_do_not_shift_the_lines() -> None:
     time = time_axis()
-    speed = sine(time, 1.0, 8.0, 0.4)
-    metric = BandEnergy(channel="motor_speed_rad_s", from_s=4.0, to_s=19.999, from_hz=8.0, to_hz=20.0)
-    recording = recording_of(time, motor_speed_rad_s=speed)
-    # A Hann-windowed sine on a line has 2/3 of its energy there and 1/6 on either side.
-    assert metric.compute(recording, STEP) == pytest.approx(0.5 * (2 / 3 + 1 / 6), rel=1e-3)
+    kept = np.arange(len(time)) % 1600 != 7
+    assert energy(sine(time, 1.0, 12.0)[kept], time[kept]) == pytest.approx(0.5, rel=2e-3)
 
 
 def test_a_linear_trend_does_not_count() -> None:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from test_plans.metrics import NoValueError, SettlingShaftTorque, SettlingTime
+from test_plans.metrics import DidNotSettleError, NoValueError, SettlingShaftTorque, SettlingTime
 from tests.test_plans.signals import STEP, recording_of, second_order_step, time_axis
 
 
@@ -39,11 +39,26 @@ def test_ripple_above_the_corner_frequency_is_filtered_out() -> None:
     assert SettlingShaftTorque().compute(recording_of(time, shaft_torque_nm=torque), STEP) < 0.05
 
 
-def test_what_does_not_settle_takes_the_whole_window() -> None:
+def test_what_moves_to_the_end_has_no_settling_time() -> None:
     time = time_axis()
     recording = recording_of(time, shaft_torque_nm=326 + 40 * np.sin(2 * np.pi * 8 * time))
-    assert SettlingShaftTorque().compute(recording, STEP) == pytest.approx(20.0, abs=0.1)
+    with pytest.raises(
+        DidNotSettleError, match=r"until (19\.9\d|20) s after the step, the window ends at 20"
+    ):
+        SettlingShaftTorque().compute(recording, STEP)
     assert SettlingTime(channel="shaft_torque_nm", band_percent=20).compute(recording, STEP) == 0.0
+
+
+@pytest.mark.parametrize(("last_s", "settles"), [(17.9, True), (18.1, False)])
+def test_settling_ends_where_the_mean_begins(last_s: float, settles: bool) -> None:
+    time = time_axis()
+    torque = np.where(time < STEP.step_s + last_s, 0.0, 326.0)
+    recording = recording_of(time, shaft_torque_nm=torque)
+    if settles:
+        assert SettlingShaftTorque().compute(recording, STEP) == pytest.approx(last_s, abs=0.02)
+    else:
+        with pytest.raises(DidNotSettleError):
+            SettlingShaftTorque().compute(recording, STEP)
 
 
 def test_a_response_that_is_there_at_once() -> None:

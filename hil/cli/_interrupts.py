@@ -1,0 +1,49 @@
+"""Signals that end a command: Ctrl-C, a termination, a closed terminal are one and the same to it."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+from types import FrameType
+
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
+NUMBERS = tuple(getattr(signal, name) for name in _NAMES if hasattr(signal, name))
+EXIT_CODE = 130
+
+
+class Interrupts:
+    """Raises KeyboardInterrupt for each signal, and remembers that there was one.
+
+    What a library makes of an exception in the middle of an import is anybody's guess; `arrived` is not.
+    """
+
+    def __init__(self) -> None:
+        self.arrived = False
+        self._told = False
+
+    def raise_from_now_on(self) -> None:
+        """Take the signals; a SIGHUP that is ignored (`nohup`) stays so."""
+        for number in NUMBERS:
+            if number == signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, self._on_signal)
+
+    def ignore_from_now_on(self) -> None:
+        """The outcome is settled: what comes now changes nothing."""
+        for number in NUMBERS:
+            signal.signal(number, signal.SIG_IGN)
+
+    def tell(self) -> None:
+        """Say it, once."""
+        if not self._told:
+            self._told = True
+            with contextlib.suppress(OSError):
+                os.write(2, b"error: interrupted\n")
+
+    def _on_signal(self, number: int, frame: FrameType | None) -> None:
+        del number, frame
+        self.arrived = True
+        raise KeyboardInterrupt
+
+
+INTERRUPTS = Interrupts()
