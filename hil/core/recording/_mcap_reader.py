@@ -1,146 +1,259 @@
-"""Reads the native recording back, also one that was cut by a crash."""
+"""Reads the native recording back: what is whole of it, and what is not."""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from google.protobuf import descriptor_pb2
-from mcap.records import Attachment, Channel, Footer, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader
+import numpy.typing as npt
 
 from hil.core.errors import BadInputError
-from hil.core.frames import FRAME, FrameBlock, empty_block
+from hil.core.frames import FrameBlock, empty_block
+from hil.core.recording import _mcap_records as mcap
+from hil.core.recording import _schema
+from hil.core.recording._mcap_damage import Findings, damage
+from hil.core.recording._mcap_walk import MAGIC, records, records_inside
 from hil.core.recording._mcap_writer import CHANNELS_TOPIC, EVENTS_TOPIC, FRAMES_TOPIC
+from hil.core.recording._regular_file import open_regular
 from hil.core.recording._table import Event, Recording
-from hil.core.recording._tables_on_disk import read_bytes_or_explain
 
-_MAGIC = b"\x89MCAP0\r\n"
+_Definitions = tuple[dict[int, mcap.Schema], dict[int, mcap.Channel]]
 
 
 def read_mcap(path: Path) -> Recording:
-    """Channels, events, attachments and metadata of a recording."""
-    contents = _Contents(path)
-    rows = contents.rows()
-    recording = Recording(
-        {name: np.ascontiguousarray(rows[:, column]) for column, name in enumerate(contents.names)},
+    """Channels, events, attachments and metadata of a recording; `damage` tells what is lost.
+
+    Raises:
+        BadInputError: not an MCAP file, no channels in it, or no sample that can be read.
+    """
+    contents = _contents(path)
+    channels = contents.channels()
+    if not len(contents.findings.sample_times_s) and contents.findings.broken:
+        raise BadInputError(
+            "the recording is broken: no sample can be read", where=str(path), fix="use another copy"
+        )
+    return Recording(
+        channels,
         path,
         contents.metadata,
         contents.attachments,
         contents.events,
+        contents.notes(),
+        damage(contents.findings),
     )
-    if contents.cut:
-        recording.notes.append(f"the file was cut off ({contents.cut}); what could be read is used")
-    return recording
 
 
 def read_frames(path: Path) -> dict[str, FrameBlock]:
-    """Raw frames of each bus, as they came."""
-    contents = _Contents(path)
-    return {
-        bus: np.concatenate([_decode_frames(m) for m in messages]) if messages else empty_block()
-        for bus, messages in contents.frames.items()
-    }
+    """Raw frames of each bus, as they came; `damage` of `read_recording` tells what is lost of them.
+
+    Raises:
+        BadInputError: not an MCAP file, or frames that are not laid out as the project's.
+    """
+    frames = _contents(path, keep_frames=True).frames
+    try:
+        return {
+            bus: np.concatenate([_schema.decode_frames(m) for m in messages]) if messages else empty_block()
+            for bus, messages in frames.items()
+        }
+    except ValueError as error:
+        raise BadInputError(
+            f"its raw frames cannot be read: {error}", where=str(path), fix="is it a hil recording?"
+        ) from error
+
+
+def _contents(path: Path, *, keep_frames: bool = False) -> _Contents:
+    contents = _Contents(path, keep_frames=keep_frames)
+    if not contents.names and contents.repeated is not None:
+        # the block that describes the channels is broken: the index repeats it
+        contents = _Contents(path, keep_frames=keep_frames, known=contents.repeated)
+    if contents.names:
+        return contents
+    if contents.findings.broken:
+        raise BadInputError(
+            "the recording is broken: the block that describes the channels cannot be read",
+            where=str(path),
+            fix="use another copy, or record it again",
+        )
+    raise BadInputError(f"has no topic {CHANNELS_TOPIC}", where=str(path), fix="is it a hil recording?")
 
 
 class _Contents:
-    """Everything in the file, up to the first broken record."""
+    """Everything in the file that is whole.
 
-    def __init__(self, path: Path) -> None:
-        if read_bytes_or_explain(path) != _MAGIC:
-            raise BadInputError("not an MCAP file", where=str(path))
+    `known`: schemas and channels to start from; `repeated`: those of the file's index, if it is whole.
+    """
+
+    def __init__(self, path: Path, *, keep_frames: bool, known: _Definitions | None = None) -> None:
         self.names: list[str] = []
         self.metadata: dict[str, dict[str, str]] = {}
         self.attachments: dict[str, bytes] = {}
         self.events: list[Event] = []
         self.frames: dict[str, list[bytes]] = {}
-        self.cut = ""
-        self._complete = False
-        self._messages: list[bytes] = []
-        self._schemas: dict[int, Schema] = {}
+        self.findings = Findings()
+        self.repeated: _Definitions | None = None
+        self._path = path
+        self._keep_frames = keep_frames
+        self._unusable_events = 0
+        self._rows: list[npt.NDArray[np.float64]] = []
+        self._samples = 0
+        self._hash = hashlib.sha256()
+        self._schemas: dict[int, mcap.Schema] = {}
         self._topics: dict[int, str] = {}
+        self._index: _Definitions = ({}, {})
+        for definitions in known or ():
+            for definition in definitions.values():
+                self._take(definition)
         self._read(path)
-        if not self._messages and self.cut:
-            raise BadInputError(
-                f"the recording is broken: {self.cut}", where=str(path), fix="record it again"
-            )
-        if not self.names:
-            raise BadInputError(
-                f"has no topic {CHANNELS_TOPIC}", where=str(path), fix="is it a hil recording?"
-            )
+        self.findings.attachments = list(self.attachments)
+        self.findings.tables = self.metadata
 
-    def rows(self) -> Any:
-        width = len(self.names)
-        if not self._messages:
-            return np.zeros((0, width))
-        raw = np.frombuffer(b"".join(self._messages), np.uint8).reshape(len(self._messages), -1)
-        tags = [2 if number > 15 else 1 for number in range(1, width + 1)]
-        starts = np.cumsum([tag + 8 for tag in tags]) - 8
-        cells = np.stack([raw[:, start : start + 8] for start in starts], axis=1)
-        return np.ascontiguousarray(cells).view("<f8")[:, :, 0]
+    def channels(self) -> dict[str, npt.NDArray[np.float64]]:
+        """Each channel's samples; empties the rows on the way, so that they are not held twice."""
+        channels = {name: np.empty(self._samples) for name in self.names}
+        end = self._samples
+        while self._rows:
+            rows = self._rows.pop()
+            for column, values in enumerate(channels.values()):
+                values[end - len(rows) : end] = rows[:, column]
+            end -= len(rows)
+        return channels
+
+    def notes(self) -> list[str]:
+        """What reading remarked."""
+        notes = []
+        if not self.findings.index_agrees and not self.findings.cut:
+            notes.append("the index at the end of the file is damaged; nothing was read from it")
+        if self._unusable_events:
+            notes.append(
+                f"{self._unusable_events} events are not laid out as the project's and were left out"
+            )
+        return notes
 
     def _read(self, path: Path) -> None:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
+            size = path.stat().st_size
             try:
-                for record in StreamReader(file, emit_chunks=False).records:
-                    self._take(record)
-            except Exception as error:  # zstandard and struct raise kinds of their own for a broken chunk
-                self.cut = "" if self._complete else str(error) or type(error).__name__
+                if file.read(len(MAGIC)) != MAGIC:
+                    raise BadInputError("not an MCAP file", where=str(path))
+                for record in records(file, size):
+                    self._take_in_file(record)
+                file.seek(max(0, size - len(MAGIC)))
+                self.findings.has_last_bytes = file.read() == MAGIC
+            except OSError as error:
+                raise BadInputError(f"cannot be read: {error.strerror or error}", where=str(path)) from error
+        self.findings.samples_sha256 = self._hash.hexdigest()
+        self.findings.sample_times_s = (
+            np.concatenate([rows[:, 0] for rows in self._rows]) if self._rows else np.zeros(0)
+        )
 
-    def _take(self, record: object) -> None:
+    def _take_in_file(self, record: mcap.Record) -> None:
+        """Take what stands in the file itself, not inside a chunk."""
+        findings = self.findings
+        if findings.data_end is not None:
+            self._take_index(record)
+            return
         match record:
-            case Message():
-                self._take_message(self._topics[record.channel_id], record.data)
-            case Schema():
-                self._schemas[record.id] = record
-            case Channel():
-                self._topics[record.id] = record.topic
-                if record.topic == CHANNELS_TOPIC:
-                    self.names = _field_names(self._schemas[record.schema_id].data)
-                elif record.topic.startswith(FRAMES_TOPIC):
-                    self.frames.setdefault(record.topic.removeprefix(FRAMES_TOPIC), [])
-            case Attachment():
-                self.attachments[record.name] = record.data
-            case Footer():
-                self._complete = True
-            case Metadata():
-                self.metadata[record.name] = dict(record.metadata)
+            case mcap.Chunk():
+                for inside in records_inside(record.content):
+                    self._take(inside)
+            case mcap.Break():
+                findings.breaks.append(self._samples)
+            case mcap.Attachment(name, content):
+                if content is None:
+                    findings.bad_attachments.append(name)
+                else:
+                    self.attachments[name] = content
+            case mcap.Metadata(name, table):
+                self.metadata[name] = table
+            case mcap.DataEnd(agrees):
+                findings.data_end = agrees
+            case mcap.Other(known=False) | mcap.Named() | mcap.Footer():
+                findings.strange.append(self._samples)
+            case _:
+                self._take(record)
+        if isinstance(record, mcap.Footer):
+            findings.has_footer = True
+
+    def _take_index(self, record: mcap.Record) -> None:
+        schemas, channels = self._index
+        match record:
+            case mcap.Schema():
+                schemas[record.id] = record
+            case mcap.Channel():
+                channels[record.id] = record
+            case mcap.Named(attachment, name):
+                self.findings.named.append((attachment, name))
+            case mcap.Footer(agrees):
+                self.findings.has_footer = True
+                self.findings.index_agrees &= agrees
+                self.repeated = self._index if self.findings.index_agrees else None
+            case mcap.Break():
+                self.findings.index_agrees = False
             case _:
                 pass
 
-    def _take_message(self, topic: str, data: bytes) -> None:
+    def _take(self, record: mcap.Record) -> None:
+        """Take what may stand inside a chunk."""
+        match record:
+            case mcap.Schema():
+                self._schemas[record.id] = record
+            case mcap.Channel():
+                self._take_channel(record)
+            case mcap.Messages(channel_id, payloads):
+                self._take_messages(self._topics.get(channel_id, ""), payloads)
+            case mcap.Break():
+                self.findings.breaks.append(self._samples)
+            case _:
+                pass
+
+    def _take_channel(self, channel: mcap.Channel) -> None:
+        self._topics[channel.id] = channel.topic
+        if channel.topic.startswith(FRAMES_TOPIC):
+            self.frames.setdefault(channel.topic.removeprefix(FRAMES_TOPIC), [])
+        if channel.topic != CHANNELS_TOPIC:
+            return
+        schema = self._schemas.get(channel.schema_id)
+        try:
+            if schema is None:
+                raise ValueError("its schema is missing")
+            names = _schema.channel_names(schema.name, schema.encoding, schema.data)
+            if self.names and names != self.names:
+                raise ValueError("it is described twice, and not alike")
+        except ValueError as error:
+            raise self._foreign(error) from error
+        self.names = names
+
+    def _take_messages(self, topic: str, payloads: npt.NDArray[np.uint8]) -> None:
         if topic == CHANNELS_TOPIC:
-            self._messages.append(data)
+            try:
+                rows = _schema.decode_rows(payloads, len(self.names))
+            except ValueError as error:
+                raise self._foreign(error) from error
+            self._hash.update(payloads.tobytes())
+            self._rows.append(rows)
+            self._samples += len(rows)
         elif topic == EVENTS_TOPIC:
-            event = json.loads(data)
-            self.events.append(Event(event["time_s"], event["kind"], event["text"]))
-        elif topic.startswith(FRAMES_TOPIC):
-            self.frames[topic.removeprefix(FRAMES_TOPIC)].append(data)
+            for payload in payloads:
+                self._take_event(payload.tobytes())
+        elif topic.startswith(FRAMES_TOPIC) and self._keep_frames:
+            self.frames[topic.removeprefix(FRAMES_TOPIC)] += [payload.tobytes() for payload in payloads]
 
+    def _take_event(self, message: bytes) -> None:
+        try:
+            event = json.loads(message)
+            time_s, kind, text = event["time_s"], event["kind"], event["text"]
+            if not (math.isfinite(time_s) and isinstance(kind, str) and isinstance(text, str)):
+                raise ValueError
+            self.events.append(Event(float(time_s), kind, text))
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
+            self._unusable_events += 1
 
-def _field_names(schema: bytes) -> list[str]:
-    files = descriptor_pb2.FileDescriptorSet.FromString(schema)
-    return [f.name for f in files.file[0].message_type[0].field]
-
-
-def _decode_frames(message: bytes) -> FrameBlock:
-    columns: dict[str, Any] = {}
-    position = 0
-    for name in ("time_s", "id", "flags", "length", "data"):
-        position += 1  # the tag; the schema fixes the order
-        size = shift = 0
-        while True:
-            byte = message[position]
-            position += 1
-            size |= (byte & 127) << shift
-            shift += 7
-            if byte < 128:
-                break
-        columns[name] = np.frombuffer(message[position : position + size], FRAME[name])
-        position += size
-    block = np.zeros(len(columns["id"]), FRAME)
-    for name, column in columns.items():
-        block[name] = column
-    return block
+    def _foreign(self, error: ValueError) -> BadInputError:
+        return BadInputError(
+            f"the topic {CHANNELS_TOPIC} is not laid out as the project's: {error}",
+            where=str(self._path),
+            fix="export it as CSV or Parquet with the tool that made it, one column a channel",
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,12 +14,14 @@ from mcap.writer import CompressionType, Writer
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock, joined
 from hil.core.recording import _schema
+from hil.core.recording._mcap_damage import CHANNELS_TABLE
 
 CHANNELS_TOPIC = "/channels"
 EVENTS_TOPIC = "/events"
 FRAMES_TOPIC = "/can/"
 _MESSAGE_S = 0.045
-_CHUNK_BYTES = 256 * 1024  # about a second of a bench: what a crash can cost
+_ROWS_AT_ONCE = 8192
+_CHUNK_BYTES = 256 * 1024  # about a second of a bench
 _EVENT_SCHEMA = {
     "type": "object",
     "properties": {"time_s": {"type": "number"}, "kind": {"type": "string"}, "text": {"type": "string"}},
@@ -58,19 +61,26 @@ class _WholeWrites:
 class RecordingWriter:
     """Streams a run to `path`. Everything added before a crash can be read again.
 
+    A block of the file holds `chunk_bytes` before compression: what a crash or a flipped bit can cost.
     A disk that fills up raises BenchError from any method that writes.
     """
 
-    def __init__(self, path: Path, channel_names: list[str], buses: list[str]) -> None:
+    def __init__(
+        self, path: Path, channel_names: list[str], buses: list[str], *, chunk_bytes: int = _CHUNK_BYTES
+    ) -> None:
         self.path = path
         self._sequence = 0
+        self._samples = 0
+        self._hash = hashlib.sha256()
         self._waiting: dict[str, list[FrameBlock]] = {bus: [] for bus in buses}
         try:
             self._file = _WholeWrites(path)
             self._writer = Writer(
                 self._file,  # type: ignore[arg-type]
-                chunk_size=_CHUNK_BYTES,
+                chunk_size=chunk_bytes,
                 compression=CompressionType.ZSTD,
+                enable_crcs=True,
+                enable_data_crcs=True,
             )
             self._writer.start(profile="", library="eaxle-hil")
             self._register(channel_names, buses)
@@ -106,6 +116,10 @@ class RecordingWriter:
 
     def add_rows(self, rows: npt.NDArray[np.float64]) -> None:
         """Add decoded samples (samples x channels; the first column is `time_s`)."""
+        for start in range(0, len(rows), _ROWS_AT_ONCE):
+            self._add_block(rows[start : start + _ROWS_AT_ONCE])
+
+    def _add_block(self, rows: npt.NDArray[np.float64]) -> None:
         encoded = _schema.encode_rows(rows)
         size = encoded.shape[1]
         raw = encoded.tobytes()
@@ -117,6 +131,8 @@ class RecordingWriter:
         except OSError as error:
             raise self._failed(error) from error
         self._sequence += len(stamps)
+        self._samples += len(stamps)
+        self._hash.update(raw)
 
     def add_event(self, time_s: float, kind: str, text: str) -> None:
         """Add one event of the run."""
@@ -142,6 +158,7 @@ class RecordingWriter:
         try:
             for bus in self._frames:
                 self._flush_frames(bus)
+            self.describe(CHANNELS_TABLE, {"sha256": self._hash.hexdigest(), "samples": str(self._samples)})
             self._writer.finish()
         except OSError as error:
             raise self._failed(error) from error

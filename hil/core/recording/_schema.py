@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from google.protobuf import descriptor_pb2
+from google.protobuf.message import DecodeError
 
-from hil.core.frames import FRAME
+from hil.core.frames import FRAME, FrameBlock
 
 # Tags of CanFrames' fields, all of wire type 2 (length, then bytes)
 _FRAME_TAGS = {
@@ -42,20 +45,59 @@ def frames_schema() -> bytes:
     )
 
 
+def channel_names(name: str, encoding: str, schema: bytes) -> list[str]:
+    """Names of the doubles that a Channels message holds, in order.
+
+    Raises:
+        ValueError: tells in which way the schema is not a plain row of doubles.
+    """
+    if encoding != "protobuf":
+        raise ValueError(f"its schema is '{encoding}', not protobuf")
+    try:
+        files = descriptor_pb2.FileDescriptorSet.FromString(schema).file
+        found = {f"{file.package}.{m.name}".lstrip("."): m.field for file in files for m in file.message_type}
+    except (DecodeError, UnicodeDecodeError) as error:
+        raise ValueError("its schema cannot be decoded") from error
+    if name not in found:
+        raise ValueError(f"its schema does not describe '{name}'")
+    fields = found[name]
+    for number, field in enumerate(fields, 1):
+        if field.number != number:
+            raise ValueError(f"field '{field.name}' has number {field.number} at place {number}")
+        if field.type != _Field.TYPE_DOUBLE or field.label == _Field.LABEL_REPEATED:
+            raise ValueError(f"field '{field.name}' is not one double")
+    names = [field.name for field in fields]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ValueError(f"field '{twice[0]}' stands twice")
+    return names
+
+
 def encode_rows(rows: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
     """Channels messages of `rows` (samples x channels), one row of bytes for each sample."""
     count, width = rows.shape
-    tags = [_varint((number << 3) | 1) for number in range(1, width + 1)]
-    size = sum(len(tag) + 8 for tag in tags)
-    encoded = np.empty((count, size), np.uint8)
-    raw = np.ascontiguousarray(rows, "<f8").view(np.uint8).reshape(count, width, 8)
-    position = 0
-    for column, tag in enumerate(tags):
-        encoded[:, position : position + len(tag)] = np.frombuffer(tag, np.uint8)
-        position += len(tag)
-        encoded[:, position : position + 8] = raw[:, column]
-        position += 8
+    layout = _row_layout(width)
+    encoded = np.empty((count, layout.size), np.uint8)
+    encoded[:, layout.tag_places] = layout.tags
+    raw = np.ascontiguousarray(rows, "<f8").view(np.uint8).reshape(count, width * 8)
+    encoded[:, layout.value_places] = raw
     return encoded
+
+
+def decode_rows(encoded: npt.NDArray[np.uint8], width: int) -> npt.NDArray[np.float64]:
+    """Samples x channels of Channels messages, one row of bytes for each sample.
+
+    Raises:
+        ValueError: the messages are not laid out as `encode_rows` does.
+    """
+    layout = _row_layout(width)
+    if encoded.shape[1] != layout.size:
+        raise ValueError(f"a message has {encoded.shape[1]} bytes, {layout.size} hold {width} doubles")
+    if not np.array_equal(
+        encoded[:, layout.tag_places], np.broadcast_to(layout.tags, (len(encoded), len(layout.tags)))
+    ):
+        raise ValueError("a message holds its fields in another order than its schema")
+    return np.take(encoded, layout.value_places, axis=1).view("<f8").astype(np.float64, copy=False)
 
 
 def encode_frames(block: npt.NDArray[np.void]) -> bytes:
@@ -66,6 +108,59 @@ def encode_frames(block: npt.NDArray[np.void]) -> bytes:
         parts.append(tag + _varint(count * FRAME[name].itemsize))
         parts.append(block[name].tobytes())
     return b"".join(parts)
+
+
+def decode_frames(message: bytes) -> FrameBlock:
+    """The frames of one CanFrames message.
+
+    Raises:
+        ValueError: the message is not laid out as `encode_frames` does.
+    """
+    columns: dict[str, Any] = {}
+    position = 0
+    for name, tag in _FRAME_TAGS.items():
+        if not message.startswith(tag, position):
+            raise ValueError(f"no column '{name}'")
+        size, position = _read_varint(message, position + len(tag))
+        if position + size > len(message):
+            raise ValueError(f"column '{name}' is cut off")
+        columns[name] = np.frombuffer(message[position : position + size], FRAME[name])
+        position += size
+    if len({len(column) for column in columns.values()}) > 1 or position != len(message):
+        raise ValueError("the columns are not of one length")
+    block = np.zeros(len(columns["id"]), FRAME)
+    for name, column in columns.items():
+        block[name] = column
+    return block
+
+
+@dataclass(frozen=True)
+class _RowLayout:
+    """Where tags and values of a Channels message stand."""
+
+    size: int
+    tags: npt.NDArray[np.uint8]
+    tag_places: npt.NDArray[np.intp]
+    value_places: npt.NDArray[np.intp]
+
+
+@lru_cache(maxsize=16)
+def _row_layout(width: int) -> _RowLayout:
+    tags = [_varint((number << 3) | 1) for number in range(1, width + 1)]
+    is_tag = np.array([place < len(tag) for tag in tags for place in range(len(tag) + 8)], bool)
+    return _RowLayout(
+        len(is_tag), np.frombuffer(b"".join(tags), np.uint8), np.flatnonzero(is_tag), np.flatnonzero(~is_tag)
+    )
+
+
+def _read_varint(message: bytes, position: int) -> tuple[int, int]:
+    """A number, and the position after it."""
+    value = 0
+    for index, byte in enumerate(message[position : position + 10]):
+        value |= (byte & 127) << 7 * index
+        if byte < 128:
+            return value, position + index + 1
+    raise ValueError("a length is cut off")
 
 
 def _varint(value: int) -> bytes:

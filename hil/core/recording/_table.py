@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import bisect
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.channels import CHANNELS, INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]
 
 #: Largest share of NaN or infinite cells in a required channel.
 LARGEST_MISSING_SHARE = 0.01
+
+#: Largest magnitude that a channel of the contract may have, in its unit: beyond it no axle can be, and
+#: products of a few such numbers still fit a double.
+LARGEST_MAGNITUDE = 1e15
 
 
 @dataclass
@@ -32,7 +37,10 @@ class Recording:
 
     `attachments` are files stored with the data (plan, bench, controllers, model, run.json);
     `metadata` are named tables of text (versions, hashes, who and what);
-    `notes` tell what reading had to mend (a cut file, dropped cells).
+    `notes` tell what reading mended or remarked (interpolated cells, columns left out);
+    `damage` tells what was lost or cannot be trusted, one sentence each: empty means that everything
+    that can be checked was checked and is as it was written.
+    `blank_lines` are the samples of a CSV before which a blank line stands, for messages to name lines.
     """
 
     channels: dict[str, Array]
@@ -41,6 +49,8 @@ class Recording:
     attachments: dict[str, bytes] = field(default_factory=dict)
     events: list[Event] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    damage: list[str] = field(default_factory=list)
+    blank_lines: list[int] = field(default_factory=list)
 
     def __getitem__(self, name: str) -> Array:
         """The channel `name`; BadInputError names it when the recording has none."""
@@ -71,7 +81,14 @@ class Recording:
         grace = 0.5 * self.sample_time_s
         inside = (self.time_s >= start_s - grace) & (self.time_s <= end_s + grace)
         cut = {name: values[inside] for name, values in self.channels.items()}
-        return Recording(cut, self.source, self.metadata, self.attachments, self.events, list(self.notes))
+        return replace(self, channels=cut, notes=list(self.notes), damage=list(self.damage), blank_lines=[])
+
+    def place(self, sample: int) -> str:
+        """Where a sample (from 0) stands, for a message: `file: sample 3`, of a CSV also its line."""
+        if self.source.suffix.lower() != ".csv":
+            return f"{self.source}: sample {sample + 1}"
+        line = sample + 2 + bisect.bisect_right(self.blank_lines, sample)
+        return f"{self.source}: sample {sample + 1}, line {line}"
 
 
 def checked(recording: Recording, *, least_samples: int = 2, allow_missing: bool = False) -> Recording:
@@ -81,7 +98,7 @@ def checked(recording: Recording, *, least_samples: int = 2, allow_missing: bool
 
     Raises:
         BadInputError: a required channel is missing, time runs backwards or stands still, too many
-            missing cells, or too few samples.
+            missing cells, values beyond LARGEST_MAGNITUDE, or too few samples.
     """
     where = str(recording.source)
     for name in (TIME, INPUT):
@@ -95,18 +112,32 @@ def checked(recording: Recording, *, least_samples: int = 2, allow_missing: bool
         raise BadInputError(f"has {len(time)} samples, {least_samples} are needed", where=where)
     if not np.all(np.isfinite(time)):
         row = int(np.flatnonzero(~np.isfinite(time))[0])
-        raise BadInputError(f"'{TIME}' is not finite", where=f"{where}: sample {row + 1}")
+        raise BadInputError(f"'{TIME}' is not finite", where=recording.place(row))
+    _refuse_huge(recording)
     backwards = np.flatnonzero(np.diff(time) <= 0)
     if backwards.size:
         row = int(backwards[0]) + 1
         raise BadInputError(
             f"'{TIME}' does not increase: {time[row]:g} s follows {time[row - 1]:g} s",
-            where=f"{where}: sample {row + 1} (line {row + 2} of a CSV)",
+            where=recording.place(row),
         )
     for name in (INPUT, *OUTPUTS):
         if name in recording:
             _mend(recording, name, allow_missing=allow_missing)
     return recording
+
+
+def _refuse_huge(recording: Recording) -> None:
+    for name in recording.channels.keys() & CHANNELS.keys():
+        values = recording[name]
+        huge = np.isfinite(values) & ((values > LARGEST_MAGNITUDE) | (values < -LARGEST_MAGNITUDE))
+        if huge.any():
+            row = int(huge.argmax())
+            raise BadInputError(
+                f"{values[row]:g} is no measurement: at most {LARGEST_MAGNITUDE:g} can be used",
+                where=f"{recording.place(row)}, column '{name}'",
+                fix="correct the cell, or leave it empty",
+            )
 
 
 def _mend(recording: Recording, name: str, *, allow_missing: bool) -> None:
@@ -122,7 +153,7 @@ def _mend(recording: Recording, name: str, *, allow_missing: bool) -> None:
         row = int(np.flatnonzero(missing)[0])
         raise BadInputError(
             f"{share:.1%} of '{name}' is NaN or infinite, {LARGEST_MISSING_SHARE:.0%} is allowed",
-            where=f"{recording.source}: first at sample {row + 1} (line {row + 2} of a CSV)",
+            where=f"first at {recording.place(row)}",
         )
     time = recording.time_s
     recording.channels[name] = np.interp(time, time[~missing], values[~missing])

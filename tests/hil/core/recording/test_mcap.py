@@ -48,6 +48,7 @@ def test_everything_comes_back(tmp_path):
     assert read.metadata["dut"] == {"name": "axle"}
     assert (read.events[0].time_s, read.events[0].kind) == (1.5, "arm")
     assert read.notes == []
+    assert read.damage == []
     raw = read_frames(tmp_path / "r.mcap")
     np.testing.assert_array_equal(raw["rmcu"][:10], frames(10))
     assert len(raw["rmcu"]) == 3000
@@ -89,7 +90,7 @@ def test_a_recording_that_was_cut_gives_what_is_whole_and_says_so(share, tmp_pat
         assert share < 0.5
         assert "broken" in str(error)
         return
-    assert "cut off" in read.notes[0]
+    assert "cut off" in read.damage[-1]
     np.testing.assert_array_equal(read["time_s"], rows[: len(read.time_s), 0])
 
 

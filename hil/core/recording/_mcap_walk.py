@@ -1,0 +1,147 @@
+"""Walks an MCAP file record by record; after a broken one it goes on at the next that is whole."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterator
+from itertools import chain
+from typing import BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+from mcap.opcode import Opcode
+
+from hil.core.recording._mcap_records import (
+    MESSAGE_HEAD,
+    Attachment,
+    Break,
+    DataEnd,
+    Footer,
+    Messages,
+    Other,
+    Record,
+    parsed,
+)
+
+MAGIC = b"\x89MCAP0\r\n"
+_HEAD = 9  # opcode, length
+_SCAN_BYTES = 1 << 20
+#: What reading may resume at: records that a broken block cannot hold by chance.
+_RESUME_AT = np.zeros(256, bool)
+_RESUME_AT[
+    [Opcode.CHUNK, Opcode.MESSAGE_INDEX, Opcode.ATTACHMENT, Opcode.METADATA, Opcode.DATA_END, Opcode.FOOTER]
+] = True
+
+
+def records(file: BinaryIO, size: int) -> Iterator[Record]:
+    """Records of a file of `size` bytes, in order, each intact stretch of them; `Break` in between.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    position = len(MAGIC)
+    checksum: int | None = zlib.crc32(MAGIC)
+    while position < size:
+        found = _raw_record(file, position, size)
+        record = parsed(*found) if found else None
+        if found is None or record is None:
+            position = _next_intact(file, position, size)
+            checksum = None  # of a broken file it says nothing new
+            yield Break(to_end=position == size)
+            continue
+        opcode, body = found
+        position += _HEAD + len(body)
+        head = bytes([opcode]) + len(body).to_bytes(8, "little")
+        if isinstance(record, DataEnd):
+            yield DataEnd(_agrees(int.from_bytes(body, "little"), checksum))
+            checksum = 0
+            continue
+        if isinstance(record, Footer):
+            summary = None if checksum is None else zlib.crc32(head + bytes(body[:16]), checksum)
+            yield Footer(_agrees(int.from_bytes(body[16:], "little"), summary))
+            return
+        if checksum is not None:
+            checksum = zlib.crc32(body, zlib.crc32(head, checksum))
+        yield record
+
+
+def records_inside(content: bytes) -> Iterator[Record]:
+    """Records of a chunk, `Break` as the last if it does not hold together."""
+    data = np.frombuffer(content, np.uint8)
+    position = 0
+    while position < len(content):
+        opcode = content[position]
+        end = position + _HEAD + int.from_bytes(content[position + 1 : position + _HEAD], "little")
+        if end > len(content) or position + _HEAD > len(content):
+            yield Break(to_end=False)
+            return
+        if opcode == Opcode.MESSAGE and end - position >= _HEAD + MESSAGE_HEAD:
+            stride = end - position
+            count = _alike(data, position, stride)
+            end = position + count * stride
+            rows = data[position:end].reshape(count, stride)
+            channel_id = int.from_bytes(content[position + _HEAD : position + _HEAD + 2], "little")
+            yield Messages(channel_id, rows[:, _HEAD + MESSAGE_HEAD :])
+        else:
+            yield parsed(opcode, memoryview(content)[position + _HEAD : end]) or Break(to_end=False)
+        position = end
+
+
+def _alike(data: npt.NDArray[np.uint8], position: int, stride: int) -> int:
+    """How many messages of the same channel and length follow each other from `position` on."""
+    head = data[position : position + _HEAD + 2]
+    limit = (len(data) - position) // stride
+    count, step = 1, 16
+    while count < limit:
+        ahead = min(step, limit - count)
+        start = position + count * stride
+        rows = data[start : start + ahead * stride].reshape(ahead, stride)
+        same = (rows[:, : len(head)] == head).all(axis=1)
+        if not same.all():
+            return count + int(same.argmin())
+        count, step = count + ahead, step * 4
+    return count
+
+
+def _agrees(stored: int, computed: int | None) -> bool:
+    return stored == 0 or computed is None or stored == computed
+
+
+def _raw_record(file: BinaryIO, position: int, size: int) -> tuple[int, memoryview] | None:
+    """Opcode and body at `position`; None if they do not fit into the file."""
+    file.seek(position)
+    head = file.read(_HEAD)
+    length = int.from_bytes(head[1:], "little")
+    if len(head) < _HEAD or length > size - position - _HEAD:
+        return None
+    body = file.read(length)
+    return (head[0], memoryview(body)) if len(body) == length else None
+
+
+def _next_intact(file: BinaryIO, broken: int, size: int) -> int:
+    """Where reading can go on after a broken record; `size` if nowhere."""
+    file.seek(broken + 1)
+    declared = broken + _HEAD + int.from_bytes(file.read(8), "little")
+    for position in chain([declared] if declared < size else [], _candidates(file, broken + 1, size)):
+        found = _raw_record(file, position, size)
+        record = parsed(*found) if found else None
+        if record is None or (isinstance(record, Other) and not record.known):
+            continue
+        if isinstance(record, Attachment) and record.content is None:
+            continue
+        return position
+    return size
+
+
+def _candidates(file: BinaryIO, start: int, size: int) -> Iterator[int]:
+    """Places from `start` on that look like the head of a record."""
+    for window in range(start, size, _SCAN_BYTES):
+        file.seek(window)
+        data = np.frombuffer(file.read(_SCAN_BYTES + _HEAD), np.uint8)
+        count = len(data) - _HEAD + 1
+        if count <= 0:
+            return
+        looks = _RESUME_AT[data[:count]]
+        for upper in range(5, 9):  # no record is longer than 4 GiB
+            looks &= data[upper : upper + count] == 0
+        yield from (window + np.flatnonzero(looks)).tolist()
