@@ -1,9 +1,9 @@
 """Drivers: the RMCU and the dynamometers on the wire, in one loop, by one clock."""
 
-from drivers.dyno import DynoDriver, DynoNodes, VehicleParameters
+from drivers.dyno import DynoDriver, DynoNodes, VehicleParameters, identifiers_of, read_dyno
 from drivers.loop import TICK_S, BusLoop
 from drivers.measurement import Binding, SampleAssembler
-from drivers.rmcu import RmcuDriver
+from drivers.rmcu import RmcuDriver, read_rmcu
 from drivers.wire import Wire
 
 __all__ = [
@@ -16,4 +16,7 @@ __all__ = [
     "SampleAssembler",
     "VehicleParameters",
     "Wire",
+    "identifiers_of",
+    "read_dyno",
+    "read_rmcu",
 ]

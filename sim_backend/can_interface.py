@@ -8,7 +8,7 @@ import can
 import numpy as np
 
 from hil.core.frames import FrameBlock
-from sim_backend.bench import SimulatedBench
+from sim_backend.bench import DYNO_BUS, RMCU_BUS, SimulatedBench
 
 _BENCHES: dict[str, SimulatedBench] = {}
 
@@ -42,6 +42,10 @@ class SimulatedBus(can.BusABC):
                 f"no simulated bench '{name}' is running in this process (channel '{channel}')"
             )
         self._bench = _BENCHES[name]
+        if self._bus not in (RMCU_BUS, DYNO_BUS):
+            raise can.CanInitializationError(
+                f"a simulated bench has the buses '{RMCU_BUS}' and '{DYNO_BUS}' (channel '{channel}')"
+            )
         self._waiting: list[can.Message] = []
         self.channel_info = f"simulated bench {channel}"
         super().__init__(channel=channel, **kwargs)

@@ -12,9 +12,10 @@ import numpy.typing as npt
 
 from drivers.dyno._canopen import LoopNetwork, LoopNode
 from drivers.measurement import Binding
-from hil.core.errors import BadInputError, BenchError
+from hil.core.errors import BenchError
 from hil.core.frames import newest
-from hil.core.pdo import layout_of_pdo
+from hil.core.pdo import layout_of_pdo, read_eds
+from hil.core.signals import FrameLayout
 
 # CiA 402: statusword bits 6, 5, 3, 2, 1, 0
 STATE_MASK = 0x6F
@@ -27,8 +28,41 @@ _STATE_NAMES = {
     0x07: "quick stop active",
     FAULT: "fault",
 }
+# What is written by SDO: index and subindex
+_OBJECTS = ((0x1005, 0), (0x1006, 0), (0x1016, 1), (0x1017, 0), (0x6060, 0), (0x6083, 0))
+_VEHICLE_OBJECTS = tuple((0x2000, subindex) for subindex in range(1, 7))
 _FRESH_S = 0.05
 HEARTBEAT_LOST_S = 0.35
+
+
+def read_dyno(eds: Path, node_id: int) -> tuple[Any, tuple[FrameLayout, FrameLayout, FrameLayout]]:
+    """canopen's dictionary of a dyno, and the layouts of its command, values and status PDOs.
+
+    Raises:
+        BadInputError: not an EDS, or it lacks an object or a mapping that is used.
+    """
+    dictionary = read_eds(eds, node_id, _OBJECTS, floats=_VEHICLE_OBJECTS)
+    layouts = (
+        layout_of_pdo(dictionary, 0x1600, 0x200 + node_id, ("Controlword", "Target velocity"), str(eds)),
+        layout_of_pdo(dictionary, 0x1A00, 0x180 + node_id, ("Wheel speed", "Shaft torque"), str(eds)),
+        layout_of_pdo(
+            dictionary,
+            0x1A01,
+            0x280 + node_id,
+            ("Statusword", "Torque actual value", "Vehicle speed"),
+            str(eds),
+        ),
+    )
+    return dictionary, layouts
+
+
+def identifiers_of(node_id: int, name: str) -> dict[int, str]:
+    """What a dyno sends or hears on its bus (CiA 301's predefined connections), with words for each."""
+    services = {0x80: "EMCY", 0x180: "values", 0x200: "command", 0x280: "status", 0x580: "SDO answer",
+                0x600: "SDO request", 0x700: "heartbeat"}  # fmt: skip
+    return {0x000: "NMT", 0x080: "SYNC"} | {
+        base + node_id: f"{what} of {name}" for base, what in services.items()
+    }
 
 
 class DynoNode:
@@ -37,12 +71,9 @@ class DynoNode:
     def __init__(self, network: LoopNetwork, bus: str, node_id: int, name: str, eds: Path) -> None:
         self.id, self.name, self.bus = node_id, name, bus
         self._network = network
-        self._node: Any = LoopNode(node_id, _dictionary(eds, node_id))
+        dictionary, (self._command, self._values, self._status) = read_dyno(eds, node_id)
+        self._node: Any = LoopNode(node_id, dictionary)
         network.add_node(self._node)
-        dictionary = self._node.object_dictionary
-        self._command = layout_of_pdo(dictionary, 0x1600, 0x200 + node_id)
-        self._values = layout_of_pdo(dictionary, 0x1A00, 0x180 + node_id)
-        self._status = layout_of_pdo(dictionary, 0x1A01, 0x280 + node_id)
         self._target_speed = 0.0
         self.emergencies: list[str] = []
         self.last_heartbeat_s = -math.inf
@@ -103,7 +134,8 @@ class DynoNode:
         payload = self._command.encode(
             **{"Controlword": float(controlword), "Target velocity": self._target_speed}
         )
-        self._network.send_message(self._command.id, int(payload[0]).to_bytes(8, "little"))
+        data = int(payload[0]).to_bytes(8, "little")[: self._command.length]
+        self._network.send_message(self._command.id, data)
 
     def nmt(self, state: str) -> None:
         """Ask for an NMT state."""
@@ -130,12 +162,3 @@ class DynoNode:
     def _take_emergency(self, error: Any) -> None:
         if error.code & 0xFF00:
             self.emergencies.append(f"EMCY 0x{error.code:04X} {error.get_desc()}".strip())
-
-
-def _dictionary(path: Path, node_id: int) -> Any:
-    try:
-        return canopen.import_od(str(path), node_id)
-    except OSError as error:
-        raise BadInputError(error.strerror or str(error), where=str(path), fix="check [dyno] eds") from error
-    except Exception as error:
-        raise BadInputError(f"not an EDS file: {error}", where=str(path)) from error

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
 
-import cantools
 import numpy as np
 import numpy.typing as npt
 
@@ -16,38 +14,57 @@ from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
 from hil.core.checksum import crc8_many
 from hil.core.controller import Controller
+from hil.core.dbc import Dbc, Needed, read_dbc
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import newest
-from hil.core.signals import FrameLayout, layout_of
+from hil.core.printable import printable
 
 MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
 _COUNTER_VALUES = 16
 _REPLY_TIMEOUT_S = 0.2
 _WRITE, _APPLY = 1, 2
 _NEEDED = {
-    "RMCU_Request": ("Counter", "Mode", "TorqueRequest", "Crc"),
-    "RMCU_Status": ("MotorSpeed", "MotorTorqueRef", "MotorTorque"),
-    "RMCU_Control": ("DrivingTorqueRef", "DrivingTorqueEst", "State", "RequestFault"),
-    "RMCU_ParameterWrite": ("Command", "Index", "Value"),
-    "RMCU_ParameterReply": ("Command", "Result", "Index", "Value"),
-    "RCS_Vehicle": ("VehicleSpeed",),
+    "RMCU_Request": Needed(
+        ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
+    ),
+    "RMCU_Status": Needed(("MotorSpeed", "MotorTorqueRef", "MotorTorque")),
+    "RMCU_Control": Needed(
+        ("DrivingTorqueRef", "DrivingTorqueEst", "State", "RequestFault"),
+        whole=("State", "RequestFault"),
+        texts={"State": ("off",)},
+    ),
+    "RMCU_ParameterWrite": Needed(("Command", "Index", "Value"), whole=("Command", "Index")),
+    "RMCU_ParameterReply": Needed(
+        ("Command", "Result", "Index", "Value"), whole=("Command", "Result", "Index")
+    ),
+    "RCS_Vehicle": Needed(("VehicleSpeed",)),
 }
+
+
+def read_rmcu(dbc: Path) -> Dbc:
+    """What the driver uses of the RMCU's DBC.
+
+    Raises:
+        BadInputError: it lacks a message or signal that is needed, or describes one that cannot be used.
+    """
+    return read_dbc(dbc, _NEEDED)
 
 
 class RmcuDriver:
     """Requests, parameters and state of the RMCU.
 
     Raises:
-        BadInputError: the DBC lacks a message or signal that is needed.
+        BadInputError: the DBC lacks a message or signal that is needed, or describes one that cannot be used.
     """
 
     def __init__(self, loop: BusLoop, wire: Wire, dbc: Path) -> None:
         self._loop, self._wire = loop, wire
-        self._layouts, self._texts = _read_dbc(dbc)
+        read = read_rmcu(dbc)
+        self._layouts, self._texts, self._dbc = read.layouts, read.texts, dbc
         self._request = self._layouts["RMCU_Request"]
         self._reply = self._layouts["RMCU_ParameterReply"]
-        self._state_names = {number: text for text, number in self._texts["State"].items()}
-        self._fault_names = {number: text for text, number in self._texts["RequestFault"].items()}
+        self._state_names = self._names("RMCU_Control", "State")
+        self._fault_names = self._names("RMCU_Control", "RequestFault")
         self._counter = 0
         self._answer: int | None = None
         self.state = ""
@@ -77,7 +94,7 @@ class RmcuDriver:
         payloads = self._request.encode(Counter=counters, Mode=MODES[mode], TorqueRequest=values_nm)
         payloads |= self._request.signals["Crc"].encode(crc8_many(self._request.id, payloads))
         raw = np.ascontiguousarray(payloads, "<u8").tobytes()
-        return [raw[i : i + 8] for i in range(0, len(raw), 8)]
+        return [raw[i : i + self._request.length] for i in range(0, len(raw), 8)]
 
     def send(self, payload: bytes) -> None:
         """Send one payload made by `requests`."""
@@ -103,20 +120,23 @@ class RmcuDriver:
         self._transact(_APPLY, 0, 0.0, "apply")
 
     def _write(self, name: str, value: float) -> None:
-        index = self._texts["Index"].get(name)
+        index = self._texts.get(("RMCU_ParameterWrite", "Index"), {}).get(name)
         if index is None:
             raise BadInputError(
-                f"the RMCU's DBC has no parameter '{name}'", fix="use a DBC that fits this controller"
+                f"signal 'Index' of 'RMCU_ParameterWrite' has no parameter named '{name}' (VAL_)",
+                where=str(self._dbc),
+                fix="use a DBC that fits this controller",
             )
-        answer = self._transact(_WRITE, index, value, name)
-        if answer != float(np.float32(value)):
-            raise BenchError(f"parameter '{name}' reads back as {answer:g}, {value:g} was sent", where="RMCU")
+        answer, sent = self._transact(_WRITE, index, value, name)
+        if answer != sent:
+            raise BenchError(f"parameter '{name}' reads back as {answer:g}, {sent:g} was sent", where="RMCU")
 
-    def _transact(self, command: int, index: int, value: float, name: str) -> float:
+    def _transact(self, command: int, index: int, value: float, name: str) -> tuple[float, float]:
+        """The value of the reply, and the one that was sent, as its signal rounds it."""
         layout = self._layouts["RMCU_ParameterWrite"]
-        payload = layout.encode(Command=command, Index=index, Value=value)
+        payload = int(layout.encode(Command=command, Index=index, Value=value)[0])
         self._answer = None
-        self._wire.send(layout.id, int(payload[0]).to_bytes(8, "little"))
+        self._wire.send(layout.id, payload.to_bytes(8, "little")[: layout.length])
         if (
             not self._loop.wait_for(lambda: self._answer is not None, _REPLY_TIMEOUT_S)
             or self._answer is None
@@ -129,11 +149,14 @@ class RmcuDriver:
         signals = self._reply.signals
         result = signals["Result"].raw(self._answer)
         if result != 0:
-            reasons = {number: text for text, number in self._texts["Result"].items()}
-            raise BenchError(
-                f"refused parameter '{name}' = {value:g}: {reasons.get(result, result)}", where="RMCU"
-            )
-        return signals["Value"].value(self._answer)
+            reason = self._names("RMCU_ParameterReply", "Result").get(result, str(result))
+            raise BenchError(f"refused parameter '{name}' = {value:g}: {reason}", where="RMCU")
+        return signals["Value"].value(self._answer), layout.signals["Value"].value(payload)
+
+    def _names(self, message: str, signal: str) -> dict[int, str]:
+        """The value table of a signal, by number."""
+        table = self._texts.get((message, signal), {})
+        return {number: printable(text) for text, number in table.items()}
 
     def _take_reply(self, frame_id: int, data: bytes, time_s: float) -> None:
         del frame_id, time_s
@@ -151,31 +174,3 @@ class RmcuDriver:
         self.state = self._state_names.get(signals["State"].raw(payload), "?")
         self.fault = self._fault_names.get(signals["RequestFault"].raw(payload), "?")
         self.torque_ref_nm = self._layouts["RMCU_Status"].signals["MotorTorqueRef"].value(status[1])
-
-
-def _read_dbc(path: Path) -> tuple[dict[str, FrameLayout], dict[str, dict[str, int]]]:
-    """Layouts of the messages, and the value tables (text to number) of their signals."""
-    try:
-        database: Any = cantools.database.load_file(str(path))
-    except OSError as error:
-        raise BadInputError(error.strerror or str(error), where=str(path), fix="check [rmcu] dbc") from error
-    except Exception as error:
-        raise BadInputError(f"not a DBC file: {error}", where=str(path)) from error
-    layouts: dict[str, FrameLayout] = {}
-    texts: dict[str, dict[str, int]] = {}
-    for name, needed in _NEEDED.items():
-        try:
-            message = database.get_message_by_name(name)
-        except KeyError:
-            raise BadInputError(
-                f"has no message '{name}'", where=str(path), fix="use the RMCU's DBC"
-            ) from None
-        present = {signal.name: signal for signal in message.signals}
-        for signal in needed:
-            if signal not in present:
-                raise BadInputError(f"message '{name}' has no signal '{signal}'", where=str(path))
-        for signal in message.signals:
-            if signal.choices:
-                texts[signal.name] = {str(text): int(number) for number, text in signal.choices.items()}
-        layouts[name] = layout_of(message)
-    return layouts, texts

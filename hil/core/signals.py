@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.compiled import compiled
+from hil.core.printable import printable
 
 if TYPE_CHECKING:
     from cantools.database.can import Message
@@ -56,11 +57,9 @@ class Signal:
         """Physical value in one payload."""
         raw = self.raw(payload)
         if self.is_float:
-            return float(
-                struct.unpack("<f" if self.length == 32 else "<d", raw.to_bytes(self.length // 8, "little"))[
-                    0
-                ]
-            )
+            kind = "<f" if self.length == 32 else "<d"
+            number: float = struct.unpack(kind, raw.to_bytes(self.length // 8, "little"))[0]
+            return number * self.scale + self.offset
         if self.signed and raw >> (self.length - 1):
             raw -= 1 << self.length
         return raw * self.scale + self.offset
@@ -71,7 +70,8 @@ class Signal:
         raw = (words >> np.uint64(self.shift)) & np.uint64((1 << self.length) - 1)
         if self.is_float:
             bits = raw.astype(np.uint32) if self.length == 32 else raw
-            return np.asarray(bits.view(np.float32 if self.length == 32 else np.float64), dtype=float)
+            numbers = bits.view(np.float32 if self.length == 32 else np.float64).astype(np.float64)
+            return np.asarray(numbers * self.scale + self.offset)
         counts = raw.astype(np.float64)
         if self.signed:
             up = np.uint64(64 - self.length)
@@ -83,7 +83,8 @@ class Signal:
         physical = np.atleast_1d(np.asarray(values, dtype=float))
         if self.is_float:
             kind, bits = (np.float32, np.uint32) if self.length == 32 else (np.float64, np.uint64)
-            words = np.asarray(physical, kind).view(bits).astype(np.uint64) << np.uint64(self.shift)
+            numbers = ((physical - self.offset) / self.scale).astype(kind)
+            words = numbers.view(bits).astype(np.uint64) << np.uint64(self.shift)
         else:
             words = np.empty(len(physical), np.uint64)
             low, high = self._counts
@@ -98,7 +99,7 @@ class Signal:
 
 @compiled
 def _pack(values, scale, offset, low, high, shift, length, words):  # type: ignore[no-untyped-def]
-    mask = np.uint64((1 << length) - 1)
+    mask = ~np.uint64(0) >> np.uint64(64 - length)
     for i in range(values.shape[0]):
         count = min(max(np.rint((values[i] - offset) / scale), low), high)
         words[i] = (np.uint64(np.int64(count)) & mask) << np.uint64(shift)
@@ -112,6 +113,19 @@ def swapped(word):  # type: ignore[no-untyped-def]
         turned = (turned << np.uint64(8)) | (word & np.uint64(0xFF))
         word >>= np.uint64(8)
     return turned
+
+
+# One `view` a function: numba compiles no more.
+@compiled
+def single_of(bits):  # type: ignore[no-untyped-def]
+    """The IEEE single whose bits are the low 32 of a 64-bit number, for compiled code."""
+    return np.float64(np.uint32(bits).view(np.float32))
+
+
+@compiled
+def double_of(bits):  # type: ignore[no-untyped-def]
+    """The IEEE double whose bits are a 64-bit number, for compiled code."""
+    return np.uint64(bits).view(np.float64)
 
 
 @dataclass(frozen=True)
@@ -150,7 +164,7 @@ def layout_of(message: Message) -> FrameLayout:
             s.is_signed,
             float(s.scale),
             float(s.offset),
-            s.unit or "",
+            printable(s.unit or ""),
             s.is_float,
             s.byte_order == "big_endian",
         )

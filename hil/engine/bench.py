@@ -13,6 +13,7 @@ from drivers import BusLoop, DynoDriver, DynoNodes, RmcuDriver, VehicleParameter
 from hil.core.clock import Clock, WallClock
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model, load_model
+from hil.core.printable import printable
 from hil.engine.bench_file import BenchFile
 from sim_backend.bench import Noise, SimulatedBench, SimulationSettings
 from sim_backend.can_interface import attach, detach
@@ -77,9 +78,9 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
 def _open(name: str, interface: str, channel: str, bit_rate: int, options: dict[str, object]) -> can.BusABC:
     try:
         return can.Bus(interface=interface, channel=channel, bitrate=bit_rate, **options)  # type: ignore[arg-type]
-    except (can.CanError, OSError, ValueError, TypeError, ImportError) as error:
+    except Exception as error:  # an adapter's own software raises what it likes
         raise BenchError(
-            f"cannot be opened: {error}",
+            f"cannot be opened: {printable(error, 200) or type(error).__name__}",
             where=f"bus '{name}' ({interface} {channel})",
             fix="check [buses] in the bench file, the adapter and its driver",
         ) from error

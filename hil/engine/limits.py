@@ -9,7 +9,7 @@ from drivers import Binding
 from hil.core.compiled import compiled
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock
-from hil.core.signals import swapped
+from hil.core.signals import double_of, single_of, swapped
 from hil.engine.bench_file import Limits
 
 _SILENCE_S = 0.1
@@ -90,10 +90,18 @@ class LimitWatch:
         )
 
     def _table(self, bus: str) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
-        """Index, frame id, shift, length, signed, big-endian; scale, offset: of the signals of a bus."""
+        """Index, frame id, shift, length, signed, big-endian, float; scale, offset: of a bus's signals."""
         entries = [(i, b) for i, b in enumerate(self._watched) if b.bus == bus]
         places = [
-            (i, b.frame_id, b.signal.shift, b.signal.length, b.signal.signed, b.signal.big_endian)
+            (
+                i,
+                b.frame_id,
+                b.signal.shift,
+                b.signal.length,
+                b.signal.signed,
+                b.signal.big_endian,
+                b.signal.is_float,
+            )
             for i, b in entries
         ]
         return np.array(places, np.int64), np.array([(b.signal.scale, b.signal.offset) for _, b in entries])
@@ -105,16 +113,23 @@ def _scan(ids, times, payloads, places, scales, limits, allowed, largest, beyond
     tripped = -1
     for frame in range(ids.shape[0]):
         for entry in range(places.shape[0]):
-            index, frame_id, shift, length, signed, big_endian = places[entry]
+            index, frame_id, shift, length, signed, big_endian, is_float = places[entry]
             if ids[frame] != frame_id:
                 continue
             word = payloads[frame]
             if big_endian:
                 word = swapped(word)
-            raw = np.int64((word >> np.uint64(shift)) & np.uint64((1 << length) - 1))
-            if signed and raw >> (length - 1):
-                raw -= 1 << length
-            value = abs(raw * scales[entry, 0] + scales[entry, 1])
+            bits = (word >> np.uint64(shift)) & (~np.uint64(0) >> np.uint64(64 - length))
+            if is_float:
+                read = single_of(bits) if length == 32 else double_of(bits)
+            else:
+                raw = np.int64(bits)
+                if signed and raw >> (length - 1):
+                    raw -= 1 << length
+                read = np.float64(raw)
+            value = abs(read * scales[entry, 0] + scales[entry, 1])
+            if np.isnan(value):  # a device that does not know its value is not known to be within the limit
+                value = np.inf
             seen[index] = times[frame]
             largest[index] = max(largest[index], value)
             beyond[index] = beyond[index] + 1 if value > limits[index] else 0

@@ -3,6 +3,15 @@
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import Noise, SimulationSettings
 from sim_backend.bench._traffic import frame_time_s
-from sim_backend.bench._world import DYNO_BUS, RMCU_BUS, SimulatedBench
+from sim_backend.bench._world import DYNO_BUS, RMCU_BUS, SimulatedBench, check_device_files
 
-__all__ = ["DYNO_BUS", "RMCU_BUS", "Fault", "Noise", "SimulatedBench", "SimulationSettings", "frame_time_s"]
+__all__ = [
+    "DYNO_BUS",
+    "RMCU_BUS",
+    "Fault",
+    "Noise",
+    "SimulatedBench",
+    "SimulationSettings",
+    "check_device_files",
+    "frame_time_s",
+]

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from hil.core.checksum import crc8_many
 from hil.core.compiled import compiled
 from hil.core.frames import FRAME, FrameBlock
-from hil.core.signals import FrameLayout
+from hil.core.signals import FrameLayout, Signal
 
 #: A frame with the column of a bench row that each of its signals shows.
 Shown = tuple[FrameLayout, dict[str, int]]
@@ -28,16 +28,23 @@ class CyclicTraffic:
         self._crc = [column for column, layout in enumerate(self._layouts) if layout.id in crc]
         self._ends_s = np.cumsum([frame_time_s(layout.length, bit_rate) for layout in self._layouts])
         places, numbers = [], []
+        self._others: list[tuple[int, int, Signal]] = []  # signals that the compiled loop does not know
         for message, (layout, columns) in enumerate(shown):
             for name, column in columns.items():
                 signal = layout.signals[name]
-                assert not signal.is_float
-                assert not signal.big_endian
+                if signal.is_float or signal.big_endian:
+                    self._others.append((message, column, signal))
+                    continue
                 low = -(1 << (signal.length - 1)) if signal.signed else 0
                 places.append((message, column, signal.shift, signal.length))
                 numbers.append((signal.scale, signal.offset, low, low + (1 << signal.length) - 1))
         self._places = np.array(places, np.int64).reshape(-1, 4)
         self._numbers = np.array(numbers, float).reshape(-1, 4)
+
+    @property
+    def time_s(self) -> float:
+        """How long the frames of one sample take on the wire."""
+        return float(self._ends_s[-1])
 
     def block(self, rows: npt.NDArray[np.float64], start_s: npt.NDArray[np.float64]) -> FrameBlock:
         """Frames of the samples that began at `start_s`, in order of time."""
@@ -47,6 +54,8 @@ class CyclicTraffic:
         block["length"] = [layout.length for layout in self._layouts]
         payloads = np.zeros((len(rows), len(self._layouts)), np.uint64)
         _fill(rows, self._places, self._numbers, payloads)
+        for message, column, signal in self._others:
+            payloads[:, message] |= signal.encode(rows[:, column])
         for column in self._crc:
             payloads[:, column] |= crc8_many(self._layouts[column].id, payloads[:, column]) << np.uint64(56)
         block["data"] = payloads
@@ -58,7 +67,7 @@ def _fill(rows, places, numbers, payloads):  # type: ignore[no-untyped-def]
     for entry in range(places.shape[0]):
         message, column, shift, length = places[entry]
         scale, offset, low, high = numbers[entry]
-        mask = np.uint64((1 << length) - 1)
+        mask = ~np.uint64(0) >> np.uint64(64 - length)
         for i in range(rows.shape[0]):
             count = min(max(np.rint((rows[i, column] - offset) / scale), low), high)
             payloads[i, message] |= (np.uint64(np.int64(count)) & mask) << np.uint64(shift)

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
+from pathlib import Path
 
-import cantools
 import numpy as np
 
+from hil.core.dbc import read_dbc
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block, joined
-from hil.core.signals import FrameLayout, layout_of
+from hil.core.signals import FrameLayout
 from sim_backend.bench import _tick as T
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SimulationSettings
 from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s, single
 from sim_backend.plant import _equations, _slots
-from sim_backend.rcs import DynoNode
+from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rcs import _drive as drive
-from sim_backend.rmcu import LARGEST_TORQUE_NM, RmcuNode
+from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
 from sim_backend.rmcu import _memory as memory
 
 RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
@@ -32,6 +34,16 @@ _SENSED = (
     "shaft_torque_nm",
     "shaft_torque_nm",
 )
+
+
+def check_device_files(dbc: Path, eds: Path) -> None:
+    """Refuse a DBC or an EDS that no simulated bench can be made of.
+
+    Raises:
+        BadInputError: file and what it lacks.
+    """
+    read_dbc(dbc, NEEDED)
+    read_node(eds, 1)
 
 
 class SimulatedBench:
@@ -130,9 +142,9 @@ class SimulatedBench:
 
     def _make_nodes(self) -> None:
         s = self.settings
-        database = cantools.database.load_file(str(s.dbc))
-        self.rmcu = RmcuNode(database, lambda i, data: self._event(RMCU_BUS, i, data))  # type: ignore[arg-type]
-        self._vehicle = layout_of(database.get_message_by_name("RCS_Vehicle"))  # type: ignore[union-attr]
+        dbc = read_dbc(s.dbc, NEEDED)
+        self.rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data))
+        self._vehicle = dbc.layouts["RCS_Vehicle"]
         rows = {s.rear_left: self._drives[0], s.rear_right: self._drives[1]}
         self.dynos = [
             DynoNode(
@@ -150,10 +162,26 @@ class SimulatedBench:
                 node.preset(0x2000, subindex, value)
         self._rmcu_traffic = self._traffic_of_rmcu()
         self._dyno_traffic = self._traffic_of_dynos()
+        self._refuse_slow_buses()
         m = self.rmcu.memory
         m.gains[memory.SAMPLE_TIME] = TICK_S
         m.gains[memory.TORQUE_LIMIT] = LARGEST_TORQUE_NM  # until a controller sets its own
         self._firmware = (m.numerators, m.denominators, m.filter_states, m.gains, m.states)
+
+    def _refuse_slow_buses(self) -> None:
+        """A millisecond's frames must fit into a millisecond, or they would never arrive in order."""
+        s = self.settings
+        for bus, rate, traffic in (
+            (RMCU_BUS, s.rmcu_bit_rate, self._rmcu_traffic),
+            (DYNO_BUS, s.dyno_bit_rate, self._traffic_with(True, True)),
+        ):
+            if traffic.time_s > TICK_S:
+                raise BadInputError(
+                    f"bit_rate = {rate} bit/s is too slow: the frames of each millisecond take "
+                    f"{traffic.time_s * 1e3:.2g} ms",
+                    where=f"simulated bench, bus of the {bus}",
+                    fix=f"give at least {math.ceil(rate * traffic.time_s / TICK_S / 1e4) * 10_000} bit/s",
+                )
 
     # --- one sample ---
 
@@ -278,9 +306,12 @@ class SimulatedBench:
         """What NMT and the SYNC producer let the dynos send now."""
         if not any(node.sync_period_s for node in self.dynos):
             return None
+        return self._traffic_with(self.dynos[0].operational, self.dynos[1].operational)
+
+    def _traffic_with(self, *operational: bool) -> CyclicTraffic:
         shown: list[Shown] = [(_SYNC, {})]
         for side, node in enumerate(self.dynos[:2]):
-            if node.operational:
+            if operational[side]:
                 values = {"Wheel speed": T.WHEEL_LEFT + side, "Shaft torque": T.SHAFT_LEFT + side}
                 status = {
                     "Statusword": T.STATUS_LEFT + side,

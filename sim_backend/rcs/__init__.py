@@ -1,5 +1,5 @@
 """RC-S style dynamometers, emulated: CANopen nodes with CiA 402 drives and a vehicle model."""
 
-from sim_backend.rcs._node import DynoNode
+from sim_backend.rcs._node import DynoNode, read_node
 
-__all__ = ["DynoNode"]
+__all__ = ["DynoNode", "read_node"]

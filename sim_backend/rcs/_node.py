@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,8 @@ import canopen
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.pdo import layout_of_pdo
+from hil.core.pdo import ObjectDictionary, layout_of_pdo, read_eds
+from hil.core.signals import FrameLayout
 from sim_backend.rcs import _drive
 from sim_backend.rcs._power_states import PowerStates, State
 
@@ -19,6 +19,21 @@ _OPERATIONAL = 5
 _MODES = {3: _drive.SPEED, 4: _drive.TORQUE, -1: _drive.VEHICLE}
 _EMCY_HEARTBEAT_LOST = 0x8130
 _SYNC_PRODUCER = 1 << 30
+# What the emulation reads or shows: index and subindex
+_OBJECTS = (
+    (0x1005, 0),
+    (0x1006, 0),
+    (0x1014, 0),
+    (0x1016, 1),
+    (0x1017, 0),
+    (0x6040, 0),
+    (0x6041, 0),
+    (0x6060, 0),
+    (0x6061, 0),
+    (0x6071, 0),
+    (0x6083, 0),
+    (0x60FF, 0),
+)
 
 
 class _Timer:
@@ -56,6 +71,26 @@ class _Network(canopen.Network):  # type: ignore[misc]
         return timer
 
 
+def read_node(
+    eds: Path, node_id: int
+) -> tuple[ObjectDictionary, tuple[FrameLayout, FrameLayout, FrameLayout]]:
+    """The dictionary of an emulated node, and the layouts of its command, values and status PDOs.
+
+    Raises:
+        BadInputError: not an EDS, or it lacks an object or a mapping that the emulation uses.
+    """
+    dictionary = read_eds(eds, node_id, _OBJECTS, floats=tuple((0x2000, i) for i in range(1, 7)))
+    command = ("Controlword", "Target velocity", "Target torque")
+    status = ("Statusword", "Vehicle speed", "Torque actual value")
+    where = str(eds)
+    layouts = (
+        layout_of_pdo(dictionary, 0x1600, 0x200 + node_id, command, where),
+        layout_of_pdo(dictionary, 0x1A00, 0x180 + node_id, ("Wheel speed", "Shaft torque"), where),
+        layout_of_pdo(dictionary, 0x1A01, 0x280 + node_id, status, where),
+    )
+    return dictionary, layouts
+
+
 class DynoNode:
     """A node and its drive; `row` is what the compiled drive law reads (`_drive` columns)."""
 
@@ -67,15 +102,12 @@ class DynoNode:
         self.power = PowerStates()
         self._powered = True
         self._network = _Network(send)
-        self._node: Any = canopen.LocalNode(node_id, str(eds))
-        self._dictionary = self._node.object_dictionary
+        self._dictionary, (self._command, self.values, self.status) = read_node(eds, node_id)
+        self._node: Any = canopen.LocalNode(node_id, self._dictionary)
         self._node.associate_network(self._network)
         self._node.add_write_callback(self._written)
         self._node.nmt.send_command(0)  # boots: boot-up message, then pre-operational
         self._node.nmt.send_command(128)
-        self._command = layout_of_pdo(self._dictionary, 0x1600, 0x200 + node_id)
-        self.values = layout_of_pdo(self._dictionary, 0x1A00, 0x180 + node_id)
-        self.status = layout_of_pdo(self._dictionary, 0x1A01, 0x280 + node_id)
         self._host_heard_s = float("inf")
         self._host_heartbeat, self._host_limit_s = -1, float("inf")
         self._follow()
@@ -141,8 +173,9 @@ class DynoNode:
         self._node.data_store.setdefault(index, {})[0] = variable.encode_raw(value)
 
     def preset(self, index: int, subindex: int, value: float) -> None:
-        """Value of an object before the host has written it."""
-        self._node.data_store.setdefault(index, {})[subindex] = struct.pack("<f", value)
+        """Value of a float object before the host has written it."""
+        variable = self._dictionary[index][subindex]
+        self._node.data_store.setdefault(index, {})[subindex] = variable.encode_raw(value)
 
     def _take_command(self, payload: int) -> None:
         signals = self._command.signals

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from cantools.database.can import Database
-
 from hil.core.checksum import crc8
-from hil.core.signals import layout_of
+from hil.core.dbc import Dbc, Needed
 from sim_backend.rmcu import _memory as M
 from sim_backend.rmcu import _parameters as parameters
 
@@ -15,6 +13,35 @@ REQUEST_TIMEOUT_S = 0.05
 _COUNTER_VALUES = 16
 _NONE, _TIMEOUT, _COUNTER, _CRC, _VEHICLE_SPEED, _PARAMETERS = range(6)
 _READ, _WRITE, _APPLY = range(3)
+
+# What the emulated RMCU and the dyno controller on its bus put into frames or take from them.
+NEEDED = {
+    "RMCU_Request": Needed(
+        ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
+    ),
+    "RMCU_Status": Needed(("MotorSpeed", "MotorTorqueRef", "MotorTorque")),
+    "RMCU_Control": Needed(
+        (
+            "DrivingTorqueRef",
+            "DrivingTorqueEst",
+            "State",
+            "RequestFault",
+            "Saturated",
+            "ParametersValid",
+            "Counter",
+            "Crc",
+        ),
+        whole=("State", "RequestFault", "Saturated", "ParametersValid", "Counter", "Crc"),
+        checksum="Crc",
+    ),
+    "RMCU_ParameterWrite": Needed(("Command", "Index", "Value"), whole=("Command", "Index")),
+    "RMCU_ParameterReply": Needed(
+        ("Command", "Result", "Index", "Value"), whole=("Command", "Result", "Index")
+    ),
+    "RCS_Vehicle": Needed(
+        ("VehicleSpeed", "Counter", "Valid", "Crc"), whole=("Counter", "Valid", "Crc"), checksum="Crc"
+    ),
+}
 
 
 class RmcuNode:
@@ -24,18 +51,18 @@ class RmcuNode:
     layouts of the frames that show the outcome.
     """
 
-    def __init__(self, database: Database, send: Callable[[int, bytes], None]) -> None:
+    def __init__(self, dbc: Dbc, send: Callable[[int, bytes], None]) -> None:
         self.memory = M.Memory()
         self.mode = M.OFF
         self.request = 0.0
         self._send = send
-        self._request = layout_of(database.get_message_by_name("RMCU_Request"))
-        self._write = layout_of(database.get_message_by_name("RMCU_ParameterWrite"))
-        self._reply = layout_of(database.get_message_by_name("RMCU_ParameterReply"))
-        self.status = layout_of(database.get_message_by_name("RMCU_Status"))
-        self.control = layout_of(database.get_message_by_name("RMCU_Control"))
-        choices = database.get_message_by_name("RMCU_ParameterWrite").get_signal_by_name("Index").choices
-        self._names = {int(index): str(name) for index, name in (choices or {}).items() if int(index) > 0}
+        self._request = dbc.layouts["RMCU_Request"]
+        self._write = dbc.layouts["RMCU_ParameterWrite"]
+        self._reply = dbc.layouts["RMCU_ParameterReply"]
+        self.status = dbc.layouts["RMCU_Status"]
+        self.control = dbc.layouts["RMCU_Control"]
+        names = dbc.texts.get(("RMCU_ParameterWrite", "Index"), {})
+        self._names = {index: name for name, index in names.items() if index > 0}
         self._stored: dict[str, float] = {}
         self._valid = False
         self._fault = _NONE
@@ -119,7 +146,7 @@ class RmcuNode:
             result = self._store(name, value)
         answer = self._stored.get(name, float("nan")) if name else float(result)
         reply = self._reply.encode(Command=command, Result=result, Index=index, Value=answer)
-        self._send(self._reply.id, int(reply[0]).to_bytes(8, "little"))
+        self._send(self._reply.id, int(reply[0]).to_bytes(8, "little")[: self._reply.length])
 
     def _store(self, name: str, value: float) -> int:
         if self.mode != M.OFF:

@@ -3,7 +3,6 @@
 import math
 from pathlib import Path
 
-import cantools
 import control
 import numpy as np
 import pytest
@@ -11,15 +10,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.core.checksum import crc8
-from hil.core.signals import layout_of
-from sim_backend.rmcu import REQUEST_TIMEOUT_S, RmcuNode
+from hil.core.dbc import read_dbc
+from sim_backend.rmcu import NEEDED, REQUEST_TIMEOUT_S, RmcuNode
 from sim_backend.rmcu._driving_force_observer import DrivingForceObserver
 from sim_backend.rmcu._filters import settle, step, tustin
 from sim_backend.rmcu._memory import OBSERVER_SPEED, OBSERVER_TORQUE, Memory
 from sim_backend.rmcu._wheel_speed_control import Notch, PhaseLead
 
-DATABASE = cantools.database.load_file(str(Path(__file__).parents[3] / "benches" / "rmcu.dbc"))
-REQUEST = layout_of(DATABASE.get_message_by_name("RMCU_Request"))
+DBC = read_dbc(Path(__file__).parents[3] / "benches" / "rmcu.dbc", NEEDED)
+REQUEST = DBC.layouts["RMCU_Request"]
 DEN = [1.0, 71.59, 6376.0, 2.399e5, 3.867e6, 0.0]
 SHAFT = [212.7, 5.23e4, 1.947e6, 3.14e7, 0.0]
 MOTOR = [46.35, 2604.0, 8.768e4, 5.302e4, 8.547e5]
@@ -112,7 +111,7 @@ def request(counter, mode=1, torque=10.0):
 
 class TestRequests:
     def node(self):
-        return RmcuNode(DATABASE, lambda frame_id, data: None)
+        return RmcuNode(DBC, lambda frame_id, data: None)
 
     def test_good_requests_are_followed(self):
         node = self.node()

@@ -1,0 +1,156 @@
+"""A DBC file as frame layouts, refused where its frames cannot be sent or read as they are described."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import combinations
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import cantools
+
+from hil.core.device_text import read_device_text
+from hil.core.errors import BadInputError
+from hil.core.printable import printable
+from hil.core.signals import FrameLayout, layout_of
+
+if TYPE_CHECKING:
+    from cantools.database.can import Database, Message
+    from cantools.database.can.signal import Signal as DbcSignal
+
+LARGEST_IDENTIFIER = 0x7FF
+_LONGEST_BYTES = 8
+_LONGEST_COUNT = 53  # bits that a float64 holds exactly
+_FIX = "correct the DBC; benches/rmcu.dbc is an example"
+
+# What the parser finds odd it also logs; what matters of it is refused here.
+logging.getLogger("cantools").addHandler(logging.NullHandler())
+
+
+@dataclass(frozen=True)
+class Needed:
+    """What a user of a DBC needs of one message.
+
+    `whole` are counters and enumerations, which have no scaling; `texts` are values that a signal's value
+    table must name; `checksum` is the signal of the frame's CRC, which covers the first seven bytes.
+    """
+
+    signals: tuple[str, ...]
+    whole: tuple[str, ...] = ()
+    texts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    checksum: str = ""
+
+
+@dataclass(frozen=True)
+class Dbc:
+    """Layouts by message name; value tables (text to number) by message and signal name."""
+
+    layouts: dict[str, FrameLayout]
+    texts: dict[tuple[str, str], dict[str, int]]
+
+
+def read_dbc(path: Path, needed: Mapping[str, Needed]) -> Dbc:
+    """Layouts and value tables of the messages that are needed; others in the file are not looked at.
+
+    Raises:
+        BadInputError: not a DBC, or a needed message or signal is missing or cannot be used: file, message,
+            signal.
+    """
+    database = _database(path)
+    found = {}
+    for name, parts in needed.items():
+        try:
+            message = database.get_message_by_name(name)
+        except KeyError:
+            raise BadInputError(
+                f"has no message '{name}'", where=str(path), fix="use the RMCU's DBC"
+            ) from None
+        for mistake in _mistakes(message, parts):
+            raise BadInputError(f"message '{name}'{mistake}", where=str(path), fix=_FIX)
+        found[name] = message
+    for a, b in combinations(found.values(), 2):
+        if a.frame_id == b.frame_id:
+            raise BadInputError(
+                f"messages '{a.name}' and '{b.name}' have the same identifier 0x{a.frame_id:X}",
+                where=str(path),
+                fix=_FIX,
+            )
+    texts = {
+        (name, signal.name): {str(text): int(number) for number, text in signal.choices.items()}
+        for name, message in found.items()
+        for signal in message.signals
+        if signal.choices
+    }
+    return Dbc({name: layout_of(message) for name, message in found.items()}, texts)
+
+
+def _database(path: Path) -> Database:
+    text = read_device_text(path, "check [rmcu] dbc")
+    try:
+        # Not strict: what is wrong with messages that nobody needs is no reason to refuse the file.
+        database = cantools.database.load_string(text, "dbc", strict=False)
+    except Exception as error:  # the parser raises whatever it stumbles over
+        said = " ".join(str(error).removeprefix("DBC: ").strip('"').split())
+        raise BadInputError(
+            f"not a DBC file: {printable(said, 200)}", where=str(path), fix="give the RMCU's DBC"
+        ) from error
+    if not database.messages:  # type: ignore[union-attr]
+        raise BadInputError("is a DBC without messages", where=str(path), fix="give the RMCU's DBC")
+    return database  # type: ignore[return-value]
+
+
+def _mistakes(message: Message, needed: Needed) -> Iterator[str]:
+    """What makes the message unusable; each text goes on after the message's name."""
+    if message.is_extended_frame or message.frame_id > LARGEST_IDENTIFIER:
+        yield f": identifier 0x{message.frame_id:X} is extended (29 bits); the bench's frames have 11 bits"
+    if not 0 < message.length <= _LONGEST_BYTES:
+        yield f" has {message.length} bytes; a classic CAN frame has 1 to {_LONGEST_BYTES}"
+    present = {signal.name: signal for signal in message.signals}
+    used = []
+    for name in needed.signals:
+        if name not in present:
+            yield f" has no signal '{name}'"
+            return
+        used.append(present[name])
+    for signal in used:
+        for mistake in _signal_mistakes(signal, message, signal.name in needed.whole):
+            yield f", signal '{signal.name}' {mistake}"
+    for a, b in combinations(used, 2):
+        if set(_bits(a)) & set(_bits(b)):
+            yield f": signals '{a.name}' and '{b.name}' overlap"
+    for name, texts in needed.texts.items():
+        named = {str(text) for text in (present[name].choices or {}).values()}
+        for text in texts:
+            if text not in named:
+                yield f", signal '{name}' has no value named '{text}' (VAL_)"
+    if needed.checksum and sorted(_bits(present[needed.checksum])) != list(range(56, 64)):
+        yield f", signal '{needed.checksum}' is not byte 7, the last: the CRC covers bytes 0 to 6"
+
+
+def _signal_mistakes(signal: DbcSignal, message: Message, whole: bool) -> Iterator[str]:
+    scale, offset = float(signal.scale), float(signal.offset)
+    if signal.length < 1:
+        yield f"has {signal.length} bits"
+    if signal.multiplexer_ids:
+        yield "is multiplexed; the bench's frames always hold the same signals"
+    if scale == 0 or not math.isfinite(scale) or not math.isfinite(offset):
+        yield f"has the factor {scale:g} and the offset {offset:g}: no value can be told from its bits"
+    if signal.is_float and signal.length not in (32, 64):
+        yield f"is a float of {signal.length} bits; IEEE 754 has 32 or 64"
+    if not signal.is_float and signal.length > _LONGEST_COUNT:
+        yield f"is an integer of {signal.length} bits; at most {_LONGEST_COUNT} are counted exactly"
+    if any(not 0 <= bit < 8 * message.length for bit in _bits(signal)):
+        yield f"reaches beyond the message's {message.length} bytes"
+    if whole and (signal.is_float or signal.is_signed or (scale, offset) != (1.0, 0.0)):
+        yield "counts, and must be unsigned with (1,0)"
+
+
+def _bits(signal: DbcSignal) -> list[int]:
+    """Positions of the signal's bits in the frame: 8·byte + bit, bit 0 the lowest of its byte."""
+    if signal.byte_order == "little_endian":
+        return list(range(signal.start, signal.start + signal.length))
+    first = 8 * (signal.start // 8) + 7 - signal.start % 8  # counted from the frame's first bit on the wire
+    return [8 * (n // 8) + 7 - n % 8 for n in range(first, first + signal.length)]

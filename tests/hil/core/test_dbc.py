@@ -1,0 +1,106 @@
+"""DBC files that cannot be used: each is refused with file, message and signal."""
+
+import os
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hil.core.dbc import Needed, read_dbc
+from hil.core.errors import BadInputError
+
+BENCHES = Path(__file__).parents[3] / "benches"
+TEXT = (BENCHES / "rmcu.dbc").read_text()
+NEEDED = {
+    "RMCU_Request": Needed(("Counter", "Crc"), whole=("Counter", "Crc"), checksum="Crc"),
+    "RMCU_Status": Needed(("MotorSpeed", "MotorTorqueRef", "MotorTorque")),
+    "RMCU_Control": Needed(("State",), whole=("State",), texts={"State": ("off",)}),
+}
+
+
+def refused(text, tmp_path):
+    path = tmp_path / "some.dbc"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(BadInputError) as caught:
+        read_dbc(path, NEEDED)
+    error = caught.value
+    assert error.where == str(path)
+    assert error.fix
+    assert all(c.isprintable() for c in error.what)
+    return error.what
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("SG_ MotorSpeed :", "SG_ Other :", "message 'RMCU_Status' has no signal 'MotorSpeed'"),
+        ("BO_ 256 RMCU_Request", "BO_ 256 Request", "has no message 'RMCU_Request'"),
+        ("24@1- (0.0005,0)", "24@1- (0,0)", "'RMCU_Status', signal 'MotorSpeed' has the factor 0"),
+        ("MotorTorque : 44|20", "MotorTorque : 44|30", "'MotorTorque' reaches beyond the message's 8 bytes"),
+        ("MotorTorqueRef : 24|", "MotorTorqueRef : 20|", "'MotorSpeed' and 'MotorTorqueRef' overlap"),
+        ("BO_ 272", "BO_ 2147483920", "'RMCU_Status': identifier 0x110 is extended"),
+        ("BO_ 272", "BO_ 3000", "more than 11 bits"),
+        ("RMCU_Status: 8", "RMCU_Status: 64", "'RMCU_Status' has 64 bytes"),
+        ("VAL_ 273 State", "VAL_ 273 Counter", "signal 'State' has no value named 'off'"),
+        ("State : 40|4@1+ (1,0)", "State : 40|4@1+ (2,0)", "signal 'State' counts"),
+        ("Crc : 56|8@1+", "Crc : 48|8@1+", "'Crc' is not byte 7"),
+    ],
+)
+def test_what_cannot_be_used_is_told_with_message_and_signal(old, new, said, tmp_path):
+    assert old in TEXT
+    assert said in refused(TEXT.replace(old, new), tmp_path)
+
+
+def test_a_multiplexed_signal_is_refused(tmp_path):
+    text = TEXT.replace("SG_ MotorSpeed :", "SG_ MotorSpeed m0 :")
+    text = text.replace("SG_ MotorTorque :", "SG_ MotorTorque M :")
+    assert "'MotorSpeed' is multiplexed" in refused(text, tmp_path)
+
+
+def test_a_float_of_a_width_that_ieee_does_not_have_is_refused(tmp_path):
+    text = TEXT + "SIG_VALTYPE_ 272 MotorTorque : 1;\n"
+    assert "'MotorTorque' is a float of 20 bits" in refused(text, tmp_path)
+
+
+def test_colliding_identifiers_are_refused(tmp_path):
+    text = TEXT.replace("BO_ 273", "BO_ 272").replace(" 273 ", " 272 ")
+    assert "'RMCU_Status' and 'RMCU_Control' have the same identifier 0x110" in refused(text, tmp_path)
+
+
+def test_what_is_wrong_with_a_message_that_nobody_needs_does_not_matter(tmp_path):
+    path = tmp_path / "some.dbc"
+    path.write_text(TEXT.replace("VehicleSpeed : 0|32@1- (0.00001,0)", "VehicleSpeed : 40|32@1- (0,0)"))
+    assert set(read_dbc(path, NEEDED).layouts) == set(NEEDED)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [b"", b"hello there", b"\0\1\2" * 100, (BENCHES / "rcs_dyno.eds").read_bytes(), b"BO_ \x1b[31m red"],
+)
+def test_another_kind_of_file_is_refused_without_its_control_characters(content, tmp_path):
+    assert "not a DBC file" in refused(content, tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["missing", "directory", "device"])
+def test_what_is_no_file_is_refused(kind, tmp_path):
+    path = {"missing": tmp_path / "none.dbc", "directory": tmp_path, "device": Path(os.devnull)}[kind]
+    with pytest.raises(BadInputError, match=re.escape(str(path))):
+        read_dbc(path, NEEDED)
+
+
+@settings(max_examples=50)
+@given(data=st.data())
+def test_a_damaged_dbc_is_read_or_refused_but_never_more(data):
+    content = bytearray(TEXT.encode())
+    for _ in range(data.draw(st.integers(1, 4))):
+        content[data.draw(st.integers(0, len(content) - 1))] ^= 1 << data.draw(st.integers(0, 7))
+    path = Path(os.environ.get("TMPDIR", "/tmp")) / f"damaged-{os.getpid()}.dbc"
+    path.write_bytes(bytes(content))
+    try:
+        read_dbc(path, NEEDED)
+    except BadInputError:
+        pass
+    finally:
+        path.unlink()
