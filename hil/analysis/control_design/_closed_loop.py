@@ -60,8 +60,10 @@ def _held(plant: TransferFunction, step: float) -> _StateSpace:
     late = int(np.floor(whole + _ROUNDING))
     rest = max(0.0, whole - late) * step
     a, b, c, d = signal.tf2ss(plant.numerator, plant.denominator)
-    balanced, scale = linalg.matrix_balance(a)
-    entering, leaving = np.linalg.solve(scale, b), c @ scale
+    even, scale = linalg.matrix_balance(a)
+    balanced: Array = np.asarray(even, float)
+    entering: Array = np.asarray(np.linalg.solve(scale, b), float)
+    leaving = c @ scale
     after, new = _advanced(balanced, entering, step - rest)
     through, old = _advanced(balanced, entering, rest)
     order, size = len(a), len(a) + late + 1

@@ -89,7 +89,7 @@ def design(
     at, step, pi = plant.resonance_hz, spec.sample_time_s, loops[1].sampled
     chart = trade_off(frequency, pi, at, spec.normalisation, step, origin_poles=origin_poles)
     robust = _robustness(coarse, held, blocks, step, origin_poles, plants.source)
-    warnings = warnings_of(chosen.margins, robust)
+    warnings = (*_doubts(model), *warnings_of(chosen.margins, robust))
     controller = _controller(model, spec, plant, wsc, notes, warnings)
     return Design(
         controller,
@@ -106,6 +106,12 @@ def design(
         tuple(notes),
         warnings,
     )
+
+
+def _doubts(model: Model) -> tuple[str, ...]:
+    """What the model file itself says against its use."""
+    doubt = model.meta.get("warning")
+    return (f"the model is doubtful: {doubt}",) if isinstance(doubt, str) and doubt else ()
 
 
 def _check_notch(spec: DesignSpec, resonance_hz: float) -> None:

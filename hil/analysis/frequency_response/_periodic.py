@@ -121,6 +121,7 @@ def best_linear_approximation(
         f"periodic, {len(realisations)} realisations of {len(realisations[0].input)} periods of "
         f"{period * step:.4g} s",
         _distortion(realisations, response, excited, harmonics, frequency),
+        realisations=len(realisations),
     )
 
 
@@ -218,6 +219,15 @@ def _distortion(
     noise_power = np.mean([np.var(c, axis=1, ddof=1) / c.shape[1] for c in cleaned], axis=0)
     odd, even = silent & (harmonics % 2 == 1), silent & (harmonics % 2 == 0)
     level, noise = np.sqrt(2 * mean_power), np.sqrt(2 * noise_power)
+    linear = np.array([np.interp(lines, lines[excited], row) for row in _linear_level(realisations, excited)])
+    beyond = np.sqrt(np.maximum(level**2 - noise**2, 0.0)) / np.maximum(linear, 1e-300)
+    share = np.max([np.median(beyond[:, part], axis=1) for part in (odd, even) if part.any()], axis=0)
     return Distortion(
-        frequency[odd], level[:, odd], noise[:, odd], frequency[even], level[:, even], noise[:, even]
+        frequency[odd], level[:, odd], noise[:, odd], frequency[even], level[:, even], noise[:, even], share
     )
+
+
+def _linear_level(realisations: Sequence[_Realisation], excited: npt.NDArray[np.bool_]) -> Array:
+    """Rms of the output at the excited lines, O x lines, in the output's unit."""
+    power = [np.abs(np.mean(r.output[:, :, excited], axis=1)) ** 2 for r in realisations]
+    return np.asarray(np.sqrt(2 * np.mean(power, axis=0)))

@@ -23,7 +23,9 @@ class Distortion:
     """Output at frequencies that the input leaves out (Pintelon & Schoukens, 2nd ed., ch. 4).
 
     Levels are root mean squares of one spectral line, in the output's unit; `noise` is the level that
-    period-to-period scatter alone would give at the same lines. Arrays are outputs x lines.
+    period-to-period scatter alone would give at the same lines. Arrays are outputs x lines. `share` has one
+    value an output: the larger of odd and even level beyond noise, relative to the linear response to the
+    neighbouring lines (median over lines).
     """
 
     odd_frequency_hz: Array
@@ -32,6 +34,7 @@ class Distortion:
     even_frequency_hz: Array
     even: Array
     even_noise: Array
+    share: Array = field(default_factory=lambda: np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,7 @@ class FrequencyResponse:
         independent_every: neighbours share data; every `independent_every`-th value is independent.
         method: how it was estimated.
         notes: what was mended, merged or left out.
+        realisations: of random phases that were averaged, periodic method only.
     """
 
     frequency_hz: Array
@@ -64,6 +68,7 @@ class FrequencyResponse:
     method: str
     distortion: Distortion | None = None
     notes: tuple[str, ...] = field(default=())
+    realisations: int = 1
 
     def of(self, output: str) -> ComplexArray:
         """Response of one output; KeyError if it was not estimated."""

@@ -20,6 +20,7 @@ from hil.analysis.identification._identify import Identification, identify
 from hil.analysis.identification._modal import Modes, Structure
 from hil.analysis.identification._order import ORDERS, Candidate, OrderChoice, choose_order
 from hil.analysis.identification._table import fit_of, model_of
+from hil.analysis.identification._trust import Judgement, Trust, judge
 
 __all__ = [
     "CHAINS",
@@ -31,10 +32,12 @@ __all__ = [
     "ChainFit",
     "Fit",
     "Identification",
+    "Judgement",
     "Misfit",
     "Modes",
     "OrderChoice",
     "Structure",
+    "Trust",
     "chain_polynomials",
     "chain_response",
     "choose_chain",
@@ -44,6 +47,7 @@ __all__ = [
     "fit_chain",
     "fit_of",
     "identify",
+    "judge",
     "model_of",
     "transfer_functions_of",
 ]

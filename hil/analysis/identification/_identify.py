@@ -10,13 +10,17 @@ from hil.analysis.identification._chain_fit import ChainChoice, choose_chain
 from hil.analysis.identification._fit import Fit
 from hil.analysis.identification._order import ORDERS, OrderChoice, choose_order
 from hil.analysis.identification._table import model_of
+from hil.analysis.identification._trust import Judgement, Trust, judge
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
 
 
 @dataclass(frozen=True)
 class Identification:
-    """What `hil identify` finds; `chain` and `physical` are None without motor speed and another output."""
+    """What `hil identify` finds; `chain` and `physical` are None without motor speed and another output.
+
+    `judgement` tells whether the model may be trusted. A doubtful one carries `[meta] warning`.
+    """
 
     frf: FrequencyResponse
     orders: OrderChoice
@@ -24,6 +28,17 @@ class Identification:
     model: Model
     physical: Model | None
     notes: tuple[str, ...]
+    judgement: Judgement
+
+    @property
+    def verdict(self) -> Trust:
+        """'linear' when the model may be trusted with its standard errors, else 'doubtful'."""
+        return self.judgement.verdict
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Why the model is doubtful, for people; empty when it is not."""
+        return self.judgement.warnings
 
     @property
     def fit(self) -> Fit:
@@ -54,13 +69,14 @@ def identify(
 
     Raises:
         UnfitDataError: the data cannot give a frequency response.
-        BadInputError: arguments that make no sense, or too few data.
+        BadInputError: arguments that make no sense, too few data, or data that no linear model explains.
     """
     progress("frequency response")
     frf = estimate(experiments, from_hz=from_hz, to_hz=to_hz, method=method)
     orders = choose_order(frf, ORDERS if order is None else (order,), progress=progress)
     fit = orders.best.fit
-    notes = list(frf.notes)
+    judgement = judge(frf, orders.best)
+    notes = [*frf.notes, *judgement.remarks]
     chain = None
     if OUTPUTS[0] in frf.outputs and len(frf.outputs) > 1:
         chain = choose_chain(frf, gear_ratio=gear_ratio, torque_delay_s=fit.modes.delay_s, progress=progress)
@@ -68,17 +84,32 @@ def identify(
             notes.append(chain.reason)
     else:
         notes.append(f"no chain was fitted: that needs '{OUTPUTS[0]}' and another output")
-    meta = {
-        "sources": [experiment.name for experiment in experiments],
+    sources = [experiment.name for experiment in experiments]
+    model = model_of(fit, _meta(frf, fit, chain, judgement, sources))
+    physical = None if chain is None else _physical(chain, judgement, sources)
+    return Identification(frf, orders, chain, model, physical, tuple(notes), judgement)
+
+
+def _meta(
+    frf: FrequencyResponse, fit: Fit, chain: ChainChoice | None, judgement: Judgement, sources: list[str]
+) -> dict[str, object]:
+    """What the model file says beside the functions; standard errors only where they hold."""
+    meta: dict[str, object] = {
+        "sources": sources,
         "method": frf.method,
         "band_hz": [float(frf.frequency_hz[0]), float(frf.frequency_hz[-1])],
-        "dead_time_standard_error_s": fit.delay_error_s,
-        "standard_errors": _standard_errors(fit),
+        "verdict": judgement.verdict,
     }
+    if judgement.verdict == "linear":
+        meta |= {
+            "dead_time_standard_error_s": fit.delay_error_s,
+            "standard_errors": _standard_errors(fit),
+        }
+    else:
+        meta["warning"] = "; ".join(judgement.warnings)
     if chain is not None and chain.best.model.kind == "three_inertia":
         meta["chain"] = dict(chain.best.model.parameters)
-    physical = None if chain is None else _physical(chain, meta["sources"])
-    return Identification(frf, orders, chain, model_of(fit, meta), physical, tuple(notes))
+    return meta
 
 
 def _standard_errors(fit: Fit) -> dict[str, list[float]]:
@@ -89,13 +120,17 @@ def _standard_errors(fit: Fit) -> dict[str, list[float]]:
     return errors
 
 
-def _physical(chain: ChainChoice, sources: object) -> Model:
+def _physical(chain: ChainChoice, judgement: Judgement, sources: list[str]) -> Model:
     best = chain.best
-    meta = {
+    meta: dict[str, object] = {
         "sources": sources,
         "reason": chain.reason,
         "explains_the_data": best.explains,
-        "standard_errors": best.standard_errors,
+        "verdict": judgement.verdict,
         "misfit": {name: {"gain_db": m.gain_db, "phase_deg": m.phase_deg} for name, m in best.misfit.items()},
     }
+    if judgement.verdict == "linear":
+        meta["standard_errors"] = best.standard_errors
+    else:
+        meta["warning"] = "; ".join(judgement.warnings)
     return Model(best.model.kind, dict(best.model.parameters), meta=meta)

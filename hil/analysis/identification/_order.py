@@ -22,6 +22,7 @@ _BLOCK = 6
 _WORTHWHILE = 0.8
 _NEGLIGIBLE = 0.005
 _LAGS = 10
+_SURE = 0.2  # of the response: noise below this
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Candidate:
     Attributes:
         fit: the fit to all data.
         held_out: mean squared error on data left out of the fit, in noise variances; 1 is noise.
-        excess: rms relative error on data left out, beyond what noise explains.
+        excess: rms relative error on data left out, beyond what noise explains, where noise is small.
         whiteness: smallest p-value over the outputs of a Ljung-Box test along frequency; below 0.01 the
             residual still has a shape.
     """
@@ -119,10 +120,22 @@ def evaluate(frf: FrequencyResponse, order: int, *, integrator: bool) -> Candida
         part = fit(frf, order, integrator=integrator, start=whole.modes, rows=~left_out)
         error[:, left_out] = frf.response[:, left_out] - part.modes.response(frf.frequency_hz[left_out])
     size = np.abs(frf.response)
-    excess = float(np.mean((np.abs(error) / size) ** 2) - np.mean((deviation / size) ** 2))
+    excess = _excess(np.abs(error), deviation, size)
     held_out = float(np.mean(np.abs(error / deviation) ** 2))
     whiteness = min(_ljung_box(row[:: frf.independent_every]) for row in whole.residual)
-    return Candidate(whole, held_out, float(np.sqrt(max(excess, 0.0))), whiteness)
+    return Candidate(whole, held_out, excess, whiteness)
+
+
+def _excess(error: Array, deviation: Array, size: Array) -> float:
+    """Rms relative error beyond noise, over the values that noise leaves sure.
+
+    A few values that are mostly noise would outweigh all others, and hide a fit that misses everything.
+    """
+    sure = deviation < _SURE * size
+    if not sure.any():
+        sure = np.ones(size.shape, bool)
+    beyond = float(np.mean((error[sure] / size[sure]) ** 2) - np.mean((deviation[sure] / size[sure]) ** 2))
+    return float(np.sqrt(max(beyond, 0.0)))
 
 
 def _ljung_box(residual: npt.NDArray[np.complex128]) -> float:

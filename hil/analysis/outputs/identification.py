@@ -54,7 +54,16 @@ def summary_of(found: Identification, experiments: list[Experiment], files: list
     numerators, denominator = fit.polynomials()
     numerator_errors, denominator_errors = fit.coefficient_errors()
     poles = fit.modes.pole_locations()
+    sure = found.verdict == "linear"  # misfit that is no noise makes standard errors meaningless
     return {
+        "verdict": found.verdict,
+        "warnings": list(found.warnings),
+        "quality": {
+            "misfit": found.judgement.misfit,
+            "distortion": found.judgement.distortion,
+            "coherence": found.judgement.coherence,
+            "meaning": "relative to the response, medians over frequency; misfit and distortion beyond noise",
+        },
         "experiments": [
             {"name": e.name, "duration_s": e.duration_s, "kind": e.kind, "input_hold_s": e.hold_s}
             for e in experiments
@@ -68,12 +77,12 @@ def summary_of(found: Identification, experiments: list[Experiment], files: list
         },
         "order": best.order,
         "integrator": best.integrator,
-        "dead_time_s": {"value": fit.modes.delay_s, "standard_error": fit.delay_error_s},
+        "dead_time_s": {"value": fit.modes.delay_s, "standard_error": fit.delay_error_s if sure else None},
         "resonance_hz": _resonance(found),
         "poles_rad_s": [{"real": float(p.real), "imag": float(p.imag)} for p in poles],
-        "denominator": {"values": denominator, "standard_errors": denominator_errors},
+        "denominator": {"values": denominator, "standard_errors": denominator_errors if sure else None},
         "numerators": {
-            name: {"values": values, "standard_errors": errors}
+            name: {"values": values, "standard_errors": errors if sure else None}
             for name, values, errors in zip(fit.outputs, numerators, numerator_errors, strict=True)
         },
         "chi_square": fit.chi_square,
@@ -108,7 +117,7 @@ def _chains(found: Identification) -> list[dict[str, Any]]:
             "explains": one.explains,
             "chosen": one is found.chain.best,
             "parameters": one.model.parameters,
-            "standard_errors": one.standard_errors,
+            "standard_errors": one.standard_errors if found.verdict == "linear" else None,
             "misfit": {
                 name: {
                     "gain_db": m.gain_db,
@@ -142,14 +151,18 @@ def _distortion(found: Identification) -> dict[str, Any] | None:
 
 
 def text_of(found: Identification, summary: dict[str, Any], out: Path) -> str:
-    """What a person reads."""
+    """What a person reads; a doubtful model begins with its warnings and has no standard errors."""
     frf, fit = found.frf, found.fit
-    lines = [
+    lines = [f"WARNING: {warning}" for warning in found.warnings]
+    if lines:
+        lines.append("The model below is doubtful. Do not design a controller from it unchecked.")
+    error = f" ± {fit.delay_error_s * 1e3:.3f}" if found.verdict == "linear" else ""
+    lines += [
         f"{len(summary['experiments'])} experiment(s), "
         f"{frf.frequency_hz[0]:.3g}-{frf.frequency_hz[-1]:.3g} Hz, "
         f"{len(frf.frequency_hz)} frequencies, {frf.method}",
         f"order {summary['order']}, "
-        f"dead time {fit.modes.delay_s * 1e3:.3f} ± {fit.delay_error_s * 1e3:.3f} ms beside a hold of "
+        f"dead time {fit.modes.delay_s * 1e3:.3f}{error} ms beside a hold of "
         f"{summary['experiments'][0]['input_hold_s'] * 1e3:g} ms"
         + (f", resonance {summary['resonance_hz']:.2f} Hz" if summary["resonance_hz"] else ""),
         "",
