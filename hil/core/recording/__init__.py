@@ -10,17 +10,13 @@ import numpy as np
 
 from hil.core.channels import WHEEL_ANGLE
 from hil.core.errors import BadInputError
+from hil.core.recording._csv_reader import read_csv
+from hil.core.recording._csv_writer import write_csv
 from hil.core.recording._mcap_reader import read_frames, read_mcap
 from hil.core.recording._mcap_writer import RecordingWriter
+from hil.core.recording._mdf import read_mdf, write_mdf
+from hil.core.recording._parquet import read_parquet, write_parquet
 from hil.core.recording._table import Event, Recording, checked
-from hil.core.recording._tables_on_disk import (
-    read_csv,
-    read_mdf,
-    read_parquet,
-    write_csv,
-    write_mdf,
-    write_parquet,
-)
 from hil.core.result import RunResult
 
 #: Prefix of the metadata records that hold a run's segments, written as each begins.

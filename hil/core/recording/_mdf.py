@@ -1,0 +1,130 @@
+"""MDF4 with asammdf: channels in groups, each group with time stamps of its own."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hil.core.channels import CHANNELS, INPUT, TIME
+from hil.core.errors import BadInputError
+from hil.core.files import replacing
+from hil.core.recording._regular_file import refuse_unless_regular
+from hil.core.recording._table import Array, Recording
+
+_SAMPLES_AT_ONCE = 1 << 20
+_VALUES = (0, 4)  # channel types of the standard: fixed length, synchronization; not masters or text
+
+
+def read_mdf(path: Path) -> Recording:
+    """Read MDF4; channels of other groups are put on the time stamps of the input's group.
+
+    Raises:
+        BadInputError: no MDF file or a broken one, or a known channel that is no column of numbers.
+    """
+    refuse_unless_regular(path)
+    from asammdf import MDF  # slow to import, and seldom needed
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            with MDF(path) as mdf:
+                return _Groups(mdf, path).read()
+    except BadInputError:
+        raise
+    except Exception as error:  # of many kinds, for whatever is broken
+        raise BadInputError("not an MDF file, or a broken one", where=str(path)) from error
+
+
+class _Groups:
+    """The channels of an open MDF file, one at a time so that the table is not held twice."""
+
+    def __init__(self, mdf: Any, path: Path) -> None:
+        self._mdf = mdf
+        self._path = path
+        self._notes: list[str] = []
+        self._places: dict[str, tuple[int, int]] = {}
+        for group, content in enumerate(mdf.groups):
+            for index, channel in enumerate(content.channels):
+                if channel.channel_type in _VALUES:
+                    self._place(str(channel.name), group, index)
+
+    def _place(self, name: str, group: int, index: int) -> None:
+        if name not in self._places:
+            self._places[name] = (group, index)
+        elif name in CHANNELS:
+            raise BadInputError(f"channel '{name}' stands twice", where=str(self._path))
+        else:
+            self._notes.append(f"channel '{name}' stands twice; the first was taken")
+
+    def read(self) -> Recording:
+        channels: dict[str, Array] = {}
+        if self._places:
+            base = self._places.get(INPUT, next(iter(self._places.values())))[0]
+            masters = {group: self._master(group) for group in {g for g, _ in self._places.values()}}
+            time_s = masters[base]
+            if self._places.get(TIME, (-1, 0))[0] != base:
+                channels[TIME] = time_s
+                self._places.pop(TIME, None)
+            for name, (group, index) in self._places.items():
+                values = self._values(name, group, index)
+                if values is not None and group != base:
+                    values = self._moved(name, masters[group], values, time_s)
+                if values is not None:
+                    channels[name] = values
+        return Recording(channels, self._path, notes=self._notes)
+
+    def _master(self, group: int) -> Array:
+        return np.asarray(self._mdf.get_master(group), np.float64)
+
+    def _values(self, name: str, group: int, index: int) -> Array | None:
+        signal = self._mdf.get(group=group, index=index)
+        if signal.samples.ndim != 1 or signal.samples.dtype.kind not in "iufb":
+            self._refuse(name, "is not numeric")
+            return None
+        values: Array = signal.samples.astype(np.float64)
+        if signal.invalidation_bits is not None:
+            values[np.asarray(signal.invalidation_bits, bool)] = np.nan
+        return values
+
+    def _moved(self, name: str, own_s: Array, values: Array, time_s: Array) -> Array | None:
+        """Values between their own time stamps, NaN outside of them."""
+        if np.array_equal(own_s, time_s):
+            return values
+        if len(own_s) == 0 or np.any(np.diff(own_s) <= 0):
+            self._refuse(name, "has time stamps of its own that do not increase")
+            return None
+        self._notes.append(f"channel '{name}' was interpolated at the time stamps of '{INPUT}'")
+        return np.interp(time_s, own_s, values, left=np.nan, right=np.nan)
+
+    def _refuse(self, name: str, why: str) -> None:
+        if name in CHANNELS:
+            raise BadInputError(why, where=f"{self._path}: channel '{name}'")
+        self._notes.append(f"channel '{name}' {why} and was left out")
+
+
+def write_mdf(recording: Recording, path: Path) -> None:
+    """Write MDF 4.10 with units and comments, a stretch at a time so that the samples are not held twice."""
+    from asammdf import MDF, Signal
+
+    names = [name for name in recording.channels if name != TIME]
+    time_s = recording.time_s
+    with replacing(path) as temporary, MDF(version="4.10") as mdf:
+        first = slice(0, _SAMPLES_AT_ONCE)
+        signals = [
+            Signal(
+                samples=recording[name][first],
+                timestamps=time_s[first],
+                name=name,
+                unit=CHANNELS[name].unit if name in CHANNELS else "",
+                comment=CHANNELS[name].meaning if name in CHANNELS else "",
+            )
+            for name in names
+        ]
+        mdf.append(signals, comment="eaxle-hil recording", common_timebase=True)
+        for start in range(_SAMPLES_AT_ONCE, len(time_s), _SAMPLES_AT_ONCE):
+            stretch = slice(start, start + _SAMPLES_AT_ONCE)
+            mdf.extend(0, [(values[stretch], None) for values in (time_s, *(recording[n] for n in names))])
+        mdf.save(temporary, overwrite=True, compression=2)

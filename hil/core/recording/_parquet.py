@@ -1,0 +1,92 @@
+"""Parquet: one column a channel, its unit in the schema."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from hil.core.channels import CHANNELS
+from hil.core.errors import BadInputError
+from hil.core.files import replacing
+from hil.core.recording._regular_file import refuse_unless_regular
+from hil.core.recording._table import Array, Recording
+
+
+def read_parquet(path: Path) -> Recording:
+    """Read a Parquet table, one column a channel.
+
+    Raises:
+        BadInputError: no Parquet file or a broken one, or a known channel that is no column of numbers.
+    """
+    refuse_unless_regular(path)
+    channels: dict[str, Array] = {}
+    notes = []
+    try:
+        with pq.ParquetFile(path, page_checksum_verification=True) as file:
+            fields = file.schema_arrow
+            _refuse_twice(fields.names, path)
+            for field in fields:
+                if _is_number(field.type):
+                    channels[field.name] = _column(file, field.name)
+                elif field.name in CHANNELS:
+                    raise BadInputError(
+                        f"holds {field.type}, not numbers",
+                        where=f"{path}: column '{field.name}'",
+                        fix="write it as 64-bit floats in the unit of its name",
+                    )
+                else:
+                    notes.append(f"column '{field.name}' is not numeric ({field.type}) and was left out")
+    except BadInputError:
+        raise
+    except Exception as error:  # of many kinds, for whatever is broken
+        raise BadInputError("not a Parquet file, or a broken one", where=str(path)) from error
+    return Recording(channels, path, notes=notes)
+
+
+def write_parquet(recording: Recording, path: Path) -> None:
+    """Write Parquet with a checksum for each page; each column carries its unit in its field's metadata."""
+    fields = [
+        pa.field(name, pa.float64(), metadata={"unit": CHANNELS[name].unit if name in CHANNELS else ""})
+        for name in recording.channels
+    ]
+    table = pa.table(list(recording.channels.values()), schema=pa.schema(fields))
+    with replacing(path) as temporary:
+        pq.write_table(table, temporary, compression="zstd", write_page_checksum=True)
+
+
+def _refuse_twice(names: list[str], path: Path) -> None:
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise BadInputError(f"column '{twice[0]}' stands twice", where=str(path))
+
+
+def _is_number(kind: Any) -> bool:
+    types = pa.types
+    plain = kind.value_type if types.is_dictionary(kind) else kind
+    return bool(
+        types.is_integer(plain)
+        or types.is_floating(plain)
+        or types.is_decimal(plain)
+        or types.is_boolean(plain)
+        or types.is_null(plain)
+    )
+
+
+def _column(file: Any, name: str) -> Array:
+    """One column as doubles; missing cells are NaN. One at a time, so that the table is not held twice."""
+    values = np.empty(file.metadata.num_rows)
+    filled = 0
+    for batch in file.iter_batches(batch_size=1 << 16, columns=[name], use_threads=False):
+        column = batch.column(0)
+        if pa.types.is_dictionary(column.type):
+            column = column.dictionary_decode()
+        block = column.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False)
+        values[filled : filled + len(block)] = block
+        filled += len(block)
+    if filled != len(values):
+        raise ValueError("fewer rows than the file says")
+    return values
