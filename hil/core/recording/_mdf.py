@@ -15,7 +15,7 @@ from hil.core.recording._regular_file import refuse_unless_regular
 from hil.core.recording._table import Array, Recording
 
 _SAMPLES_AT_ONCE = 1 << 20
-_VALUES = (0, 4)  # channel types of the standard: fixed length, synchronization; not masters or text
+_MASTERS = (2, 3)  # channel types of the standard: time stamps, stored or counted
 
 
 def read_mdf(path: Path) -> Recording:
@@ -48,7 +48,7 @@ class _Groups:
         self._places: dict[str, tuple[int, int]] = {}
         for group, content in enumerate(mdf.groups):
             for index, channel in enumerate(content.channels):
-                if channel.channel_type in _VALUES:
+                if channel.channel_type not in _MASTERS:
                     self._place(str(channel.name), group, index)
 
     def _place(self, name: str, group: int, index: int) -> None:
