@@ -6,7 +6,6 @@ without their dead time, from which the RMCU builds the filters (17) and (18).
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,7 +13,8 @@ import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from hil.core.errors import BadInputError
-from hil.core.files import read_text, write_atomically
+from hil.core.files import write_atomically
+from hil.core.toml_file import load_toml, parse_toml
 
 LARGEST_ORDER = 7
 Coefficients = tuple[float, ...]
@@ -115,15 +115,17 @@ def load_controller(path: Path) -> Controller:
     Raises:
         BadInputError: names the key that is unknown, missing or out of range.
     """
-    return controller_from_toml(read_text(path), str(path))
+    return _checked(load_toml(path), str(path))
 
 
 def controller_from_toml(text: str, where: str) -> Controller:
     """Check the text of a controller file; `where` names it in messages."""
+    return _checked(parse_toml(text, where), where)
+
+
+def _checked(data: dict[str, Any], where: str) -> Controller:
     try:
-        return Controller.model_validate(tomllib.loads(text))
-    except tomllib.TOMLDecodeError as error:
-        raise BadInputError(f"not a TOML file: {error}", where=where) from error
+        return Controller.model_validate(data)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-import tomllib
+import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,9 +12,10 @@ import numpy as np
 import tomli_w
 
 from hil.core.channels import OUTPUTS
-from hil.core.effects import EFFECTS
+from hil.core.effects import EFFECTS, finite_number, shown
 from hil.core.errors import BadInputError
-from hil.core.files import read_text, write_atomically
+from hil.core.files import write_atomically
+from hil.core.toml_file import load_toml
 
 # name: (unit, may be zero)
 _PARAMETER = {
@@ -54,6 +54,7 @@ _KINDS: dict[str, tuple[str, ...]] = {
     "transfer_function": (),
 }
 _LARGEST_DELAY_S = 1.0
+_SIZES = (1e-12, 1e12)  # of a parameter in SI units: beyond, a unit is wrong and arithmetic overflows
 
 
 @dataclass(frozen=True)
@@ -91,13 +92,14 @@ class Model:
 
     def with_parameters(self, **changes: float) -> Model:
         """The same model with other parameter values."""
-        return Model(
-            self.kind, self.parameters | changes, self.effects, self.transfer_functions, dict(self.meta)
-        )
+        parameters = self.parameters | changes
+        return dataclasses.replace(self, parameters=parameters, meta=dict(self.meta))
 
     def with_effects(self, *effects: EffectUse) -> Model:
         """The same model with `effects` in place of its own."""
-        return Model(self.kind, dict(self.parameters), effects, self.transfer_functions, dict(self.meta))
+        return dataclasses.replace(
+            self, parameters=dict(self.parameters), effects=effects, meta=dict(self.meta)
+        )
 
 
 def parameter_names(kind: str) -> tuple[str, ...]:
@@ -116,12 +118,7 @@ def load_model(path: Path) -> Model:
     Raises:
         BadInputError: not readable, not TOML, or a key that is unknown, missing or not physical.
     """
-    text = read_text(path)
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise BadInputError(f"not a TOML file: {error}", where=str(path)) from error
-    return model_from_dict(data, str(path))
+    return model_from_dict(load_toml(path), str(path))
 
 
 def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
@@ -129,7 +126,7 @@ def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
     _no_others(data, ("kind", "parameters", "effects", "transfer_functions", "meta"), "", where)
     kind = data.get("kind")
     if not isinstance(kind, str) or kind not in _KINDS:
-        raise BadInputError(f"kind is {kind!r}", where=where, fix=f"kind is one of: {', '.join(_KINDS)}")
+        raise BadInputError(f"kind is {shown(kind)}", where=where, fix=f"kind is one of: {', '.join(_KINDS)}")
     functions = _functions(data.get("transfer_functions"), kind, where)
     meta = data.get("meta", {})
     if not isinstance(meta, dict):
@@ -176,44 +173,57 @@ def _parameters(table: Any, kind: str, where: str) -> dict[str, float]:
     _no_others(table, names, "parameters.", where)
     checked = {}
     for name in names:
-        unit, may_be_zero = _PARAMETER[name]
         if name not in table:
-            raise BadInputError(f"parameters.{name} ({unit}) is missing", where=where)
-        value = _finite(table[name], f"parameters.{name}", unit, where)
-        if value < 0 or (value == 0 and not may_be_zero):
-            raise BadInputError(
-                f"parameters.{name} = {value:g} {unit}",
-                where=where,
-                fix="it must be positive" if not may_be_zero else "it must not be negative",
-            )
-        if name == "torque_delay" and value > _LARGEST_DELAY_S:
-            raise BadInputError(
-                f"parameters.torque_delay = {value:g} s",
-                where=where,
-                fix="is it in milliseconds? Give seconds",
-            )
-        checked[name] = value
+            raise BadInputError(f"parameters.{name} ({parameter_unit(name)}) is missing", where=where)
+        checked[name] = _checked_parameter(name, table[name], f"parameters.{name}", where)
     return checked
 
 
-def _finite(value: Any, key: str, unit: str, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+def _checked_parameter(name: str, given: Any, key: str, where: str) -> float:
+    unit, may_be_zero = _PARAMETER[name]
+    value = _finite(given, key, unit, where)
+    if value < 0 or (value == 0 and not may_be_zero):
         raise BadInputError(
-            f"{key} is {value!r}, not a finite number", where=where, fix=f"give a plain number in {unit}"
+            f"{key} = {value:g} {unit}",
+            where=where,
+            fix="it must be positive" if not may_be_zero else "it must not be negative",
         )
-    return float(value)
+    if name == "torque_delay" and value > _LARGEST_DELAY_S:
+        raise BadInputError(f"{key} = {value:g} s", where=where, fix="is it in milliseconds? Give seconds")
+    _sensible(value, key, unit, where)
+    return value
+
+
+def _sensible(value: float, key: str, unit: str, where: str) -> None:
+    if value != 0 and not _SIZES[0] <= abs(value) <= _SIZES[1]:
+        raise BadInputError(
+            f"{key} = {value:g} {unit}",
+            where=where,
+            fix=f"it lies from {_SIZES[0]:g} to {_SIZES[1]:g}: is it in another unit?",
+        )
+
+
+def _finite(value: Any, key: str, unit: str, where: str) -> float:
+    number = finite_number(value)
+    if number is None:
+        raise BadInputError(
+            f"{key} is {shown(value)}, not a finite number",
+            where=where,
+            fix=f"give a plain number in {unit}",
+        )
+    return number
 
 
 def _effects(entries: Any, kind: str, where: str) -> tuple[EffectUse, ...]:
     if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
         raise BadInputError("effects must be written as [[effects]] tables", where=where)
-    uses = []
+    uses: list[EffectUse] = []
     for number, entry in enumerate(entries, 1):
         place = f"{where}: effects[{number}]"
         effect = EFFECTS.get(str(entry.get("id", "")))
         if effect is None:
             raise BadInputError(
-                f"unknown effect id {entry.get('id')!r}", where=place, fix=f"known: {', '.join(EFFECTS)}"
+                f"unknown effect id {shown(entry.get('id'))}", where=place, fix=f"known: {', '.join(EFFECTS)}"
             )
         if kind not in effect.needs:
             raise BadInputError(
@@ -222,8 +232,33 @@ def _effects(entries: Any, kind: str, where: str) -> tuple[EffectUse, ...]:
                 fix=f"it needs: {', '.join(effect.needs)}",
             )
         values = {key: value for key, value in entry.items() if key != "id"}
-        uses.append(EffectUse(effect.id, effect.check(values, place)))
+        use = EffectUse(effect.id, effect.check(values, place))
+        if effect.id == "parameter_mismatch":
+            _check_mismatch(use, kind, place)
+        if any(_about(use) == _about(other) for other in uses):
+            name = " of ".join(part for part in _about(use) if part)
+            raise BadInputError(
+                f"effect '{name}' stands twice", where=place, fix="merge the two [[effects]] tables"
+            )
+        uses.append(use)
     return tuple(uses)
+
+
+def _about(use: EffectUse) -> tuple[str, str]:
+    """Id, and the channel or parameter that the effect speaks of: each may stand once."""
+    return use.id, str(use.values.get("channel", use.values.get("parameter", "")))
+
+
+def _check_mismatch(use: EffectUse, kind: str, where: str) -> None:
+    """A wrong value is one of a parameter that the model has, and must itself be possible."""
+    name = str(use.values["parameter"])
+    if name not in _KINDS[kind]:
+        raise BadInputError(
+            f"effect 'parameter_mismatch': a '{kind}' model has no parameter '{name}'",
+            where=where,
+            fix=f"it has: {', '.join(_KINDS[kind]) or 'none'}",
+        )
+    _checked_parameter(name, use.values["value"], f"effect 'parameter_mismatch': {name}", where)
 
 
 def _functions(table: Any, kind: str, where: str) -> dict[str, TransferFunction]:

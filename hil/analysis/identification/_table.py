@@ -49,16 +49,25 @@ def fit_of(model: Model) -> Fit | None:
             np.array(table["coefficients"], float),
             float(table["delay_s"]),
         )
+        if structure.sections < 0 or modes.poles.shape != (structure.pole_parameters,):
+            raise ValueError("wrong number of poles")
         covariance = np.array(table["covariance"], float)
         outputs = tuple(str(name) for name in table["outputs"])
         size = structure.pole_parameters + 1
         size += sum(structure.free_coefficients(o).shape[1] for o in range(len(outputs)))
         if covariance.shape != (size, size) or modes.coefficients.shape != (len(outputs), structure.order):
             raise ValueError("sizes do not go together")
-        if modes.poles.shape != (structure.pole_parameters,):
-            raise ValueError("wrong number of poles")
+        if len(structure.integrating) != len(outputs) or len(structure.roll_off) != len(outputs):
+            raise ValueError("sizes do not go together")
+        numbers = (modes.poles, modes.coefficients, covariance, np.array([modes.delay_s]))
+        if (
+            not all(np.all(np.isfinite(part)) for part in numbers)
+            or not 0 <= modes.delay_s <= 1
+            or not np.all(modes.poles > 0)
+        ):
+            raise ValueError("it holds numbers that cannot be")
         chi_square = float(table["chi_square"])
-    except (KeyError, TypeError, ValueError, IndexError) as error:
+    except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
         raise BadInputError(f"[meta.fit] cannot be read: {error}", fix="identify again") from error
     return Fit(modes, outputs, covariance, chi_square, np.zeros((len(outputs), 0), complex))
 

@@ -22,7 +22,7 @@ from hil.core.effects import (
     viscous_drag,
     wheel_order_disturbance,
 )
-from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._effect import SENSED, Effect, Parameter, Stage, finite_number, shown
 
 _MODULES = (
     dead_time,
@@ -49,4 +49,4 @@ _MODULES = (
 
 EFFECTS: dict[str, Effect] = {module.EFFECT.id: module.EFFECT for module in _MODULES}
 
-__all__ = ["EFFECTS", "Effect", "Parameter", "Stage"]
+__all__ = ["EFFECTS", "SENSED", "Effect", "Parameter", "Stage", "finite_number", "shown"]

@@ -7,7 +7,32 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
+from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
+
+#: What a model gives, and so what a sensor effect can bend.
+SENSED = ("motor_torque_nm", *OUTPUTS)
+_MOST_SHOWN = 60
+
+
+def finite_number(value: object) -> float | None:
+    """`value` as a float; None where it is no plain finite number (an integer may be beyond floats)."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
+
+
+def shown(value: object) -> str:
+    """A value from a file as a message shows it: whole if short."""
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python prints
+        return "a number of thousands of digits"
+    return text if len(text) <= _MOST_SHOWN else f"{text[:_MOST_SHOWN]}..."
 
 
 class Stage(Enum):
@@ -58,7 +83,8 @@ class Effect:
         """Return `values` complete with defaults.
 
         Raises:
-            BadInputError: an unknown or missing key, not a number, or out of the parameter's bounds.
+            BadInputError: an unknown or missing key, not a number, or out of the parameter's
+                bounds; a channel that no model gives.
         """
         known = {p.name for p in self.parameters} | set(self.text_parameters)
         for key in values:
@@ -73,6 +99,12 @@ class Effect:
             text = values.get(name)
             if not isinstance(text, str) or not text:
                 raise BadInputError(f"effect '{self.id}' needs '{name}', a name", where=where)
+            if name == "channel" and text not in SENSED:
+                raise BadInputError(
+                    f"effect '{self.id}': a model has no channel {shown(text)}",
+                    where=where,
+                    fix=f"channels: {', '.join(SENSED)}",
+                )
             complete[name] = text
         for parameter in self.parameters:
             complete[parameter.name] = self._number(parameter, values.get(parameter.name), where)
@@ -85,16 +117,17 @@ class Effect:
             raise BadInputError(
                 f"effect '{self.id}' needs '{parameter.name}' ({parameter.unit})", where=where
             )
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        number = finite_number(value)
+        if number is None:
             raise BadInputError(
-                f"effect '{self.id}': '{parameter.name}' is {value!r}, not a finite number",
+                f"effect '{self.id}': '{parameter.name}' is {shown(value)}, not a finite number",
                 where=where,
                 fix=f"give a plain number in {parameter.unit or 'no unit'}",
             )
-        if not parameter.lower <= value <= parameter.upper:
+        if not parameter.lower <= number <= parameter.upper:
             raise BadInputError(
-                f"effect '{self.id}': '{parameter.name}' = {value:g} {parameter.unit} is out of range",
+                f"effect '{self.id}': '{parameter.name}' = {number:g} {parameter.unit} is out of range",
                 where=where,
                 fix=f"it lies from {parameter.lower:g} to {parameter.upper:g} {parameter.unit}",
             )
-        return float(value)
+        return number
