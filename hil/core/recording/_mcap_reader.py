@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import os
 from pathlib import Path
 
 import numpy as np
@@ -134,7 +135,7 @@ class _Contents:
 
     def _read(self, path: Path) -> None:
         with open_regular(path) as file:
-            size = path.stat().st_size
+            size = os.fstat(file.fileno()).st_size
             try:
                 if file.read(len(MAGIC)) != MAGIC:
                     raise BadInputError("not an MCAP file", where=str(path))
