@@ -95,11 +95,12 @@ class _Conclusion:
     def write(self, show: Show) -> RunResult:
         """The result as it stands in result.json; `files` names what exists."""
         show("writing the result")
-        recording = self._try(lambda: read_recording(self._outcome.recording, allow_missing=True))
-        if recording is not None:
-            self._add(lambda: {"junit": write_junit(recording, self._outcome.result, self._path(JUNIT))})
+        path = self._outcome.recording
+        recording = self._try(lambda: read_recording(path, least_samples=0, allow_missing=True))
+        recording = recording or Recording({}, path)  # the verdicts are told all the same
+        self._add(lambda: {"junit": write_junit(recording, self._outcome.result, self._path(JUNIT))})
         result = self._store()
-        if recording is not None and not self._asked_again():
+        if not self._asked_again():
             show("writing the reports")
             self._add(lambda: self._documents(recording, result))
             result = self._store()

@@ -72,7 +72,7 @@ class SettlingTime(WindowMetric):
         settled = min(int(outside[-1]) + 1, len(grid) - 1)
         if grid[settled] > end - self.mean_s:
             raise DidNotSettleError(
-                f"did not settle: outside ±{half_width:.4g} {super().unit} around the mean of the last "
+                f"outside ±{half_width:.4g} {super().unit} around the mean of the last "
                 f"{self.mean_s:g} s until {grid[outside[-1]] - segment.step_s:.4g} s after the step, "
                 f"the window ends at {end - segment.step_s:.4g} s"
             )
