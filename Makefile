@@ -7,7 +7,7 @@ STAMP := $(VENV)/.installed
 .PHONY: run setup test test-slow blind lint bench figures lock clean
 
 run: setup
-	$(BIN)/hil run acceptance --out out/acceptance
+	$(BIN)/hil run acceptance --out out/acceptance --overwrite
 
 setup: $(STAMP)
 
@@ -44,7 +44,7 @@ bench: setup
 
 # Makes the README's pictures from an acceptance run.
 figures: setup
-	$(BIN)/hil run acceptance --out out/acceptance
+	$(BIN)/hil run acceptance --out out/acceptance --overwrite
 	$(BIN)/python docs/images/make.py out/acceptance/recording.mcap
 
 # Pins every dependency with hashes and without addresses of package indexes.
