@@ -1,0 +1,52 @@
+"""`python -m tests.bad_inputs [--write] [--only TEXT]`: tries all cases, two at a time."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from tests.bad_inputs.all_cases import all_cases
+from tests.bad_inputs.case import Case
+from tests.bad_inputs.inputs import make_inputs
+from tests.bad_inputs.page import PAGE, Tried, failures_of, page_of
+from tests.bad_inputs.trying import carry_out
+
+AT_ONCE = 2
+
+
+def try_all(cases: list[Case], place: Path) -> list[Tried]:
+    """Carry all cases out, in folders below `place`."""
+    make_inputs(place / "inputs")
+
+    def one(numbered: tuple[int, Case]) -> Tried:
+        number, case = numbered
+        tried = case, carry_out(case, place / "inputs", place / f"case-{number}")
+        for line in failures_of([tried]):
+            print(line, flush=True)
+        return tried
+
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        return list(pool.map(one, enumerate(cases)))
+
+
+def main() -> int:
+    """Try them, say what is wrong, write the page if asked to."""
+    parser = argparse.ArgumentParser(prog="python -m tests.bad_inputs")
+    parser.add_argument("--write", action="store_true", help="write docs/reference/bad-inputs.md")
+    parser.add_argument("--only", default="", help="cases whose command, kind or words have this text")
+    options = parser.parse_args()
+    cases = [c for c in all_cases() if options.only in f"{c.command} {c.kind} {c.tried}"]
+    with tempfile.TemporaryDirectory() as directory:
+        tried = try_all(cases, Path(directory))
+    failures = failures_of(tried)
+    print(f"{len(tried)} tried, {len(failures)} faults")
+    if options.write and not options.only:
+        PAGE.write_text(page_of(tried), "utf-8")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,80 @@
+"""How each command is called when all is well, and which of its arguments name files."""
+
+from __future__ import annotations
+
+USUAL: dict[str, tuple[str, ...]] = {
+    "run": ("plan.yaml", "--bench", "bench.toml", "--out", "out"),
+    "check": ("plan.yaml", "--bench", "bench.toml"),
+    "report": ("done", "--out", "out"),
+    "identify": ("recording.mcap", "--out", "out"),
+    "design": ("--model", "model.toml", "--out", "out"),
+    "diagnose": ("short.csv", "--model", "model.toml", "--out", "out"),
+    "simulate": ("--model", "model.toml", "--input", "short.csv", "--out", "out.csv"),
+    "export": ("recording.mcap", "--out", "out.csv"),
+    "schema": ("plan",),
+}
+COMMANDS = tuple(USUAL)
+WRITING = ("run", "report", "identify", "design", "diagnose", "simulate", "export")
+
+#: What an option needs beside the usual arguments, where it is not among them.
+EXTRA = {
+    ("run", "--model"): ("--model", "model.toml"),
+    ("diagnose", "--holdout"): ("--holdout", "recording.mcap"),
+    ("design", "--frf"): ("--frf", "short.csv"),
+}
+#: command, argument, its file, a file of another format that the user may have meant
+FILE_ARGUMENTS = (
+    ("run", "PLAN", "plan.yaml", "bench.toml"),
+    ("run", "--bench", "bench.toml", "model.toml"),
+    ("run", "--model", "model.toml", "bench.toml"),
+    ("check", "PLAN", "plan.yaml", "bench.toml"),
+    ("check", "--bench", "bench.toml", "model.toml"),
+    ("report", "RECORDING", "recording.mcap", "model.toml"),
+    ("identify", "RECORDING", "recording.mcap", "plan.yaml"),
+    ("design", "--model", "model.toml", "bench.toml"),
+    ("design", "--frf", "short.csv", "plan.yaml"),
+    ("diagnose", "RECORDING", "short.csv", "rmcu.dbc"),
+    ("diagnose", "--model", "model.toml", "plan.yaml"),
+    ("diagnose", "--holdout", "recording.mcap", "short.csv"),
+    ("simulate", "--model", "model.toml", "bench.toml"),
+    ("simulate", "--input", "short.csv", "model.toml"),
+    ("export", "RECORDING", "recording.mcap", "short.csv"),
+)
+READ_ELSEWHERE = (
+    ("run", "--model"),
+    ("check", "PLAN"),
+    ("check", "--bench"),
+    ("diagnose", "--model"),
+    ("diagnose", "--holdout"),
+    ("simulate", "--model"),
+)
+#: Every numeric option.
+NUMBERS = {
+    "identify": ("--from-hz", "--to-hz", "--order", "--gear-ratio", "--hold-ms"),
+    "design": (
+        "--lead-deg",
+        "--lead-hz",
+        "--notch-hz",
+        "--notch-width",
+        "--notch-depth",
+        "--pole",
+        "--inertia",
+        "--gear-ratio",
+        "--wheel-inertia",
+        "--torque-limit",
+        "--largest-sensitivity",
+    ),
+}
+
+
+def usual(command: str, argument: str = "") -> tuple[str, ...]:
+    """The arguments of a command when all is well, with `argument` among them."""
+    arguments = (*USUAL[command], *EXTRA.get((command, argument), ()))
+    if (command, argument) == ("report", "RECORDING"):
+        return tuple("recording.mcap" if a == "done" else a for a in arguments)
+    return arguments
+
+
+def with_other(arguments: tuple[str, ...], old: str, new: str) -> tuple[str, ...]:
+    """The arguments with one value in place of another."""
+    return tuple(new if a == old else a for a in arguments)

@@ -1,0 +1,82 @@
+"""docs/reference/bad-inputs.md, from the outcomes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from tests.bad_inputs.case import FILES, OPTIONS, PLACES, SIGNALS, STREAMS, VALUES, Case, Outcome
+from tests.bad_inputs.judging import FAULTS, faults_of, message_of
+
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "bad-inputs.md"
+_ORDER = ("hil", "run", "check", "report", "identify", "design", "diagnose", "simulate", "export", "schema")
+_KINDS = {
+    FILES: "files that are missing, of another kind or broken",
+    VALUES: "values out of range",
+    OPTIONS: "options unknown, missing or contradictory",
+    PLACES: "places that cannot be written",
+    SIGNALS: "interruptions",
+    STREAMS: "streams and terminals",
+}
+_INTRODUCTION = """\
+# Bad inputs
+
+Made by `python -m tests.bad_inputs --write`: each case is a process in a folder of its own with a copy of the
+inputs; afterwards the folder is compared with what it was. Exit codes are those of
+[commands](commands.md); a case states which of them are right. Cases with the same message stand in one row;
+paths are shortened to names.
+"""
+
+Tried = tuple[Case, Outcome]
+
+
+def page_of(tried: Sequence[Tried]) -> str:
+    """The whole page."""
+    parts = [_INTRODUCTION, _counts(tried)]
+    for command in _ORDER:
+        own = [(case, outcome) for case, outcome in tried if case.command == command]
+        if own:
+            title = "hil" if command == "hil" else f"hil {command}"
+            parts.append(f"## {title}\n\n| tried | exit code | message |\n|---|---|---|\n" + _rows(own))
+    return "\n".join(parts)
+
+
+def failures_of(tried: Sequence[Tried]) -> list[str]:
+    """Each fault on a line: case, what came, what the contract says."""
+    lines = []
+    for case, outcome in tried:
+        for kind, words in faults_of(case, outcome).items():
+            lines.append(f"{case.command}: {case.tried}: {kind}: {words}")
+    return lines
+
+
+def _counts(tried: Sequence[Tried]) -> str:
+    found = [faults_of(case, outcome) for case, outcome in tried]
+    head = "| | tried | " + " | ".join(FAULTS) + " |\n|---|" + "---|" * (1 + len(FAULTS)) + "\n"
+    rows = []
+    for kind, words in _KINDS.items():
+        own = [faults for (case, _), faults in zip(tried, found, strict=True) if case.kind == kind]
+        numbers = " | ".join(str(sum(fault in faults for faults in own)) for fault in FAULTS)
+        rows.append(f"| {words} | {len(own)} | {numbers} |\n")
+    numbers = " | ".join(f"**{sum(fault in faults for faults in found)}**" for fault in FAULTS)
+    rows.append(f"| all | **{len(tried)}** | {numbers} |\n")
+    return head + "".join(rows)
+
+
+def _rows(tried: Sequence[Tried]) -> str:
+    merged: dict[tuple[str, str, str], list[str]] = {}
+    for case, outcome in tried:
+        message = message_of(outcome) if not (case.silent or outcome.code in (0, 1)) else ""
+        code = "none" if outcome.code is None else str(outcome.code)
+        faults = "; ".join(f"**{kind}**: {words}" for kind, words in faults_of(case, outcome).items())
+        merged.setdefault((code, message, faults), []).append(case.tried)
+    rows = []
+    for (code, message, faults), cases in merged.items():
+        said = "; ".join(part for part in (faults, message) if part)
+        rows.append(f"| {_cell('; '.join(dict.fromkeys(cases)))} | {code} | {_cell(said)} |\n")
+    return "".join(rows)
+
+
+def _cell(text: str) -> str:
+    shown = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
+    return shown.replace("|", "\\|").replace("<", "&lt;")

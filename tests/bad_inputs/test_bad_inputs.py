@@ -1,0 +1,50 @@
+"""No bad input gives a traceback, hangs, leaves half-written files or a wrong exit code."""
+
+import pytest
+
+from tests.bad_inputs.__main__ import AT_ONCE, try_all
+from tests.bad_inputs.all_cases import all_cases, quick_cases
+from tests.bad_inputs.case import FILES, REFUSED, Case, Outcome
+from tests.bad_inputs.judging import HALF_WRITTEN, HANG, TRACEBACK, UNCLEAR, WRONG_CODE, faults_of
+from tests.bad_inputs.page import failures_of, page_of
+
+CASE = Case("export", FILES, "a case", ("--json",), (REFUSED,))
+GOOD = Outcome(2, "", "error: x: is missing\n  give another\n", (), (), ())
+
+
+def outcome(**changes):
+    return Outcome(**(GOOD.__dict__ | changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({"err": "Traceback (most recent call last)\n"}, TRACEBACK),
+        ({"code": None}, HANG),
+        ({"new": ("out.csv",)}, HALF_WRITTEN),
+        ({"new": (".out.x.csv",), "code": 0}, HALF_WRITTEN),
+        ({"changed": ("short.csv",)}, HALF_WRITTEN),
+        ({"code": 3}, WRONG_CODE),
+        ({"err": ""}, UNCLEAR),
+        ({"err": "error: \x1b[31m"}, UNCLEAR),
+        ({"out": "{} and more"}, UNCLEAR),
+    ],
+)
+def test_what_is_wrong_with_an_outcome_is_seen(changes, fault):
+    assert faults_of(CASE, GOOD) == {}
+    assert fault in faults_of(CASE, outcome(**changes))
+
+
+def test_the_page_merges_what_says_the_same():
+    page = page_of([(CASE, GOOD), (Case("export", FILES, "another", (), (REFUSED,)), GOOD)])
+    assert "| a case; another | 2 | error: x: is missing / give another |" in page
+
+
+def test_the_quickest_commands_stand_bad_input(tmp_path):
+    assert failures_of(try_all(quick_cases(), tmp_path)) == []
+
+
+@pytest.mark.slow
+def test_every_command_stands_bad_input(tmp_path):
+    assert AT_ONCE == 2
+    assert failures_of(try_all(all_cases(), tmp_path)) == []

@@ -1,0 +1,125 @@
+"""Carries a case out: a process in a folder of its own, with a time limit."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+from hil.core.errors import HilError
+from hil.core.recording import read_frames, read_recording
+from tests.bad_inputs.case import Case, Interruption, Outcome
+from tests.bad_inputs.inputs import HIL, copy_inputs
+
+LIMIT_S = 60.0
+_POLL_S = 0.005
+_LONGEST_OUTPUT = 2_000_000
+
+
+def carry_out(case: Case, inputs: Path, folder: Path) -> Outcome:
+    """Try a case in `folder`, which is removed afterwards."""
+    work = folder / "work"
+    copy_inputs(inputs, work)
+    if case.prepare:
+        case.prepare(work)
+    before = _contents(work)
+    try:
+        code, out, err = _process(case, work, folder)
+        after = _contents(work)
+        new = tuple(sorted(after.keys() - before.keys()))
+        changed = tuple(sorted(name for name in before if after.get(name) != before[name]))
+        broken = tuple(name for name in new if (work / name).is_file() and not _is_whole(work / name))
+        return Outcome(code, out, err, new, changed, broken)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _process(case: Case, work: Path, folder: Path) -> tuple[int | None, str, str]:
+    line = [HIL, *([case.command] if case.command != "hil" else []), *case.arguments]
+    if case.shell:
+        line = ["bash", "-c", case.shell, "bash", *line]
+    environment = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "LC_ALL", "NO_COLOR")}
+    # Matplotlib's and numba's caches stay where they are; what is tried must not leave anything behind.
+    with (folder / "out").open("wb") as out, (folder / "err").open("wb") as err:
+        process = subprocess.Popen(
+            line,
+            cwd=work,
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=err,
+            env=environment | case.environment,
+            start_new_session=True,
+        )
+        try:
+            if case.interruption:
+                _interrupt(process, case.interruption, work)
+            code: int | None = process.wait(LIMIT_S)
+        except subprocess.TimeoutExpired:
+            code = None
+            os.killpg(process.pid, signal.SIGKILL)  # its own session: started here
+            process.wait()
+    return code, _text(folder / "out"), _text(folder / "err")
+
+
+def _interrupt(process: subprocess.Popen[bytes], what: Interruption, work: Path) -> None:
+    start = time.monotonic()
+    while process.poll() is None and time.monotonic() - start < LIMIT_S:
+        there = not what.when_there or (work / what.when_there).exists()
+        if there and time.monotonic() - start >= what.after_s:
+            break
+        time.sleep(_POLL_S)
+    for name in what.names:
+        if process.poll() is None:
+            process.send_signal(getattr(signal, name))
+            time.sleep(_POLL_S)
+
+
+def _text(path: Path) -> str:
+    return path.read_bytes()[:_LONGEST_OUTPUT].decode("utf-8", errors="replace")
+
+
+def _contents(folder: Path) -> dict[str, str]:
+    """What every path below a folder holds, by its hash."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        name = str(path.relative_to(folder))
+        found[name] = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "directory"
+    return found
+
+
+def _is_whole(path: Path) -> bool:
+    content = path.read_bytes()
+    try:
+        match path.suffix:
+            case ".json":
+                json.loads(content)
+            case ".xml" | ".svg":
+                ET.fromstring(content)
+            case ".html":
+                return content.rstrip().endswith(b"</html>")
+            case ".pdf":
+                return content.rstrip().endswith(b"%%EOF")
+            case ".mcap":
+                return _is_readable(path)
+            case ".csv":
+                return content.endswith(b"\n")
+    except (ValueError, ET.ParseError):
+        return False
+    return bool(content)
+
+
+def _is_readable(path: Path) -> bool:
+    """Whether a recording can be opened; one that was stopped at the start may have no samples."""
+    for read in (lambda: read_recording(path, allow_missing=True), lambda: read_frames(path)):
+        try:
+            read()
+            return True
+        except HilError:
+            continue
+    return False
