@@ -1,6 +1,8 @@
 """CSV: what is read, what is refused with file, line and column, and how numbers are written."""
 
 import re
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -134,3 +136,23 @@ def test_time_keeps_its_nanoseconds_in_a_long_recording(tmp_path):
     time_s = [86_400.0001, 86_400.0002, 86_400.000_200_001]
     lines = written(tmp_path, time_s=time_s, own=[0.0, 0.0, 0.0])
     assert [line.split(",")[0] for line in lines[1:]] == ["86400.0001", "86400.0002", "86400.000200001"]
+
+
+@pytest.mark.slow
+def test_reading_and_writing_a_long_csv_takes_little_more_memory_than_its_channels(tmp_path):
+    script = """
+import resource, sys
+from pathlib import Path
+import numpy as np
+from hil.core.recording import Recording, read_recording, write_recording
+names = ["time_s", "motor_torque_ref_nm", "motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm"]
+path = Path(sys.argv[1])
+start = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+write_recording(Recording({name: np.arange(1_000_000) / 7 for name in names}, path), path)
+assert len(read_recording(path).time_s) == 1_000_000
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - start)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script, tmp_path / "r.csv"], capture_output=True, text=True, check=True
+    )
+    assert int(done.stdout) < 250_000  # kB; the channels alone are 40,000, twice

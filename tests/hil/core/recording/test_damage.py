@@ -1,7 +1,6 @@
 """Flipped bits, cut files and overwritten blocks: a recording is what was written, or says that it is not."""
 
 import dataclasses
-import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,23 +11,25 @@ from mcap.reader import make_reader
 
 from hil.core.errors import BadInputError
 from hil.core.frames import FRAME
-from hil.core.recording import Recording, RecordingWriter, read_frames, read_recording
+from hil.core.recording import Recording, RecordingWriter, driven_by_torque, read_frames, read_recording
+from hil.core.result import RunResult, Segment
 
-NAMES = ["time_s", "motor_torque_ref_nm", "motor_speed_rad_s"]
+NAMES = ["time_s", "motor_torque_ref_nm", "motor_speed_rad_s", "wheel_speed_rad_s"]
 SAMPLES = 600
-RUN = {
-    "verdict": "pass",
-    "plan": "p",
-    "bench": "sim",
-    "real_time_factor": 1.0,
-    "bench_time_s": 0.6,
-    "safe_state": "confirmed",
-    "criteria": [],
-    "segments": [
-        {"id": "s", "start_s": 0.1, "step_s": 0.2, "end_s": 0.5, "controller": "c", "initial_speed_km_h": 0}
-    ],
-    "files": {},
-}
+SEGMENT = Segment(
+    id="step", start_s=0.1, step_s=0.2, end_s=0.5, controller="phase", initial_speed_km_h=0, load="vehicle"
+)
+RUN = RunResult(
+    verdict="pass",
+    plan="small",
+    bench="sim",
+    real_time_factor=1.0,
+    bench_time_s=0.6,
+    safe_state="confirmed",
+    criteria=(),
+    segments=(SEGMENT,),
+    files={},
+)
 
 
 def frames(start: int, count: int) -> np.ndarray:
@@ -49,7 +50,7 @@ def write(path: Path) -> None:
         writer.add_frames("rmcu", frames(start, 50))
         writer.add_rows(rows[start : start + 50])
         writer.add_event(start / 1000, "segment", "next")
-    writer.attach("run.json", json.dumps(RUN).encode())
+    writer.attach("run.json", RUN.model_dump_json().encode())
     writer.describe("run", {"plan": "small"})
     writer.close()
 
@@ -212,3 +213,4 @@ def test_damage_stays_with_every_part_of_a_recording(original):
     read = read_recording(with_flip(original.source, original.source.read_bytes().index(b"4711")))
     assert read.between(0.1, 0.2).damage == read.damage
     assert dataclasses.replace(read).damage == read.damage
+    assert [part.damage for part in driven_by_torque(read)] == [read.damage]
