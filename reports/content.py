@@ -102,9 +102,9 @@ class Content:
 
     @property
     def unmet(self) -> tuple[CriterionRow, ...]:
-        """Criteria that failed or could not be judged."""
+        """Criteria that failed or could not be computed; those not judged are told by their segments."""
         groups = self.criteria.groups if self.criteria else ()
-        return tuple(row for group in groups for row in group.rows if row.unmet)
+        return tuple(r for group in groups for r in group.rows if r.unmet and r.verdict != "not_judged")
 
 
 def content(recording: Recording, result: RunResult | None) -> Content:
@@ -152,7 +152,7 @@ def _banner(result: RunResult | None) -> Banner:
     verdict = "error" if unsafe else result.verdict  # a run that may have left the bench live did not pass
     judged = any(criterion.has_limit for criterion in result.criteria)
     tone = "unjudged" if verdict == "pass" and not judged else verdict
-    sentences = [*([result.reason] if result.reason else []), *_counts(result)]
+    sentences = [*_as_sentences(result.reason), *_counts(result)]
     if not unsafe:
         sentences.append(_SAFE_STATE[result.safe_state])
     alarm = _SAFE_STATE["not_confirmed"] if unsafe else ""
@@ -172,12 +172,24 @@ def _counts(result: RunResult) -> list[str]:
     unsettled = counts["did_not_settle"]
     told = {
         f"{failed} failed.": failed,
-        f"{counts['not_judged']} not judged.": counts["not_judged"],
+        f"{counts['not_judged']} not judged: {_why_not_judged(result)}.": counts["not_judged"],
         f"{counts['error']} could not be computed.": counts["error"],
         f"{counts['informational']} informational.": counts["informational"],
         f"{unsettled} did not settle.": unsettled,
     }
     return [*sentences, *(sentence for sentence, count in told.items() if count)]
+
+
+def _why_not_judged(result: RunResult) -> str:
+    """Each reason once, in the plan's order."""
+    reasons = dict.fromkeys(c.reason for c in result.criteria if c.verdict == "not_judged")
+    return ", ".join(reasons)
+
+
+def _as_sentences(text: str) -> list[str]:
+    """Lines of a message, each with a capital and a full stop."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return [line[0].upper() + line[1:] + ("" if line[-1] in ".!?" else ".") for line in lines]
 
 
 def _warnings(calibration: tuple[Fact, ...], files: tuple[StoredFile, ...]) -> tuple[str, ...]:

@@ -51,7 +51,7 @@ def criteria_table(result: RunResult) -> CriteriaTable:
     segments = {segment.id: segment for segment in result.segments}
     grouped: dict[str, list[CriterionRow]] = {}
     for criterion in result.criteria:
-        title = _group_title(segments.get(criterion.id.partition(".")[0]))
+        title = _group_title(criterion, segments)
         number = definitions.index(criterion.definition) + 1 if criterion.definition else 0
         grouped.setdefault(title, []).append(_row(criterion, number))
     groups = tuple(CriterionGroup(title, tuple(rows)) for title, rows in grouped.items())
@@ -75,9 +75,11 @@ def in_words(criterion: CriterionResult) -> str:
     return f"{value}, allowed is {limit}{quantities.THIN}{quantities.unit(criterion.unit)}".rstrip()
 
 
-def _group_title(segment: Segment | None) -> str:
+def _group_title(criterion: CriterionResult, segments: dict[str, Segment]) -> str:
+    id_ = criterion.id.partition(".")[0]
+    segment = segments.get(id_)
     if segment is None:
-        return "Whole run"
+        return f"{id_} (not carried out)" if criterion.verdict == "not_judged" else "Whole run"
     speed = quantities.nominal(segment.initial_speed_km_h, "km/h")
     name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
     return f"{name}, {speed} ({segment.id})"

@@ -84,3 +84,21 @@ def test_what_xml_cannot_carry_is_replaced(hostile: dict[str, Path]) -> None:
     root = ET.parse(hostile["junit"]).getroot()
     assert "\ufffd" in root[0].get("name", "")
     assert "<script>" in root[0].get("name", "")
+
+
+def test_what_counts_as_neither_is_skipped_and_what_never_settled_fails_its_limit(
+    recording: Recording, result: RunResult, tmp_path: Path
+) -> None:
+    criteria = (
+        CriterionResult(id="a.info", value=1.0, unit="s", verdict="informational"),
+        CriterionResult(id="a.cut", value=None, unit="s", upper=1.0, verdict="not_judged", reason="stopped"),
+        CriterionResult(id="a.rings", value=None, unit="s", verdict="did_not_settle", reason="outside"),
+        CriterionResult(id="b.rings", value=None, unit="s", upper=5.0, verdict="did_not_settle", reason="out"),
+    )
+    found = suite(recording, result.model_copy(update={"criteria": criteria}), tmp_path)
+    assert (found.get("skipped"), found.get("failures"), found.get("errors")) == ("3", "1", "0")
+    skipped = case(found, "cut").find("skipped")
+    assert skipped is not None
+    assert skipped.get("message") == "not judged: stopped"
+    (failed,) = [c for c in found.iter("testcase") if c.find("failure") is not None]
+    assert failed.get("classname") == "acceptance.b"

@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 from pathlib import Path
 
+from pypdf import PdfReader
+
 from hil.core.recording import Recording
 from hil.core.result import RunResult
-from reports import provenance
+from reports import provenance, write_reports
 from reports.content import content
 
 
@@ -64,3 +67,40 @@ def test_an_unconfirmed_safe_state_is_never_a_pass(recording: Recording, result:
     assert banner.tone == "error"
     assert "did not confirm" in banner.alarm
     assert content(recording, result).banner.alarm == ""
+
+
+def test_a_run_in_which_nothing_is_judged_is_not_green(recording: Recording, result: RunResult) -> None:
+    informational = [c.model_copy(update={"upper": None, "lower": None, "below": "", "verdict": "informational"})
+                     for c in result.criteria]  # fmt: skip
+    banner = content(recording, result.model_copy(update={"criteria": tuple(informational)})).banner
+    assert (banner.tone, banner.headline) == ("unjudged", "Carried out, nothing judged")
+    assert content(recording, result.model_copy(update={"criteria": ()})).banner.tone == "unjudged"
+
+
+def test_the_banner_counts_what_was_demanded_and_says_why_the_rest_was_not_judged(
+    recording: Recording, result: RunResult
+) -> None:
+    first, second, third, *rest = result.criteria
+    criteria = (
+        first.model_copy(
+            update={"value": None, "verdict": "not_judged", "reason": "segment 'a' was stopped"}
+        ),
+        second.model_copy(update={"upper": None, "verdict": "informational"}),
+        third.model_copy(
+            update={"value": None, "upper": None, "verdict": "did_not_settle", "reason": "rings"}
+        ),
+        *rest,
+    )
+    stopped = result.model_copy(
+        update={"criteria": criteria, "verdict": "error", "reason": "stopped by the operator"}
+    )
+    words = " ".join(content(recording, stopped).banner.sentences)
+    assert words.startswith(f"Stopped by the operator. {len(rest)} of {len(rest) + 1} criteria passed. ")
+    assert "1 not judged: segment 'a' was stopped. 1 informational. 1 did not settle." in words
+
+
+def test_damage_stands_in_the_report(recording: Recording, result: RunResult, tmp_path: Path) -> None:
+    broken = dataclasses.replace(recording, damage=["samples from 1 s to 2 s are lost"])
+    paths = write_reports(broken, result, tmp_path)
+    assert "Damaged recording: samples from 1 s to 2 s are lost" in paths["html"].read_text()
+    assert "Damaged recording" in PdfReader(paths["pdf"]).pages[0].extract_text()
