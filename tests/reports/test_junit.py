@@ -93,7 +93,9 @@ def test_what_counts_as_neither_is_skipped_and_what_never_settled_fails_its_limi
         CriterionResult(id="a.info", value=1.0, unit="s", verdict="informational"),
         CriterionResult(id="a.cut", value=None, unit="s", upper=1.0, verdict="not_judged", reason="stopped"),
         CriterionResult(id="a.rings", value=None, unit="s", verdict="did_not_settle", reason="outside"),
-        CriterionResult(id="b.rings", value=None, unit="s", upper=5.0, verdict="did_not_settle", reason="out"),
+        CriterionResult(
+            id="b.rings", value=None, unit="s", upper=5.0, verdict="did_not_settle", reason="out"
+        ),
     )
     found = suite(recording, result.model_copy(update={"criteria": criteria}), tmp_path)
     assert (found.get("skipped"), found.get("failures"), found.get("errors")) == ("3", "1", "0")

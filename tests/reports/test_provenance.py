@@ -70,8 +70,8 @@ def test_an_unconfirmed_safe_state_is_never_a_pass(recording: Recording, result:
 
 
 def test_a_run_in_which_nothing_is_judged_is_not_green(recording: Recording, result: RunResult) -> None:
-    informational = [c.model_copy(update={"upper": None, "lower": None, "below": "", "verdict": "informational"})
-                     for c in result.criteria]  # fmt: skip
+    free = {"upper": None, "lower": None, "below": "", "verdict": "informational"}
+    informational = [criterion.model_copy(update=free) for criterion in result.criteria]
     banner = content(recording, result.model_copy(update={"criteria": tuple(informational)})).banner
     assert (banner.tone, banner.headline) == ("unjudged", "Carried out, nothing judged")
     assert content(recording, result.model_copy(update={"criteria": ()})).banner.tone == "unjudged"
