@@ -19,10 +19,9 @@ from hil.cli._output import (
 )
 from hil.cli._place import refuse_missing, results_in
 from hil.cli.run import RESULT
-from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
-from hil.core.recording import SEGMENT, Recording, read_recording
-from hil.core.result import RunResult, Segment, verdict_of
+from hil.core.recording import Recording, read_recording, run_of
+from hil.core.result import RunResult, verdict_of
 from hil.engine import RECORDING
 from reports import HTML, JUNIT, PDF, recording_named_in, write_reports
 from test_plans import judge, plan_from_text
@@ -99,16 +98,11 @@ def _told(result: RunResult | None, files: dict[str, str], path: Path, folder: P
 
 def rejudged(recording: Recording) -> RunResult | None:
     """The run's result with its criteria computed again; None for a recording without a run."""
-    if "plan.yaml" not in recording.attachments:
+    stored = run_of(recording)
+    if stored is None:
         return None
     where = str(recording.source)
-    try:
-        stored = _stored(recording)
-        text = recording.attachments["plan.yaml"].decode()
-    except ValueError as error:
-        raise BadInputError(
-            "its run.json or plan.yaml is broken", where=where, fix="use another copy"
-        ) from error
+    text = recording.attachments.get("plan.yaml", b"").decode(errors="replace")
     plan = plan_from_text(text, f"{where}: plan.yaml", recording.source.parent, files_required=False)
     criteria = judge(plan, recording, stored.segments)
     reason = stored.reason
@@ -118,33 +112,3 @@ def rejudged(recording: Recording) -> RunResult | None:
         )
     verdict = verdict_of(criteria, stopped=reason != "")
     return stored.model_copy(update={"criteria": criteria, "verdict": verdict, "reason": reason})
-
-
-def _stored(recording: Recording) -> RunResult:
-    """The result as it was stored; of a recording that was cut off, what can still be said."""
-    if "run.json" in recording.attachments:
-        return RunResult.model_validate_json(recording.attachments["run.json"])
-    run = recording.metadata.get("run", {})
-    last_s = float(recording.time_s[-1])
-    segments = [
-        _as_far_as_recorded(Segment.model_validate_json(table["json"]), last_s, recording.sample_time_s)
-        for name, table in recording.metadata.items()
-        if name.startswith(SEGMENT) and "json" in table
-    ]
-    return RunResult(
-        verdict="error",
-        plan=run.get("plan", "?"),
-        bench=run.get("bench", "?"),
-        real_time_factor=0.0,
-        bench_time_s=last_s,
-        safe_state="not_confirmed",
-        segments=tuple(segments),
-        reason="the recording was cut off before the run had ended; nothing is known of its safe state",
-    )
-
-
-def _as_far_as_recorded(segment: Segment, last_s: float, sample_time_s: float) -> Segment:
-    """A segment ends with the recording; one that goes on after it was not recorded whole."""
-    if segment.end_s <= last_s + 1.5 * sample_time_s:
-        return segment
-    return segment.model_copy(update={"end_s": max(last_s, segment.start_s), "complete": False})

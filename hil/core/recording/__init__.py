@@ -16,11 +16,8 @@ from hil.core.recording._mcap_reader import read_frames, read_mcap
 from hil.core.recording._mcap_writer import RecordingWriter
 from hil.core.recording._mdf import read_mdf, write_mdf
 from hil.core.recording._parquet import read_parquet, write_parquet
+from hil.core.recording._run import RUN, SEGMENT, run_of
 from hil.core.recording._table import Event, Recording, checked
-from hil.core.result import RunResult
-
-#: Prefix of the metadata records that hold a run's segments, written as each begins.
-SEGMENT = "segment/"
 
 _READERS: dict[str, Callable[[Path], Recording]] = {
     ".mcap": read_mcap,
@@ -59,16 +56,12 @@ def driven_by_torque(recording: Recording) -> list[Recording]:
     between they turn the wheels themselves. Any other recording is one stretch. A stretch's `source`
     names its segment.
     """
-    stored = recording.attachments.get("run.json")
-    if stored is None:
+    run = run_of(recording)
+    if run is None:
         return [recording]
-    try:
-        segments = RunResult.model_validate_json(stored).segments
-    except ValueError as error:
-        raise BadInputError("its run.json is broken", where=str(recording.source)) from error
     turned = _with_wheel_angle(recording)
     parts = []
-    for segment in segments:
+    for segment in run.segments:
         if segment.load == "vehicle":
             part = turned.between(segment.start_s, segment.end_s)
             part.source = recording.source.with_name(f"{recording.source.stem} {segment.id}")
@@ -99,6 +92,7 @@ def write_recording(recording: Recording, path: Path) -> None:
 
 
 __all__ = [
+    "RUN",
     "SEGMENT",
     "Event",
     "Recording",
@@ -107,5 +101,6 @@ __all__ = [
     "driven_by_torque",
     "read_frames",
     "read_recording",
+    "run_of",
     "write_recording",
 ]

@@ -1,0 +1,56 @@
+"""What a recording says of the run that made it: its result, or as much of it as a cut file still tells."""
+
+from __future__ import annotations
+
+from hil.core.errors import BadInputError
+from hil.core.recording._table import Recording
+from hil.core.result import RunResult, Segment
+
+#: Attachment with the run's result, written when the run has ended.
+RUN = "run.json"
+#: Prefix of the metadata tables that hold the run's segments, written as each begins and as it ends.
+SEGMENT = "segment/"
+
+
+def run_of(recording: Recording) -> RunResult | None:
+    """The stored result; of a recording that was cut off, the segments as far as they were recorded.
+
+    None for a recording that another tool made.
+
+    Raises:
+        BadInputError: what is stored cannot be understood.
+    """
+    try:
+        if RUN in recording.attachments:
+            return RunResult.model_validate_json(recording.attachments[RUN])
+        if "plan.yaml" not in recording.attachments or "run" not in recording.metadata:
+            return None
+        return _as_far_as_recorded(recording)
+    except (ValueError, KeyError) as error:
+        raise BadInputError(
+            "what it says of its run is broken", where=str(recording.source), fix="use another copy"
+        ) from error
+
+
+def _as_far_as_recorded(recording: Recording) -> RunResult:
+    run = recording.metadata["run"]
+    last_s = float(recording.time_s[-1]) if len(recording.time_s) else 0.0
+    tables = [table for name, table in recording.metadata.items() if name.startswith(SEGMENT)]
+    segments = [Segment.model_validate_json(table["json"]) for table in tables]
+    return RunResult(
+        verdict="error",
+        plan=run.get("plan", "?"),
+        bench=run.get("bench", "?"),
+        real_time_factor=0.0,
+        bench_time_s=last_s,
+        safe_state="not_confirmed",
+        segments=tuple(_cut(segment, last_s) for segment in segments if segment.start_s < last_s),
+        reason="the recording was cut off before the run had ended; nothing is known of its safe state",
+    )
+
+
+def _cut(segment: Segment, last_s: float) -> Segment:
+    """A segment ends with the recording; one that had not ended was not recorded whole."""
+    if segment.complete and segment.end_s <= last_s + 0.01:
+        return segment
+    return segment.model_copy(update={"end_s": min(segment.end_s, last_s), "complete": False})
