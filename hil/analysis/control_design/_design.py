@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
+from pydantic import ValidationError
 
 from hil.analysis.control_design._acceptance import refuse_unstable, warnings_of
 from hil.analysis.control_design._discretise import DiscreteFilter, tustin
@@ -31,8 +32,10 @@ from hil.analysis.control_design._trade_off import trade_off
 from hil.analysis.control_design._uncertainty import possible_plants
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification import fit_chain
+from hil.analysis.plausible import within_floating_point
 from hil.core.channels import OUTPUTS
 from hil.core.controller import Controller, Dfc, Dfo, Lead, Notch, Wsc
+from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction
 
@@ -60,6 +63,11 @@ def design(
             closed loop is unstable on the model; with `optimise`, no controller keeps the limits.
     """
     spec.check()
+    with within_floating_point("this model"):
+        return _designed(model, spec, progress, unstable_too)
+
+
+def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], unstable_too: bool) -> Design:
     plant = design_plant(model)
     motor = plant.functions[OUTPUTS[0]]
     _check_notch(spec, plant.resonance_hz)
@@ -90,7 +98,15 @@ def design(
     chart = trade_off(frequency, pi, at, spec.normalisation, step, origin_poles=origin_poles)
     robust = _robustness(coarse, held, blocks, step, origin_poles, plants.source)
     warnings = (*_doubts(model), *warnings_of(chosen.margins, robust))
-    controller = _controller(model, spec, plant, wsc, notes, warnings)
+    try:
+        controller = _controller(model, spec, plant, wsc, notes, warnings)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise BadInputError(
+            f"this model gives no controller that the RMCU can use: {key}: {first['msg']}",
+            fix="check the units of the model's numbers",
+        ) from error
     return Design(
         controller,
         plant,
@@ -264,8 +280,9 @@ def _wheel_inertia(model: Model, spec: DesignSpec, plant: DesignPlant, notes: li
     if known is not None:
         return float(known)
     chain = model.meta.get("chain")
-    if isinstance(chain, dict) and isinstance(chain.get("wheel_inertia"), int | float):
-        return float(chain["wheel_inertia"])
+    given = finite_number(chain.get("wheel_inertia")) if isinstance(chain, dict) else None
+    if given is not None and given > 0:
+        return given
     if model.kind != "transfer_function":
         raise BadInputError(
             f"a '{model.kind}' model does not tell the wheels' inertia apart from the vehicle's",

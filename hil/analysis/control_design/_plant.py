@@ -56,16 +56,16 @@ def design_plant(model: Model) -> DesignPlant:
             f"the model has no '{missing[0]}'", fix="the controller needs all three outputs: record them all"
         )
     motor, wheel = functions[OUTPUTS[0]], functions[OUTPUTS[1]]
-    lead = motor.denominator[0]
-    denominator = np.array(motor.denominator) / lead
+    denominator = np.array(motor.denominator) / motor.denominator[0]
     if len(denominator) > LARGEST_ORDER + 1:
         raise BadInputError(f"order {len(denominator) - 1} is beyond the RMCU's {LARGEST_ORDER}")
-    poles = np.roots(denominator)
-    if np.any(poles.real > 1e-6 * np.max(np.abs(poles))):
-        raise BadInputError("the plant is unstable", fix="identify it again")
     numerators = [
         np.trim_zeros(np.array(functions[n].numerator) / functions[n].denominator[0], "f") for n in OUTPUTS
     ]
+    _refuse_empty(denominator, numerators)
+    poles = np.roots(denominator)
+    if np.any(poles.real > 1e-6 * np.max(np.abs(poles))):
+        raise BadInputError("the plant is unstable", fix="identify it again")
     changes = list(notes)
     numerators[1] = _invertible(numerators[1], len(numerators[0]) - 1, "wheel speed", "(17)", changes)
     numerators[2] = _invertible(numerators[2], len(denominator) - 1, "shaft torque", "(18)", changes)
@@ -84,6 +84,19 @@ def design_plant(model: Model) -> DesignPlant:
         _ratio(motor, wheel),
         tuple(changes),
     )
+
+
+def _refuse_empty(denominator: Array, numerators: list[Array]) -> None:
+    for name, numerator in zip(OUTPUTS, numerators, strict=True):
+        if not np.any(numerator):
+            raise BadInputError(
+                f"the numerator of '{name}' is zero: the output never moves", fix="identify the model again"
+            )
+        if not (np.all(np.isfinite(numerator)) and np.all(np.isfinite(denominator))):
+            raise BadInputError(
+                f"the coefficients of '{name}' are too far apart for floating point",
+                fix="check their units: descending powers of s, SI",
+            )
 
 
 def resonance_hz(denominator: Array) -> float:

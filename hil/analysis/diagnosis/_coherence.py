@@ -107,7 +107,7 @@ def _spectra(problem: Problem, one: Fit) -> Spectra:
     period = problem.traces[0].dt * problem.traces[0].block
     shortest = min(len(s) for s in signals)
     total = sum(len(s) for s in signals)
-    length = min(round(_SEGMENT_S / period), shortest, 2 * total // _LEAST_SEGMENTS)
+    length = max(2, min(round(_SEGMENT_S / period), shortest, 2 * total // _LEAST_SEGMENTS))
     window = np.hanning(length + 1)[:-1]
     cut = []
     for one_signals in signals:

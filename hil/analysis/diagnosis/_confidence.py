@@ -15,6 +15,7 @@ from hil.core.model import EffectUse
 
 _HALF_MARGIN = 12.0  # evidence over a rival at which it is about one in ten
 _FLOOR = 0.005
+_LEAST_TORQUE_NM = 0.1
 _WORTH_A_PLAN = 0.02
 
 
@@ -69,13 +70,15 @@ def alternatives_of(found: Found, verdict: str) -> tuple[Alternative, ...]:
             continue
         use = others[0]
         text, plan = EFFECTS[use.id].shown_by, None
-        if confidence > _WORTH_A_PLAN and mine is not one:
-            problem = found.evidence.problem
+        problem = found.evidence.problem
+        torque = max(float(np.max(np.abs(t.torque))) for t in problem.traces)
+        # Without any torque in the recordings nobody knows what a test may ask of this bench.
+        if confidence > _WORTH_A_PLAN and mine is not one and torque > _LEAST_TORQUE_NM:
             text, plan = separating_plan(
                 mine.hypothesis.model(mine.theta),
                 one.hypothesis.model(one.theta),
                 problem.noise,
-                max(float(np.max(np.abs(t.torque))) for t in problem.traces),
+                torque,
                 (mine.hypothesis.ids[-1], use.id),
                 speed_rad_s=max(_largest(problem, 1), _largest(problem, 0) / problem.gear_ratio),
                 shaft_torque_nm=_largest(problem, 2) or None,

@@ -18,6 +18,7 @@ from hil.analysis.diagnosis._result import Diagnosis, Verdict
 from hil.analysis.diagnosis._sanity import examine
 from hil.analysis.diagnosis._search import Found, search
 from hil.analysis.diagnosis._trace import noise_levels, usable_noise
+from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
@@ -50,14 +51,26 @@ def diagnose(
 
     Raises:
         BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
-            gear ratio), or the model's kind is not supported.
+            gear ratio, values that no axle gives), hold the same data twice, or the model's kind is not
+            supported.
     """
-    began = time.perf_counter()
     if model.kind == "transfer_function":
         raise BadInputError(
             "a transfer_function model has no parts that an effect could be added to",
             fix="give the chain that `hil identify` writes as physical.toml",
         )
+    refuse_same_data(recordings, holdout)
+    with within_floating_point(", ".join(str(r.source) for r in recordings)):
+        return _diagnosed(model, recordings, holdout, show)
+
+
+def _diagnosed(
+    model: Model,
+    recordings: Sequence[Recording],
+    holdout: Sequence[Recording],
+    show: Callable[[str], None],
+) -> Diagnosis:
+    began = time.perf_counter()
     show("reading the noise")
     traces, found_odd = examine(model, recordings)
     held, _ = examine(model, holdout, traces)

@@ -15,7 +15,15 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis._broken_channels import coarse, refuse_broken_channels
-from hil.analysis.diagnosis._trace import Trace, noise_levels, trace_of, unbroken, usable_noise
+from hil.analysis.diagnosis._trace import (
+    Trace,
+    excerpts,
+    noise_levels,
+    trace_of,
+    unbroken,
+    usable_noise,
+)
+from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -75,7 +83,9 @@ def examine(
     Raises:
         BadInputError: like `check`, and where a recording is too short or too slowly sampled.
     """
-    traces = [trace_of(piece) for r in recordings for piece in unbroken(r)]
+    for recording in recordings:
+        refuse_implausible(recording)
+    traces = [trace_of(part) for r in recordings for piece in unbroken(r) for part in excerpts(piece)]
     if not traces:
         return [], []
     return traces, check(model, traces, usable_noise(noise_levels(traces)), beside)
@@ -252,7 +262,7 @@ def _shaft(traces: list[Trace], ratio: float, noise: Array) -> BadInputError | N
         return _dead(_SHAFT)
     if pair.correlation < _INVERTED and 1 / _TOO_FAST < pair.factor < _TOO_FAST:
         return BadInputError(f"{_SHAFT} looks inverted", fix="turn the sign of the channel")
-    slope = pair.xy / pair.xx
+    slope = pair.xy / max(pair.xx, 1e-30)
     if abs(pair.correlation) > _RELATED and not 1 / _TORQUE_OFF < pair.factor < _TORQUE_OFF:
         return BadInputError(
             f"{_SHAFT} is {slope * ratio:.3g} times the motor torque at low frequency, the model has "

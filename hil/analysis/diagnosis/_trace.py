@@ -18,6 +18,11 @@ from sim_backend.plant import SENSOR_GAIN, SENSOR_OFFSET
 Array = npt.NDArray[np.float64]
 
 LEAST_SAMPLES = 200
+#: What fits see changes within milliseconds: fewer than some tens of block means say nothing.
+LEAST_DURATION_S = 0.15
+#: More samples of one stretch than these are not read but sampled evenly: memory and time are bounded.
+MOST_SAMPLES = 400_000
+_EXCERPTS = 10
 _FIRST_STAMPS = 50
 _UNEVEN_SHARE = 0.01
 _NEAR_SHARE = 0.5  # of a sample: a reading this near to a point of the grid stands for it
@@ -99,7 +104,7 @@ def unbroken(recording: Recording) -> list[Recording]:
     pieces = [
         _piece(recording, first, last)
         for first, last in pairwise([0, *cuts.tolist(), len(time)])
-        if last - first >= LEAST_SAMPLES
+        if last - first >= LEAST_SAMPLES and time[last - 1] - time[first] >= LEAST_DURATION_S
     ]
     if not pieces:
         raise BadInputError(
@@ -110,6 +115,25 @@ def unbroken(recording: Recording) -> list[Recording]:
     left_out = cuts.size + 1 - len(pieces)
     note = f"cut at gaps: {cuts.size}, the longest of {steps.max():.3g} s at {time[np.argmax(steps)]:.4g} s"
     pieces[0].notes.append(note + (f"; short stretches left out: {left_out}" if left_out else ""))
+    return pieces
+
+
+def excerpts(recording: Recording) -> list[Recording]:
+    """The recording, or where it is very long ten stretches spread evenly over it; the first's notes say so.
+
+    Ten stretches rather than every tenth sample: what torque does between samples must be known.
+    """
+    count = len(recording.time_s)
+    if count <= MOST_SAMPLES:
+        return [recording]
+    size = MOST_SAMPLES // _EXCERPTS
+    firsts = np.linspace(0, count - size, _EXCERPTS).round().astype(int).tolist()
+    pieces = [_piece(recording, first, first + size) for first in firsts]
+    seconds = size * recording.sample_time_s
+    pieces[0].notes.append(
+        f"has {count} samples: {_EXCERPTS} stretches of {seconds:.4g} s, spread evenly over its "
+        f"{float(recording.time_s[-1] - recording.time_s[0]):.5g} s, stand for it"
+    )
     return pieces
 
 
@@ -126,7 +150,7 @@ def trace_of(recording: Recording, name: str = "") -> Trace:
     """Put readings on even times, each as it is; interpolate only where none is near; average to blocks.
 
     Raises:
-        BadInputError: too few samples, or sampled too slowly to see a driveline.
+        BadInputError: too few samples, too short, or sampled too slowly to see a driveline.
     """
     where = str(recording.source)
     time, dt = recording.time_s, recording.sample_time_s
@@ -137,6 +161,13 @@ def trace_of(recording: Recording, name: str = "") -> Trace:
             f"is sampled every {dt * 1e3:g} ms: too slow for a driveline",
             where=where,
             fix="record at 100 Hz or more, best at 1 kHz; or is time_s in another unit?",
+        )
+    lasts = float(time[-1] - time[0])
+    if lasts < LEAST_DURATION_S:
+        raise BadInputError(
+            f"lasts {lasts:.3g} s, a diagnosis needs {LEAST_DURATION_S:g} s",
+            where=where,
+            fix="record longer; or is time_s in another unit?",
         )
     notes = list(recording.notes)
     grid, dt = _even(time, dt)

@@ -33,6 +33,7 @@ _LEAST_STEP = 0.05  # rad of phase in a second: an order may be a little off as 
 _START_RAD = 0.3  # how well the phase at the start is known once the ripple is
 _SOON_S = 1.0  # recordings that turn a ripple sooner than this say the same of its phase
 _NO_RIPPLE = 1e-9
+_DIVERGED = 1e9  # noise levels
 
 
 @dataclass(frozen=True)
@@ -115,9 +116,20 @@ def tracked_gain(problem: Problem, parent: Fit, use: EffectUse) -> float:
 
 def _step(problem: Problem, use: EffectUse, index: int) -> float:
     """Variance of a ripple's phase from window to window, rad², for the noise of the speed it follows."""
-    noise = float(problem.floor[RIPPLES[use.id][1]])
+    noise = _followed_noise(problem, RIPPLES[use.id][1], index)
     walk = float(use.values["order"]) ** 2 * noise**2 * _SLOW_NOISE * problem.traces[index].dt
     return max(walk, _LEAST_STEP**2) * _WINDOW_S
+
+
+def _followed_noise(problem: Problem, channel: int, index: int) -> float:
+    """Noise of a speed (0 motor, 1 wheel), rad/s, as `Trace.angles` has it: from the other if missing."""
+    has = problem.traces[index].has
+    if has[channel]:
+        return float(problem.floor[channel])
+    if has[1 - channel]:
+        ratio = problem.gear_ratio if channel == 0 else 1.0 / problem.gear_ratio
+        return float(problem.floor[1 - channel]) * ratio
+    return 0.0  # no speed was measured: the angle stays at zero
 
 
 def _windows(problem: Problem, model: Model, position: int, index: int, start: Array) -> _Windows:
@@ -144,6 +156,8 @@ def _windows(problem: Problem, model: Model, position: int, index: int, start: A
     )
     error = problem.errors(index, around[0])
     ripple = (around[1:] - around[0]) * problem.weights[index]
+    # Where a simulation diverges nothing is known of a phase, and NaN would spread over the whole walk.
+    ripple[~(np.abs(ripple) < _DIVERGED)] = 0.0
     period = trace.dt * trace.block
     length = max(4, round(_WINDOW_S / period))
     count = max(1, len(error) // length)

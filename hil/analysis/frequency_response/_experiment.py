@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from scipy.interpolate import CubicSpline
 
 from hil.analysis.frequency_response._quality import UnfitDataError
+from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
@@ -88,9 +89,10 @@ def experiments_of(
         hold_s: how long the input keeps a value; default: the sample time, at most the RMCU's 1 ms.
 
     Raises:
-        BadInputError: an unknown segment, no exciting segment, a missing channel.
+        BadInputError: an unknown segment, no exciting segment, a missing channel, values that no axle gives.
         UnfitDataError: time stamps too uneven to resample.
     """
+    refuse_implausible(recording)
     known = segments_of(recording)
     chosen = _choose(known, segments, str(recording.source))
     if not chosen:

@@ -148,7 +148,10 @@ def fit(
         raise BadInputError(f"order {order} is too low", fix="give 2 or more")
     problem = _Problem(frf, rows)
     if problem.values <= 2 * (outputs + 1) * order:
-        raise BadInputError(f"{problem.values // 2} values are too few for order {order}")
+        raise BadInputError(
+            f"{problem.values // 2} values of the frequency response are too few for order {order}",
+            fix="record longer, or widen the band with --from-hz and --to-hz",
+        )
     if start is not None:
         found = problem.solve(start.structure, start.poles, start.delay_s)
     else:

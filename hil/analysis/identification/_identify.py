@@ -11,6 +11,7 @@ from hil.analysis.identification._fit import Fit
 from hil.analysis.identification._order import ORDERS, OrderChoice, choose_order
 from hil.analysis.identification._table import model_of
 from hil.analysis.identification._trust import Judgement, Trust, judge
+from hil.analysis.plausible import within_floating_point
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
 
@@ -71,9 +72,21 @@ def identify(
         UnfitDataError: the data cannot give a frequency response.
         BadInputError: arguments that make no sense, too few data, or data that no linear model explains.
     """
-    progress("frequency response")
-    frf = estimate(experiments, from_hz=from_hz, to_hz=to_hz, method=method)
-    orders = choose_order(frf, ORDERS if order is None else (order,), progress=progress)
+    with within_floating_point(", ".join(experiment.name for experiment in experiments)):
+        progress("frequency response")
+        frf = estimate(experiments, from_hz=from_hz, to_hz=to_hz, method=method)
+        orders = choose_order(frf, ORDERS if order is None else (order,), progress=progress)
+        return _identified(experiments, frf, orders, gear_ratio, progress)
+
+
+def _identified(
+    experiments: Sequence[Experiment],
+    frf: FrequencyResponse,
+    orders: OrderChoice,
+    gear_ratio: float | None,
+    progress: Callable[[str], None],
+) -> Identification:
+    """Judgement, chain and models of an order that was taken."""
     fit = orders.best.fit
     judgement = judge(frf, orders.best)
     notes = [*frf.notes, *judgement.remarks]

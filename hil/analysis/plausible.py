@@ -1,0 +1,110 @@
+"""Data that no axle gives, whatever its parameters: refused before any computing, by name and place."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+
+import numpy as np
+
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.errors import BadInputError
+from hil.core.recording import Recording
+
+#: In the channel's SI unit: hundreds of thousands of times what an axle can.
+LARGEST_VALUE = 1e9
+
+
+def refuse_implausible(recording: Recording) -> None:
+    """Refuse values that no axle gives, and channels that are copies of each other.
+
+    Raises:
+        BadInputError: time does not increase, a value is not finite or beyond 1e9 in SI units, or two
+            channels that move are equal at every sample; names channels, and time or file.
+    """
+    names = [name for name in (INPUT, *OUTPUTS) if name in recording]
+    where = str(recording.source)
+    backwards = ~(np.diff(recording[TIME]) > 0)
+    if backwards.any():
+        row = int(np.argmax(backwards)) + 1
+        raise BadInputError(
+            f"'{TIME}' does not increase at sample {row + 1} ({recording[TIME][row]:.17g} s)",
+            where=where,
+            fix="let time_s start near zero: far from it floating point cannot tell the samples apart",
+        )
+    for name in names:
+        values = recording[name]
+        impossible = ~(np.abs(values) <= LARGEST_VALUE)
+        if impossible.any():
+            row = int(np.argmax(impossible))
+            raise BadInputError(
+                f"'{name}' is {values[row]:g} at {recording[TIME][row]:.6g} s: no axle does that "
+                f"({np.count_nonzero(impossible)} such values, {LARGEST_VALUE:g} is allowed)",
+                where=where,
+                fix="mend or leave out these samples",
+            )
+    for one, other in combinations(names, 2):
+        if np.ptp(recording[one]) > 0 and np.array_equal(recording[one], recording[other]):
+            raise BadInputError(
+                f"'{one}' and '{other}' are equal at every sample: one is a copy of the other",
+                where=where,
+                fix="give each channel its own signal, or leave the copy out",
+            )
+
+
+def same_data(one: Recording, other: Recording) -> bool:
+    """Whether two recordings hold the same measurement: equal input and outputs, whatever the file.
+
+    Names of files, further channels and a shift of all time stamps do not matter.
+    """
+    names = [name for name in (INPUT, *OUTPUTS) if name in one]
+    if names != [name for name in (INPUT, *OUTPUTS) if name in other] or one is other:
+        return one is other
+    return all(np.array_equal(one[name], other[name]) for name in names)
+
+
+def refuse_same_data(recordings: Sequence[Recording], holdout: Sequence[Recording] = ()) -> None:
+    """Refuse data that count twice, or that are held out of a fit that sees them.
+
+    Raises:
+        BadInputError: names both files.
+    """
+    every = [(r, False) for r in recordings] + [(r, True) for r in holdout]
+    for (one, one_held), (other, other_held) in combinations(every, 2):
+        if same_data(one, other):
+            apart = one_held != other_held
+            raise BadInputError(
+                f"holds the same data as {one.source}"
+                + (", which is fitted: it cannot be held out" if apart else ", given twice"),
+                where=str(other.source),
+                fix="what a fit has seen proves nothing: hold another recording back"
+                if apart
+                else "give each recording once",
+            )
+
+
+@contextlib.contextmanager
+def within_floating_point(where: str) -> Iterator[None]:
+    """Turn arithmetic that broke down on degenerate data into a message.
+
+    Raises:
+        BadInputError: in place of numpy's and scipy's errors on singular matrices, NaN and infinity.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            yield
+    except (np.linalg.LinAlgError, ZeroDivisionError, OverflowError, FloatingPointError) as error:
+        raise _broken_down(error, where) from error
+    except ValueError as error:
+        if not any(word in str(error) for word in ("infs or NaNs", "not finite", "NaN", "non-finite")):
+            raise
+        raise _broken_down(error, where) from error
+
+
+def _broken_down(error: Exception, where: str) -> BadInputError:
+    return BadInputError(
+        f"these data cannot be computed with: {error}",
+        where=where,
+        fix="look at the channels: are they constant, empty of motion, or in wildly different units?",
+    )

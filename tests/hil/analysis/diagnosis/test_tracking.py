@@ -1,0 +1,42 @@
+"""Following a ripple's phase where the speed that it follows was not measured, or a simulation diverges."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis._coordinates import Hypothesis
+from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis._sanity import examine
+from hil.analysis.diagnosis._trace import noise_levels, usable_noise
+from hil.analysis.diagnosis._tracking import track
+from hil.core.channels import INPUT, OUTPUTS
+from hil.core.model import EffectUse
+from tests.hil.analysis.degenerate import MODEL, recording
+
+RIPPLE = {"order": 3.0, "amplitude_nm": 5.0, "phase_rad": 0.5}
+
+
+def followed(id_: str, *channels: str, amplitude_nm: float = 5.0) -> np.ndarray:
+    """Coordinates after tracking one ripple in a recording of these channels alone."""
+    whole = recording("as it should be")
+    part = dataclasses.replace(whole, channels={n: whole[n] for n in ("time_s", INPUT, *channels)})
+    traces, _ = examine(MODEL, [part])
+    noise = usable_noise(noise_levels(traces))
+    problem = Problem(traces, noise, MODEL.parameters["gear_ratio"])
+    hypothesis = Hypothesis(MODEL, (EffectUse(id_, {**RIPPLE, "amplitude_nm": amplitude_nm}),))
+    return track(problem, hypothesis, hypothesis.start(), problem.first_starts(hypothesis))
+
+
+@pytest.mark.parametrize("id_", ["wheel_order_disturbance", "motor_order_ripple"])
+@pytest.mark.parametrize("channel", OUTPUTS)
+def test_one_channel_alone_is_enough(id_: str, channel: str) -> None:
+    assert np.all(np.isfinite(followed(id_, channel)))
+
+
+@pytest.mark.parametrize("amplitude_nm", [1e200, np.inf])
+def test_a_simulation_that_diverges_says_nothing_of_the_phase(amplitude_nm: float) -> None:
+    found = followed("wheel_order_disturbance", *OUTPUTS, amplitude_nm=amplitude_nm)
+    assert not np.any(np.isnan(found))
