@@ -65,12 +65,12 @@ def test_poles_agree_with_nyquist_for_any_dead_time(gain: float, part: object, d
     plant = TransferFunction(MOTOR.numerator, MOTOR.denominator, delay_s)
     parts = blocks(gain, part)
     poles = np.abs(closed_loop_poles(plant, parts, STEP))
-    if np.min(np.abs(poles - 1)) < 2e-5:
-        return  # too near to call
     loop = plant.response(GRID) * hold_response(GRID, STEP) * feedback_response(parts, GRID, STEP)
-    if abs(loop[-1]) > 0.2:
-        return  # the response leaves out what sampling mirrors from above half the rate; the poles do not
-    assert encirclements(loop, 2) == np.sum(poles > 1)
+    # The response leaves out what sampling mirrors from above half the rate (some per cent); the poles do not.
+    decided = {bool(encirclements(loop * change, 2) == 0) for change in (0.8, 1.0, 1.25)}
+    if len(decided) > 1 or abs(loop[-1]) > 0.2:
+        return  # too near to call by the response
+    assert decided == {bool(np.all(poles < 1))}
 
 
 def test_what_sampling_mirrors_is_seen() -> None:
