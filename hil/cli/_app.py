@@ -15,7 +15,7 @@ from typing import Any
 import typer
 
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
-from hil.cli._streams import tolerate_outputs
+from hil.cli._streams import complain, tolerate_outputs
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.files import of_the_system
 
@@ -44,7 +44,7 @@ def run_command_line() -> int:
     sys.stdout.flush()
     if out.failure is not None:
         reason = out.failure.strerror or str(out.failure)
-        print(f"error: standard output: {reason}\n  make room, or send the output elsewhere", file=sys.stderr)
+        complain("error", f"standard output: {reason}\n  make room, or send the output elsewhere")
         code = code or BenchError.exit_code
     sys.stderr.flush()
     return code
@@ -109,7 +109,7 @@ def _interrupted() -> int:
 
 
 def _told(error: HilError) -> int:
-    print(f"error: {error}", file=sys.stderr)
+    complain("error", str(error))
     return error.exit_code
 
 

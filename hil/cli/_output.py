@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from hil.cli._streams import complain
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, CriterionVerdict
 
@@ -51,7 +52,7 @@ def console() -> Console:
 
 def warn(text: str) -> None:
     """What a person must know though the command goes on; on standard error."""
-    print(f"warning: {text}", file=sys.stderr)
+    complain("warning", text)
 
 
 def warn_of_damage(recordings: Iterable[Recording]) -> None:

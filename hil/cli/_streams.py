@@ -9,8 +9,11 @@ import os
 import sys
 from typing import TextIO
 
+from hil.core.printable import printable
+
 #: The reader has gone: nobody is left to complain to, and the command's outcome is its own.
 _READER_GONE = (errno.EPIPE, errno.EIO, errno.EBADF)
+_LONGEST_LINE = 2000
 _PLAIN = {
     "≤": "<=", "≥": ">=", "±": "+-", "²": "^2", "·": "*", "×": "x", "–": "-", "—": "-", "−": "-", "…": "...",
     "°": " deg", "µ": "u", "μ": "u", "ω": "omega", "ζ": "zeta", "α": "alpha", "τ": "tau", "σ": "sigma",
@@ -71,6 +74,12 @@ def tolerate_outputs() -> tuple[TolerantOutput, TolerantOutput]:
     if sys.stdin is None:
         sys.stdin = open(0, closefd=False)  # noqa: SIM115 - a descriptor that stays open
     return raw
+
+
+def complain(kind: str, text: str) -> None:
+    """Say `kind: text` on standard error, with what cannot be printed in it escaped."""
+    lines = [printable(line, longest=_LONGEST_LINE) for line in text.split("\n")]
+    print(f"{kind}: " + "\n".join(lines), file=sys.stderr)
 
 
 def _text(raw: TolerantOutput, like: TextIO | None) -> TextIO:

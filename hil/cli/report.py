@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +17,7 @@ from hil.cli._output import (
     warn_of_damage,
 )
 from hil.cli._place import refuse_missing, results_in
+from hil.cli._streams import complain
 from hil.cli.run import RESULT
 from hil.core.files import write_atomically
 from hil.core.recording import Recording, read_recording, run_of
@@ -92,7 +92,7 @@ def _told(result: RunResult | None, files: dict[str, str], path: Path, folder: P
         verdict = f"{result.verdict.upper()}, {count_in_words(result.criteria)}"
         console().print(f"\n{verdict}\nreport: {page}", highlight=False)
         if result.reason:
-            print(f"error: {result.reason}", file=sys.stderr)
+            complain("error", result.reason)
     return {"pass": 0, "fail": 1, "error": 1}[result.verdict]
 
 

@@ -12,6 +12,7 @@ import typer
 from hil.cli._interrupts import INTERRUPTS
 from hil.cli._output import Show, console, count_in_words, print_criteria, print_json, progress, warn
 from hil.cli._place import Place, results_in
+from hil.cli._streams import complain
 from hil.core.errors import BenchError, HilError, InterruptError
 from hil.core.files import write_atomically
 from hil.core.model import load_model
@@ -153,7 +154,7 @@ class _Conclusion:
 
 def _exit_code(outcome: RunOutcome, result: RunResult) -> int:
     if outcome.error is not None:
-        print(f"error: {outcome.error}", file=sys.stderr)
+        complain("error", str(outcome.error))
     if result.safe_state == "not_confirmed":
         return BenchError.exit_code
     if outcome.error is not None:
