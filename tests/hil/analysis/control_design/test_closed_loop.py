@@ -66,7 +66,7 @@ def test_poles_agree_with_nyquist_for_any_dead_time(gain: float, part: object, d
     parts = blocks(gain, part)
     poles = np.abs(closed_loop_poles(plant, parts, STEP))
     loop = plant.response(GRID) * hold_response(GRID, STEP) * feedback_response(parts, GRID, STEP)
-    # The response leaves out what sampling mirrors from above half the rate (some per cent); the poles do not.
+    # The response leaves out what sampling mirrors from above half the rate; the poles do not.
     decided = {bool(encirclements(loop * change, 2) == 0) for change in (0.8, 1.0, 1.25)}
     if len(decided) > 1 or abs(loop[-1]) > 0.2:
         return  # too near to call by the response
