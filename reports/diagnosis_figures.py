@@ -35,7 +35,7 @@ def _change(overlay: Overlay) -> float:
 
 
 def _in_time(o: Overlay, column: int, channel: str) -> Figure:
-    size = max(10, round(WINDOW_S / o.dt))
+    size = min(max(10, round(WINDOW_S / o.dt)), len(o.measured))
     power = np.convolve((o.measured[:, column] - o.before[:, column]) ** 2, np.ones(size), "valid")
     first = int(np.argmax(power))
     window = slice(first, first + size)

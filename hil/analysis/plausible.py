@@ -14,6 +14,8 @@ from hil.core.recording import Recording
 
 #: In the channel's SI unit: hundreds of thousands of times what an axle can.
 LARGEST_VALUE = 1e9
+#: Without a gear and without compliance these two are one and the same.
+_SAME_IF_DIRECT = {"motor_speed_rad_s", "wheel_speed_rad_s"}
 
 
 def refuse_implausible(recording: Recording) -> None:
@@ -45,6 +47,8 @@ def refuse_implausible(recording: Recording) -> None:
                 fix="mend or leave out these samples",
             )
     for one, other in combinations(names, 2):
+        if {one, other} == _SAME_IF_DIRECT:
+            continue
         if np.ptp(recording[one]) > 0 and np.array_equal(recording[one], recording[other]):
             raise BadInputError(
                 f"'{one}' and '{other}' are equal at every sample: one is a copy of the other",

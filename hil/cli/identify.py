@@ -10,6 +10,7 @@ import typer
 from hil.analysis.frequency_response import Experiment, Method, experiments_of
 from hil.analysis.identification import ORDERS, identify
 from hil.analysis.outputs.identification import output_files, summary_of, text_of
+from hil.analysis.plausible import refuse_same_data
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import refuse_missing, results_in
 from hil.core.channels import INPUT
@@ -109,16 +110,20 @@ def _experiments(
     hold_ms: float | None,
     show: Show,
 ) -> list[Experiment]:
-    experiments: list[Experiment] = []
+    read = []
     for path in paths:
         show(f"reading {path.name}")
-        recording = read_recording(path, least_samples=_LEAST_SAMPLES)
-        warn_of_damage([recording])
-        experiments += experiments_of(
+        read.append(read_recording(path, least_samples=_LEAST_SAMPLES))
+    warn_of_damage(read)
+    refuse_same_data(read)
+    return [
+        experiment
+        for recording in read
+        for experiment in experiments_of(
             recording,
             segments=segments,
             input_channel=input_channel,
             to_hz=to_hz or 30.0,
             hold_s=None if hold_ms is None else hold_ms / 1000,
         )
-    return experiments
+    ]

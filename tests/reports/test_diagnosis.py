@@ -27,6 +27,7 @@ from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse, load_model
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
 from reports.diagnosis_content import headline, lead, parts
+from reports.diagnosis_figures import overlay_figures
 
 MODEL = load_model(Path(__file__).parents[2] / "benches/three_inertia.toml")
 MOTOR, WHEEL, SHAFT = OUTPUTS
@@ -143,3 +144,10 @@ def test_a_report_without_effects_or_held_out_data_is_whole_too(found: Diagnosis
     )
     assert "held-out" not in diagnosis_html(bare, "t")
     assert diagnosis_pdf(bare, "t").startswith(b"%PDF")
+
+
+def test_a_recording_shorter_than_the_window_is_drawn_whole(found: Diagnosis) -> None:
+    swing = np.sin(np.arange(200) / 20)[:, None] * np.ones(3)
+    short = Overlay("short", 1e-3, np.zeros(200), swing, 0.5 * swing, 0.99 * swing)
+    figures = overlay_figures(short)
+    assert [len(trace.x) for trace in figures[0].traces] == [200, 200, 200]

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import ValidationError
 from scipy.interpolate import CubicSpline
 
 from hil.analysis.frequency_response._quality import UnfitDataError
 from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
-from hil.core.recording import Recording
-from hil.core.result import RunResult, Segment
+from hil.core.recording import Recording, run_of
+from hil.core.result import Segment
 
 Array = npt.NDArray[np.float64]
 
@@ -59,13 +57,8 @@ class Experiment:
 
 def segments_of(recording: Recording) -> tuple[Segment, ...]:
     """Segments of the run that made the recording; none for data of another tool."""
-    raw = recording.attachments.get("run.json")
-    if raw is None:
-        return ()
-    try:
-        return RunResult.model_validate(json.loads(raw)).segments
-    except (ValidationError, ValueError) as error:
-        raise BadInputError(f"its run.json cannot be read: {error}", where=str(recording.source)) from error
+    run = run_of(recording)
+    return () if run is None else run.segments
 
 
 def experiments_of(
