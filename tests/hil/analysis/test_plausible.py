@@ -44,7 +44,7 @@ def test_a_value_that_no_axle_gives_is_refused_with_its_place(channel: str, valu
 
 
 def test_a_copy_of_a_channel_is_refused_by_both_names() -> None:
-    for one, other in ((OUTPUTS[0], OUTPUTS[1]), (INPUT, OUTPUTS[2])):
+    for one, other in ((OUTPUTS[0], OUTPUTS[2]), (INPUT, OUTPUTS[2])):
         bad = renamed(GOOD, "bad.csv")
         bad.channels[other] = bad[one].copy()
         with pytest.raises(BadInputError, match="equal at every sample") as caught:
@@ -100,3 +100,9 @@ def test_arithmetic_that_breaks_down_is_bad_input(broken) -> None:  # type: igno
 def test_other_errors_stay_what_they_are() -> None:
     with pytest.raises(ValueError, match="a mistake"), within_floating_point("r.csv"):
         raise ValueError("a mistake of ours")
+
+
+def test_speeds_of_a_direct_drive_may_be_equal() -> None:
+    direct = renamed(GOOD, "direct.csv")
+    direct.channels[OUTPUTS[1]] = direct[OUTPUTS[0]].copy()
+    refuse_implausible(direct)
