@@ -24,7 +24,7 @@ def faults_of(case: Case, outcome: Outcome) -> dict[str, str]:
     """Kinds of faults with words for each; empty if all is well."""
     found: dict[str, str] = {}
     if any(text in outcome.err + outcome.out for text in _SPILLED):
-        found[TRACEBACK] = _last_line(outcome.err)
+        found[TRACEBACK] = _telling_line(outcome.err)
     if outcome.code is None:
         found[HANG] = "ended after the time limit"
         return found
@@ -84,7 +84,7 @@ def _unclear(case: Case, outcome: Outcome) -> str:
         escapes = [c for c in outcome.err if not c.isprintable() and c != "\n"]
         if escapes and not case.environment:
             return f"control characters in the message: {escapes[0]!r}"
-        if outcome.err.count("error:") > 1:
+        if sum(line.startswith("error:") for line in outcome.err.splitlines()) > 1:
             return "more than one message"
     if case.as_json and not case.deaf and outcome.code is not None:
         return _not_json(outcome)
@@ -101,6 +101,8 @@ def _not_json(outcome: Outcome) -> str:
     return "" if isinstance(value, dict) else "standard output is JSON, but no object"
 
 
-def _last_line(text: str) -> str:
+def _telling_line(text: str) -> str:
+    """The line that says what went wrong: the program's own message, else a traceback's last line."""
     lines = text.strip().splitlines()
-    return lines[-1][:300] if lines else ""
+    told = [line for line in lines if "internal error" in line]
+    return [*told, *lines[-1:], ""][0][:300]

@@ -19,6 +19,7 @@ from tests.bad_inputs.inputs import HIL, copy_inputs
 
 LIMIT_S = 60.0
 _POLL_S = 0.005
+_SIGNALS = "INT,TERM,HUP"
 _LONGEST_OUTPUT = 2_000_000
 
 
@@ -42,10 +43,11 @@ def carry_out(case: Case, inputs: Path, folder: Path) -> Outcome:
 
 def _process(case: Case, work: Path, folder: Path) -> tuple[int | None, str, str]:
     line = [HIL, *([case.command] if case.command != "hil" else []), *case.arguments]
+    if case.interruption:  # whoever tries this may ignore signals (nohup); a user's terminal does not
+        line = ["env", f"--default-signal={_SIGNALS}", *line]
     if case.shell:
         line = ["bash", "-c", case.shell, "bash", *line]
     environment = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "LC_ALL", "NO_COLOR")}
-    # Matplotlib's and numba's caches stay where they are; what is tried must not leave anything behind.
     with (folder / "out").open("wb") as out, (folder / "err").open("wb") as err:
         process = subprocess.Popen(
             line,
@@ -88,8 +90,11 @@ def _contents(folder: Path) -> dict[str, str]:
     """What every path below a folder holds, by its hash."""
     found = {}
     for path in sorted(folder.rglob("*")):
-        name = str(path.relative_to(folder))
-        found[name] = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "directory"
+        if path.is_symlink():
+            what = f"link to {path.readlink()}"
+        else:
+            what = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "directory"
+        found[str(path.relative_to(folder))] = what
     return found
 
 
