@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 from hil.core.model import Model, load_model
 from hil.engine.bench_file import shipped
-from sim_backend.plant import _kernel, _slots
+from hil.plant import _kernel, _slots
 
 SAMPLES, DT, STEP = 20_000, 1e-3, 1e-4
 

@@ -11,7 +11,7 @@ from hil.cli._output import console, print_json, warn_of_damage
 from hil.cli._place import refuse_file
 from hil.core.model import load_model
 from hil.core.recording import read_recording, write_recording
-from sim_backend.plant import replay
+from hil.plant import replay
 
 
 def command(

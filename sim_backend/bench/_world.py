@@ -12,15 +12,15 @@ from hil.core.dbc import read_dbc
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block, joined
 from hil.core.signals import FrameLayout
-from sim_backend.bench import _tick as T
+from hil.plant import _equations, _slots
+from hil.plant.closed_loop import drive as drive
+from hil.plant.closed_loop import tick as T
+from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SimulationSettings
 from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s, single
-from sim_backend.plant import _equations, _slots
 from sim_backend.rcs import DynoNode, read_node
-from sim_backend.rcs import _drive as drive
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
-from sim_backend.rmcu import _memory as memory
 
 RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
 TICK_S = 0.001

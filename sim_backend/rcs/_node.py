@@ -12,11 +12,11 @@ import numpy.typing as npt
 
 from hil.core.pdo import ObjectDictionary, layout_of_pdo, read_eds
 from hil.core.signals import FrameLayout
-from sim_backend.rcs import _drive
+from hil.plant.closed_loop import drive as law
 from sim_backend.rcs._power_states import PowerStates, State
 
 _OPERATIONAL = 5
-_MODES = {3: _drive.SPEED, 4: _drive.TORQUE, -1: _drive.VEHICLE}
+_MODES = {3: law.SPEED, 4: law.TORQUE, -1: law.VEHICLE}
 _EMCY_HEARTBEAT_LOST = 0x8130
 _SYNC_PRODUCER = 1 << 30
 # What the emulation reads or shows: index and subindex
@@ -92,7 +92,7 @@ def read_node(
 
 
 class DynoNode:
-    """A node and its drive; `row` is what the compiled drive law reads (`_drive` columns)."""
+    """A node and its drive; `row` is what the compiled law of the drive reads."""
 
     def __init__(
         self, node_id: int, eds: Path, send: Callable[[int, bytes], None], row: npt.NDArray[np.float64]
@@ -179,8 +179,8 @@ class DynoNode:
 
     def _take_command(self, payload: int) -> None:
         signals = self._command.signals
-        self.row[_drive.TARGET_SPEED] = signals["Target velocity"].value(payload)
-        self.row[_drive.TARGET_TORQUE] = signals["Target torque"].value(payload)
+        self.row[law.TARGET_SPEED] = signals["Target velocity"].value(payload)
+        self.row[law.TARGET_TORQUE] = signals["Target torque"].value(payload)
         self.power.command(signals["Controlword"].raw(payload))
 
     def _written(self, index: int, subindex: int, od: Any, data: bytes) -> None:
@@ -188,9 +188,9 @@ class DynoNode:
         if index == 0x6040:
             self.power.command(od.decode_raw(data))
         elif index == 0x60FF:
-            self.row[_drive.TARGET_SPEED] = od.decode_raw(data) * od.factor
+            self.row[law.TARGET_SPEED] = od.decode_raw(data) * od.factor
         elif index == 0x6071:
-            self.row[_drive.TARGET_TORQUE] = od.decode_raw(data) * od.factor
+            self.row[law.TARGET_TORQUE] = od.decode_raw(data) * od.factor
         elif index == 0x6060 and od.decode_raw(data) not in _MODES:
             raise canopen.SdoAbortedError(0x06090030)
 
@@ -202,9 +202,9 @@ class DynoNode:
         mode = self.number(0x6060)
         self.show(0x6061, mode)
         self.show(0x6041, self.power.statusword)
-        self.row[_drive.ACCELERATION] = self.number(0x6083) * self._dictionary[0x6083].factor
+        self.row[law.ACCELERATION] = self.number(0x6083) * self._dictionary[0x6083].factor
         enabled = self.power.state is State.OPERATION_ENABLED
-        wanted = _MODES.get(mode, _drive.FREE) if enabled else _drive.FREE
+        wanted = _MODES.get(mode, law.FREE) if enabled else law.FREE
         if self.power.state is State.QUICK_STOP_ACTIVE:
-            wanted, self.row[_drive.TARGET_SPEED] = _drive.SPEED, 0.0
-        self.row[_drive.MODE] = wanted
+            wanted, self.row[law.TARGET_SPEED] = law.SPEED, 0.0
+        self.row[law.MODE] = wanted

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 from hil.core.checksum import crc8
 from hil.core.dbc import Dbc, Needed
-from sim_backend.rmcu import _memory as M
-from sim_backend.rmcu import _parameters as parameters
+from hil.plant.controller import memory as M
+from hil.plant.controller import parameters
 
 REQUEST_TIMEOUT_S = 0.05
 _COUNTER_VALUES = 16

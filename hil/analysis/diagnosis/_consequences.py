@@ -7,7 +7,7 @@ import numpy.typing as npt
 from scipy import signal
 
 from hil.core.model import Model
-from sim_backend.plant import Start, simulate
+from hil.plant import Start, simulate
 
 Array = npt.NDArray[np.float64]
 

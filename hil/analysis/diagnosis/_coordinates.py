@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, parameter_names
-from sim_backend.plant import SENSOR_DELAY, SENSOR_GAIN, SENSOR_OFFSET, ideal_sensors, pack
+from hil.plant import SENSOR_DELAY, SENSOR_GAIN, SENSOR_OFFSET, ideal_sensors, pack
 
 Array = npt.NDArray[np.float64]
 

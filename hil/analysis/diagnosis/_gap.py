@@ -61,7 +61,7 @@ def simulated_samples(
     problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
 ) -> list[Array]:
     """Channels of each recording at full rate, n x 3."""
-    from sim_backend.plant import simulate_many
+    from hil.plant import simulate_many
 
     slots, sensors = hypothesis.packed(theta)
     return [

@@ -16,7 +16,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis._fit import Fit
 from hil.analysis.diagnosis._problem import Problem
 from hil.analysis.diagnosis._trace import blocks
-from sim_backend.plant import pack, system
+from hil.plant import pack, system
 
 Array = npt.NDArray[np.float64]
 Spectrum = npt.NDArray[np.complex128]
@@ -86,7 +86,7 @@ def _adjoint(slots: Array, error: Array, weights: Array, dt: float, side: str) -
 
 def _responses(slots: Array, frequency: Array, side: str) -> Array:
     """Motor speed, wheel speed and shaft torque per N m of ripple: frequencies x 3."""
-    from sim_backend.plant import _slots as P
+    from hil.plant import _slots as P
 
     a, b = system(slots)
     column = b[:, 1] if side == "wheel" else -b[:, 2]

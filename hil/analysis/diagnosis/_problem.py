@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 
 from hil.analysis.diagnosis._coordinates import Hypothesis
 from hil.analysis.diagnosis._trace import LITTLE_TORQUE, Trace
-from sim_backend.plant import simulate_many
+from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
 

@@ -15,7 +15,7 @@ import yaml
 
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
-from sim_backend.plant import Start, simulate
+from hil.plant import Start, simulate
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SAMPLE_TIME_S, Excitation, HoldSpeed
 

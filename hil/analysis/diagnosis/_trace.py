@@ -13,7 +13,7 @@ from scipy import signal
 from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
-from sim_backend.plant import SENSOR_GAIN, SENSOR_OFFSET
+from hil.plant import SENSOR_GAIN, SENSOR_OFFSET
 
 Array = npt.NDArray[np.float64]
 

@@ -18,7 +18,7 @@ from hil.analysis.diagnosis._coordinates import Hypothesis, sensors_of
 from hil.analysis.diagnosis._fit import Fit, carried
 from hil.analysis.diagnosis._problem import Problem
 from hil.core.model import EffectUse, Model
-from sim_backend.plant import pack, simulate_many
+from hil.plant import pack, simulate_many
 
 Array = npt.NDArray[np.float64]
 

@@ -28,7 +28,9 @@ def run_of(recording: Recording) -> RunResult | None:
         return _as_far_as_recorded(recording)
     except (ValueError, KeyError) as error:
         raise BadInputError(
-            "what it says of its run (run.json) is broken", where=str(recording.source), fix="use another copy"
+            "what it says of its run (run.json) is broken",
+            where=str(recording.source),
+            fix="use another copy",
         ) from error
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import load_model
 from hil.core.recording import Recording
-from sim_backend.plant import simulate
+from hil.plant import simulate
 from tests.benches_for_tests import SIM
 
 MODEL = load_model(SIM.simulation.model).with_effects()

@@ -19,7 +19,7 @@ from hil.core.effects import SENSED
 from hil.core.errors import BadInputError
 from hil.core.model import load_model, model_from_dict, parameter_names
 from hil.core.toml_file import LARGEST_BYTES
-from sim_backend.plant import simulate
+from hil.plant import simulate
 
 BENCHES = Path(__file__).parents[3] / "benches"
 MODELS = [

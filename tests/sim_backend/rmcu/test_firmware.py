@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 from hil.core.checksum import crc8
 from hil.core.dbc import read_dbc
+from hil.plant.controller.driving_force_observer import DrivingForceObserver
+from hil.plant.controller.filters import settle, step, tustin
+from hil.plant.controller.memory import OBSERVER_SPEED, OBSERVER_TORQUE, Memory
+from hil.plant.controller.wheel_speed_control import Notch, PhaseLead
 from sim_backend.rmcu import NEEDED, REQUEST_TIMEOUT_S, RmcuNode
-from sim_backend.rmcu._driving_force_observer import DrivingForceObserver
-from sim_backend.rmcu._filters import settle, step, tustin
-from sim_backend.rmcu._memory import OBSERVER_SPEED, OBSERVER_TORQUE, Memory
-from sim_backend.rmcu._wheel_speed_control import Notch, PhaseLead
 
 DBC = read_dbc(Path(__file__).parents[3] / "benches" / "rmcu.dbc", NEEDED)
 REQUEST = DBC.layouts["RMCU_Request"]

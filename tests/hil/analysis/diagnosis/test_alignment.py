@@ -16,7 +16,7 @@ from hil.analysis.diagnosis._tracking import track, tracked_gain
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from sim_backend.plant import simulate
+from hil.plant import simulate
 from tests.hil.analysis.diagnosis.reference_plant import BASE
 
 MODEL = Model("three_inertia", dict(BASE))

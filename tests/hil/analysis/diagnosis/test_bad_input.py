@@ -19,7 +19,7 @@ from hil.cli import main
 from hil.core.errors import BadInputError
 from hil.core.model import Model, parameter_names, save_model
 from hil.core.recording import Recording
-from sim_backend.plant import simulate
+from hil.plant import simulate
 from tests.hil.analysis.diagnosis.hidden_cases import EFFECTS, draw
 from tests.hil.analysis.diagnosis.reference_plant import BASE, CHANNELS, Truth, recordings
 

@@ -13,7 +13,7 @@ from hil.analysis.diagnosis._trace import noise_levels, trace_of
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import Model
 from hil.core.recording import Recording
-from sim_backend.plant import simulate
+from hil.plant import simulate
 from tests.hil.analysis.diagnosis.reference_plant import BASE
 
 MODEL = Model("three_inertia", dict(BASE))

@@ -13,7 +13,7 @@ from hil.analysis.diagnosis import Diagnosis, diagnose
 from hil.core.effects import EFFECTS
 from hil.core.model import Model, model_from_dict, model_to_toml
 from hil.core.recording import Recording
-from sim_backend.plant import pack, system
+from hil.plant import pack, system
 from tests.hil.analysis import paper_plant
 from tests.hil.analysis.diagnosis.reference_plant import BASE, Truth, recordings
 

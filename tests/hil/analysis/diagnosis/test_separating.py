@@ -14,7 +14,7 @@ from hil.analysis.diagnosis._separating import _WORDS, _test, separating_plan
 from hil.core.model import EffectUse, Model, save_model
 from hil.core.recording import driven_by_torque, read_recording, write_recording
 from hil.engine import RunRequest, run_plan
-from sim_backend.plant import Start, simulate
+from hil.plant import Start, simulate
 from test_plans import load_plan
 from tests.benches_for_tests import sim_bench
 from tests.hil.analysis.diagnosis.reference_plant import BASE, Truth, recordings

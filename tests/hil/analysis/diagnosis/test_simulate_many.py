@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from hil.analysis.diagnosis._fit import box_step
 from hil.core.model import EffectUse, Model
-from sim_backend.plant import Start, ideal_sensors, pack, simulate, simulate_many
+from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
 from tests.hil.analysis.diagnosis.reference_plant import BASE, CHANNELS
 
 MODEL = Model("three_inertia", dict(BASE) | {"torque_delay": 0.0083})

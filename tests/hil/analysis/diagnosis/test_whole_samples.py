@@ -11,7 +11,7 @@ from hil.analysis.diagnosis._whole_samples import delay_by_samples
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from sim_backend.plant import simulate
+from hil.plant import simulate
 
 PARAMETERS = {
     "motor_inertia": 0.02,

@@ -20,7 +20,7 @@ from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, load_model, model_from_dict
 from hil.core.recording import Recording
-from sim_backend.plant import simulate
+from hil.plant import simulate
 from test_plans import stimuli
 from tests.benches_for_tests import SIM
 from tests.hil.analysis import paper_plant

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.compiled import compiled
-from sim_backend.plant import _slots as P
+from hil.plant import _slots as P
 
 Array = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hil.core.model import EffectUse, Model
-from sim_backend.plant import Start, ideal_sensors, pack, simulate, simulate_many
+from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
 
 DT = 1e-3
 INERTIA = 0.02 + 300.0 / 64.0

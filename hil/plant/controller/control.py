@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from hil.core.compiled import compiled
-from sim_backend.rmcu import _memory as M
-from sim_backend.rmcu._driving_force_control import feedforward, wheel_speed_reference
-from sim_backend.rmcu._driving_force_observer import estimate
-from sim_backend.rmcu._filters import settle
-from sim_backend.rmcu._wheel_speed_control import motor_torque
+from hil.plant.controller import memory as M
+from hil.plant.controller.driving_force_control import feedforward, wheel_speed_reference
+from hil.plant.controller.driving_force_observer import estimate
+from hil.plant.controller.filters import settle
+from hil.plant.controller.wheel_speed_control import motor_torque
 
 
 @compiled

@@ -13,11 +13,11 @@ import numpy.typing as npt
 from numba import prange
 
 from hil.core.compiled import compiled, compiled_parallel, inlined
-from sim_backend.plant import _held_forces as F
-from sim_backend.plant import _slots as P
-from sim_backend.plant._friction import friction_level, has_friction, mean_friction
-from sim_backend.plant._held_linear import STATES, step_matrices
-from sim_backend.plant._kernel import as_tuple
+from hil.plant import _held_forces as F
+from hil.plant import _slots as P
+from hil.plant._friction import friction_level, has_friction, mean_friction
+from hil.plant._held_linear import STATES, step_matrices
+from hil.plant._kernel import as_tuple
 
 Array = npt.NDArray[np.float64]
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from hil.core.compiled import compiled
-from sim_backend.plant import _slots as P
+from hil.plant import _slots as P
 
 _STRIBECK_WIDTH_RAD_S = 2.0
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from hil.core.compiled import inlined
-from sim_backend.plant import _slots as P
+from hil.plant import _slots as P
 
 
 @inlined

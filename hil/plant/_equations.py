@@ -10,9 +10,9 @@ from __future__ import annotations
 import math
 
 from hil.core.compiled import compiled, inlined
-from sim_backend.plant import _slots as P
-from sim_backend.plant._backlash import gap_torque
-from sim_backend.plant._friction import friction_level, friction_torque, has_friction
+from hil.plant import _slots as P
+from hil.plant._backlash import gap_torque
+from hil.plant._friction import friction_level, friction_torque, has_friction
 
 # Width of a smooth sign function: small against any speed of interest, large enough for 0.1 ms steps.
 ROLLING_WIDTH_RAD_S = 0.05

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-from sim_backend.rmcu._driving_force_control import DrivingForceControl
-from sim_backend.rmcu._driving_force_observer import DrivingForceObserver
-from sim_backend.rmcu._memory import SAMPLE_TIME, TORQUE_LIMIT, Memory
-from sim_backend.rmcu._wheel_speed_control import Notch, PhaseLead, SpeedFilter, WheelSpeedControl
+from hil.plant.controller.driving_force_control import DrivingForceControl
+from hil.plant.controller.driving_force_observer import DrivingForceObserver
+from hil.plant.controller.memory import SAMPLE_TIME, TORQUE_LIMIT, Memory
+from hil.plant.controller.wheel_speed_control import Notch, PhaseLead, SpeedFilter, WheelSpeedControl
 
 OK, UNKNOWN_INDEX, OUT_OF_RANGE, NOT_OFF, INCOMPLETE = range(5)
 LARGEST_TORQUE_NM = 300.0

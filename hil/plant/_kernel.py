@@ -12,10 +12,10 @@ import numpy as np
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from hil.core.compiled import compiled, inlined
-from sim_backend.plant import _equations as E
-from sim_backend.plant import _slots as P
-from sim_backend.plant._backlash import moved_seat
-from sim_backend.plant._friction import has_friction
+from hil.plant import _equations as E
+from hil.plant import _slots as P
+from hil.plant._backlash import moved_seat
+from hil.plant._friction import has_friction
 
 # Columns of the kernel's output
 OUT_MOTOR_SPEED, OUT_WHEEL_SPEED, OUT_SHAFT_TORQUE, OUT_MOTOR_TORQUE, OUT_VEHICLE_SPEED, OUT_LOAD = range(6)

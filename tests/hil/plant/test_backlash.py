@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hil.core.model import EffectUse, Model
-from sim_backend.plant import Start, ideal_sensors, pack, simulate, simulate_many
+from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
 
 PLAIN = Model(
     kind="two_inertia",

@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.compiled import compiled
-from sim_backend.rmcu import _memory as M
-from sim_backend.rmcu._filters import step, tustin
+from hil.plant.controller import memory as M
+from hil.plant.controller.filters import step, tustin
 
 
 class DrivingForceControl:

@@ -7,9 +7,9 @@ import pytest
 from scipy.linalg import expm
 
 from hil.core.model import EffectUse, Model
-from sim_backend.plant import pack, system
-from sim_backend.plant._held_forces import _tanh
-from sim_backend.plant._held_linear import held_step
+from hil.plant import pack, system
+from hil.plant._held_forces import _tanh
+from hil.plant._held_linear import held_step
 
 THREE = Model(
     "three_inertia",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from sim_backend.rmcu._filters import LARGEST_ORDER, Filter
+from hil.plant.controller.filters import LARGEST_ORDER, Filter
 
 Array = npt.NDArray[np.float64]
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from hil.core.compiled import compiled
-from sim_backend.plant import _equations as E
-from sim_backend.plant import _kernel as K
-from sim_backend.plant import _slots as P
-from sim_backend.rcs import _drive as D
-from sim_backend.rmcu import _memory as M
-from sim_backend.rmcu._control import control
+from hil.plant import _equations as E
+from hil.plant import _kernel as K
+from hil.plant import _slots as P
+from hil.plant.closed_loop import drive as D
+from hil.plant.controller import memory as M
+from hil.plant.controller.control import control
 
 # Columns of a row: what the bench's frames tell of one sample
 (

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from hil.core.channels import INPUT, TIME, WHEEL_ANGLE
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from sim_backend.plant import _kernel, _slots
-from sim_backend.plant._sensors import measured
-from sim_backend.plant._transfer_function import respond
+from hil.plant import _kernel, _slots
+from hil.plant._sensors import measured
+from hil.plant._transfer_function import respond
 
 Array = npt.NDArray[np.float64]
 

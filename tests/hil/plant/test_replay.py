@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from hil.core.model import EffectUse, Model, load_model
 from hil.core.recording import Recording
-from sim_backend.plant import Start, pack, replay, simulate
+from hil.plant import Start, pack, replay, simulate
 
 BENCHES = Path(__file__).parents[3] / "benches"
 THREE = load_model(BENCHES / "three_inertia.toml").with_effects()

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 
 from hil.core.compiled import inlined
-from sim_backend.plant import _slots as P
-from sim_backend.plant._backlash import gap_torque, moved_seat
-from sim_backend.plant._equations import ROLLING_WIDTH_RAD_S
-from sim_backend.plant._friction import friction_level, friction_torque
+from hil.plant import _slots as P
+from hil.plant._backlash import gap_torque, moved_seat
+from hil.plant._equations import ROLLING_WIDTH_RAD_S
+from hil.plant._friction import friction_level, friction_torque
 
 SLIP, SEAT = range(2)  # of the memory
 _STANDSTILL_RAD_S = 1e-9  # what rounding leaves of zero

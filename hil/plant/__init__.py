@@ -1,0 +1,24 @@
+"""The plant: a model file turned into motion by a compiled kernel."""
+
+from hil.plant._held_linear import system
+from hil.plant._many import DELAY as SENSOR_DELAY
+from hil.plant._many import GAIN as SENSOR_GAIN
+from hil.plant._many import OFFSET as SENSOR_OFFSET
+from hil.plant._many import ideal_sensors, simulate_many
+from hil.plant._replay import LONGEST_STEP_S, Start, replay, simulate, start_of
+from hil.plant._slots import pack
+
+__all__ = [
+    "LONGEST_STEP_S",
+    "SENSOR_DELAY",
+    "SENSOR_GAIN",
+    "SENSOR_OFFSET",
+    "Start",
+    "ideal_sensors",
+    "pack",
+    "replay",
+    "simulate",
+    "simulate_many",
+    "start_of",
+    "system",
+]
