@@ -2,7 +2,7 @@
 
 from test_plans.registry import Registry
 from test_plans.steps._excitation import Excitation
-from test_plans.steps._step import SAMPLE_TIME_S, Name, Step
+from test_plans.steps._step import SAMPLE_TIME_S, Duration, Name, Seconds, Step, Torque
 from test_plans.steps.chirp import Chirp
 from test_plans.steps.coast import Coast
 from test_plans.steps.hold_speed import HoldSpeed
@@ -38,6 +38,7 @@ __all__ = [
     "STEPS",
     "Chirp",
     "Coast",
+    "Duration",
     "Excitation",
     "FileSearch",
     "HoldSpeed",
@@ -47,9 +48,11 @@ __all__ = [
     "Ramp",
     "RampDown",
     "Repeat",
+    "Seconds",
     "SetController",
     "Stairs",
     "Step",
+    "Torque",
     "TorqueStep",
     "Wait",
     "designed_file",

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import pytest
 
 from tests.blind.diagnosing import by_command_line
@@ -32,15 +29,8 @@ _SUBSET = (
 )
 
 
-def _command_is_there() -> bool:
-    asked = [sys.executable, "-c", "from hil.cli import main; main()", "diagnose", "--help"]
-    return subprocess.run(asked, capture_output=True, check=False).returncode == 0
-
-
 @pytest.mark.slow
 def test_the_fast_subset_is_above_its_line():
-    if not _command_is_there():
-        pytest.skip("hil diagnose is not there yet")
     scores = [run_case(_SEED, spec, by_command_line, None, _LENGTH) for spec in _SUBSET]
     wrong = [
         f"{s.key}: {s.failure or (s.verdict, s.named)}, hidden {s.hidden}" for s in scores if not s.right

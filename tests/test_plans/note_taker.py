@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from test_plans import Array, PlannedSegment, Quantity
+from test_plans import Array, PlannedSegment, Quantity, Work
 
 
 class NoteTaker:
@@ -37,3 +37,7 @@ class NoteTaker:
 
     def ramp_down(self, duration_s: float) -> None:
         self.calls.append(("ramp_down", duration_s))
+
+    def analyse(self, name: str, work: Work, makes: tuple[str, ...]) -> None:
+        del work
+        self.calls.append(("analyse", name, makes))

@@ -6,7 +6,7 @@ import pytest
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.recording import read_frames, read_recording
 from hil.engine import RunRequest, run_plan
-from sim_backend.bench import Fault
+from sim_backend.bench import Fault, SimulatedBench
 from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM, plan, sim_bench
 
@@ -191,9 +191,27 @@ def test_an_internal_error_leaves_a_safe_bench_too(tmp_path):
     assert outcome.result.safe_state == "confirmed"
 
 
-def test_a_bench_that_does_not_come_up_says_so(tmp_path):
+def test_idle_nodes_may_be_called_anything(tmp_path):
     outcome = run(tmp_path, dyno=SIM.dyno.model_copy(update={"idle": {"front left": 1, "ghost": 2}}))
     assert outcome.error is None
+
+
+def test_a_dyno_without_a_heartbeat_keeps_the_bench_from_coming_up(tmp_path, monkeypatch):
+    whole = SimulatedBench.take
+
+    def without_node_2(world, bus):
+        block = whole(world, bus)
+        return block[block["id"] != 0x702]
+
+    monkeypatch.setattr(SimulatedBench, "take", without_node_2)
+    outcome = run(tmp_path, dyno=SIM.dyno.model_copy(update={"idle": {"ghost": 2}}))
+    assert isinstance(outcome.error, BenchError)
+    assert "no heartbeat from" in str(outcome.error)
+    assert "ghost (node 2)" in str(outcome.error)
+    assert (outcome.result.verdict, outcome.result.safe_state) == ("error", "not_needed")
+
+
+def test_a_bus_that_cannot_be_opened_says_so(tmp_path):
     buses = sim_bench("wrong").buses
     buses["dyno"] = buses["dyno"].model_copy(update={"interface": "no-such-interface"})
     with pytest.raises(BenchError, match="no-such-interface"):

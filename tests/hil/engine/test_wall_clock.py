@@ -23,26 +23,40 @@ STEPS = """
   - hold_speed: {speed_km_h: 5, duration_s: 0.2}
   - step: {segment: s, quantity: driving_torque, from_nm: 0, to_nm: 100, before_s: 0.2, after_s: 0.8}
 """
+HOST_HEARTBEAT = 0x77F
+LONGEST_STALL_S = 0.03  # the RMCU takes its torque away after 50 ms without a request
+MOST_REPEATS = 5
 CRITERIA = "[{segment: s, metric: peak_shaft_torque, lower: 90, upper: 200}]"
 
 
 @contextlib.contextmanager
 def bench_in_real_time(name):
-    """A simulated bench behind `virtual` buses; gives the bench file and an event that cuts its power."""
+    """A simulated bench behind `virtual` buses.
+
+    Gives the bench file, an event that cuts its power, and a list of the stalls (s) that it saw: its own, and
+    those of the host, whose heartbeat comes every 50 ms.
+    """
     world = SimulatedBench(SimulationSettings(load_model(SIM.simulation.model), SIM.rmcu.dbc, SIM.dyno.eds))
     world.sleep_until(0.01)  # what is compiled is compiled before time counts
     ends = {
         bus: can.Bus(interface="virtual", channel=f"{name}/{bus}", preserve_timestamps=True)
         for bus in SIM.buses
     }
-    stop, unplugged = threading.Event(), threading.Event()
+    stop, unplugged, stalls = threading.Event(), threading.Event(), []
     epoch = time.time() - world.now_s()
 
     def serve():
+        last, beat = time.monotonic(), None
         while not stop.is_set():
+            now = time.monotonic()
+            stalls.append(now - last)
+            last = now
             world.sleep_until(time.time() - epoch)
             for bus, end in ends.items():
                 while (message := end.recv(0)) is not None:
+                    if message.arbitration_id == HOST_HEARTBEAT:
+                        stalls.append(0.0 if beat is None else now - beat - 0.05)
+                        beat = now
                     world.put(bus, message.arbitration_id, bytes(message.data))
                 for frame in world.take(bus):
                     if not unplugged.is_set():
@@ -62,7 +76,7 @@ def bench_in_real_time(name):
             )
             for bus, settings in SIM.buses.items()
         }
-        yield SIM.model_copy(update={"name": name, "buses": buses, "simulation": None}), unplugged
+        yield SIM.model_copy(update={"name": name, "buses": buses, "simulation": None}), unplugged, stalls
     finally:
         stop.set()
         thread.join()
@@ -81,12 +95,12 @@ def message_of(frame, epoch):
 
 
 def test_a_run_in_real_time_records_and_judges_like_one_in_virtual_time(tmp_path):
-    for attempt in range(3):  # a machine that stops for 50 ms trips the RMCU, as it should
-        with bench_in_real_time(f"wall{attempt}") as (bench, _):
-            outcome = run_plan(RunRequest(plan(STEPS, CRITERIA), bench, tmp_path))
-        if outcome.error is None:
-            break
-    assert outcome.error is None, outcome.error
+    for attempt in range(MOST_REPEATS):
+        with bench_in_real_time(f"wall{attempt}") as (bench, _, stalls):
+            outcome = run_plan(RunRequest(plan(STEPS, CRITERIA), bench, tmp_path / str(attempt)))
+        if outcome.error is None or max(stalls) < LONGEST_STALL_S:
+            break  # only a machine that stood still may be asked again: it trips the RMCU, as it should
+    assert outcome.error is None, (outcome.error, max(stalls))
     assert (outcome.result.verdict, outcome.result.safe_state) == ("pass", "confirmed")
     recording = read_recording(outcome.recording)
     assert recording.metadata["run"]["simulated"] == "false"
@@ -96,7 +110,7 @@ def test_a_run_in_real_time_records_and_judges_like_one_in_virtual_time(tmp_path
 
 
 def test_a_bench_that_loses_power_ends_the_run_and_is_not_called_safe(tmp_path):
-    with bench_in_real_time("power") as (bench, unplugged):
+    with bench_in_real_time("power") as (bench, unplugged, _):
         request = RunRequest(plan(STEPS, CRITERIA), bench, tmp_path)
         request.progress = lambda share, text: unplugged.set() if share > 0.3 else None
         outcome = run_plan(request)
