@@ -1,0 +1,77 @@
+"""A compiled function is never older than its sources."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+TABLE = "FIRST, SECOND = {order}\n"
+LAW = """
+from hil.core.compiled import inlined
+from {package} import _table as T
+
+@inlined
+def law(p):
+    return p[T.FIRST]
+"""
+KERNEL = """
+from hil.core.compiled import compiled
+from {package}._law import law
+
+@compiled
+def kernel(p):
+    return 10.0 * law(p)
+"""
+ASK = """
+import sys, numpy
+sys.path.insert(0, ".")
+from {package}._kernel import kernel
+print(kernel(numpy.array([1.0, 2.0])), sum(kernel.stats.cache_hits.values()))
+"""
+
+
+def write(package: Path, order: str) -> None:
+    package.mkdir(exist_ok=True)
+    (package / "__init__.py").write_text("")
+    (package / "_table.py").write_text(TABLE.format(order=order))
+    (package / "_law.py").write_text(LAW.format(package=package.name))
+    (package / "_kernel.py").write_text(KERNEL.format(package=package.name))
+
+
+def asked(package: Path) -> list[str]:
+    """What a new process gets from the kernel, and how often it took it from the cache."""
+    code = ASK.format(package=package.name)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=package.parent, capture_output=True, text=True, check=True
+    )
+    return done.stdout.split()
+
+
+@pytest.mark.slow
+def test_a_changed_table_or_a_moved_package_never_runs_an_old_kernel(tmp_path):
+    package = tmp_path / "plant"
+    write(package, "0, 1")
+    assert asked(package) == ["10.0", "0"]
+    assert asked(package) == ["10.0", "1"]
+    write(package, "1, 0")
+    assert asked(package) == ["20.0", "0"]
+    moved = package.rename(tmp_path / "moved")  # its cache goes with it
+    write(moved, "1, 0")
+    assert asked(moved) == ["20.0", "0"]
+    assert asked(moved) == ["20.0", "1"]
+
+
+def test_the_stamp_follows_imports_but_not_what_is_not_imported(tmp_path):
+    from hil.core.compiled import source_stamp
+
+    def stamp(order: str, other: str) -> str:
+        folder = tmp_path / f"{order}{other}"
+        folder.mkdir()
+        write(folder / "plant", order)
+        (folder / "plant" / "_other.py").write_text(other)
+        return source_stamp("plant._kernel", folder / "plant" / "_kernel.py")
+
+    first = stamp("0, 1", "A = 1")
+    assert stamp("0, 1", "A = 2") == first
+    assert stamp("1, 0", "A = 1") != first
