@@ -126,3 +126,20 @@ def test_a_disk_that_fills_up_while_reports_are_written_is_exit_code_3(tmp_path:
     result = json.loads((out / "result.json").read_text())
     assert result["verdict"] == "pass"
     assert {p.name for p in out.iterdir()} == {"result.json", *result["files"].values()}
+
+
+def test_a_recording_with_a_broken_bit_proves_nothing_and_every_command_says_so(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    hil("run", plan_in(tmp_path), "--out", out)
+    content = bytearray((out / "recording.mcap").read_bytes())
+    content[len(content) // 2] ^= 4
+    (out / "recording.mcap").write_bytes(content)
+    done = hil("report", out, "--json", code=1)
+    assert "warning:" in done.stderr
+    result = json.loads(done.stdout)
+    assert result["verdict"] == "error"
+    assert "damaged" in result["reason"]
+    assert "Damaged recording:" in (out / "report.html").read_text()
+    done = hil("export", out / "recording.mcap", "--out", tmp_path / "x.csv", "--json")
+    assert "lost" in done.stderr
+    assert json.loads(done.stdout)["damage"]
