@@ -1,18 +1,18 @@
 """Why simulation and measurement differ: effects that a model lacks, found by name in recordings."""
 
-from hil.analysis.diagnosis._by_chance import BOOTSTRAP_DRAWS
 from hil.analysis.diagnosis._diagnose import diagnose
-from hil.analysis.diagnosis._gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
-from hil.analysis.diagnosis._result import (
+from hil.analysis.diagnosis.data._gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
+from hil.analysis.diagnosis.data._sanity import examine
+from hil.analysis.diagnosis.data._trace import LEAST_SAMPLES, unbroken
+from hil.analysis.diagnosis.search._by_chance import BOOTSTRAP_DRAWS
+from hil.analysis.diagnosis.tell._result import (
     Alternative,
     Considered,
     Diagnosis,
     NamedEffect,
     Overlay,
 )
-from hil.analysis.diagnosis._sanity import examine
-from hil.analysis.diagnosis._trace import LEAST_SAMPLES, unbroken
-from hil.analysis.diagnosis._words import Where
+from hil.analysis.diagnosis.tell._words import Where
 
 __all__ = [
     "BANDS_HZ",

@@ -5,33 +5,24 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 
-import numpy as np
-
-from hil.analysis.diagnosis._by_chance import most_by_chance
-from hil.analysis.diagnosis._confidence import drop_of
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._fit import Fit, fit
-from hil.analysis.diagnosis._judged import Judged
-from hil.analysis.diagnosis._problem import Problem, whitening_of
-from hil.analysis.diagnosis._quantization import coarse_noise, grids
-from hil.analysis.diagnosis._result import Diagnosis, Verdict
-from hil.analysis.diagnosis._sanity import examine
-from hil.analysis.diagnosis._search import Found, search
-from hil.analysis.diagnosis._trace import noise_levels, usable_noise
+from hil.analysis.diagnosis.data._grid import coarse_noise, grids
+from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
+from hil.analysis.diagnosis.data._sanity import examine
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._whitening import whitening_of
+from hil.analysis.diagnosis.search._by_chance import most_by_chance
+from hil.analysis.diagnosis.search._search import search
+from hil.analysis.diagnosis.tell._confidence import drop_of
+from hil.analysis.diagnosis.tell._judged import Judged
+from hil.analysis.diagnosis.tell._result import Diagnosis
+from hil.analysis.diagnosis.tell._verdict import verdict_of
 from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
 
-#: Named effects close at least this share of the gap's power, and leave at most this factor over the noise:
-#: a large effect may be closed less finely, because its formula is never quite that of the axle.
-_SHUT = ((0.5, 1.03), (0.95, 1.6), (0.995, np.inf))
-#: Laws of contact, dry friction and hysteresis are many: such an effect is named from this share on.
-_BY_LAW = ("backlash", "coulomb_friction", "shaft_hysteresis")
-_SHUT_BY_LAW = 0.9
-_NOISELESS = 100.0  # gap over noise: what is left is a matter of formulas, not of noise
-_SHUT_NOISELESS = 0.9
-_MORE = 0.001  # of the share for each further name
 _FAR_FROM_NOISE = 50.0
 
 
@@ -109,21 +100,3 @@ def _reweighted(problem: Problem, best: Fit) -> Fit:
             1.0, best.cost / problem.rows
         )  # its errors are white already
     return best
-
-
-def verdict_of(found: Found, rounded: bool) -> Verdict:
-    """Named if the accepted effects close the gap, unknown if a gap stays, else none."""
-    evidence, best = found.evidence, found.best
-    if best.hypothesis.terms:
-        share, worst = evidence.share(best), evidence.worst(best)
-        if evidence.worst(found.base) > _NOISELESS:
-            return "named" if share > _SHUT_NOISELESS else "unknown"
-        several = len(best.hypothesis.terms) - 1
-        limits: tuple[tuple[float, float], ...] = _SHUT
-        if any(id_ in _BY_LAW for id_ in best.hypothesis.ids):
-            limits = (*_SHUT, (_SHUT_BY_LAW, np.inf))
-        shut = any(share > least + _MORE * several and worst < most for least, most in limits)
-        return "named" if shut else "unknown"
-    if not evidence.closed(best):
-        return "unknown"
-    return "named" if rounded else "none"

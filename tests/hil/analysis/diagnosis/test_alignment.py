@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis._alignment import aligned
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._fit import fit
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._screen import screen
-from hil.analysis.diagnosis._trace import noise_levels, trace_of
-from hil.analysis.diagnosis._tracking import track, tracked_gain
+from hil.analysis.diagnosis.data._noise import noise_levels
+from hil.analysis.diagnosis.data._trace import trace_of
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._alignment import aligned
+from hil.analysis.diagnosis.search._screen import screen
+from hil.analysis.diagnosis.search._tracking import track, tracked_gain
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording

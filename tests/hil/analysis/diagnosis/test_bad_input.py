@@ -13,8 +13,9 @@ import pandas as pd
 import pytest
 
 from hil.analysis.diagnosis import examine, unbroken
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._trace import noise_levels, trace_of, usable_noise
+from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
+from hil.analysis.diagnosis.data._trace import trace_of
+from hil.analysis.diagnosis.fit._problem import Problem
 from hil.cli import main
 from hil.core.errors import BadInputError
 from hil.core.model import Model, parameter_names, save_model

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis._coherence import Split, split
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._fit import Fit, fit
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._trace import noise_levels, trace_of
+from hil.analysis.diagnosis.data._coherence import Split, split
+from hil.analysis.diagnosis.data._noise import noise_levels
+from hil.analysis.diagnosis.data._trace import trace_of
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import Problem
 from hil.core.model import Model
 from tests.hil.analysis.diagnosis.reference_plant import BASE, Truth, recordings
 
@@ -47,7 +48,7 @@ def with_errors(problem: Problem, one: Fit, extra: list[np.ndarray] | None = Non
         pieces.append((e.ravel(), shared, initial))
     made = replace(one, pieces=pieces)
     again = Problem(traces, problem.noise, problem.gear_ratio)
-    return split(again, made), made
+    return split(again.traces, again.weights, [e.reshape(-1, 3) for e, _, _ in pieces]), made
 
 
 def test_slow_noise_is_no_physics(problem, perfect):

@@ -7,11 +7,11 @@ import dataclasses
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._sanity import examine
-from hil.analysis.diagnosis._trace import noise_levels, usable_noise
-from hil.analysis.diagnosis._tracking import track
+from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
+from hil.analysis.diagnosis.data._sanity import examine
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._tracking import track
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.degenerate import MODEL, recording

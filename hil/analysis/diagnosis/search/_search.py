@@ -13,12 +13,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._evidence import NEARLY, Evidence
-from hil.analysis.diagnosis._fit import Fit, carried, fit
-from hil.analysis.diagnosis._growth import LEAST_EVIDENCE, Step, grow, rank
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._quantization import rounding_of
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._evidence import NEARLY, Evidence
+from hil.analysis.diagnosis.search._growth import LEAST_EVIDENCE, Step, grow, rank
+from hil.analysis.diagnosis.search._quantization import rounding_of
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._quantization import grid_step
-from hil.analysis.diagnosis._trace import Trace
+from hil.analysis.diagnosis.data._grid import grid_step
+from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
-from hil.analysis.diagnosis._fit import Fit
-from hil.analysis.diagnosis._gap import CONDITIONS, GapMap
-from hil.analysis.diagnosis._orders import order_lines
-from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis.data._gap import CONDITIONS, GapMap
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._orders import order_lines
 from hil.core.channels import OUTPUTS
 
 Array = npt.NDArray[np.float64]

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
-from hil.analysis.diagnosis._fit import Fit
-from hil.analysis.diagnosis._orders import order_lines
-from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._orders import order_lines
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, parameter_names

@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._fit import Fit
-from hil.analysis.diagnosis._probes import mismatches, probes
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._screen import index_of, products
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._probes import mismatches, probes
+from hil.analysis.diagnosis.search._screen import index_of, products
 
 Array = npt.NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._gap import ChannelGap, GapMap
-from hil.analysis.diagnosis._words import Where
+from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap
+from hil.analysis.diagnosis.tell._words import Where
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]

@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import solveh_banded
 
-from hil.analysis.diagnosis._coordinates import Hypothesis, sensors_of
-from hil.analysis.diagnosis._fit import Fit, carried
-from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis, sensors_of
+from hil.analysis.diagnosis.fit._fit import Fit, carried
+from hil.analysis.diagnosis.fit._problem import Problem
 from hil.core.model import EffectUse, Model
 from hil.plant import pack, simulate_many
 

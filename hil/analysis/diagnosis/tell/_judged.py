@@ -7,26 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._alignment import has_ripple
-from hil.analysis.diagnosis._confidence import alternatives_of, confidence_of, drop_of
-from hil.analysis.diagnosis._consequences import consequences, loop_area
-from hil.analysis.diagnosis._coordinates import TOLERANCE
-from hil.analysis.diagnosis._fit import Fit, carried
-from hil.analysis.diagnosis._gap import (
-    ChannelGap,
-    GapMap,
-    channel_gaps,
-    gap_map,
-    settled_starts,
-    simulated_samples,
-)
-from hil.analysis.diagnosis._growth import LEAST_EVIDENCE
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
-from hil.analysis.diagnosis._search import Found
-from hil.analysis.diagnosis._trace import Trace, noise_levels, usable_noise
-from hil.analysis.diagnosis._tracking import track
-from hil.analysis.diagnosis._words import Where, signature, where
+from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, gap_map
+from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
+from hil.analysis.diagnosis.data._trace import Trace
+from hil.analysis.diagnosis.fit._coordinates import TOLERANCE
+from hil.analysis.diagnosis.fit._fit import Fit, carried
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._simulated import settled_starts, simulated_samples
+from hil.analysis.diagnosis.search._alignment import has_ripple
+from hil.analysis.diagnosis.search._growth import LEAST_EVIDENCE
+from hil.analysis.diagnosis.search._search import Found
+from hil.analysis.diagnosis.search._tracking import track
+from hil.analysis.diagnosis.tell._confidence import alternatives_of, confidence_of, drop_of
+from hil.analysis.diagnosis.tell._consequences import consequences, loop_area
+from hil.analysis.diagnosis.tell._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
+from hil.analysis.diagnosis.tell._words import Where, signature, where
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
@@ -51,7 +46,7 @@ class Judged:
         problem.floor = problem.floor * colouring
         after = simulated_samples(problem, kept.hypothesis, kept.theta, kept.starts)
         before = self._nominal(problem)
-        map_before, map_after = gap_map(problem, before), gap_map(problem, after)
+        map_before, map_after = (gap_map(problem.traces, problem.noise, s) for s in (before, after))
         model = kept.hypothesis.model(kept.theta)
         updates, kept_parameters = self._updates(kept)
         model = model.with_parameters(**kept_parameters)
@@ -74,8 +69,8 @@ class Judged:
             parameter_updates=updates,
             alternatives=alternatives_of(self.found, verdict),
             considered=self._considered(kept),
-            gap_before=channel_gaps(problem, before),
-            gap_after=channel_gaps(problem, after),
+            gap_before=channel_gaps(problem.traces, problem.floor, before),
+            gap_after=channel_gaps(problem.traces, problem.floor, after),
             holdout_before=held_before,
             holdout_after=held_after,
             map_before=map_before,
@@ -114,7 +109,8 @@ class Judged:
                 problem.follow(hypothesis, theta)
                 track(problem, hypothesis, theta, starts, order_known=True, phase_known=True)
                 starts = settled_starts(problem, hypothesis, theta, starts)
-            gaps.append(channel_gaps(problem, simulated_samples(problem, hypothesis, theta, starts)))
+            shown = simulated_samples(problem, hypothesis, theta, starts)
+            gaps.append(channel_gaps(problem.traces, problem.floor, shown))
         return gaps[0], gaps[1]
 
     def _updates(self, kept: Fit) -> tuple[dict[str, tuple[float, float, float]], dict[str, float]]:

@@ -14,15 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._broken_channels import coarse, refuse_broken_channels
-from hil.analysis.diagnosis._trace import (
-    Trace,
-    excerpts,
-    noise_levels,
-    trace_of,
-    unbroken,
-    usable_noise,
-)
+from hil.analysis.diagnosis.data._broken_channels import coarse, refuse_broken_channels
+from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
+from hil.analysis.diagnosis.data._trace import Trace, excerpts, trace_of, unbroken
 from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError

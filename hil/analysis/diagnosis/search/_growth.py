@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._alignment import aligned, has_ripple
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._evidence import Evidence
-from hil.analysis.diagnosis._fit import Fit, carried, cheapest, fit
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._screen import Score, screen
-from hil.analysis.diagnosis._tracking import RIPPLES, tracked_gain
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._alignment import aligned, has_ripple
+from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._screen import Score, screen
+from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]

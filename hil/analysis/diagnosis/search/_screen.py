@@ -9,10 +9,11 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import Hypothesis, key_of
-from hil.analysis.diagnosis._fit import Fit, box_step, carried
-from hil.analysis.diagnosis._probes import Probe, mismatches, probes
-from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
+from hil.analysis.diagnosis.fit._fit import Fit, carried
+from hil.analysis.diagnosis.fit._least_squares import box_step
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._probes import Probe, mismatches, probes
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]

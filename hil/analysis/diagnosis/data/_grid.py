@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import dataclasses
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coherence import split
-from hil.analysis.diagnosis._fit import Fit
-from hil.analysis.diagnosis._gap import simulated_samples
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._trace import Trace, blocks
+from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 
@@ -22,10 +18,9 @@ _COARSE = 1.0  # noise levels: a finer grid is dithered by the noise
 _ALIKE = 2.0  # root of the samples in a block
 _ON_GRID = 0.98
 _LEAST_LEVELS = 4
-_MARGIN = 2.0
 
 
-def grids(traces: list[Trace], noise: Array) -> list[EffectUse]:
+def grids(traces: Sequence[Trace], noise: Array) -> list[EffectUse]:
     """A `sensor_quantization` for each channel with a grid coarse enough to matter."""
     found = []
     for column, channel in enumerate(OUTPUTS):
@@ -47,33 +42,6 @@ def coarse_noise(noise: Array, rounded: list[EffectUse]) -> Array:
         if step > _COARSE * levels[column]:
             levels[column] = max(levels[column], _ALIKE * step / np.sqrt(12.0))
     return levels
-
-
-def rounding_of(problem: Problem, rounded: list[EffectUse], base: Fit) -> Array:
-    """What rounding alone would seem to be of physics in each channel, shape (3,), in noise variances.
-
-    The channels that `base` simulates are rounded, and that error is split as the real one is. At most it is
-    step² / 12: a slow signal keeps its rounding error over a whole block.
-    """
-    power = np.zeros(3)
-    if not rounded:
-        return power
-    columns = [OUTPUTS.index(str(use.values["channel"])) for use in rounded]
-    steps = [float(use.values["step"]) for use in rounded]
-    simulated = simulated_samples(problem, base.hypothesis, base.theta, base.starts)
-    pieces: list[tuple[Array, Array, Array]] = []
-    for index, trace in enumerate(problem.traces):
-        error = np.zeros_like(trace.measured)
-        for column, step in zip(columns, steps, strict=True):
-            clean = simulated[index][:, column]
-            apart = blocks((np.round(clean / step) * step - clean)[:, None], trace.block)[:, 0]
-            error[:, column] = apart * problem.weights[index][column]
-        pieces.append((error.ravel(), *base.pieces[index][1:]))
-    seen = split(problem, dataclasses.replace(base, pieces=pieces)).physics
-    for column, step in zip(columns, steps, strict=True):
-        weight = max(float(w[column]) for w in problem.weights)
-        power[column] = min(_MARGIN * float(seen[column]), (step * weight) ** 2 / 12.0)
-    return power
 
 
 def grid_step(values: Array) -> float:

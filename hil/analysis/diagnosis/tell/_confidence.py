@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from hil.analysis.diagnosis._coordinates import key_of
-from hil.analysis.diagnosis._fit import Fit
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._result import Alternative
-from hil.analysis.diagnosis._search import Found
-from hil.analysis.diagnosis._separating import separating_plan
+from hil.analysis.diagnosis.fit._coordinates import key_of
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._search import Found
+from hil.analysis.diagnosis.tell._result import Alternative
+from hil.analysis.diagnosis.tell._separating import separating_plan
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import OUTPUTS
 
 Array = npt.NDArray[np.float64]
@@ -36,47 +36,18 @@ class GapMap:
     by_condition: Array
 
 
-def settled_starts(
-    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
-) -> list[Array]:
-    """Initial values of each recording at which the plant, held at `theta`, fits best."""
-    slots, sensors = hypothesis.packed(theta)
-    found = []
-    for index, start in enumerate(starts):
-        steps = problem.start_steps()
-        for _ in range(3):
-            tried = np.tile(start, (4, 1))
-            tried[1:] += np.diag(steps)
-            simulated = problem.outputs(index, np.tile(slots, (4, 1)), np.tile(sensors, (4, 1, 1)), tried)
-            error = problem.errors(index, simulated[0]).ravel()
-            change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(3, -1).T / steps
-            if not (np.isfinite(change).all() and np.any(change)):
-                break
-            start = start + np.linalg.lstsq(change, error, rcond=1e-8)[0]
-        found.append(start)
-    return found
+def channel_gaps(traces: Sequence[Trace], floor: Array, simulated: Sequence[Array]) -> dict[str, ChannelGap]:
+    """Gap and noise floor of each measured channel over the recordings together.
 
-
-def simulated_samples(
-    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
-) -> list[Array]:
-    """Channels of each recording at full rate, n x 3."""
-    from hil.plant import simulate_many
-
-    slots, sensors = hypothesis.packed(theta)
-    return [
-        simulate_many(slots[None], t.torque, t.dt, start[None], sensors[None], 1, angles)[0]
-        for t, start, angles in zip(problem.traces, starts, problem.angles, strict=True)
-    ]
-
-
-def channel_gaps(problem: Problem, simulated: list[Array]) -> dict[str, ChannelGap]:
-    """Gap and noise floor of each measured channel over the recordings together."""
+    Args:
+        floor: standard deviation of each channel's noise per sample, shape (3,).
+        simulated: channels of each recording at full rate, n x 3.
+    """
     gaps = {}
     for column, channel in enumerate(OUTPUTS):
         pairs = [
             (t.samples[:, column], s[:, column])
-            for t, s in zip(problem.traces, simulated, strict=True)
+            for t, s in zip(traces, simulated, strict=True)
             if t.has[column]
         ]
         if not pairs:
@@ -85,16 +56,16 @@ def channel_gaps(problem: Problem, simulated: list[Array]) -> dict[str, ChannelG
         error = measured - np.concatenate([s for _, s in pairs])
         spread = max(float(np.std(measured)), 1e-12)
         rms = float(np.sqrt(np.mean(error**2)))
-        gaps[channel] = ChannelGap(rms / spread, float(problem.floor[column]) / spread)
+        gaps[channel] = ChannelGap(rms / spread, float(floor[column]) / spread)
     return gaps
 
 
-def gap_map(problem: Problem, simulated: list[Array]) -> GapMap:
-    """Where the error stands above the noise."""
-    bands = np.full((len(problem.traces), 3, len(BANDS_HZ)), np.nan)
+def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -> GapMap:
+    """Where the error stands above `noise`, the standard deviation of each channel per sample, shape (3,)."""
+    bands = np.full((len(traces), 3, len(BANDS_HZ)), np.nan)
     sums, counts = np.zeros((len(CONDITIONS), 3)), np.zeros(len(CONDITIONS))
-    for row, (trace, values) in enumerate(zip(problem.traces, simulated, strict=True)):
-        error = (trace.samples - values) / problem.noise
+    for row, (trace, values) in enumerate(zip(traces, simulated, strict=True)):
+        error = (trace.samples - values) / noise
         masks = conditions_of(trace.samples, trace.torque, trace.dt)
         for column in np.flatnonzero(trace.has):
             bands[row, column] = _band_ratios(error[:, column], trace.dt)
@@ -102,7 +73,7 @@ def gap_map(problem: Problem, simulated: list[Array]) -> GapMap:
         counts += masks.sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
         condition = np.sqrt(sums / counts[:, None])
-    return GapMap(tuple(t.name for t in problem.traces), bands, condition)
+    return GapMap(tuple(t.name for t in traces), bands, condition)
 
 
 def _band_ratios(error: Array, dt: float) -> Array:

@@ -11,14 +11,13 @@ is drift of the simulation, not noise.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._fit import Fit
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._trace import blocks
+from hil.analysis.diagnosis.data._trace import Trace, blocks
 
 Array = npt.NDArray[np.float64]
 Spectra = npt.NDArray[np.complex128]
@@ -44,14 +43,18 @@ class Split:
     deviation: Array
 
 
-def split(problem: Problem, one: Fit) -> Split:
-    """Split the errors of `one` over all recordings."""
-    spectra = _spectra(problem, one)
+def split(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Array]) -> Split:
+    """Split the weighted errors of a fit (blocks x 3 each recording) over all recordings.
+
+    Args:
+        weights: what one block's error was multiplied by, (3,) each recording, 0 for a missing channel.
+    """
+    spectra = _spectra(traces, weights, errors)
     products = np.einsum("kfi,kfj->fij", spectra, spectra.conj()) / len(spectra)
     segments = len(spectra) / (1.0 + 2.0 * _ALIKE**2)
     physics, noise, deviation = np.zeros(3), np.zeros(3), np.zeros(3)
     for column in range(3):
-        if not any(t.has[column] for t in problem.traces):
+        if not any(t.has[column] for t in traces):
             continue
         power = products[:, column, column].real
         known, variance = _explained(products, column, segments)
@@ -101,10 +104,10 @@ def _coherent(matrix: Spectra, column: int, others: list[int], segments: float) 
     return power * (share - chance) / (1.0 - chance), int(np.count_nonzero(kept))
 
 
-def _spectra(problem: Problem, one: Fit) -> Spectra:
+def _spectra(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Array]) -> Spectra:
     """Segments x frequencies x signals; the segments' mean squares add up to the power over frequency."""
-    signals = [_signals(problem, one, index) for index in range(len(problem.traces))]
-    period = problem.traces[0].dt * problem.traces[0].block
+    signals = [_signals(*of_one) for of_one in zip(traces, weights, errors, strict=True)]
+    period = traces[0].dt * traces[0].block
     shortest = min(len(s) for s in signals)
     total = sum(len(s) for s in signals)
     length = max(2, min(round(_SEGMENT_S / period), shortest, 2 * total // _LEAST_SEGMENTS))
@@ -121,11 +124,8 @@ def _spectra(problem: Problem, one: Fit) -> Spectra:
     return np.asarray(spectra * np.sqrt(twice / (float(window @ window) * length))[:, None])
 
 
-def _signals(problem: Problem, one: Fit, index: int) -> Array:
+def _signals(trace: Trace, weights: Array, error: Array) -> Array:
     """Weighted errors, weighted simulated channels, request: blocks x 7, 0 where not measured."""
-    trace = problem.traces[index]
-    error = one.pieces[index][0].reshape(-1, 3)
-    weights = problem.weights[index]
     simulated = np.where(weights > 0, trace.measured * weights - error, 0.0)
     request = blocks(trace.torque[:, None], trace.block)
     return np.column_stack([error, simulated, request])

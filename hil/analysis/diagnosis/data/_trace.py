@@ -8,7 +8,6 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
@@ -27,7 +26,6 @@ _FIRST_STAMPS = 50
 _UNEVEN_SHARE = 0.01
 _NEAR_SHARE = 0.5  # of a sample: a reading this near to a point of the grid stands for it
 _FIT_RATE_HZ = 250.0  # of block means: driveline modes end below 60 Hz
-_FLOOR_BAND = (0.25, 0.48)  # of the sample rate: above all modes, what is left is noise
 _START_SAMPLES = 20
 LITTLE_TORQUE = 0.01  # of the largest
 _GAP_SAMPLES = 20.0
@@ -235,30 +233,3 @@ def _start(samples: Array, torque: Array) -> Array:
     changed = np.flatnonzero(np.abs(torque[:_START_SAMPLES] - torque[0]) > least)
     count = max(3, int(changed[0]) if changed.size else min(_START_SAMPLES, len(torque)))
     return np.asarray(samples[:count].mean(axis=0))
-
-
-def noise_levels(traces: list[Trace]) -> Array:
-    """Standard deviation of each channel's noise per sample, from the spectrum above all modes; shape (3,).
-
-    The median over frequency and over recordings leaves out lines and blows. NaN for a channel that no
-    recording has.
-    """
-    levels = np.full((len(traces), 3), np.nan)
-    for row, trace in enumerate(traces):
-        rate = 1.0 / trace.dt
-        for column in np.flatnonzero(trace.has).tolist():
-            length = min(1024, len(trace.samples))
-            f, density = signal.welch(trace.samples[:, column], rate, nperseg=length, average="median")
-            inside = (f >= _FLOOR_BAND[0] * rate) & (f <= _FLOOR_BAND[1] * rate)
-            levels[row, column] = np.sqrt(np.median(density[inside]) * rate / 2.0)
-    pooled = np.full(3, np.nan)
-    for column in range(3):
-        known = levels[np.isfinite(levels[:, column]), column]
-        if known.size:
-            pooled[column] = float(np.median(known))
-    return pooled
-
-
-def usable_noise(noise: Array) -> Array:
-    """A channel without any noise still needs a weight: a millionth of a unit."""
-    return np.where(np.isfinite(noise), np.maximum(noise, 1e-6), np.nan)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import TOLERANCE, Hypothesis
+from hil.analysis.diagnosis.fit._coordinates import TOLERANCE, Hypothesis
 from hil.core.channels import OUTPUTS
 
 Array = npt.NDArray[np.float64]

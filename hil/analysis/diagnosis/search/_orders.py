@@ -13,9 +13,9 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._fit import Fit
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._trace import blocks
+from hil.analysis.diagnosis.data._trace import blocks
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit._problem import Problem
 from hil.plant import pack, system
 
 Array = npt.NDArray[np.float64]

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._fit import Fit, fit
-from hil.analysis.diagnosis._problem import Problem
-from hil.analysis.diagnosis._tracking import RIPPLES, track
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._tracking import RIPPLES, track
 
 Array = npt.NDArray[np.float64]
 

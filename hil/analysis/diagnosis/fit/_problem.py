@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import toeplitz
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis._coordinates import Hypothesis
-from hil.analysis.diagnosis._trace import LITTLE_TORQUE, Trace
+from hil.analysis.diagnosis.data._trace import LITTLE_TORQUE, Trace
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._normal import Normal, normal_equations
 from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
@@ -18,22 +16,10 @@ Array = npt.NDArray[np.float64]
 STARTS = 3  # free initial values of each recording: motor speed, wheel speed, shaft torque
 _HUGE = 1e9
 _DIVERGED = 1e9  # noise levels
-_WHITENING_ORDER = 16
 _REST_SHARE = 0.1  # of a sample's noise: how still an axle at rest is
 _REST_SIGMAS = 4.0
 _REST_SAMPLES = 20
 _FINE = 2.0  # noise with rounding over that without
-
-
-@dataclass(frozen=True)
-class Normal:
-    """Normal equations of one recording: of the shared coordinates, of its start, and between them."""
-
-    shared: Array
-    between: Array
-    start: Array
-    shared_gradient: Array
-    start_gradient: Array
 
 
 class Problem:
@@ -184,30 +170,6 @@ class Problem:
         return np.where(np.isfinite(self.noise) & (self.noise > 0), 0.5 * self.noise, typical)
 
 
-def normal_equations(shared: Array, initial: Array, error: Array) -> Normal:
-    """Products of derivatives and errors."""
-    return Normal(
-        shared.T @ shared, shared.T @ initial, initial.T @ initial, shared.T @ error, initial.T @ error
-    )
-
-
-def reduced(normals: list[Normal]) -> tuple[Array, Array]:
-    """Normal equations with every recording's start eliminated."""
-    size = len(normals[0].shared_gradient)
-    matrix, gradient = np.zeros((size, size)), np.zeros(size)
-    for n in normals:
-        inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
-        matrix += n.shared - n.between @ inverse @ n.between.T
-        gradient += n.shared_gradient - n.between @ (inverse @ n.start_gradient)
-    return matrix, gradient
-
-
-def start_step(n: Normal, step: Array) -> Array:
-    """The best change of a recording's start when the shared coordinates change by `step`."""
-    inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
-    return np.asarray(inverse @ (n.start_gradient - n.between.T @ step))
-
-
 def _rests(trace: Trace, noise: Array, floor: Array) -> bool:
     """Whether the recording begins at rest: a speed channel reads zero, and no torque is asked for.
 
@@ -217,29 +179,3 @@ def _rests(trace: Trace, noise: Array, floor: Array) -> bool:
     tells = trace.has[:2] & (noise[:2] < _FINE * floor[:2])
     idle = abs(trace.torque[0]) <= LITTLE_TORQUE * float(np.max(np.abs(trace.torque)))
     return bool(np.any(near & tells) and idle)
-
-
-def whitening_of(pieces: list[tuple[Array, Array, Array]]) -> Array:
-    """Filters (3 x order + 1) that make the errors of a fit white with unit variance, one a channel.
-
-    Autoregression by the Yule-Walker equations over all recordings.
-    """
-    filters = np.zeros((3, _WHITENING_ORDER + 1))
-    filters[:, 0] = 1.0
-    errors = [error.reshape(-1, 3) for error, _, _ in pieces]
-    for column in range(3):
-        rows = [e[:, column] for e in errors]
-        count = sum(len(e) for e in rows)
-        products = [
-            sum(float(e[lag:] @ e[: len(e) - lag]) for e in rows) / count
-            for lag in range(_WHITENING_ORDER + 1)
-        ]
-        if products[0] <= 0.0:
-            continue
-        matrix = toeplitz(products[:-1]) + 1e-6 * products[0] * np.eye(_WHITENING_ORDER)
-        past = np.linalg.solve(matrix, products[1:])
-        variance = max(products[0] - float(past @ products[1:]), 1e-6 * products[0])
-        filters[column, 0] = 1.0
-        filters[column, 1:] = -past
-        filters[column] /= np.sqrt(variance)
-    return filters

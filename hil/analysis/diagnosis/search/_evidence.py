@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis._coherence import Split, split
-from hil.analysis.diagnosis._fit import Fit
-from hil.analysis.diagnosis._problem import Problem
+from hil.analysis.diagnosis.data._coherence import Split, split
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit._problem import Problem
 
 Array = npt.NDArray[np.float64]
 
@@ -36,7 +36,7 @@ class Evidence:
         """Physics and noise in the errors of a fit."""
         known = self._splits.get(id(one))
         if known is None or known[0] is not one:
-            known = (one, split(self.problem, one))
+            known = (one, split_of(self.problem, one))
             self._splits[id(one)] = known
         return known[1]
 
@@ -85,6 +85,11 @@ class Evidence:
         """Twice the log-likelihood ratio, deflated by the correlation time of the richer fit's errors."""
         ratio = max(poorer.total, 1.0) / max(richer.total, 1.0)
         return float(self.problem.rows * np.log(max(ratio, 1e-9)) / colour(richer))
+
+
+def split_of(problem: Problem, one: Fit) -> Split:
+    """Physics and noise in the errors of a fit."""
+    return split(problem.traces, problem.weights, [error.reshape(-1, 3) for error, _, _ in one.pieces])
 
 
 def colour(one: Fit) -> float:

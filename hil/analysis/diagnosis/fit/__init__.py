@@ -1,0 +1,1 @@
+"""A hypothesis and its free numbers, fitted to all recordings together."""

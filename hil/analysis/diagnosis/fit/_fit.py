@@ -1,0 +1,134 @@
+"""A hypothesis at its best: the smallest simulation error that its numbers and initial values reach."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis, key_of
+from hil.analysis.diagnosis.fit._least_squares import descent
+from hil.analysis.diagnosis.fit._normal import Normal, reduced
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
+
+Array = npt.NDArray[np.float64]
+
+_MOST_ROUNDS = 14
+_WORTH_A_LEAP = 10.0  # drop of the squared error
+
+
+@dataclass
+class Fit:
+    """A hypothesis at its best: `cost` is the sum of squared weighted errors (1 per row for pure noise).
+
+    `angles` are those that its ripples, if any, follow.
+    """
+
+    hypothesis: Hypothesis
+    theta: Array
+    starts: list[Array]
+    cost: float
+    prior: float
+    covariance: Array
+    normals: list[Normal] = field(repr=False)
+    pieces: list[tuple[Array, Array, Array]] = field(repr=False)
+    rounds: int = 0
+    angles: list[Array] = field(default_factory=list, repr=False)
+
+    @property
+    def total(self) -> float:
+        """Cost with the price of parameter corrections."""
+        return self.cost + self.prior
+
+
+def fit(
+    problem: Problem,
+    hypothesis: Hypothesis,
+    starts: list[Array] | None = None,
+    theta: Array | None = None,
+    *,
+    rounds: int = _MOST_ROUNDS,
+    enough: float = 1.0,
+) -> Fit:
+    """Minimise the simulation error of `hypothesis` from `theta` and `starts`.
+
+    Args:
+        enough: stop when a step gains less than this in the sum of squared errors.
+    """
+    coordinates = hypothesis.coordinates()
+    lower, upper = _bounds(coordinates)
+    theta = np.clip(hypothesis.start() if theta is None else theta, lower, upper)
+    starts = [s.copy() for s in (starts or problem.first_starts(hypothesis))]
+    precision = np.array([1.0 / c.prior**2 for c in coordinates])
+    by_samples = delay_by_samples(hypothesis, problem.traces[0].dt) if rounds else None
+    done = 0
+    while True:
+        within = lower, upper
+        if by_samples is not None:
+            tried = [theta, *by_samples.leaps(theta, lower, upper)]
+            leapt = cheapest(problem, hypothesis, tried, starts, precision, lead=_WORTH_A_LEAP)
+            if done and leapt is theta:
+                break
+            theta = leapt
+            within = by_samples.within(theta, lower, upper)
+        reached = descent(problem, hypothesis, (theta, starts), within, precision, rounds - done, enough)
+        theta, starts, done = reached.theta, reached.starts, done + reached.rounds
+        if by_samples is None or done >= rounds:
+            break
+    matrix, _ = reduced(reached.normals)
+    covariance = np.asarray(np.linalg.pinv(matrix + np.diag(precision), hermitian=True), dtype=float)
+    prior = float(precision @ theta**2) + (by_samples.coincidence(theta) if by_samples is not None else 0.0)
+    angles = list(problem.angles)
+    return Fit(
+        hypothesis,
+        theta,
+        starts,
+        reached.cost,
+        prior,
+        covariance,
+        reached.normals,
+        reached.pieces,
+        done,
+        angles,
+    )
+
+
+def cheapest(
+    problem: Problem,
+    hypothesis: Hypothesis,
+    tried: list[Array],
+    starts: list[Array],
+    precision: Array | float = 0.0,
+    *,
+    lead: float = 0.0,
+) -> Array:
+    """Those of the coordinates `tried` that leave the smallest error, unfitted.
+
+    Args:
+        lead: what the others must gain over the first in the sum of squared errors.
+    """
+    each = [np.tile(start, (len(tried), 1)) for start in starts]
+    costs = problem.costs([hypothesis.packed(theta) for theta in tried], each)
+    costs += np.array([np.sum(precision * theta**2) for theta in tried])
+    costs[0] -= lead
+    return tried[int(np.argmin(costs))]
+
+
+def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
+    """Coordinates of `hypothesis`: those that `parent` has by their fitted values, others by their start."""
+    terms = {key_of(t): i for i, t in enumerate(parent.hypothesis.terms)}
+    known = {(c.name, c.term): v for c, v in zip(parent.hypothesis.coordinates(), parent.theta, strict=True)}
+    values = hypothesis.start()
+    wrong = {str(t.values["parameter"]) for t in hypothesis.terms if t.id == "parameter_mismatch"}
+    for index, c in enumerate(hypothesis.coordinates()):
+        term = -1 if c.term < 0 else terms.get(key_of(hypothesis.terms[c.term]), -2)
+        if term == -1 and c.name in wrong and ("parameter_mismatch", c.name) not in terms:
+            continue
+        values[index] = known.get((c.name, term), values[index])
+    return values
+
+
+def _bounds(coordinates: tuple[Coordinate, ...]) -> tuple[Array, Array]:
+    return np.array([c.lower for c in coordinates]), np.array([c.upper for c in coordinates])

@@ -1,0 +1,46 @@
+"""Normal equations of least squares over recordings that share all numbers but their initial values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Normal:
+    """Normal equations of one recording: of the shared coordinates, of its start, and between them."""
+
+    shared: Array
+    between: Array
+    start: Array
+    shared_gradient: Array
+    start_gradient: Array
+
+
+def normal_equations(shared: Array, initial: Array, error: Array) -> Normal:
+    """Products of derivatives and errors."""
+    return Normal(
+        shared.T @ shared, shared.T @ initial, initial.T @ initial, shared.T @ error, initial.T @ error
+    )
+
+
+def reduced(normals: Sequence[Normal]) -> tuple[Array, Array]:
+    """Normal equations with every recording's start eliminated."""
+    size = len(normals[0].shared_gradient)
+    matrix, gradient = np.zeros((size, size)), np.zeros(size)
+    for n in normals:
+        inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
+        matrix += n.shared - n.between @ inverse @ n.between.T
+        gradient += n.shared_gradient - n.between @ (inverse @ n.start_gradient)
+    return matrix, gradient
+
+
+def start_step(n: Normal, step: Array) -> Array:
+    """The best change of a recording's start when the shared coordinates change by `step`."""
+    inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
+    return np.asarray(inverse @ (n.start_gradient - n.between.T @ step))

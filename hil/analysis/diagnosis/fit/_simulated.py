@@ -1,0 +1,44 @@
+"""What a hypothesis shows of each recording, from the initial values that suit it best."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.plant import simulate_many
+
+Array = npt.NDArray[np.float64]
+
+
+def settled_starts(
+    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
+) -> list[Array]:
+    """Initial values of each recording at which the plant, held at `theta`, fits best."""
+    slots, sensors = hypothesis.packed(theta)
+    found = []
+    for index, start in enumerate(starts):
+        steps = problem.start_steps()
+        for _ in range(3):
+            tried = np.tile(start, (4, 1))
+            tried[1:] += np.diag(steps)
+            simulated = problem.outputs(index, np.tile(slots, (4, 1)), np.tile(sensors, (4, 1, 1)), tried)
+            error = problem.errors(index, simulated[0]).ravel()
+            change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(3, -1).T / steps
+            if not (np.isfinite(change).all() and np.any(change)):
+                break
+            start = start + np.linalg.lstsq(change, error, rcond=1e-8)[0]
+        found.append(start)
+    return found
+
+
+def simulated_samples(
+    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
+) -> list[Array]:
+    """Channels of each recording at full rate, n x 3."""
+    slots, sensors = hypothesis.packed(theta)
+    return [
+        simulate_many(slots[None], t.torque, t.dt, start[None], sensors[None], 1, angles)[0]
+        for t, start, angles in zip(problem.traces, starts, problem.angles, strict=True)
+    ]

@@ -1,0 +1,1 @@
+"""From a base model to the fewest effects that close its gap."""

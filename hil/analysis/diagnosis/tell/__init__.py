@@ -1,0 +1,1 @@
+"""What was found, told: verdict, names, confidence, places, tests that would separate."""
