@@ -10,12 +10,12 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from hil.cli._output import console, print_json, progress
+from hil.cli._output import console, print_criteria, print_json, progress
 from hil.core.channels import CHANNELS
 from hil.engine import DEFAULT_BENCH, load_bench
-from hil.engine.forecast import forecast
+from hil.engine.forecast import Forecast, forecast
 from hil.engine.preflight import preflight
-from test_plans import Pace, estimate_duration_s, load_plan
+from test_plans import Pace, Plan, estimate_duration_s, load_plan
 
 
 def command(
@@ -25,9 +25,10 @@ def command(
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Validate a plan, estimate its duration, predict its peaks by simulation, compare with the limits.
+    """Validate a plan, estimate its duration, predict its peaks and criteria, compare with the limits.
 
-    Exit code: 0 it fits the bench, 1 a predicted peak is beyond a limit, 2 it cannot be run at all.
+    Exit code: 0 it fits the bench, 1 a predicted peak is beyond a limit, 2 it cannot be run at all. A
+    criterion that is predicted to fail is said and changes no exit code: the axle is what the run is for.
     """
     checked, file = load_plan(plan), load_bench(bench)
     with tempfile.TemporaryDirectory() as directory:
@@ -35,43 +36,64 @@ def command(
     pace = Pace(speed_ramp_m_s2=file.dyno.speed_ramp_m_s2, wheel_radius_m=file.vehicle.wheel_radius_m)
     duration_s = estimate_duration_s(checked, pace)
     with progress(checked.name) as show:
-        show("predicting by simulation")
+        show("predicting")
         predicted = forecast(checked, file)
-    fits = all(value <= limit for value, limit in predicted.values())
     if as_json:
-        print_json(
-            {
-                "plan": checked.name,
-                "bench": file.name,
-                "fits": fits,
-                "duration_s": round(duration_s, 1),
-                "steps": len(checked.steps),
-                "segments": [segment.id for segment in checked.segments],
-                "criteria": len(checked.criteria),
-                "predicted": {name: {"value": v, "limit": limit} for name, (v, limit) in predicted.items()},
-            }
-        )
-        return 0 if fits else 1
+        print_json(_json(checked, file.name, duration_s, predicted))
+    else:
+        _tell(checked, file.name, duration_s, predicted)
+    return 0 if predicted.fits else 1
+
+
+def _json(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> dict[str, object]:
+    peaks = {name: {"value": value, "limit": limit} for name, (value, limit) in predicted.peaks.items()}
+    return {
+        "plan": plan.name,
+        "bench": bench,
+        "fits": predicted.fits,
+        "duration_s": round(duration_s, 1),
+        "steps": len(plan.steps),
+        "segments": [segment.id for segment in plan.segments],
+        "predicted": peaks,
+        "criteria": [
+            {**criterion.model_dump(exclude={"definition"}), "margin": criterion.margin}
+            for criterion in predicted.criteria
+        ],
+    }
+
+
+def _tell(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> None:
     page = console()
     page.print(
-        f"{checked.name}: valid, {len(checked.steps)} steps, {len(checked.segments)} segments, "
-        f"{len(checked.criteria)} criteria, about {duration_s:.0f} s on the bench '{file.name}'",
+        f"{plan.name}: valid, {len(plan.steps)} steps, {len(plan.segments)} segments, "
+        f"{len(plan.criteria)} criteria, about {duration_s:.0f} s on the bench '{bench}'",
         highlight=False,
     )
-    page.print(_table(predicted))
-    page.print("\nfits the bench" if fits else "\n[bold red]beyond the bench's limits[/]", highlight=False)
-    return 0 if fits else 1
+    page.print(_table(predicted.peaks))
+    if predicted.criteria:
+        page.print("\n[italic]criteria, predicted[/]")
+        print_criteria(page, predicted.criteria)
+    page.print(f"\n{_verdict(predicted)}", highlight=False)
 
 
-def _table(predicted: dict[str, tuple[float, float]]) -> Table:
+def _verdict(predicted: Forecast) -> str:
+    """What the exit code says, and what it does not."""
+    verdict = "fits the bench" if predicted.fits else "[bold red]beyond the bench's limits[/]"
+    failed = sum(criterion.failed for criterion in predicted.criteria)
+    if failed:
+        verdict += f"; [bold red]{failed} of {len(predicted.criteria)} criteria are predicted to fail[/]"
+    return verdict
+
+
+def _table(peaks: dict[str, tuple[float, float]]) -> Table:
     table = Table(
-        box=None, pad_edge=False, header_style="bold", title="predicted by simulation", title_justify="left"
+        box=None, pad_edge=False, header_style="bold", title="peaks, predicted", title_justify="left"
     )
     table.add_column("channel")
     for name in ("peak", "limit", "used"):
         table.add_column(name, justify="right")
     table.add_column("unit")
-    for name, (value, limit) in predicted.items():
+    for name, (value, limit) in peaks.items():
         used = f"{value / limit:.0%}"
         style = "" if value <= limit else "bold red"
         table.add_row(name, f"{value:.4g}", f"{limit:.4g}", used, CHANNELS[name].unit, style=style)

@@ -1,55 +1,43 @@
-"""What a plan will do to the axle: the plan carried out on the simulated bench, with nothing to trip."""
+"""What a plan will do to the axle: its peaks beside the bench's limits, its criteria judged beforehand."""
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
+from dataclasses import dataclass
 
+from hil.core.model import load_model
+from hil.core.result import CriterionResult
 from hil.engine.bench_file import DEFAULT_BENCH, BenchFile, load_bench
 from hil.engine.limits import limits_of_channels
-from hil.engine.run import RunRequest, run_plan
-from test_plans import Plan
-
-_UNLIMITED = 1e9
+from hil.engine.prediction import predict
+from test_plans import Plan, judge
 
 
-def forecast(plan: Plan, bench: BenchFile) -> dict[str, tuple[float, float]]:
-    """Largest magnitude of each limited channel with its limit, by simulation: {channel: (value, limit)}.
+@dataclass(frozen=True)
+class Forecast:
+    """`peaks` has the largest magnitude of each limited channel with its limit, in the channel's unit."""
 
-    Only the limits on measured values are lifted for this; those on requests have been checked before.
-    A bench without a [simulation] is predicted with the shipped simulated bench's model.
+    peaks: dict[str, tuple[float, float]]
+    criteria: tuple[CriterionResult, ...]
+
+    @property
+    def fits(self) -> bool:
+        """Whether every peak is within its limit."""
+        return all(value <= limit for value, limit in self.peaks.values())
+
+
+def forecast(plan: Plan, bench: BenchFile) -> Forecast:
+    """Carry the plan out on a predicted bench and judge it.
+
+    No limit on measured values trips meanwhile, and sensors have no noise. A bench without a [simulation]
+    is predicted with the shipped simulated bench's model.
 
     Raises:
         BadInputError: the plan asks for more than the bench allows.
-        HilError: the simulated run failed.
+        HilError: the run would fail.
     """
+    simulation = bench.simulation or load_bench(DEFAULT_BENCH).simulation
+    assert simulation is not None, "the default bench is simulated"
+    found = predict(plan, bench, load_model(simulation.model))
     limits = limits_of_channels(bench.limits)
-    default = load_bench(DEFAULT_BENCH)
-    measured = ("shaft_torque_nm", "motor_speed_rad_s", "wheel_speed_rad_s", "vehicle_speed_m_s")
-    simulated = bench.model_copy(
-        update={
-            "name": "forecast",
-            "limits": bench.limits.model_copy(update=dict.fromkeys(measured, _UNLIMITED)),
-            "buses": {
-                name: bus.model_copy(
-                    update={
-                        "interface": "hil-sim",
-                        "options": {},
-                        "channel": f"forecast/{_role(bench, name)}",
-                    }
-                )
-                for name, bus in bench.buses.items()
-            },
-            "simulation": bench.simulation or default.simulation,
-            "calibration": {},
-        }
-    )
-    with tempfile.TemporaryDirectory() as directory:
-        outcome = run_plan(RunRequest(plan, simulated, Path(directory)))
-    if outcome.error is not None:
-        raise outcome.error
-    return {channel: (outcome.largest[channel], limit) for channel, limit in limits.items()}
-
-
-def _role(bench: BenchFile, bus: str) -> str:
-    return "rmcu" if bench.rmcu.bus == bus else "dyno"
+    peaks = {channel: (found.peaks[channel], limit) for channel, limit in limits.items()}
+    return Forecast(peaks, judge(plan, found.recording, found.segments))

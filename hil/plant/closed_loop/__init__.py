@@ -1,1 +1,9 @@
-"""Plant, sensors, drives and the RMCU's control as one compiled loop, sample by sample."""
+"""Plant, sensors, drives and the RMCU's control as one compiled loop, sample by sample.
+
+`tick` is one millisecond, on the wire and in predictions; `ClosedLoop` carries out many at once.
+"""
+
+from hil.plant.closed_loop.closed_loop import SIDES, TICK_S, ClosedLoop
+from hil.plant.closed_loop.shown import Wire, rounded
+
+__all__ = ["SIDES", "TICK_S", "ClosedLoop", "Wire", "rounded"]

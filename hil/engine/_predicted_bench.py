@@ -1,0 +1,218 @@
+"""A bench that is predicted: what the drivers offer, in the ticks that each call takes over CAN.
+
+Here stands how long the wire takes; what the axle does meanwhile is `hil.plant.closed_loop`'s. The numbers
+of ticks are those of the drivers: tests hold every prediction against a run, sample by sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from drivers.rmcu._parameters import parameters_of
+from hil.core.controller import Controller
+from hil.core.model import Model
+from hil.engine._predicted_wire import PredictedWire, wire_of
+from hil.engine.bench_file import BenchFile
+from hil.plant.closed_loop import SIDES, TICK_S, ClosedLoop
+from hil.plant.closed_loop import drive as D
+from hil.plant.closed_loop import tick as T
+from hil.plant.controller import memory as M
+from test_plans import Array, Quantity
+
+LEFT, RIGHT = SIDES
+_DRAIN_EVERY = 10  # ticks between the looks of a loop that waits for nothing
+_SDO_TICKS = 2  # an object is written and read back
+_WATCH_OBJECTS = 2  # heartbeat and watch on the host's, each side
+_SYNC_OBJECTS = 2
+_STATUS_EVERY = 10  # samples after which a drive shows its state
+_ACCELERATION_UNIT_RAD_S2 = 1e-4
+_LISTEN_S = 0.2
+_MODES: dict[Quantity, int] = {"motor_torque": M.TORQUE, "driving_torque": M.DRIVING_FORCE}
+_STATES = ("off", "torque", "driving_force", "fault")
+
+
+class PredictedLoop:
+    """The loop that drivers wait in; what they know is what the last look at the buses brought."""
+
+    def __init__(self, closed: ClosedLoop) -> None:
+        self.closed = closed
+        self.clock = self
+        self._seen = 0  # samples that have been looked at
+
+    def now_s(self) -> float:
+        """Bench time in seconds."""
+        return self.closed.samples * TICK_S
+
+    @property
+    def newest(self) -> Array:
+        """The newest sample that the drivers know, as one row."""
+        return self.closed.rows[max(self._seen - 1, 0) : max(self._seen, 1)]
+
+    def run_for(self, duration_s: float) -> None:
+        """Let time pass."""
+        self.run(round(duration_s / TICK_S))
+
+    def run(self, ticks: int) -> None:
+        """Let ticks pass."""
+        self.closed.run(ticks)
+        self.look_on_time()
+
+    def transact(self, ticks: int) -> None:
+        """Let ticks pass while an answer is awaited: every one is looked at."""
+        self.closed.run(ticks)
+        self._seen = self.closed.samples
+
+    def look_on_time(self) -> None:
+        """Know what a loop knows that looks every ten ticks."""
+        self._seen = max(self._seen, self.closed.samples // _DRAIN_EVERY * _DRAIN_EVERY)
+
+    def wait_for(self, condition: Callable[[], bool], timeout_s: float) -> bool:
+        """Tick until `condition` holds; False if it does not within `timeout_s`."""
+        for _ in range(max(1, round(timeout_s / TICK_S))):
+            if condition():
+                return True
+            self.transact(1)
+        return condition()
+
+
+class PredictedRmcu:
+    """The RMCU behind its driver."""
+
+    fault = "none"
+
+    def __init__(self, loop: PredictedLoop) -> None:
+        self._loop = loop
+
+    @property
+    def state(self) -> str:
+        """What the RMCU said last."""
+        return _STATES[int(self._loop.newest[0, T.STATE])]
+
+    def is_off(self) -> bool:
+        """Whether the RMCU says that it gives no torque."""
+        torque = self._loop.closed.wire.channel("motor_torque_ref_nm", self._loop.newest)
+        return self.state == "off" and float(torque[0]) == 0.0
+
+    def request_off(self) -> None:
+        """Ask for torque off."""
+        self._loop.closed.off()
+
+    def play(self, quantity: Quantity, samples_nm: Array) -> None:
+        """Request samples, one each tick."""
+        self._loop.closed.play(_MODES[quantity], samples_nm)
+        self._loop.look_on_time()
+
+    def write_controller(self, controller: Controller) -> None:
+        """Write every parameter, then apply: a tick each."""
+        parameters = parameters_of(controller)
+        self._loop.transact(len(parameters))
+        self._loop.closed.set_controller(parameters)
+        self._loop.transact(1)
+
+
+class PredictedDyno:
+    """Both dynamometers behind their driver."""
+
+    def __init__(self, loop: PredictedLoop, file: BenchFile, wire: PredictedWire) -> None:
+        self._loop, self._file, self._dictionary = loop, file, wire.dictionary
+
+    @property
+    def wheel_speed_rad_s(self) -> float:
+        """Mean of both wheels, newest value."""
+        return float(0.5 * sum(self._wheel_speeds_rad_s()))
+
+    def start(self) -> None:
+        """Supervision, vehicle model, SYNC, operation: the objects that are written, and their time."""
+        v, closed = self._file.vehicle, self._loop.closed
+        told = [v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2]
+        known = zip(told, closed.vehicle, (1, 2, 3), strict=True)
+        values = [self._stored(own if own is not None else model, sub) for own, model, sub in known]
+        closed.set_vehicle(
+            inertia_kg_m2=values[0],
+            rolling_nm=values[1],
+            aero_nms2_rad2=values[2],
+            slip=self._stored(v.slip, 4),
+            wheel_radius_m=self._stored(v.wheel_radius_m, 5),
+        )
+        written = _WATCH_OBJECTS + sum(value is not None for value in (*told, v.slip, v.wheel_radius_m))
+        self._loop.transact(_SDO_TICKS * (len(SIDES) * written + _SYNC_OBJECTS))
+        self._loop.transact(1)  # the first values after NMT's 'operational'
+
+    def enable(self, acceleration_rad_s2: float) -> None:
+        """Both drives from 'switch on disabled' to holding their present speed."""
+        count = round(acceleration_rad_s2 / _ACCELERATION_UNIT_RAD_S2)
+        closed = self._loop.closed
+        closed.set_ramp(count * self._dictionary[0x6083].factor)
+        for side in SIDES:
+            self._loop.transact(2 * _SDO_TICKS)  # acceleration and mode
+            closed.target_speed(side, self._wheel_speeds_rad_s()[side])
+        for _ in ("shutdown", "switch on"):
+            self._see_status()
+        for side in SIDES:
+            closed.drive_mode(side, D.SPEED)
+        self._see_status()
+
+    def hold_speed(self, speed_rad_s: float) -> None:
+        """Ramp both wheels to a speed; returns when both drives have been told."""
+        closed = self._loop.closed
+        for side in SIDES:
+            closed.drive_mode(side, D.SPEED)
+            self._loop.transact(_SDO_TICKS)
+            closed.target_speed(side, speed_rad_s)
+
+    def release_vehicle(self, initial_speed_m_s: float) -> None:
+        """Simulate the vehicle from now on."""
+        closed = self._loop.closed
+        closed.set_vehicle(initial_speed_m_s=self._stored(initial_speed_m_s, 6))
+        self._loop.transact(_SDO_TICKS)
+        for side in SIDES:
+            closed.drive_mode(side, D.VEHICLE)
+            self._loop.transact(_SDO_TICKS)
+
+    def disable(self) -> None:
+        """Both drives without torque, and until they say so."""
+        for side in SIDES:
+            self._loop.closed.drive_mode(side, D.FREE)
+        self._see_status()
+
+    def _see_status(self) -> None:
+        """A command takes effect with the next sample and shows with the next status."""
+        self._loop.transact(-self._loop.closed.samples % _STATUS_EVERY + 1)
+
+    def _wheel_speeds_rad_s(self) -> tuple[float, float]:
+        wire, row = self._loop.closed.wire, self._loop.newest
+        left, right = (wire.channel(f"wheel_speed_{side}_rad_s", row)[0] for side in ("left", "right"))
+        return float(left), float(right)
+
+    def _stored(self, value: float, subindex: int) -> float:
+        """A value of the vehicle model as the drives' objects keep it."""
+        variable: Any = self._dictionary[0x2000][subindex]
+        return float(variable.decode_raw(variable.encode_raw(value)))
+
+
+class PredictedBench:
+    """A bench with its devices, armed and at rest; `began` is the first sample of its recording."""
+
+    simulated = True
+
+    def __init__(self, file: BenchFile, model: Model) -> None:
+        self.file, self.model = file, model
+        self.wire = wire_of(file)
+        closed = ClosedLoop(model, file.vehicle.wheel_radius_m, self.wire.rounding)
+        self.loop = PredictedLoop(closed)
+        self.rmcu = PredictedRmcu(self.loop)
+        self.dyno = PredictedDyno(self.loop, file, self.wire)
+        self.loop.run_for(_LISTEN_S)
+        self.dyno.start()
+        self.began = closed.samples
+        self.loop.run_for(_LISTEN_S)
+        self.rmcu.request_off()
+        self.dyno.enable(file.dyno.speed_ramp_m_s2 / file.vehicle.wheel_radius_m)
+
+    def peak(self, channel: str) -> float:
+        """Largest magnitude of a measured channel since the bench was switched on, in its unit."""
+        closed = self.loop.closed
+        return float(np.max(np.abs(closed.wire.channel(channel, closed.rows))))

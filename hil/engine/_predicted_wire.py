@@ -1,0 +1,90 @@
+"""How a bench's DBC, EDS and bit rates show on its wire, for a bench that is predicted without one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any
+
+from drivers import TICK_S, read_dyno, read_rmcu
+from hil.core.dbc import Dbc
+from hil.core.signals import FrameLayout
+from hil.engine.bench_file import BenchFile
+from hil.plant.closed_loop import Wire
+from sim_backend.bench import frame_time_s
+
+_RMCU = {
+    "motor_speed_rad_s": ("RMCU_Status", "MotorSpeed"),
+    "motor_torque_ref_nm": ("RMCU_Status", "MotorTorqueRef"),
+    "motor_torque_nm": ("RMCU_Status", "MotorTorque"),
+    "driving_torque_ref_nm": ("RMCU_Control", "DrivingTorqueRef"),
+    "driving_torque_est_nm": ("RMCU_Control", "DrivingTorqueEst"),
+}
+_LARGEST_SHIFT = 1
+
+
+@dataclass(frozen=True)
+class PredictedWire:
+    """A bench's wire as a recording sees it.
+
+    `first_stamp_s` is how long after its sample the frame appears that a recording's time counts from, and
+    `unsettled_s` by how much earlier the earliest frame of a sample appears. `dictionary` is the dynos'.
+    """
+
+    rounding: Wire
+    first_stamp_s: float
+    unsettled_s: float
+    dictionary: Any
+
+
+def wire_of(bench: BenchFile) -> PredictedWire:
+    """What the wire of a bench does to numbers and times, from its DBC, its EDS and its bit rates.
+
+    Raises:
+        BadInputError: a device file cannot be used.
+    """
+    dbc = read_rmcu(bench.rmcu.dbc)
+    dictionary, left = read_dyno(bench.dyno.eds, bench.dyno.rear_left)
+    _, right = read_dyno(bench.dyno.eds, bench.dyno.rear_right)
+    signals = {name: dbc.layouts[message].signals[signal] for name, (message, signal) in _RMCU.items()}
+    frames = {name: dbc.layouts[message].id for name, (message, _) in _RMCU.items()}
+    for side, (_, values, status) in (("left", left), ("right", right)):
+        shown = {
+            f"wheel_speed_{side}_rad_s": (values, "Wheel speed"),
+            f"shaft_torque_{side}_nm": (values, "Shaft torque"),
+            f"dyno_torque_{side}_nm": (status, "Torque actual value"),
+        }
+        if side == "left":
+            shown["vehicle_speed_m_s"] = (status, "Vehicle speed")
+        for name, (layout, signal) in shown.items():
+            signals[name], frames[name] = layout.signals[signal], layout.id
+    ends_s = _frame_ends_s(bench, dbc, (*left[1:], *right[1:]))
+    master_s = ends_s[frames["motor_speed_rad_s"]]
+    late = {name: _nearest(ends_s[frame] - master_s) for name, frame in frames.items()}
+    rounding = Wire(
+        channels=signals,
+        request=dbc.layouts["RMCU_Request"].signals["TorqueRequest"],
+        parameter=dbc.layouts["RMCU_ParameterWrite"].signals["Value"],
+        target_speed=left[0].signals["Target velocity"],
+        late={name: shift for name, shift in late.items() if shift},
+    )
+    earliest_s = min(ends_s[frame] for frame in frames.values())
+    return PredictedWire(rounding, master_s, master_s - earliest_s, dictionary)
+
+
+def _frame_ends_s(bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]) -> dict[int, float]:
+    """When each cyclic frame of a sample has crossed its bus, by identifier, as on the simulated bench."""
+    rmcu = [dbc.layouts[name] for name in ("RCS_Vehicle", "RMCU_Status", "RMCU_Control")]
+    sync = FrameLayout("SYNC", 0x80, 0, {})
+    found: dict[int, float] = {}
+    for bus, layouts in ((bench.rmcu.bus, rmcu), (bench.dyno.bus, [sync, *dynos])):
+        rate = bench.buses[bus].bit_rate
+        ends = accumulate(frame_time_s(layout.length, rate) for layout in layouts)
+        found |= {layout.id: end_s for layout, end_s in zip(layouts, ends, strict=True)}
+    return found
+
+
+def _nearest(after_s: float) -> int:
+    """Of a cyclic frame `after_s` behind the recording's stamp: which sample's is nearest to the stamp."""
+    shifts = range(-_LARGEST_SHIFT, _LARGEST_SHIFT + 1)
+    return min(shifts, key=lambda shift: (abs(after_s + shift * TICK_S), shift))

@@ -1,0 +1,130 @@
+"""A plan carried out on a bench that is computed, not talked to: what a run would record, in a fraction of
+its time.
+
+The engine's own conductor does it, with a predicted bench in place of drivers and wire.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from hil.core.model import Model
+from hil.core.recording import Event, Recording
+from hil.core.result import Segment
+from hil.engine._predicted_bench import PredictedBench
+from hil.engine.bench import Bench
+from hil.engine.bench_file import BenchFile
+from hil.engine.conductor import _RELEASE_S as RELEASE_S
+from hil.engine.conductor import BenchConductor
+from hil.engine.recorder import Recorder
+from hil.plant.closed_loop import TICK_S
+from test_plans import Array, Plan, PlannedSegment, Quantity
+
+_UNSETTLED_S = 0.003  # what came later than this before the newest sample is not in a recording so far
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What a run would record.
+
+    `recording` has the channels of a run, without sensor noise; `peaks` are largest magnitudes of the
+    channels that limits watch, in their units; `made` are the files of analysis steps.
+    """
+
+    recording: Recording
+    segments: tuple[Segment, ...]
+    peaks: dict[str, float]
+    made: Mapping[str, bytes]
+
+
+def predict(plan: Plan, bench: BenchFile, model: Model) -> Prediction:
+    """Carry `plan` out on the simulated bench of `bench` and `model`, without its wire and its noise.
+
+    Nobody is asked at operator prompts, and no limit on measured values trips.
+
+    Raises:
+        BadInputError: the plan asks for more than the bench allows, or a model without a shaft.
+        HilError: the run would fail.
+    """
+    ready = PredictedBench(bench, model)
+    recorder = _PredictedRecorder(ready)
+    with tempfile.TemporaryDirectory() as directory:
+        conductor = PredictionConductor(ready, recorder, Path(directory))
+        for step in (*plan.steps, *plan.finally_):
+            step.carry_out(conductor)
+    ready.rmcu.request_off()
+    ready.dyno.disable()
+    peaks = {name: ready.peak(name) for name in ready.wire.rounding.channels}
+    return Prediction(recorder.everything(), tuple(conductor.segments), peaks, conductor.made)
+
+
+class PredictionConductor(BenchConductor):
+    """The engine's conductor on a predicted bench; only torque is not sent millisecond by millisecond."""
+
+    def __init__(self, bench: PredictedBench, recorder: _PredictedRecorder, out: Path) -> None:
+        super().__init__(cast(Bench, bench), cast(Recorder, recorder), out, lambda text: "not asked")
+        self._rmcu, self._loop = bench.rmcu, bench.loop
+
+    def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
+        """Request all samples at once, then take the torque away and switch it off."""
+        self._check.play(quantity, samples_nm, segment)
+        tail = np.linspace(samples_nm[-1], 0.0, round(RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
+        if segment:
+            self._begin(segment, self._loop.now_s(), len(samples_nm))
+        self._rmcu.play(quantity, np.concatenate([samples_nm, tail]))
+        if segment:
+            self._end(self._loop.now_s(), complete=True)
+        self._switch_off()
+
+
+class _PredictedRecorder:
+    """Stands where the recorder stands: the rows are kept by the bench, attachments and events here."""
+
+    def __init__(self, bench: PredictedBench) -> None:
+        self._bench = bench
+        self._start_s = bench.began * TICK_S + bench.wire.first_stamp_s
+        self._attachments: dict[str, bytes] = {}
+        self._metadata: dict[str, dict[str, str]] = {}
+        self._events: list[Event] = []
+        self.writer = self
+
+    def attach(self, name: str, content: bytes) -> None:
+        """Keep a file."""
+        self._attachments[name] = content
+
+    def describe(self, name: str, values: dict[str, str]) -> None:
+        """Keep a table."""
+        self._metadata[name] = values
+
+    def event(self, clock_s: float, kind: str, text: str) -> None:
+        """Keep what happened at a time of the bench clock."""
+        self._events.append(Event(self.recording_time(clock_s), kind, text))
+
+    def recording_time(self, clock_s: float) -> float:
+        """Time in the recording, on its millisecond grid, of the next sample after a bench time."""
+        return max(0.0, round(clock_s - self._start_s, 3))
+
+    def so_far(self) -> Recording:
+        """The channels that a run would have decoded until now: the newest frames are still awaited."""
+        unsettled = round((_UNSETTLED_S + self._bench.wire.unsettled_s) / TICK_S + 0.5)
+        return self._recording(self._bench.loop.closed.samples - unsettled)
+
+    def everything(self) -> Recording:
+        """All channels, to the last sample."""
+        return self._recording(self._bench.loop.closed.samples)
+
+    def _recording(self, end: int) -> Recording:
+        channels = self._bench.loop.closed.recorded(self._bench.began, end)
+        return Recording(
+            channels,
+            Path("prediction"),
+            metadata=dict(self._metadata),
+            attachments=dict(self._attachments),
+            events=list(self._events),
+        )

@@ -1,0 +1,163 @@
+"""A bench in memory: plant, drives and the RMCU's control, stepped many milliseconds a call."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.errors import BadInputError, BenchError
+from hil.core.model import Model
+from hil.plant import _slots as P
+from hil.plant.closed_loop import drive as D
+from hil.plant.closed_loop import tick as T
+from hil.plant.closed_loop._state import state_at_rest
+from hil.plant.closed_loop.advance import advance
+from hil.plant.closed_loop.shown import Wire, rounded
+from hil.plant.controller import LARGEST_TORQUE_NM, build, in_range
+from hil.plant.controller import memory as M
+
+Array = npt.NDArray[np.float64]
+TICK_S = 0.001
+SIDES = (0, 1)  # left, right
+_FIRST_ROWS = 1 << 14
+_OUT_OF_RANGE, _INCOMPLETE = "out_of_range", "incomplete"
+
+
+class ClosedLoop:
+    """The simulated bench without its wire: the same compiled tick, and numbers rounded as frames round.
+
+    Time passes in `run` only; what is told to drives and RMCU counts from the next sample on. Sensors have
+    no noise.
+
+    Raises:
+        BadInputError: a model that has no shaft to load, or an effect that stands twice in it.
+    """
+
+    def __init__(self, model: Model, wheel_radius_m: float, wire: Wire) -> None:
+        if model.kind == "transfer_function":
+            raise BadInputError(
+                "a 'transfer_function' model cannot be a simulated bench: it has no shaft to load",
+                fix="give a rigid, two_inertia or three_inertia model",
+            )
+        self.wire = wire
+        self._state = state_at_rest(model, wheel_radius_m)
+        self._memory = m = M.Memory()
+        m.gains[M.SAMPLE_TIME] = TICK_S
+        m.gains[M.TORQUE_LIMIT] = LARGEST_TORQUE_NM  # until a controller sets its own
+        self._firmware = (m.numerators, m.denominators, m.filter_states, m.gains, m.states)
+        self._rows = np.zeros((_FIRST_ROWS, T.COLUMNS))
+        self._status = np.zeros(2)
+        self.mode = M.OFF
+        self.samples = 0
+
+    @property
+    def rows(self) -> Array:
+        """What was measured and commanded so far, one row a sample, columns of `tick`."""
+        return self._rows[: self.samples]
+
+    def set_controller(self, parameters: Mapping[str, float]) -> None:
+        """Give the RMCU its parameters (names of the DBC, SI units), rounded as the wire rounds them.
+
+        Raises:
+            BenchError: the RMCU would refuse a value, or all of them together.
+        """
+        values = rounded(self.wire.parameter, list(parameters.values()))
+        stored = dict(zip(parameters, map(float, values), strict=True))
+        for name, value in stored.items():
+            if not in_range(name, value):
+                raise BenchError(f"refused parameter '{name}' = {value:g}: {_OUT_OF_RANGE}", where="RMCU")
+        result = build(stored, self._memory)
+        if result:
+            raise BenchError(f"refused the controller's parameters: {_REASONS[result]}", where="RMCU")
+
+    def set_vehicle(
+        self,
+        *,
+        inertia_kg_m2: float | None = None,
+        rolling_nm: float | None = None,
+        aero_nms2_rad2: float | None = None,
+        slip: float | None = None,
+        wheel_radius_m: float | None = None,
+        initial_speed_m_s: float | None = None,
+    ) -> None:
+        """Change what the drives' vehicle model is told; None leaves a value as it is."""
+        vector, w = self._state.vector, self._state.scalars
+        for array, index, value in (
+            (vector, P.VEHICLE_INERTIA, inertia_kg_m2),
+            (vector, P.ROLLING, rolling_nm),
+            (vector, P.AERO, aero_nms2_rad2),
+            (w, T.SLIP, slip),
+            (w, T.RADIUS, wheel_radius_m),
+            (w, T.INITIAL_SPEED, initial_speed_m_s),
+        ):
+            if value is not None:
+                array[index] = value
+
+    @property
+    def vehicle(self) -> tuple[float, float, float]:
+        """Inertia (kg m²), rolling (N m) and aerodynamic resistance (N m s²/rad²) of the vehicle model."""
+        vector = self._state.vector
+        return float(vector[P.VEHICLE_INERTIA]), float(vector[P.ROLLING]), float(vector[P.AERO])
+
+    def set_ramp(self, acceleration_rad_s2: float) -> None:
+        """How fast the drives change speed, rad/s²."""
+        self._state.drives[:, D.ACCELERATION] = acceleration_rad_s2
+
+    def target_speed(self, side: int, speed_rad_s: float) -> None:
+        """Tell one drive the speed to hold in mode speed, rad/s."""
+        self._state.drives[side, D.TARGET_SPEED] = rounded(self.wire.target_speed, speed_rad_s)[0]
+
+    def drive_mode(self, side: int, mode: int) -> None:
+        """Let one drive be FREE, hold a SPEED or be a VEHICLE (names of `drive`)."""
+        self._state.drives[side, D.MODE] = mode
+
+    def off(self) -> None:
+        """Torque off."""
+        self.mode = M.OFF
+
+    def play(self, mode: int, samples_nm: Array) -> None:
+        """Request `samples_nm`, one each sample: motor torque in mode TORQUE, rF_d* in DRIVING_FORCE.
+
+        The mode stays; only `off` leaves it.
+        """
+        self.mode = mode
+        self._advance(rounded(self.wire.request, samples_nm))
+
+    def run(self, samples: int) -> None:
+        """Let `samples` milliseconds pass without torque being asked for."""
+        self._advance(np.zeros(samples))
+
+    def recorded(self, first: int, last: int) -> dict[str, Array]:
+        """The channels of a recording from sample `first` to before `last`, by name, with `time_s`."""
+        return self.wire.recorded(self._rows[first:last], TICK_S)
+
+    def _advance(self, requests: Array) -> None:
+        end = self.samples + len(requests)
+        if end > len(self._rows):
+            longer = np.zeros((max(end, 2 * len(self._rows)), T.COLUMNS))
+            longer[: self.samples] = self.rows
+            self._rows = longer
+        s = self._state
+        advance(
+            self.samples,
+            s.x,
+            s.vector,
+            s.scalars,
+            s.torques,
+            self._firmware,
+            s.drives,
+            s.sensors,
+            s.past,
+            s.noise,
+            self.mode,
+            requests,
+            self.mode,  # no fault, and whether parameters are valid is not shown
+            self._status,
+            self._rows[self.samples : end],
+        )
+        self.samples = end
+
+
+_REASONS = {2: _OUT_OF_RANGE, 4: _INCOMPLETE}

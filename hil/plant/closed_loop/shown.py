@@ -1,0 +1,77 @@
+"""What a wire makes of the numbers that cross it: how it rounds them, and when their frames appear."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.channels import TIME
+from hil.core.signals import Signal
+from hil.plant.closed_loop import tick as T
+
+Array = npt.NDArray[np.float64]
+
+_COLUMNS = {
+    "motor_speed_rad_s": T.MOTOR_SPEED,
+    "motor_torque_ref_nm": T.TORQUE_REF,
+    "motor_torque_nm": T.TORQUE,
+    "driving_torque_ref_nm": T.DRIVING_REF,
+    "driving_torque_est_nm": T.DRIVING_EST,
+    "wheel_speed_left_rad_s": T.WHEEL_LEFT,
+    "shaft_torque_left_nm": T.SHAFT_LEFT,
+    "dyno_torque_left_nm": T.LOAD_LEFT,
+    "vehicle_speed_m_s": T.VEHICLE_SPEED,
+    "wheel_speed_right_rad_s": T.WHEEL_RIGHT,
+    "shaft_torque_right_nm": T.SHAFT_RIGHT,
+    "dyno_torque_right_nm": T.LOAD_RIGHT,
+}
+# Channels that a recording computes from both sides: (name, left, right, share of the sum)
+_BOTH_SIDES = (
+    ("wheel_speed_rad_s", "wheel_speed_left_rad_s", "wheel_speed_right_rad_s", 0.5),
+    ("shaft_torque_nm", "shaft_torque_left_nm", "shaft_torque_right_nm", 1.0),
+    ("dyno_torque_ref_nm", "dyno_torque_left_nm", "dyno_torque_right_nm", 1.0),
+)
+
+
+@dataclass(frozen=True)
+class Wire:
+    """How a bench's frames round.
+
+    Args:
+        channels: the signal that shows each measured channel.
+        request: torque requests (N m); parameter: values of the RMCU's parameters;
+            target_speed: speeds that the drives are told (rad/s).
+        late: samples by which the frame that a recording takes for a channel is not of the sample itself
+            (-1: of the one before); channels that are left out are of the sample.
+    """
+
+    channels: Mapping[str, Signal]
+    request: Signal
+    parameter: Signal
+    target_speed: Signal
+    late: Mapping[str, int] = field(default_factory=dict)
+
+    def channel(self, name: str, rows: Array) -> Array:
+        """A measured channel of bench rows, as its frames show it."""
+        return rounded(self.channels[name], rows[:, _COLUMNS[name]])
+
+    def recorded(self, rows: Array, sample_time_s: float) -> dict[str, Array]:
+        """The channels of a recording that begins with the first of `rows`."""
+        samples = np.arange(len(rows))
+        channels = {TIME: np.round(samples * sample_time_s, 9)}
+        for name in self.channels:
+            late = self.late.get(name, 0)
+            values = self.channel(name, rows)
+            channels[name] = values[np.clip(samples + late, 0, len(rows) - 1)] if late else values
+        for name, left, right, share in _BOTH_SIDES:
+            if left in channels and right in channels:
+                channels[name] = share * (channels[left] + channels[right])
+        return channels
+
+
+def rounded(signal: Signal, values: npt.ArrayLike) -> Array:
+    """Physical values as they come out of a frame."""
+    return signal.decode(signal.encode(values))
