@@ -9,7 +9,7 @@ import numpy as np
 from drivers.wire import Wire
 from hil.core.clock import Clock
 from hil.core.errors import InterruptError
-from hil.core.frames import ERROR_FRAME, SENT_BY_HOST, FrameBlock
+from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 
 TICK_S = 0.001
 _DRAIN_EVERY = 10
@@ -107,7 +107,7 @@ class BusLoop:
         if not mask.any():
             return
         for frame in block[mask]:
-            if frame["flags"] & (SENT_BY_HOST | ERROR_FRAME):
+            if frame["flags"] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
                 continue
             callback = self._callbacks[name].get(int(frame["id"]))
             if callback is not None:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.channels import TIME
-from hil.core.frames import FrameBlock, joined
+from hil.core.frames import FrameBlock, joined, standard
 from hil.core.signals import Signal
 
 Array = npt.NDArray[np.float64]
@@ -60,7 +60,7 @@ class SampleAssembler:
     def add(self, bus: str, block: FrameBlock) -> None:
         """Take the frames of one bus."""
         if bus in self._blocks:
-            self._blocks[bus].append(block)
+            self._blocks[bus].append(standard(block))
 
     def rows(self, *, everything: bool = False) -> Array:
         """Samples that are complete (`everything`: also the newest), one row each, columns as `names`."""

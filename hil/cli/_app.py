@@ -51,9 +51,14 @@ def run_command_line() -> int:
 
 
 def _dispatch(arguments: list[str]) -> int:
-    if not arguments or arguments[0] in ("-h", "--help"):
+    if not arguments:
+        raise BadInputError(
+            "name a command", fix=f"one of {', '.join(_COMMANDS)}; hil --help tells about them"
+        )
+    if arguments[0] in ("-h", "--help"):
         print(_help())
-        return 0 if arguments else 2
+        return 0
+    _refuse_empty_out(arguments)
     name = arguments[0]
     if name not in _COMMANDS:
         near = difflib.get_close_matches(name, _COMMANDS, 1)
@@ -65,6 +70,13 @@ def _dispatch(arguments: list[str]) -> int:
     app.command(name, help=command.__doc__, context_settings=settings)(_with_exit_code(command))
     app(arguments[1:], prog_name=f"hil {name}")
     return 0
+
+
+def _refuse_empty_out(arguments: list[str]) -> None:
+    """An empty --out would be this very folder: a shell variable that is not set, most likely."""
+    for option, value in zip(arguments, [*arguments[1:], None], strict=True):
+        if option == "--out=" or (option == "--out" and value == ""):
+            raise BadInputError("--out is empty", fix="name a place; '.' is this folder")
 
 
 def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
@@ -89,6 +101,8 @@ def guarded(arguments: list[str]) -> int:
     try:
         return _dispatch(arguments)
     except SystemExit as stop:
+        if stop.code == EXIT_CODE and INTERRUPTS.arrived:  # typer answers Ctrl-C on its own, in silence
+            INTERRUPTS.tell()
         return stop.code if isinstance(stop.code, int) else 0
     except KeyboardInterrupt:
         return _interrupted()

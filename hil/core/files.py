@@ -60,6 +60,8 @@ def refuse_special(path: Path) -> None:
         BadInputError: something that is no regular file stands there.
     """
     with contextlib.suppress(OSError):
+        if path.is_symlink() and not path.exists():
+            raise BadInputError("is a link to nothing", where=str(path), fix="remove the link, or mend it")
         if path.exists() and not path.is_file():
             what = "is a directory" if path.is_dir() else "is not a regular file"
             raise BadInputError(what, where=str(path), fix="name a file with --out")

@@ -29,10 +29,16 @@ def joined(blocks: list[FrameBlock]) -> FrameBlock:
     return np.concatenate([np.ascontiguousarray(block).view(raw) for block in blocks]).view(FRAME)
 
 
+def standard(block: FrameBlock) -> FrameBlock:
+    """The data frames with an 11-bit identifier: an extended one of the same number is another message."""
+    other = block["flags"] & (EXTENDED | ERROR_FRAME)
+    return block[other == 0] if other.any() else block
+
+
 def newest(block: FrameBlock, frame_id: int) -> tuple[float, int] | None:
     """Time and payload of the last received frame with this identifier; None if the block has none."""
     ids = block["id"]
     for index in range(len(ids) - 1, -1, -1):
-        if ids[index] == frame_id and not block["flags"][index] & SENT_BY_HOST:
+        if ids[index] == frame_id and not block["flags"][index] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
             return float(block["time_s"][index]), int(block["data"][index])
     return None

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from drivers import Binding
 from hil.core.compiled import compiled
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
+from hil.core.frames import FrameBlock, standard
 from hil.core.signals import double_of, single_of, swapped
 from hil.engine.bench_file import Limits
 
@@ -58,6 +58,7 @@ class LimitWatch:
         self._latest_s = max(self._latest_s, float(block["time_s"][-1]))
         if bus not in self._tables:
             return
+        block = standard(block)
         tripped = _scan(
             block["id"],
             block["time_s"],

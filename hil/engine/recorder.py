@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from drivers import Binding, SampleAssembler
 from hil.core.channels import TIME
-from hil.core.frames import FrameBlock
+from hil.core.frames import FrameBlock, standard
 from hil.core.recording import Event, Recording, RecordingWriter
 
 _FLUSH_S = 0.5
@@ -39,7 +39,8 @@ class Recorder:
             return
         self._assembler.add(bus, block)
         if self.start_s is None and bus == self._master[0]:
-            first = block[block["id"] == self._master[1]]
+            usual = standard(block)
+            first = usual[usual["id"] == self._master[1]]
             if len(first):
                 self.start_s = float(first["time_s"][0])
                 self._flushed_s = latest_s
