@@ -3,8 +3,9 @@
 from hil.analysis.diagnosis._diagnose import diagnose
 from hil.analysis.diagnosis.data._gap import BANDS_HZ, CONDITIONS, ChannelGap, GapMap
 from hil.analysis.diagnosis.data._sanity import examine
-from hil.analysis.diagnosis.data._trace import LEAST_SAMPLES, unbroken
-from hil.analysis.diagnosis.search._by_chance import BOOTSTRAP_DRAWS
+from hil.analysis.diagnosis.data._thresholds import LEAST_SAMPLES
+from hil.analysis.diagnosis.data._trace import unbroken
+from hil.analysis.diagnosis.search._thresholds import BOOTSTRAP_DRAWS
 from hil.analysis.diagnosis.tell._result import (
     Alternative,
     Considered,

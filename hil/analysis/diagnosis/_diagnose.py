@@ -9,9 +9,8 @@ from hil.analysis.diagnosis.data._grid import coarse_noise, grids
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._sanity import examine
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.fit._whitening import whitening_of
+from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._search import search
 from hil.analysis.diagnosis.tell._confidence import drop_of
@@ -22,8 +21,6 @@ from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
-
-_FAR_FROM_NOISE = 50.0
 
 
 def diagnose(
@@ -79,24 +76,6 @@ def _diagnosed(
         if min(drop_of(found, index) for index in range(len(found.best.hypothesis.terms))) <= by_chance:
             verdict = "none" if found.evidence.closed(found.base) else "unknown"
     if verdict == "named":
-        found.best = _reweighted(problem, found.best)
+        found.best = reweighted(problem, found.best)
     judged = Judged(problem, found, verdict, held, by_chance)
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)
-
-
-def _reweighted(problem: Problem, best: Fit) -> Fit:
-    """Where even the best leaves far more than noise, errors are weighed by their own spectrum.
-
-    Otherwise the strongest resonance alone would set all parameters. Cost and errors that are handed on are
-    those of the plain weights.
-    """
-    if not best.hypothesis.terms or best.cost < _FAR_FROM_NOISE * problem.rows:
-        return best
-    for _ in range(3):
-        other = problem.again(whitening=whitening_of(best.pieces))
-        again = fit(other, best.hypothesis, best.starts, best.theta)
-        best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
-        best.covariance = again.covariance / max(
-            1.0, best.cost / problem.rows
-        )  # its errors are white already
-    return best

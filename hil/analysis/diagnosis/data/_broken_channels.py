@@ -8,20 +8,25 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._grid import grid_step
+from hil.analysis.diagnosis.data._thresholds import (
+    BELOW_STEPS,
+    CLIPPED_SHARE,
+    FEW_LEVELS,
+    FROZEN_NOISY,
+    FROZEN_SAMPLES,
+    FROZEN_STILL,
+    MOVES_NOISE,
+    PLATEAU_SAMPLES,
+    ROUNDED,
+    SPEEDS_UP,
+    STEEP,
+    TORQUE_MOVES,
+)
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]
-
-_CLIPPED_SHARE = 0.03
-_FEW_LEVELS = 24
-_PLATEAU_SAMPLES = 20
-_FROZEN_SAMPLES = 200
-_STEEP = 5.0  # a plateau is a clip where readings arrive and leave by this many steps of the reading
-_ROUNDED = 0.2  # of the noise, which rounding itself makes larger
-_TORQUE_MOVES = 0.1  # of its range
-_MOVES = 5.0  # noise levels of a block's mean
 
 
 def refuse_broken_channels(traces: list[Trace], noise: Array, beside: Sequence[Trace] = ()) -> list[str]:
@@ -77,7 +82,7 @@ def _below_resolution(trace: Trace, column: int, others: list[Trace]) -> bool:
     step = grid_step(elsewhere[:, column])
     size = np.std(elsewhere, axis=0)
     moved = float(np.ptp(trace.measured[:, other]))
-    return bool(moved * size[column] < 3.0 * step * size[other])
+    return bool(moved * size[column] < BELOW_STEPS * step * size[other])
 
 
 def _frozen(trace: Trace, column: int) -> None:
@@ -85,12 +90,16 @@ def _frozen(trace: Trace, column: int) -> None:
     values = trace.samples[:, column]
     same = np.diff(values) == 0.0
     first, last = _runs(same)
-    if not first.size or float(np.max(last - first)) < _FROZEN_SAMPLES:
+    if not first.size or float(np.max(last - first)) < FROZEN_SAMPLES:
         return
     longest = int(np.argmax(last - first))
     begin, end = int(first[longest]), int(last[longest])
     rest = np.delete(np.diff(values), np.arange(begin, end))
-    if len(rest) < _FROZEN_SAMPLES or np.mean(rest == 0.0) > 0.1 or np.mean(rest[1:] * rest[:-1] < 0) < 0.3:
+    if (
+        len(rest) < FROZEN_SAMPLES
+        or np.mean(rest == 0.0) > FROZEN_STILL
+        or np.mean(rest[1:] * rest[:-1] < 0) < FROZEN_NOISY
+    ):
         return
     raise BadInputError(
         f"{OUTPUTS[column]} looks frozen: it reads {values[begin]:g} from {begin * trace.dt:.4g} s "
@@ -108,7 +117,7 @@ def _runs(flags: npt.NDArray[np.bool_]) -> tuple[npt.NDArray[np.intp], npt.NDArr
 
 def coarse(trace: Trace, column: int) -> bool:
     """Whether a channel is rounded to so few levels that it tells neither a ratio nor a plateau."""
-    return len(np.unique(trace.samples[:, column])) < _FEW_LEVELS
+    return len(np.unique(trace.samples[:, column])) < FEW_LEVELS
 
 
 def _clipped(trace: Trace, column: int, noise: float) -> None:
@@ -118,7 +127,7 @@ def _clipped(trace: Trace, column: int, noise: float) -> None:
     for end in (float(values.max()), float(values.min())):
         at_end = values == end
         share = float(np.mean(at_end))
-        if share > _CLIPPED_SHARE and _cut_off(values, at_end, noise, trace.torque):
+        if share > CLIPPED_SHARE and _cut_off(values, at_end, noise, trace.torque):
             raise BadInputError(
                 f"{OUTPUTS[column]} looks clipped at {end:g}: {share:.0%} of its samples read this",
                 where=trace.source,
@@ -132,12 +141,12 @@ def _cut_off(values: Array, at_end: npt.NDArray[np.bool_], noise: float, torque:
     A rounded channel has plateaus of its own wherever the torque stays the same.
     """
     first, last = _runs(at_end)
-    reach = _PLATEAU_SAMPLES
+    reach = PLATEAU_SAMPLES
     whole = (last - first > reach) & (first >= reach) & (last + reach <= len(values))
-    if grid_step(values) > _ROUNDED * noise:
+    if grid_step(values) > ROUNDED * noise:
         # what the torque does in the last samples of a plateau shows only after it
         moves = [float(np.ptp(torque[a : max(b - reach, a + 1)])) for a, b in zip(first, last, strict=True)]
-        whole &= np.array(moves) > _TORQUE_MOVES * float(np.ptp(torque))
+        whole &= np.array(moves) > TORQUE_MOVES * float(np.ptp(torque))
     if not whole.any():
         return False
     levels = np.unique(values)
@@ -145,7 +154,7 @@ def _cut_off(values: Array, at_end: npt.NDArray[np.bool_], noise: float, torque:
     end = values[first[whole][0]]
     before = np.abs(values[first[whole] - reach] - end)
     after = np.abs(values[last[whole] + reach - 1] - end)
-    return bool(np.any(np.minimum(before, after) > _STEEP * step))
+    return bool(np.any(np.minimum(before, after) > STEEP * step))
 
 
 def _moved(trace: Trace, noise: Array) -> bool:
@@ -164,7 +173,8 @@ def _slows_down(trace: Trace, noise: Array) -> bool:
         if trace.has[column]:
             count = len(trace.measured) // length
             slow = np.abs(trace.measured[: count * length, column].reshape(count, length).mean(axis=1))
-            least = _MOVES * float(noise[column])
-            if count and float(np.max(slow - np.minimum.accumulate(slow))) > max(least, 0.05 * slow.max()):
+            least = MOVES_NOISE * float(noise[column])
+            risen = slow - np.minimum.accumulate(slow)
+            if count and float(np.max(risen)) > max(least, SPEEDS_UP * slow.max()):
                 return False
     return True

@@ -17,18 +17,19 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.data._thresholds import (
+    KEPT,
+    LEAST_SEGMENTS,
+    NEIGHBOURS,
+    RED,
+    SEGMENT_S,
+    SEGMENTS_ALIKE,
+    SLOW_LINES,
+)
 from hil.analysis.diagnosis.data._trace import Trace, blocks
 
 Array = npt.NDArray[np.float64]
 Spectra = npt.NDArray[np.complex128]
-
-_SEGMENT_S = 2.0
-_SLOW = 2  # frequencies slower than a segment, with the window's leakage ...
-_RED = 20.0  # ... and how far noise may rise towards them
-_LEAST_SEGMENTS = 12
-_KEPT = 1e-6  # of the largest: regressors that say the same count once
-_NEIGHBOURS = 1.9  # frequencies of a Hann window that count as one
-_ALIKE = 1.0 / 6.0  # correlation of neighbouring Hann segments at half overlap
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def split(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Ar
     """
     spectra = _spectra(traces, weights, errors)
     products = np.einsum("kfi,kfj->fij", spectra, spectra.conj()) / len(spectra)
-    segments = len(spectra) / (1.0 + 2.0 * _ALIKE**2)
+    segments = len(spectra) / (1.0 + 2.0 * SEGMENTS_ALIKE**2)
     physics, noise, deviation = np.zeros(3), np.zeros(3), np.zeros(3)
     for column in range(3):
         if not any(t.has[column] for t in traces):
@@ -60,8 +61,10 @@ def split(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Ar
         known, variance = _explained(products, column, segments)
         passing = power - np.median(np.abs(spectra[:, :, column]) ** 2, axis=0) / np.log(2.0)
         passing[-1] = 0.0
-        slow = power[:_SLOW] - _RED * np.array([0.5, 1.0]) * float(np.mean(power[_SLOW : 3 * _SLOW]))
-        known[:_SLOW] = passing[:_SLOW] = np.maximum(known[:_SLOW], slow)
+        slow = power[:SLOW_LINES] - RED * np.array([0.5, 1.0]) * float(
+            np.mean(power[SLOW_LINES : 3 * SLOW_LINES])
+        )
+        known[:SLOW_LINES] = passing[:SLOW_LINES] = np.maximum(known[:SLOW_LINES], slow)
         mine = known if np.sum(known) >= np.sum(passing) else passing
         physics[column] = float(np.sum(mine))
         noise[column] = float(np.sum(power)) - physics[column]
@@ -87,7 +90,7 @@ def _explained(products: Spectra, column: int, segments: float) -> tuple[Array, 
         altogether, rank = _coherent(matrix, column, others, segments)
         shown = float(matrix[3 + column, 3 + column].real)
         known[row] = max(across, min(altogether, across + shown))
-        variance[row] = _NEIGHBOURS * rank / segments**2
+        variance[row] = NEIGHBOURS * rank / segments**2
     return known, variance
 
 
@@ -97,7 +100,7 @@ def _coherent(matrix: Spectra, column: int, others: list[int], segments: float) 
     between = matrix[np.ix_(others, others)]
     scale = np.sqrt(np.maximum(np.diag(between).real, 1e-300))
     values, vectors = np.linalg.eigh(between / np.outer(scale, scale))
-    kept = values > _KEPT * values[-1]
+    kept = values > KEPT * values[-1]
     seen = vectors[:, kept].conj().T @ (matrix[others, column] / scale)
     share = min(float(np.sum(np.abs(seen) ** 2 / values[kept])) / power, 1.0)
     chance = min(np.count_nonzero(kept) / segments, 0.9)
@@ -110,7 +113,7 @@ def _spectra(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence
     period = traces[0].dt * traces[0].block
     shortest = min(len(s) for s in signals)
     total = sum(len(s) for s in signals)
-    length = max(2, min(round(_SEGMENT_S / period), shortest, 2 * total // _LEAST_SEGMENTS))
+    length = max(2, min(round(SEGMENT_S / period), shortest, 2 * total // LEAST_SEGMENTS))
     window = np.hanning(length + 1)[:-1]
     cut = []
     for one_signals in signals:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.data._thresholds import HIGH_SPEED, LARGE_TORQUE, REVERSAL_S, STANDSTILL_SHARE
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import OUTPUTS
 
@@ -15,8 +16,6 @@ Array = npt.NDArray[np.float64]
 
 BANDS_HZ = ((0.0, 1.0), (1.0, 3.0), (3.0, 6.0), (6.0, 10.0), (10.0, 15.0), (15.0, 30.0), (30.0, 125.0))
 CONDITIONS = ("near standstill", "torque reversals", "large torque", "high speed", "elsewhere")
-_STANDSTILL_SHARE = 0.03
-_REVERSAL_S = 0.15
 
 
 @dataclass(frozen=True)
@@ -95,13 +94,13 @@ def conditions_of(samples: Array, torque: Array, dt: float) -> Array:
     flips = np.flatnonzero(np.diff(np.sign(torque)) != 0)
     near_flip = np.zeros(len(torque))
     near_flip[flips] = 1.0
-    reach = max(1, round(_REVERSAL_S / dt))
+    reach = max(1, round(REVERSAL_S / dt))
     after = np.convolve(near_flip, np.ones(reach))[: len(torque)] > 0
     masks = [
-        speed < _STANDSTILL_SHARE * fastest,
+        speed < STANDSTILL_SHARE * fastest,
         after,
-        np.abs(torque) > 0.6 * largest,
-        speed > 0.6 * fastest,
+        np.abs(torque) > LARGE_TORQUE * largest,
+        speed > HIGH_SPEED * fastest,
     ]
     left = np.ones(len(torque), bool)
     rows = []

@@ -7,17 +7,18 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.data._thresholds import (
+    COARSE_GRID,
+    LEAST_GRID,
+    LEAST_LEVELS,
+    ON_GRID,
+    ROUNDING_ALIKE,
+)
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
-
-_LEAST_OF_NOISE = 0.2  # a finer grid than this share of the noise explains nothing
-_COARSE = 1.0  # noise levels: a finer grid is dithered by the noise
-_ALIKE = 2.0  # root of the samples in a block
-_ON_GRID = 0.98
-_LEAST_LEVELS = 4
 
 
 def grids(traces: Sequence[Trace], noise: Array) -> list[EffectUse]:
@@ -28,7 +29,7 @@ def grids(traces: Sequence[Trace], noise: Array) -> list[EffectUse]:
         if not values:
             continue
         step = grid_step(np.concatenate(values))
-        if step > _LEAST_OF_NOISE * float(noise[column]):
+        if step > LEAST_GRID * float(noise[column]):
             found.append(EffectUse("sensor_quantization", {"channel": channel, "step": step}))
     return found
 
@@ -39,15 +40,15 @@ def coarse_noise(noise: Array, rounded: list[EffectUse]) -> Array:
     for use in rounded:
         column = OUTPUTS.index(str(use.values["channel"]))
         step = float(use.values["step"])
-        if step > _COARSE * levels[column]:
-            levels[column] = max(levels[column], _ALIKE * step / np.sqrt(12.0))
+        if step > COARSE_GRID * levels[column]:
+            levels[column] = max(levels[column], ROUNDING_ALIKE * step / np.sqrt(12.0))
     return levels
 
 
 def grid_step(values: Array) -> float:
     """Distance of the grid that `values` lie on, in their unit; 0.0 if on none."""
     levels = np.unique(values)
-    if len(levels) < _LEAST_LEVELS:
+    if len(levels) < LEAST_LEVELS:
         return 0.0
     gaps = np.diff(levels)
     gaps = gaps[gaps > 1e-7 * max(float(np.ptp(values)), 1e-12)]
@@ -63,4 +64,4 @@ def grid_step(values: Array) -> float:
     on_grid = abs(np.mean(np.exp(2j * np.pi * values / step)))
     # as many levels as a grid has room for, not as a continuum of readings would give
     dense = len(values) > 3 * len(levels)
-    return step if on_grid > _ON_GRID and dense else 0.0
+    return step if on_grid > ON_GRID and dense else 0.0

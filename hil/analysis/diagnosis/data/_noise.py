@@ -8,11 +8,10 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
+from hil.analysis.diagnosis.data._thresholds import FLOOR_BAND
 from hil.analysis.diagnosis.data._trace import Trace
 
 Array = npt.NDArray[np.float64]
-
-_FLOOR_BAND = (0.25, 0.48)  # of the sample rate: above all modes, what is left is noise
 
 
 def noise_levels(traces: Sequence[Trace]) -> Array:
@@ -27,7 +26,7 @@ def noise_levels(traces: Sequence[Trace]) -> Array:
         for column in np.flatnonzero(trace.has).tolist():
             length = min(1024, len(trace.samples))
             f, density = signal.welch(trace.samples[:, column], rate, nperseg=length, average="median")
-            inside = (f >= _FLOOR_BAND[0] * rate) & (f <= _FLOOR_BAND[1] * rate)
+            inside = (f >= FLOOR_BAND[0] * rate) & (f <= FLOOR_BAND[1] * rate)
             levels[row, column] = np.sqrt(np.median(density[inside]) * rate / 2.0)
     pooled = np.full(3, np.nan)
     for column in range(3):

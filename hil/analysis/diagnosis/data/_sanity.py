@@ -16,6 +16,24 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._broken_channels import coarse, refuse_broken_channels
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
+from hil.analysis.diagnosis.data._thresholds import (
+    AGAINST,
+    APART_RAD,
+    DEAD_SHARE,
+    FAST_RAD_S,
+    INVERTED,
+    LIKE,
+    LIKE_RPM,
+    MOVES,
+    NOISE_ALONE,
+    PUSHED_RAD,
+    RELATED,
+    SLOW_S,
+    SPEED_RATIO,
+    TOO_FAST,
+    TORQUE_OFF,
+    TURNED_RAD,
+)
 from hil.analysis.diagnosis.data._trace import Trace, excerpts, trace_of, unbroken
 from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS
@@ -26,22 +44,7 @@ from hil.core.recording import Recording
 Array = npt.NDArray[np.float64]
 
 _MOTOR, _WHEEL, _SHAFT = OUTPUTS
-_INVERTED = -0.5  # correlation
-_RELATED = 0.5
-_RATIO = (0.62, 1.6)  # motor over wheel speed, over the gear ratio: beyond any error of a parameter or gain
-_APART_RAD = 0.2  # wheel side: smaller turns are lost in play and twist ...
-_TURNED_RAD = 0.6  # ... and a ratio needs larger ones, rms
-_FAST_RAD_S = 5.0  # wheel side: several times any offset
 _RPM = 60.0 / (2 * np.pi)
-_SLOW_S = 0.5
-_PUSHED_RAD = (0.1, 0.02)  # of motor and wheel, wheel side, rms: play is between torque and the motor
-_AGAINST = -0.6  # correlation with what the torque does
-_LIKE = (0.5, 2.0)
-_TOO_FAST = 4.0
-_TORQUE_OFF = 3.0
-_MOVES = 5.0  # noise levels
-_NOISE_ALONE = 1.3  # noise levels
-_DEAD_SHARE = 0.05  # of what the other channel says
 
 
 def check(model: Model, traces: list[Trace], noise: Array, beside: Sequence[Trace] = ()) -> list[str]:
@@ -144,41 +147,41 @@ def _speeds(
         wheel, motor = t.measured[:, 1], t.measured[:, 0] / ratio
         step = t.block * t.dt
         turns = np.column_stack([_around(1, np.cumsum(v) * step) for v in (wheel, motor)])
-        uneven.add(*turns[np.abs(turns).max(axis=1) > _APART_RAD].T)
+        uneven.add(*turns[np.abs(turns).max(axis=1) > APART_RAD].T)
         mean = np.array([wheel.mean()]), np.array([motor.mean()])
-        if max(abs(mean[0][0]), abs(mean[1][0])) > _FAST_RAD_S:
+        if max(abs(mean[0][0]), abs(mean[1][0])) > FAST_RAD_S:
             even.add(*mean)
     seen = [p for p in (uneven, even) if p.count]
     if not seen:
         return None
     for column, other in ((0, 1), (1, 0)):
         sizes = [(p.sizes[1], p.sizes[0])[column] / (p.sizes[1], p.sizes[0])[other] for p in seen]
-        if max(sizes) < _DEAD_SHARE and all(_noise_alone(t, column, noise) for t in both):
+        if max(sizes) < DEAD_SHARE and all(_noise_alone(t, column, noise) for t in both):
             return _dead(OUTPUTS[column])
-    if all(p.correlation < _INVERTED for p in seen):
+    if all(p.correlation < INVERTED for p in seen):
         channel = min((_MOTOR, _WHEEL), key=lambda c: pushes[c].correlation)
         if not any(p.count for p in pushes.values()):
             channel = f"either {_MOTOR} or {_WHEEL}"
         return BadInputError(f"{channel} looks inverted", fix="turn the sign of the channel")
-    if all(abs(p.correlation) < _RELATED for p in seen):
+    if all(abs(p.correlation) < RELATED for p in seen):
         return BadInputError(
             f"{_MOTOR} and {_WHEEL} have nothing to do with each other",
             fix="are both from one axle, and in step?",
         )
     factors = [p.factor for p in seen]
-    if even.count == 0 and max(uneven.sizes) < _TURNED_RAD:
+    if even.count == 0 and max(uneven.sizes) < TURNED_RAD:
         return None
-    if all(f > _RATIO[1] for f in factors) or all(f < _RATIO[0] for f in factors):
+    if all(f > SPEED_RATIO[1] for f in factors) or all(f < SPEED_RATIO[0] for f in factors):
         return _wrong_ratio(factors[0], ratio)
     return None
 
 
 def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
     """`factor` is motor over wheel speed, over the model's gear ratio."""
-    if _RATIO[0] < factor * ratio**2 < _RATIO[1]:
+    if SPEED_RATIO[0] < factor * ratio**2 < SPEED_RATIO[1]:
         return BadInputError(f"{_MOTOR} and {_WHEEL} look swapped", fix="exchange the two columns")
     for channel, expected in ((_MOTOR, _RPM), (_WHEEL, 1.0 / _RPM)):
-        if abs(factor / expected - 1.0) < 0.1:
+        if abs(factor / expected - 1.0) < LIKE_RPM:
             return BadInputError(
                 f"{channel} looks like rpm: motor over wheel speed is {factor * ratio:.3g}, "
                 f"the model's gear ratio is {ratio:.3g}",
@@ -207,7 +210,7 @@ def _push(traces: list[Trace], column: int, ratio: float, per_impulse: float) ->
             impulse = np.cumsum(t.torque)[t.block - 1 : count * t.block : t.block] * t.dt
             turned = np.cumsum(t.measured[:, column]) * step
             pushed = _around(2, np.cumsum(impulse) * step * per_impulse)
-            if np.std(pushed) > _PUSHED_RAD[column]:
+            if np.std(pushed) > PUSHED_RAD[column]:
                 pair.add(pushed, _around(2, turned / ratio))
     return pair
 
@@ -219,7 +222,7 @@ def _pushed(pushes: dict[str, _Pair], fine: list[str]) -> BadInputError | None:
         fine: channels that are not rounded coarsely: the turns of others come in steps of any size.
     """
     told = {c: p for c, p in pushes.items() if p.count}
-    against = [c for c, p in told.items() if p.correlation < _AGAINST and _LIKE[0] < p.factor < _LIKE[1]]
+    against = [c for c, p in told.items() if p.correlation < AGAINST and LIKE[0] < p.factor < LIKE[1]]
     if len(against) == len(OUTPUTS[:2]):
         return BadInputError(
             f"{INPUT} looks inverted: both speeds fall when torque pushes", fix="turn the sign of the channel"
@@ -230,7 +233,7 @@ def _pushed(pushes: dict[str, _Pair], fine: list[str]) -> BadInputError | None:
             fix=f"turn the sign of the channel, or of {INPUT}",
         )
     for channel, pair in told.items():
-        if channel in fine and pair.correlation > -_AGAINST and pair.factor > _TOO_FAST:
+        if channel in fine and pair.correlation > -AGAINST and pair.factor > TOO_FAST:
             return BadInputError(
                 f"{channel} changes {pair.factor:.3g} times as fast as the torque can make it",
                 fix="is it in rpm, or the model of another axle?",
@@ -243,21 +246,21 @@ def _shaft(traces: list[Trace], ratio: float, noise: Array) -> BadInputError | N
     pair = _Pair()
     having = [t for t in traces if t.has[2]]
     for t in having:
-        length = max(1, round(_SLOW_S / t.dt))
+        length = max(1, round(SLOW_S / t.dt))
         count = len(t.torque) // length
         if count >= 3:
             torque = t.torque[: count * length].reshape(count, length).mean(axis=1) * ratio
             shaft = t.samples[: count * length, 2].reshape(count, length).mean(axis=1)
             pair.add(torque - torque.mean(), shaft - shaft.mean())
-    if not pair.count or max(pair.sizes) < _MOVES * noise[2]:
+    if not pair.count or max(pair.sizes) < MOVES * noise[2]:
         return None
-    alone = abs(pair.correlation) < _RELATED and all(_noise_alone(t, 2, noise) for t in having)
+    alone = abs(pair.correlation) < RELATED and all(_noise_alone(t, 2, noise) for t in having)
     if alone and _moves(traces, noise):
         return _dead(_SHAFT)
-    if pair.correlation < _INVERTED and 1 / _TOO_FAST < pair.factor < _TOO_FAST:
+    if pair.correlation < INVERTED and 1 / TOO_FAST < pair.factor < TOO_FAST:
         return BadInputError(f"{_SHAFT} looks inverted", fix="turn the sign of the channel")
     slope = pair.xy / max(pair.xx, 1e-30)
-    if abs(pair.correlation) > _RELATED and not 1 / _TORQUE_OFF < pair.factor < _TORQUE_OFF:
+    if abs(pair.correlation) > RELATED and not 1 / TORQUE_OFF < pair.factor < TORQUE_OFF:
         return BadInputError(
             f"{_SHAFT} is {slope * ratio:.3g} times the motor torque at low frequency, the model has "
             f"{ratio:.3g}",
@@ -267,12 +270,12 @@ def _shaft(traces: list[Trace], ratio: float, noise: Array) -> BadInputError | N
 
 
 def _noise_alone(trace: Trace, column: int, noise: Array) -> bool:
-    return bool(np.std(trace.samples[:, column]) < _NOISE_ALONE * noise[column])
+    return bool(np.std(trace.samples[:, column]) < NOISE_ALONE * noise[column])
 
 
 def _moves(traces: list[Trace], noise: Array) -> bool:
     """Whether any speed does more than read noise."""
-    return any(np.std(t.measured[:, c]) > _MOVES * noise[c] for t in traces for c in (0, 1) if t.has[c])
+    return any(np.std(t.measured[:, c]) > MOVES * noise[c] for t in traces for c in (0, 1) if t.has[c])
 
 
 def _dead(channel: str) -> BadInputError:

@@ -9,26 +9,26 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.data._thresholds import (
+    EXCERPTS,
+    FIRST_STAMPS,
+    FIT_RATE_HZ,
+    GAP_SAMPLES,
+    LEAST_DURATION_S,
+    LEAST_SAMPLES,
+    LITTLE_TORQUE,
+    MOST_SAMPLES,
+    NEAR_SHARE,
+    SLOWEST_SAMPLE_S,
+    START_SAMPLES,
+    UNEVEN_SHARE,
+)
 from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.plant import SENSOR_GAIN, SENSOR_OFFSET
 
 Array = npt.NDArray[np.float64]
-
-LEAST_SAMPLES = 200
-#: What fits see changes within milliseconds: fewer than some tens of block means say nothing.
-LEAST_DURATION_S = 0.15
-#: More samples of one stretch than these are not read but sampled evenly: memory and time are bounded.
-MOST_SAMPLES = 400_000
-_EXCERPTS = 10
-_FIRST_STAMPS = 50
-_UNEVEN_SHARE = 0.01
-_NEAR_SHARE = 0.5  # of a sample: a reading this near to a point of the grid stands for it
-_FIT_RATE_HZ = 250.0  # of block means: driveline modes end below 60 Hz
-_START_SAMPLES = 20
-LITTLE_TORQUE = 0.01  # of the largest
-_GAP_SAMPLES = 20.0
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def unbroken(recording: Recording) -> list[Recording]:
     if len(time) < 2:
         return [recording]
     steps = np.diff(time)
-    cuts = np.flatnonzero(steps > _GAP_SAMPLES * recording.sample_time_s) + 1
+    cuts = np.flatnonzero(steps > GAP_SAMPLES * recording.sample_time_s) + 1
     if not cuts.size:
         return [recording]
     pieces = [
@@ -124,12 +124,12 @@ def excerpts(recording: Recording) -> list[Recording]:
     count = len(recording.time_s)
     if count <= MOST_SAMPLES:
         return [recording]
-    size = MOST_SAMPLES // _EXCERPTS
-    firsts = np.linspace(0, count - size, _EXCERPTS).round().astype(int).tolist()
+    size = MOST_SAMPLES // EXCERPTS
+    firsts = np.linspace(0, count - size, EXCERPTS).round().astype(int).tolist()
     pieces = [_piece(recording, first, first + size) for first in firsts]
     seconds = size * recording.sample_time_s
     pieces[0].notes.append(
-        f"has {count} samples: {_EXCERPTS} stretches of {seconds:.4g} s, spread evenly over its "
+        f"has {count} samples: {EXCERPTS} stretches of {seconds:.4g} s, spread evenly over its "
         f"{float(recording.time_s[-1] - recording.time_s[0]):.5g} s, stand for it"
     )
     return pieces
@@ -154,7 +154,7 @@ def trace_of(recording: Recording, name: str = "") -> Trace:
     time, dt = recording.time_s, recording.sample_time_s
     if len(time) < LEAST_SAMPLES:
         raise BadInputError(f"has {len(time)} samples, a diagnosis needs {LEAST_SAMPLES}", where=where)
-    if dt > 0.02:
+    if dt > SLOWEST_SAMPLE_S:
         raise BadInputError(
             f"is sampled every {dt * 1e3:g} ms: too slow for a driveline",
             where=where,
@@ -171,18 +171,18 @@ def trace_of(recording: Recording, name: str = "") -> Trace:
     grid, dt = _even(time, dt)
     nearest = _nearest(time, grid)
     off = np.abs(time[nearest] - grid)
-    if off.max() > _UNEVEN_SHARE * dt:
+    if off.max() > UNEVEN_SHARE * dt:
         note = f"time stamps are uneven: put on a grid of {dt * 1e3:.4g} ms"
-        if (gap := np.diff(time)).max() > _GAP_SAMPLES * dt:
+        if (gap := np.diff(time)).max() > GAP_SAMPLES * dt:
             note += f", with a gap of {gap.max():.3g} s at {time[int(np.argmax(gap))]:.3g} s bridged"
         notes.append(note)
-    missing = off > _NEAR_SHARE * dt
+    missing = off > NEAR_SHARE * dt
     columns = [recording[INPUT], *(recording[c] for c in OUTPUTS if c in recording)]
     on_grid = [np.where(missing, np.interp(grid, time, values), values[nearest]) for values in columns]
     torque = np.ascontiguousarray(on_grid[0])
     samples = np.full((len(grid), 3), np.nan)
     samples[:, [c in recording for c in OUTPUTS]] = np.column_stack([*on_grid[1:]])
-    block = max(1, round(1.0 / (_FIT_RATE_HZ * dt)))
+    block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
     return Trace(
         name or recording.source.stem,
         torque,
@@ -205,7 +205,7 @@ def _even(time: Array, dt: float) -> tuple[Array, float]:
     """
     steps = np.diff(time)
     dt = float(np.mean(steps[np.abs(steps - dt) < 0.5 * dt]))
-    seen = _FIRST_STAMPS
+    seen = FIRST_STAMPS
     while seen < 4 * len(time):
         passed = time[:seen] - time[0]
         number = np.rint(passed / dt)
@@ -230,6 +230,6 @@ def blocks(samples: Array, block: int) -> Array:
 def _start(samples: Array, torque: Array) -> Array:
     """Readings before the torque does anything: a fed back torque is never quite zero."""
     least = LITTLE_TORQUE * float(np.max(np.abs(torque)))
-    changed = np.flatnonzero(np.abs(torque[:_START_SAMPLES] - torque[0]) > least)
-    count = max(3, int(changed[0]) if changed.size else min(_START_SAMPLES, len(torque)))
+    changed = np.flatnonzero(np.abs(torque[:START_SAMPLES] - torque[0]) > least)
+    count = max(3, int(changed[0]) if changed.size else min(START_SAMPLES, len(torque)))
     return np.asarray(samples[:count].mean(axis=0))

@@ -8,6 +8,15 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.fit._thresholds import (
+    COARSE_STEP,
+    FINE_STEP,
+    MISMATCH_REACH,
+    PRIOR,
+    REACH,
+    STEP,
+    UPPER,
+)
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, parameter_names
@@ -15,11 +24,6 @@ from hil.plant import SENSOR_DELAY, SENSOR_GAIN, SENSOR_OFFSET, ideal_sensors, p
 
 Array = npt.NDArray[np.float64]
 
-#: Calibration tolerance of a model's parameters, relative; beyond it a wrong value is a finding.
-TOLERANCE = 0.02
-_REACH = 0.03  # how far, relative, a parameter may go as a mere correction
-_PRIOR = 0.015
-_MISMATCH_REACH = 1.6  # natural logarithm: a factor of five either way
 _SENSORS = {"sensor_gain": SENSOR_GAIN, "sensor_offset": SENSOR_OFFSET, "channel_skew": SENSOR_DELAY}
 #: Effect parameters that may be zero or negative: moved on a linear scale, with this typical size.
 _LINEAR = {
@@ -37,12 +41,6 @@ _LINEAR = {
     "offset": 0.1,
     "delay_s": 1e-3,
 }
-_STEP = 1e-3  # of a finite difference, on a logarithmic scale or in typical sizes
-#: Beyond these an effect is no longer itself: a path that slips at 6 degrees is a spring.
-_UPPER = {"slip_rad": 0.1, "time_constant_s": 0.3}
-#: Contact comes and goes: the error is rough in the gap, and its slope must be taken over some of it.
-_COARSE_STEP = {"half_gap_rad": 0.03}
-_FINE_STEP = {"order": 1e-3}
 
 
 @dataclass(frozen=True)
@@ -92,8 +90,8 @@ class Hypothesis:
             value = self.base.parameters[name]
             if value == 0.0 or (name == "torque_delay" and "dead_time" in self.ids):
                 continue
-            reach, prior = (_MISMATCH_REACH, np.inf) if name in wrong else (_REACH, _PRIOR)
-            found.append(Coordinate(name, -1, "log", -reach, reach, _STEP, prior))
+            reach, prior = (MISMATCH_REACH, np.inf) if name in wrong else (REACH, PRIOR)
+            found.append(Coordinate(name, -1, "log", -reach, reach, STEP, prior))
         for index, term in enumerate(self.terms):
             found += self._of_term(index, term)
         return tuple(found)
@@ -105,15 +103,15 @@ class Hypothesis:
         for parameter in EFFECTS[term.id].parameters:
             if parameter.optional and parameter.name not in self.open:
                 continue
-            lower, upper = parameter.lower, min(parameter.upper, _UPPER.get(parameter.name, np.inf))
+            lower, upper = parameter.lower, min(parameter.upper, UPPER.get(parameter.name, np.inf))
             if parameter.name in _LINEAR:
-                step = _FINE_STEP.get(parameter.name, _STEP) * _LINEAR[parameter.name]
+                step = FINE_STEP.get(parameter.name, STEP) * _LINEAR[parameter.name]
                 if parameter.name == "phase_rad":
                     lower, upper = -50.0, 50.0
                 found.append(Coordinate(parameter.name, index, "linear", lower, upper, step, np.inf))
             else:
                 low, high = np.log(max(lower, 1e-12)), np.log(max(upper, 1e-12))
-                step = _COARSE_STEP.get(parameter.name, _STEP)
+                step = COARSE_STEP.get(parameter.name, STEP)
                 found.append(Coordinate(parameter.name, index, "log", low, high, step, np.inf))
         return found
 

@@ -11,12 +11,10 @@ from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis, key_
 from hil.analysis.diagnosis.fit._least_squares import descent
 from hil.analysis.diagnosis.fit._normal import Normal, reduced
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, WORTH_A_LEAP
 from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
 
 Array = npt.NDArray[np.float64]
-
-_MOST_ROUNDS = 14
-_WORTH_A_LEAP = 10.0  # drop of the squared error
 
 
 @dataclass
@@ -49,7 +47,7 @@ def fit(
     starts: list[Array] | None = None,
     theta: Array | None = None,
     *,
-    rounds: int = _MOST_ROUNDS,
+    rounds: int = MOST_ROUNDS,
     enough: float = 1.0,
 ) -> Fit:
     """Minimise the simulation error of `hypothesis` from `theta` and `starts`.
@@ -68,7 +66,7 @@ def fit(
         within = lower, upper
         if by_samples is not None:
             tried = [theta, *by_samples.leaps(theta, lower, upper)]
-            leapt = cheapest(problem, hypothesis, tried, starts, precision, lead=_WORTH_A_LEAP)
+            leapt = cheapest(problem, hypothesis, tried, starts, precision, lead=WORTH_A_LEAP)
             if done and leapt is theta:
                 break
             theta = leapt

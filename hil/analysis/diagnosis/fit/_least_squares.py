@@ -10,11 +10,9 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
 from hil.analysis.diagnosis.fit._normal import Normal, reduced, start_step
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._thresholds import MOST_REFUSALS, TRIALS
 
 Array = npt.NDArray[np.float64]
-
-_TRIALS = (1.0, 0.35)
-_MOST_REFUSALS = 4
 
 
 def box_step(matrix: Array, gradient: Array, lower: Array, upper: Array) -> Array:
@@ -86,9 +84,9 @@ def descent(
         damped = matrix + damping * np.diag(np.maximum(np.diag(matrix), 1e-12))
         step = box_step(damped, gradient, lower - theta, upper - theta)
         step = _limited(step, coordinates)
-        tried_theta = [theta + share * step for share in _TRIALS]
+        tried_theta = [theta + share * step for share in TRIALS]
         tried_starts = [
-            np.stack([start + start_step(n, share * step) for share in _TRIALS])
+            np.stack([start + start_step(n, share * step) for share in TRIALS])
             for start, n in zip(starts, normals, strict=True)
         ]
         found = problem.costs([hypothesis.packed(t) for t in tried_theta], tried_starts)
@@ -98,7 +96,7 @@ def descent(
         if gain <= 0.0 or not np.isfinite(gain):
             refusals += 1
             damping = max(damping * 30.0, 1e-3)
-            if refusals > _MOST_REFUSALS or float(step @ matrix @ step) < enough:
+            if refusals > MOST_REFUSALS or float(step @ matrix @ step) < enough:
                 break
             continue
         theta = tried_theta[best]

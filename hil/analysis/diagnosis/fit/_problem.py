@@ -6,20 +6,16 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.data._trace import LITTLE_TORQUE, Trace
+from hil.analysis.diagnosis.data._thresholds import LITTLE_TORQUE
+from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._normal import Normal, normal_equations
+from hil.analysis.diagnosis.fit._thresholds import DIVERGED, FINE, HUGE, REST_SAMPLES, REST_SHARE, REST_SIGMAS
 from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
 
 STARTS = 3  # free initial values of each recording: motor speed, wheel speed, shaft torque
-_HUGE = 1e9
-_DIVERGED = 1e9  # noise levels
-_REST_SHARE = 0.1  # of a sample's noise: how still an axle at rest is
-_REST_SIGMAS = 4.0
-_REST_SAMPLES = 20
-_FINE = 2.0  # noise with rounding over that without
 
 
 class Problem:
@@ -88,8 +84,8 @@ class Problem:
         """Weighted measured minus simulated, blocks x 3, 0 where not measured."""
         weights = self.weights[trace]
         difference = np.where(weights > 0, self.traces[trace].measured - simulated, 0.0)
-        error = np.nan_to_num(difference * weights, nan=_HUGE, posinf=_HUGE, neginf=-_HUGE)
-        error = np.clip(error, -_HUGE, _HUGE)
+        error = np.nan_to_num(difference * weights, nan=HUGE, posinf=HUGE, neginf=-HUGE)
+        error = np.clip(error, -HUGE, HUGE)
         return self._whitened(error)
 
     def _whitened(self, error: Array) -> Array:
@@ -140,7 +136,7 @@ class Problem:
                 change = np.stack([self._whitened(one) for one in change])
             change = change.reshape(len(slots) - 1, -1)
             # a diverged simulation: no derivative that could be followed
-            change[~(np.abs(change).max(axis=1) < _DIVERGED)] = 0.0
+            change[~(np.abs(change).max(axis=1) < DIVERGED)] = 0.0
             shared = (change[: len(coordinates)] / signed[:, None]).T
             initial = (change[len(coordinates) :] / steps[:, None]).T
             cost += float(error @ error) + float(start**2 @ self.start_precision(index))
@@ -162,7 +158,7 @@ class Problem:
         if not self.resting[trace]:
             return np.zeros(STARTS)
         known = np.where(np.isfinite(self.noise), self.noise, np.inf)[:2]
-        return np.array([*(1.0 / np.maximum(_REST_SHARE * known, 1e-9) ** 2), 0.0])
+        return np.array([*(1.0 / np.maximum(REST_SHARE * known, 1e-9) ** 2), 0.0])
 
     def start_steps(self) -> Array:
         """Sizes of the finite differences in the initial values."""
@@ -175,7 +171,7 @@ def _rests(trace: Trace, noise: Array, floor: Array) -> bool:
 
     A channel whose rounding is coarser than its noise reads zero at many speeds.
     """
-    near = np.abs(trace.start[:2]) < _REST_SIGMAS * noise[:2] / np.sqrt(_REST_SAMPLES)
-    tells = trace.has[:2] & (noise[:2] < _FINE * floor[:2])
+    near = np.abs(trace.start[:2]) < REST_SIGMAS * noise[:2] / np.sqrt(REST_SAMPLES)
+    tells = trace.has[:2] & (noise[:2] < FINE * floor[:2])
     idle = abs(trace.torque[0]) <= LITTLE_TORQUE * float(np.max(np.abs(trace.torque)))
     return bool(np.any(near & tells) and idle)

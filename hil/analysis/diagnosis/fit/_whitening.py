@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.linalg import toeplitz
 
-Array = npt.NDArray[np.float64]
+from hil.analysis.diagnosis.fit._thresholds import WHITENING_ORDER
 
-_WHITENING_ORDER = 16
+Array = npt.NDArray[np.float64]
 
 
 def whitening_of(pieces: list[tuple[Array, Array, Array]]) -> Array:
@@ -16,7 +16,7 @@ def whitening_of(pieces: list[tuple[Array, Array, Array]]) -> Array:
 
     Autoregression by the Yule-Walker equations over all recordings.
     """
-    filters = np.zeros((3, _WHITENING_ORDER + 1))
+    filters = np.zeros((3, WHITENING_ORDER + 1))
     filters[:, 0] = 1.0
     errors = [error.reshape(-1, 3) for error, _, _ in pieces]
     for column in range(3):
@@ -24,11 +24,11 @@ def whitening_of(pieces: list[tuple[Array, Array, Array]]) -> Array:
         count = sum(len(e) for e in rows)
         products = [
             sum(float(e[lag:] @ e[: len(e) - lag]) for e in rows) / count
-            for lag in range(_WHITENING_ORDER + 1)
+            for lag in range(WHITENING_ORDER + 1)
         ]
         if products[0] <= 0.0:
             continue
-        matrix = toeplitz(products[:-1]) + 1e-6 * products[0] * np.eye(_WHITENING_ORDER)
+        matrix = toeplitz(products[:-1]) + 1e-6 * products[0] * np.eye(WHITENING_ORDER)
         past = np.linalg.solve(matrix, products[1:])
         variance = max(products[0] - float(past @ products[1:]), 1e-6 * products[0])
         filters[column, 0] = 1.0

@@ -12,15 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.fit._coordinates import TOLERANCE, Hypothesis
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._thresholds import COINCIDENCE, EDGE, JUST, LEAPS, TOLERANCE
 from hil.core.channels import OUTPUTS
 
 Array = npt.NDArray[np.float64]
-
-_EDGE = 1e-3  # of a sample: kept from either end
-_JUST = 0.02  # of a sample
-_COINCIDENCE = 50.0
-_LEAPS = (-4, -3, -2, -1, 1, 2, 3, 4)
 
 
 @dataclass(frozen=True)
@@ -35,7 +31,7 @@ class DelayBySamples:
     def within(self, theta: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
         """Bounds of a descent from `theta`: those given, and of the sample that its dead time lies in."""
         sample = np.floor(self._delay(theta) / self.dt + 1e-9)
-        ends = [self._at(theta, (sample + share) * self.dt) for share in (_EDGE, 1.0 - _EDGE)]
+        ends = [self._at(theta, (sample + share) * self.dt) for share in (EDGE, 1.0 - EDGE)]
         lower, upper = lower.copy(), upper.copy()
         low, high = max(lower[self.index], ends[0]), min(upper[self.index], ends[1])
         if low < high:
@@ -53,9 +49,9 @@ class DelayBySamples:
             least, most = max(least, -TOLERANCE), min(most, TOLERANCE)
         delay = self._delay(theta)
         sample = np.floor(delay / self.dt + 1e-9)
-        for more in _LEAPS:
-            low = self._at(theta, (sample + more + _EDGE) * self.dt)
-            high = self._at(theta, (sample + more + 1.0 - _EDGE) * self.dt)
+        for more in LEAPS:
+            low = self._at(theta, (sample + more + EDGE) * self.dt)
+            high = self._at(theta, (sample + more + 1.0 - EDGE) * self.dt)
             if low > most or high < least:
                 continue
             other = theta.copy()
@@ -74,7 +70,7 @@ class DelayBySamples:
         if self.skew is None:
             return 0.0
         late = float(theta[self.skew]) / self.dt
-        return _COINCIDENCE if late > 0.5 and abs(late - round(late)) < _JUST else 0.0
+        return COINCIDENCE if late > 0.5 and abs(late - round(late)) < JUST else 0.0
 
     def _delay(self, theta: Array) -> float:
         model = self.hypothesis.model(theta)

@@ -8,14 +8,15 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._thresholds import (
+    ALIGNMENT_LITTLE,
+    ALIGNMENT_ROUNDS,
+    WHOLE_ORDER,
+    WHOLE_WORSE,
+)
 from hil.analysis.diagnosis.search._tracking import RIPPLES, track
 
 Array = npt.NDArray[np.float64]
-
-_ROUNDS = 4
-_LITTLE = 0.02  # share of what is left: a round that gains less is the last
-_WHOLE = (0.002, 0.15)  # how far from a whole order another may be one that drift has bent
-_WORSE = 1.02  # times what another order leaves: drift that was followed makes up for more than that
 
 
 def has_ripple(hypothesis: Hypothesis) -> bool:
@@ -30,14 +31,18 @@ def aligned(problem: Problem, one: Fit) -> Fit:
     best = _in_turns(problem, one, one.theta)
     for index, c in enumerate(best.hypothesis.coordinates()):
         whole = float(np.round(best.theta[index]))
-        if c.name == "order" and whole > 0.0 and _WHOLE[0] < abs(best.theta[index] - whole) < _WHOLE[1]:
+        if (
+            c.name == "order"
+            and whole > 0.0
+            and WHOLE_ORDER[0] < abs(best.theta[index] - whole) < WHOLE_ORDER[1]
+        ):
             best = _with_whole_order(problem, best, index, whole)
     return best
 
 
 def _in_turns(problem: Problem, one: Fit, theta: Array, *, order_known: bool = False) -> Fit:
     """Track and fit, from `theta`, while it makes `one` better."""
-    for _ in range(_ROUNDS):
+    for _ in range(ALIGNMENT_ROUNDS):
         before = list(problem.angles)
         problem.follow(one.hypothesis, theta)
         theta = track(problem, one.hypothesis, theta, one.starts, order_known=order_known)
@@ -45,7 +50,7 @@ def _in_turns(problem: Problem, one: Fit, theta: Array, *, order_known: bool = F
         if again.total >= one.total:
             problem.angles = before
             return one
-        little = one.total - again.total < _LITTLE * (one.total - problem.rows)
+        little = one.total - again.total < ALIGNMENT_LITTLE * (one.total - problem.rows)
         one, theta = again, again.theta
         if little:
             break
@@ -61,7 +66,7 @@ def _with_whole_order(problem: Problem, best: Fit, index: int, whole: float) -> 
     theta = track(problem, best.hypothesis, theta, best.starts, order_known=True)
     first = fit(problem, best.hypothesis, best.starts, theta)
     other = _in_turns(problem, first, first.theta, order_known=True)
-    if other.total < _WORSE * best.total:
+    if other.total < WHOLE_WORSE * best.total:
         return other
     problem.angles = found
     return best

@@ -12,11 +12,9 @@ from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._probes import mismatches, probes
 from hil.analysis.diagnosis.search._screen import index_of, products
+from hil.analysis.diagnosis.search._thresholds import BOOTSTRAP_DRAWS, ENOUGH_S
 
 Array = npt.NDArray[np.float64]
-
-BOOTSTRAP_DRAWS = 19  # one in twenty false names would be seen
-_ENOUGH_S = 45.0
 
 
 def most_by_chance(problem: Problem, fit: Fit, draws: int = BOOTSTRAP_DRAWS) -> float:
@@ -54,7 +52,7 @@ def _liveliest(problem: Problem) -> list[int]:
     chosen: list[int] = []
     for index in np.argsort([-float(np.std(t.torque)) for t in problem.traces]).tolist():
         chosen.append(index)
-        if sum(len(problem.traces[i].torque) * problem.traces[i].dt for i in chosen) > _ENOUGH_S:
+        if sum(len(problem.traces[i].torque) * problem.traces[i].dt for i in chosen) > ENOUGH_S:
             break
     return chosen
 

@@ -10,13 +10,10 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data._coherence import Split, split
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._thresholds import NEARLY_ALL, NOTHING, SIGMAS, SMALL, SMALLISH
 
 Array = npt.NDArray[np.float64]
 
-NEARLY = 0.93  # share of the whole gap: once it is closed, what is left may be a formula that differs
-_SIGMAS = 5.0
-_NOTHING = 0.02  # of the noise power of a channel: 1 % of gap
-_SMALL, _SMALLISH = 1.03, 1.1  # gap over noise floor
 _SPAN = {1: 1, 2: 1, 3: 1.5, 5: 2.5, 8: 4, 13: 6.5, 21: 8}
 
 
@@ -51,7 +48,7 @@ class Evidence:
     def closed(self, one: Fit) -> bool:
         """Whether nothing but noise is left, in every channel."""
         parts = self.split(one)
-        limit = np.maximum(_SIGMAS * parts.deviation, _NOTHING * np.maximum(parts.noise, 1.0))
+        limit = np.maximum(SIGMAS * parts.deviation, NOTHING * np.maximum(parts.noise, 1.0))
         return bool(np.all(self.physics(one) <= limit))
 
     def settled(self, one: Fit) -> bool:
@@ -60,7 +57,7 @@ class Evidence:
             return True
         worst = self.worst(one)
         return bool(one.hypothesis.terms) and (
-            worst < _SMALL or (worst < _SMALLISH and self.share(one) > 0.99)
+            worst < SMALL or (worst < SMALLISH and self.share(one) > NEARLY_ALL)
         )
 
     def colouring(self, one: Fit) -> Array:

@@ -17,25 +17,32 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import aligned, has_ripple
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._screen import Score, screen
+from hil.analysis.diagnosis.search._thresholds import (
+    DOUBT,
+    FAR,
+    HOPE,
+    LEAST_EVIDENCE,
+    OPTIONAL_LEAVES,
+    OTHER_SIZES,
+    OUT_OF_RACE,
+    PLAIN,
+    PRICE,
+    PROMISING,
+    RACE,
+    RACE_ROUNDS,
+    RACE_SLACK,
+    RELATIVE_PROMISES,
+    SIZES,
+    WIDTHS,
+    WORTH_POLISH,
+)
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
 
-LEAST_EVIDENCE = 30.0  # drop of the squared error in noise variances, after deflation, a name
-_FAR, _DOUBT = 50.0, 1.02
 _SENSOR_FAULTS = ("sensor_gain", "sensor_offset", "channel_skew")
-_PRICE = 8.0  # of each parameter that an effect brings, when two effects explain the same
-_PLAIN = 0.5  # share of the remaining gap: if no score promises that, nominal parameters are tried too
-_HOPE = 0.1  # share of the remaining gap that the best linearised score must promise
-_SIZES = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)  # of an effect, around what its probe says
 _ABRUPT = ("backlash", "torque_deadband", "torque_rate_limit", "torque_saturation")
-_WIDTHS = (0.9, 1.1)
-_OTHER_SIZES = (0.75, 1.0, 1.3)
-_RACE = 5  # candidates that are fitted at each step
-_PROMISING = 0.4  # share of the best score
-_RACE_ROUNDS = 3
-_OUT_OF_RACE = 2.5  # times the best cost after the first rounds
 _RELATIVES = {
     "dead_time": ("actuator_lag", "channel_skew"),
     "actuator_lag": ("dead_time", "channel_skew"),
@@ -67,10 +74,10 @@ def grow(evidence: Evidence, parent: Fit) -> Step:
         problem.follow(parent.hypothesis, parent.theta)
     blocks = problem.rows / max(problem.channels, 1)
     scores = screen(problem, parent)
-    if not scores or scores[0].gain < _PLAIN * evidence.left(parent) * blocks:
+    if not scores or scores[0].gain < PLAIN * evidence.left(parent) * blocks:
         scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
         scores = _better(scores, _followed(problem, parent, scores))
-    if scores and scores[0].gain < max(_HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
+    if scores and scores[0].gain < max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
         return Step(parent, scores, [])
     step = Step(parent, scores, _race(problem, parent, scores))
     if step.fits:
@@ -112,9 +119,9 @@ def rank(one: Fit) -> float:
     Far from the noise formulas differ, and a small advantage of a fault in a sensor says nothing.
     """
     rows = sum(len(error) for error, _, _ in one.pieces)
-    if one.total > _FAR * rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids):
-        return _DOUBT * one.total + _PRICE * len(one.theta)
-    return one.total + _PRICE * len(one.theta)
+    if one.total > FAR * rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids):
+        return DOUBT * one.total + PRICE * len(one.theta)
+    return one.total + PRICE * len(one.theta)
 
 
 def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
@@ -122,23 +129,25 @@ def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
     chosen = _chosen(scores)
     if not chosen:
         return []
-    fits = [grown(problem, parent, score.use, _RACE_ROUNDS) for score in chosen]
+    fits = [grown(problem, parent, score.use, RACE_ROUNDS) for score in chosen]
     floor = float(problem.rows)
     best = min(f.total for f in fits)
     finished = []
     for one in fits:
-        if one.rounds >= _RACE_ROUNDS and one.total - floor < _OUT_OF_RACE * (best - floor) + 1e3:
+        if one.rounds >= RACE_ROUNDS and one.total - floor < OUT_OF_RACE * (best - floor) + RACE_SLACK:
             finished.append(fit(problem, one.hypothesis, one.starts, one.theta))
         else:
             finished.append(one)
-    return sorted(finished, key=lambda f: f.total + _PRICE * len(f.theta))
+    return sorted(finished, key=lambda f: f.total + PRICE * len(f.theta))
 
 
 def _chosen(scores: list[Score]) -> list[Score]:
-    top = [s for s in scores[:_RACE] if s.gain > max(LEAST_EVIDENCE, _PROMISING * scores[0].gain)]
+    top = [s for s in scores[:RACE] if s.gain > max(LEAST_EVIDENCE, PROMISING * scores[0].gain)]
     wanted = {name for s in top[:2] for name in _RELATIVES.get(s.key[0], ())}
     have = {s.key[0] for s in top}
-    return top + [s for s in scores if s.key[0] in wanted - have and s.gain > 0.1 * scores[0].gain]
+    return top + [
+        s for s in scores if s.key[0] in wanted - have and s.gain > RELATIVE_PROMISES * scores[0].gain
+    ]
 
 
 def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
@@ -161,7 +170,7 @@ def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
     if len(own) != 1:
         return [theta]
     found = []
-    for factor in _SIZES:
+    for factor in SIZES:
         other = theta.copy()
         c = coordinates[own[0]]
         size = theta[own[0]] + np.log(factor) if c.scale == "log" else theta[own[0]] * factor
@@ -179,7 +188,7 @@ def _refined(evidence: Evidence, best: Fit) -> Fit:
                     best.hypothesis.base, best.hypothesis.terms, (*best.hypothesis.open, name)
                 )
                 tried = fit(evidence.problem, opened, best.starts, carried(best, opened))
-                if evidence.left(tried) < 0.8 * evidence.left(best) and (
+                if evidence.left(tried) < OPTIONAL_LEAVES * evidence.left(best) and (
                     evidence.between(best, tried) > LEAST_EVIDENCE
                 ):
                     best = tried
@@ -192,15 +201,15 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
     Once no gap is left, only a little wider and narrower where play is: the place in the gap at the start
     makes up for some of its width.
     """
-    if best.hypothesis.ids[-1] not in _ABRUPT or evidence.share(best) < 0.3:
+    if best.hypothesis.ids[-1] not in _ABRUPT or evidence.share(best) < WORTH_POLISH:
         return best
     coordinates = best.hypothesis.coordinates()
     if evidence.settled(best):
         for index in [i for i, c in enumerate(coordinates) if c.name == "half_gap_rad"]:
-            best = _from_sizes(evidence, best, best.theta, index, _WIDTHS)
+            best = _from_sizes(evidence, best, best.theta, index, WIDTHS)
         return best
     own = next(i for i, c in enumerate(coordinates) if c.term == len(best.hypothesis.terms) - 1)
-    return _from_sizes(evidence, best, _nominal(best.hypothesis, best.theta), own, _OTHER_SIZES)
+    return _from_sizes(evidence, best, _nominal(best.hypothesis, best.theta), own, OTHER_SIZES)
 
 
 def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:

@@ -16,18 +16,19 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data._trace import blocks
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._thresholds import (
+    BINS_A_TURN,
+    FROM_HZ,
+    LARGEST_ORDER,
+    LEAST_ANGLE_RAD,
+    LEAST_ORDER,
+    ORDER_GRID,
+    SPEED_BINS,
+)
 from hil.plant import pack, system
 
 Array = npt.NDArray[np.float64]
 Spectrum = npt.NDArray[np.complex128]
-
-_LARGEST_ORDER = {"wheel": 60.0, "motor": 60.0}
-_LEAST_ORDER = 0.5
-_BINS_A_TURN = 8  # of the largest order
-_FROM_HZ = 0.5
-_LEAST_ANGLE_RAD = 20.0
-_SPEED_BINS = 200
-_ORDER_GRID = 600
 
 
 @dataclass(frozen=True)
@@ -59,13 +60,13 @@ def order_lines(
         speeds.append(speed)
         powers.append((frequency, power))
     reach = max(float(np.ptp(a)) for a in angles)
-    if reach < _LEAST_ANGLE_RAD:
+    if reach < LEAST_ANGLE_RAD:
         return []
-    spectrum, orders = _over_angle(angles, images, _LARGEST_ORDER[side])
+    spectrum, orders = _over_angle(angles, images, LARGEST_ORDER[side])
     energy = _expected(orders, speeds, powers)
     # a bias of the start and slow drifts live at low orders: an order must turn a few times; and what
     # turns with a shaft repeats with every turn
-    usable = (orders * reach > 8 * np.pi) & (orders > _LEAST_ORDER)
+    usable = (orders * reach > 8 * np.pi) & (orders > LEAST_ORDER)
     score = np.where(usable & (energy > 0), 2.0 * np.abs(spectrum) ** 2 / np.maximum(energy, 1e-12), 0.0)
     return _peaks(score, orders, side, most, 2 * np.pi / reach)
 
@@ -74,7 +75,7 @@ def _adjoint(slots: Array, error: Array, weights: Array, dt: float, side: str) -
     """The error seen from the ripple's input, and the weighted power of the response over frequency."""
     size = len(error)
     frequency = np.asarray(np.fft.rfftfreq(size, dt), dtype=float)
-    inside = (frequency >= _FROM_HZ) & (frequency <= 60.0)
+    inside = (frequency >= FROM_HZ) & (frequency <= 60.0)
     responses = _responses(slots, frequency[inside], side)
     spectrum = np.fft.rfft(error, axis=0)
     image = np.zeros(len(frequency), complex)
@@ -111,7 +112,7 @@ def _responses(slots: Array, frequency: Array, side: str) -> Array:
 def _over_angle(angles: list[Array], images: list[Array], largest: float) -> tuple[Spectrum, Array]:
     low = min(float(a.min()) for a in angles)
     high = max(float(a.max()) for a in angles)
-    width = 2 * np.pi / (largest * _BINS_A_TURN)
+    width = 2 * np.pi / (largest * BINS_A_TURN)
     count = int(2 ** np.ceil(np.log2(2 * (high - low) / width + 1)))
     bins = np.zeros(count)
     for angle, image in zip(angles, images, strict=True):
@@ -124,10 +125,10 @@ def _over_angle(angles: list[Array], images: list[Array], largest: float) -> tup
 
 def _expected(orders: Array, speeds: list[Array], powers: list[tuple[Array, Array]]) -> Array:
     """Sum over samples of the response's power at the frequency that each order has there."""
-    coarse = np.linspace(0.0, float(orders[-1]), _ORDER_GRID)
-    total = np.zeros(_ORDER_GRID)
+    coarse = np.linspace(0.0, float(orders[-1]), ORDER_GRID)
+    total = np.zeros(ORDER_GRID)
     for speed, (frequency, power) in zip(speeds, powers, strict=True):
-        counts, edges = np.histogram(np.abs(speed), _SPEED_BINS)
+        counts, edges = np.histogram(np.abs(speed), SPEED_BINS)
         middle = 0.5 * (edges[1:] + edges[:-1])
         at = coarse[:, None] * middle / (2 * np.pi)
         total += np.interp(at.ravel(), frequency, power, right=0.0).reshape(at.shape) @ counts

@@ -12,14 +12,13 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._orders import order_lines
+from hil.analysis.diagnosis.search._thresholds import LATE_S, STRETCH
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, parameter_names
 
 Array = npt.NDArray[np.float64]
 Values = dict[str, float | str]
-
-_LATE_S = (0.008, 0.04)
 
 
 @dataclass(frozen=True)
@@ -105,17 +104,14 @@ def _scaled(id_: str, name: str, unit: float, lower: float, upper: float, **othe
     return Probe(id_, (direction,), lambda a: {**others, name: float(a[0]) * unit})
 
 
-_STRETCH = (0.5, 1.6)  # how far a response may be stretched to stand for a neighbouring size
-
-
 def _fixed(id_: str, **values: float | str) -> Probe:
     """An effect of one size; neighbouring sizes look alike, whatever their numbers are."""
-    return Probe(id_, (Direction(dict(values), *_STRETCH),), lambda _: dict(values))
+    return Probe(id_, (Direction(dict(values), *STRETCH),), lambda _: dict(values))
 
 
-def _sized(id_: str, name: str, size: float, lower: float = _STRETCH[0]) -> Probe:
+def _sized(id_: str, name: str, size: float, lower: float = STRETCH[0]) -> Probe:
     """An effect whose response goes about with its one number near `size`."""
-    return _scaled(id_, name, size, lower, _STRETCH[1])
+    return _scaled(id_, name, size, lower, STRETCH[1])
 
 
 def _dead_time(scene: Scene) -> Iterator[Probe]:
@@ -139,7 +135,7 @@ def _saturation(scene: Scene) -> Iterator[Probe]:
 
 def _clipped(torque: float, share: float) -> Probe:
     """A saturation; its response goes about with what it cuts off."""
-    direction = Direction({"limit_nm": share * torque}, *_STRETCH)
+    direction = Direction({"limit_nm": share * torque}, *STRETCH)
     return Probe(
         "torque_saturation",
         (direction,),
@@ -277,7 +273,7 @@ def _sensors(id_: str) -> Callable[[Scene], Iterator[Probe]]:
                 continue
             yield _reading(id_, name, channel, units[id_])
             if id_ == "channel_skew":
-                yield from (_late(channel, delay) for delay in _LATE_S)
+                yield from (_late(channel, delay) for delay in LATE_S)
 
     return make
 

@@ -10,12 +10,11 @@ from hil.analysis.diagnosis.data._trace import blocks
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._simulated import simulated_samples
+from hil.analysis.diagnosis.search._thresholds import ROUNDING_MARGIN
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
-
-_MARGIN = 2.0
 
 
 def rounding_of(problem: Problem, rounded: list[EffectUse], base: Fit) -> Array:
@@ -41,5 +40,5 @@ def rounding_of(problem: Problem, rounded: list[EffectUse], base: Fit) -> Array:
     seen = split(problem.traces, problem.weights, errors).physics
     for column, step in zip(columns, steps, strict=True):
         weight = max(float(w[column]) for w in problem.weights)
-        power[column] = min(_MARGIN * float(seen[column]), (step * weight) ** 2 / 12.0)
+        power[column] = min(ROUNDING_MARGIN * float(seen[column]), (step * weight) ** 2 / 12.0)
     return power

@@ -14,12 +14,10 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._least_squares import box_step
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._probes import Probe, mismatches, probes
+from hil.analysis.diagnosis.search._thresholds import PROBE_DIVERGED, SCORED_MISMATCH
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
-
-_MISMATCH_REACH = 0.5
-_DIVERGED = 1e8  # noise levels
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,7 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
     for use in mismatches(fit.hypothesis):
         index = index_of(fit.hypothesis, str(use.values["parameter"]))
         low, high = lower.copy(), upper.copy()
-        low[index], high[index] = -_MISMATCH_REACH, _MISMATCH_REACH
+        low[index], high[index] = -SCORED_MISMATCH, SCORED_MISMATCH
         freed = matrix.copy()
         freed[index, index] -= precision[index]
         pull = gradient.copy()
@@ -122,7 +120,7 @@ def products(
         starts = np.tile(fit.starts[index], (len(packed), 1))
         simulated = problem.outputs(index, slots, sensors, starts)
         change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(len(packed) - 1, -1)
-        diverged = ~(np.abs(change).max(axis=1) < _DIVERGED)
+        diverged = ~(np.abs(change).max(axis=1) < PROBE_DIVERGED)
         change[diverged] = 0.0
         basis = np.linalg.qr(initial)[0] if np.any(initial) else np.zeros((len(error), 1))
         mine = shared - basis @ (basis.T @ shared)

@@ -16,19 +16,22 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._evidence import NEARLY, Evidence
-from hil.analysis.diagnosis.search._growth import LEAST_EVIDENCE, Step, grow, rank
+from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._growth import Step, grow, rank
 from hil.analysis.diagnosis.search._quantization import rounding_of
+from hil.analysis.diagnosis.search._thresholds import (
+    LEAST_EVIDENCE,
+    LEAST_SHARE,
+    LEAST_SHARE_OF_REST,
+    LEAST_SO_FAR,
+    MOST_EFFECTS,
+    NEARLY,
+    PARENTS,
+    RIVAL,
+)
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
-
-_MOST_EFFECTS = 3
-_LEAST_SHARE = 0.6  # of the remaining gap that a further effect must close ...
-_LEAST_SHARE_OF_REST = 0.88  # ... and once nearly all is closed
-_PARENTS = (1, 3, 2)  # hypotheses that are grown to one, two, three effects
-_LEAST_SO_FAR = (0.0, 0.2, 0.6)  # share of the gap that is closed before a further effect is looked for
-_RIVAL = 1.5  # times what the best leaves: a rival that is grown further as well
 
 
 @dataclass
@@ -50,12 +53,10 @@ def search(
     rounding = rounding_of(problem, list(rounded), first)
     found = Found(first, first, Evidence(problem, first, rounding))
     frontier = [first]
-    for number in range(_MOST_EFFECTS):
+    for number in range(MOST_EFFECTS):
         if found.evidence.settled(found.best):
             break
-        parents = [
-            f for f in frontier[: _PARENTS[number]] if found.evidence.share(f) >= _LEAST_SO_FAR[number]
-        ]
+        parents = [f for f in frontier[: PARENTS[number]] if found.evidence.share(f) >= LEAST_SO_FAR[number]]
         show(f"looking for effect {number + 1}")
         steps = [grow(found.evidence, parent) for parent in parents]
         found.steps += sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
@@ -65,7 +66,7 @@ def search(
         if earned(found.evidence, found.best, frontier[0]):
             found.best = frontier[0]
             if found.evidence.share(found.best) > NEARLY:
-                enough = _RIVAL * found.evidence.left(found.best)
+                enough = RIVAL * found.evidence.left(found.best)
                 frontier = [f for f in frontier if found.evidence.left(f) <= enough]
     found = _needed(problem, found)
     problem.angles = list(found.best.angles)
@@ -86,7 +87,7 @@ def earned(evidence: Evidence, poorer: Fit, richer: Fit) -> bool:
     if evidence.between(poorer, richer) < LEAST_EVIDENCE * more:
         return False
     closed = 1.0 - evidence.left(richer) / max(evidence.left(poorer), 1e-12)
-    return closed > (_LEAST_SHARE_OF_REST if evidence.share(poorer) > NEARLY else _LEAST_SHARE)
+    return closed > (LEAST_SHARE_OF_REST if evidence.share(poorer) > NEARLY else LEAST_SHARE)
 
 
 def _needed(problem: Problem, found: Found) -> Found:

@@ -17,6 +17,17 @@ from scipy.linalg import solveh_banded
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, sensors_of
 from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._thresholds import (
+    LEAST_STEP,
+    NO_RIPPLE,
+    PHASES,
+    REFINED,
+    RIPPLE_DIVERGED,
+    SLOW_NOISE,
+    SOON_S,
+    START_RAD,
+    WINDOW_S,
+)
 from hil.core.model import EffectUse, Model
 from hil.plant import pack, simulate_many
 
@@ -24,16 +35,7 @@ Array = npt.NDArray[np.float64]
 
 #: Ripples, and the column of the angles (wheel, rotor) and of the channels that each follows.
 RIPPLES = {"wheel_order_disturbance": (0, 1), "motor_order_ripple": (1, 0)}
-_SLOW_NOISE = 4.0  # power of a speed's noise at low frequency over that above all modes, at most
-_WINDOW_S = 0.1
-_PHASES = 72
-_GRID = 2.0 * np.pi / _PHASES
-_REFINED = 5
-_LEAST_STEP = 0.05  # rad of phase in a second: an order may be a little off as well
-_START_RAD = 0.3  # how well the phase at the start is known once the ripple is
-_SOON_S = 1.0  # recordings that turn a ripple sooner than this say the same of its phase
-_NO_RIPPLE = 1e-9
-_DIVERGED = 1e9  # noise levels
+_GRID = 2.0 * np.pi / PHASES
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def track(
         position = len(hypothesis.base.effects) + term
         order = float(model.effects[position].values["order"])
         windows = [_windows(problem, model, position, index, start) for index, start in enumerate(starts)]
-        begin = _START_RAD if phase_known else np.inf
+        begin = START_RAD if phase_known else np.inf
         paths = [
             _likeliest(w, _step(problem, model.effects[position], i), begin) for i, w in enumerate(windows)
         ]
@@ -117,8 +119,8 @@ def tracked_gain(problem: Problem, parent: Fit, use: EffectUse) -> float:
 def _step(problem: Problem, use: EffectUse, index: int) -> float:
     """Variance of a ripple's phase from window to window, rad², for the noise of the speed it follows."""
     noise = _followed_noise(problem, RIPPLES[use.id][1], index)
-    walk = float(use.values["order"]) ** 2 * noise**2 * _SLOW_NOISE * problem.traces[index].dt
-    return max(walk, _LEAST_STEP**2) * _WINDOW_S
+    walk = float(use.values["order"]) ** 2 * noise**2 * SLOW_NOISE * problem.traces[index].dt
+    return max(walk, LEAST_STEP**2) * WINDOW_S
 
 
 def _followed_noise(problem: Problem, channel: int, index: int) -> float:
@@ -137,7 +139,7 @@ def _windows(problem: Problem, model: Model, position: int, index: int, start: A
     use = model.effects[position]
     phase = float(use.values["phase_rad"])
     sets = []
-    for amplitude, turned in ((_NO_RIPPLE, phase), (None, phase), (None, phase + np.pi / 2)):
+    for amplitude, turned in ((NO_RIPPLE, phase), (None, phase), (None, phase + np.pi / 2)):
         values = {**use.values, "phase_rad": turned}
         if amplitude is not None:
             values["amplitude_nm"] = amplitude
@@ -157,9 +159,9 @@ def _windows(problem: Problem, model: Model, position: int, index: int, start: A
     error = problem.errors(index, around[0])
     ripple = (around[1:] - around[0]) * problem.weights[index]
     # Where a simulation diverges nothing is known of a phase, and NaN would spread over the whole walk.
-    ripple[~(np.abs(ripple) < _DIVERGED)] = 0.0
+    ripple[~(np.abs(ripple) < RIPPLE_DIVERGED)] = 0.0
     period = trace.dt * trace.block
-    length = max(4, round(_WINDOW_S / period))
+    length = max(4, round(WINDOW_S / period))
     count = max(1, len(error) // length)
     length = min(length, len(error))
     line = np.linalg.qr(np.column_stack([np.ones(length), np.linspace(-1.0, 1.0, length)]))[0]
@@ -186,7 +188,7 @@ def _likeliest(windows: _Windows, step: float, start: float) -> Array:
         step: variance of the phase from window to window, rad².
         start: standard deviation of the first one around zero, rad.
     """
-    phases = 2.0 * np.pi * np.arange(_PHASES) / _PHASES
+    phases = 2.0 * np.pi * np.arange(PHASES) / PHASES
     turned = np.stack([np.cos(phases), np.sin(phases)])
     along = windows.seen @ turned
     own = np.einsum("ap,wab,bp->wp", turned, windows.own, turned)
@@ -201,7 +203,7 @@ def _likeliest(windows: _Windows, step: float, start: float) -> Array:
         for w in range(1, len(costs)):
             sums = total[:, None] + moves
             came_from[w] = np.argmin(sums, axis=0)
-            total = sums[came_from[w], np.arange(_PHASES)] + costs[w]
+            total = sums[came_from[w], np.arange(PHASES)] + costs[w]
         path[-1] = int(np.argmin(total))
         for w in range(len(costs) - 1, 0, -1):
             path[w - 1] = came_from[w, path[w]]
@@ -216,7 +218,7 @@ def _smoothed(windows: _Windows, path: Array, size: float, step: float) -> Array
     bands[0, 1:] = -1.0 / step
     stiff = np.full(len(path), 2.0 / step)
     stiff[[0, -1]] -= 1.0 / step
-    for _ in range(_REFINED):
+    for _ in range(REFINED):
         turned = np.stack([np.cos(path), np.sin(path)], axis=1)
         across = np.stack([-turned[:, 1], turned[:, 0]], axis=1)
         left = windows.seen - size * np.einsum("wab,wb->wa", windows.own, turned)
@@ -246,6 +248,6 @@ def _common_phase(windows: list[_Windows], paths: list[Array], order: float, mor
     for one, path in zip(windows, paths, strict=True):
         whole = np.abs(one.angle - one.angle[0]) * order > 2.0 * np.pi
         if whole.any():
-            weight = 1.0 / (_SOON_S + float(one.times[np.argmax(whole)]))
+            weight = 1.0 / (SOON_S + float(one.times[np.argmax(whole)]))
             together += weight * np.exp(1j * (path[0] - more * one.angle[0]))
     return float(np.angle(together)) if together else 0.0

@@ -10,18 +10,24 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._result import Alternative
 from hil.analysis.diagnosis.tell._separating import separating_plan
+from hil.analysis.diagnosis.tell._thresholds import (
+    CLOSED_FAIRLY,
+    CLOSED_WELL,
+    CONFIDENCE_FLOOR,
+    FAIRLY_SURE,
+    HALF_MARGIN,
+    LEAST_TORQUE_NM,
+    LESS_SURE,
+    OPEN_CONFIDENCE,
+    WORTH_A_PLAN,
+)
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
-
-_HALF_MARGIN = 12.0  # evidence over a rival at which it is about one in ten
-_FLOOR = 0.005
-_LEAST_TORQUE_NM = 0.1
-_WORTH_A_PLAN = 0.02
 
 
 def _odds(margin: float) -> float:
     """Weight of a rival whose hypothesis is poorer by `margin` of evidence, 1 for an equal one."""
-    return float(np.exp(-np.clip(margin, 0.0, 400.0) / (_HALF_MARGIN / 2.2)))
+    return float(np.exp(-np.clip(margin, 0.0, 400.0) / (HALF_MARGIN / 2.2)))
 
 
 def rivals(found: Found, index: int) -> list[tuple[Fit, float]]:
@@ -55,7 +61,9 @@ def confidence_of(found: Found, index: int) -> float:
     weight = sum(_odds(margin) for _, margin in rivals(found, index))
     sure = 1.0 / (1.0 + weight)
     worst = found.evidence.worst(found.best)
-    closing = 1.0 - _FLOOR if worst < 1.05 else 0.97 if worst < 1.2 else 0.9
+    closing = (
+        1.0 - CONFIDENCE_FLOOR if worst < CLOSED_WELL else FAIRLY_SURE if worst < CLOSED_FAIRLY else LESS_SURE
+    )
     return sure * closing
 
 
@@ -73,7 +81,7 @@ def alternatives_of(found: Found, verdict: str) -> tuple[Alternative, ...]:
         problem = found.evidence.problem
         torque = max(float(np.max(np.abs(t.torque))) for t in problem.traces)
         # Without any torque in the recordings nobody knows what a test may ask of this bench.
-        if confidence > _WORTH_A_PLAN and mine is not one and torque > _LEAST_TORQUE_NM:
+        if confidence > WORTH_A_PLAN and mine is not one and torque > LEAST_TORQUE_NM:
             text, plan = separating_plan(
                 mine.hypothesis.model(mine.theta),
                 one.hypothesis.model(one.theta),
@@ -108,7 +116,7 @@ def _others(found: Found, verdict: str) -> list[tuple[Fit, Fit, float]]:
         return []
     first, *rest = found.steps[0].fits
     second = rest[0] if rest else first
-    return [(second, first, 0.05), (first, second, 0.05)]
+    return [(second, first, OPEN_CONFIDENCE), (first, second, OPEN_CONFIDENCE)]
 
 
 def _uses(one: Fit) -> list[tuple[EffectUse, tuple[str, str]]]:

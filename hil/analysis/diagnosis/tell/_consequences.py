@@ -6,14 +6,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
+from hil.analysis.diagnosis.tell._thresholds import BAND_HZ, STEP_NM
 from hil.core.model import Model
 from hil.plant import Start, simulate
 
 Array = npt.NDArray[np.float64]
 
-_STEP_NM = 20.0
 _DT = 1e-3
-_BAND_HZ = (8.0, 20.0)
 
 
 def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
@@ -21,7 +20,7 @@ def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
 
     An open-loop step of 20 N m from 5 rad/s wheel speed, with the model before and after.
     """
-    torque = np.concatenate([np.zeros(1000), np.full(5000, _STEP_NM)])
+    torque = np.concatenate([np.zeros(1000), np.full(5000, STEP_NM)])
     result: dict[str, dict[str, float]] = {
         "overshoot_shaft_torque_percent": {},
         "band_energy_motor_speed": {},
@@ -41,7 +40,7 @@ def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
 
 def _band_energy(values: Array) -> float:
     frequency, density = signal.periodogram(signal.detrend(values), 1 / _DT, "hann")
-    inside = (frequency >= _BAND_HZ[0]) & (frequency <= _BAND_HZ[1])
+    inside = (frequency >= BAND_HZ[0]) & (frequency <= BAND_HZ[1])
     return float(np.sum(density[inside]) * (frequency[1] - frequency[0]))
 
 

@@ -10,13 +10,13 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, gap_map
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._trace import Trace
-from hil.analysis.diagnosis.fit._coordinates import TOLERANCE
 from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._simulated import settled_starts, simulated_samples
+from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
 from hil.analysis.diagnosis.search._alignment import has_ripple
-from hil.analysis.diagnosis.search._growth import LEAST_EVIDENCE
 from hil.analysis.diagnosis.search._search import Found
+from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
 from hil.analysis.diagnosis.search._tracking import track
 from hil.analysis.diagnosis.tell._confidence import alternatives_of, confidence_of, drop_of
 from hil.analysis.diagnosis.tell._consequences import consequences, loop_area

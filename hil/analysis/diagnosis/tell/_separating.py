@@ -13,6 +13,16 @@ import numpy as np
 import numpy.typing as npt
 import yaml
 
+from hil.analysis.diagnosis.tell._thresholds import (
+    DURATION_S,
+    FAST_KM_H,
+    FAST_RAD_S,
+    SETTLE_S,
+    SHAFT_SHARE,
+    SHARES,
+    SLOW_KM_H,
+    WHEEL_RADIUS_M,
+)
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
 from hil.plant import Start, simulate
@@ -22,13 +32,6 @@ from test_plans.steps import SAMPLE_TIME_S, Excitation, HoldSpeed
 Array = npt.NDArray[np.float64]
 Steps = list[dict[str, dict[str, Any]]]
 
-_DURATION_S = 20.0
-_SETTLE_S = 2.0
-_FAST_RAD_S = 40.0  # wheel side: what every bench for an axle allows
-_SHAFT_SHARE = 2.5  # of the torque request times the gear ratio: a resonance gives more than its drive
-_SHARES = (1.0, 0.6, 0.35, 0.2)  # of the largest torque, until all limits are kept
-_WHEEL_RADIUS_M = 0.33  # typical: only the speed at which a test begins depends on it
-_SLOW_KM_H, _FAST_KM_H = 12.0, 36.0
 _WORDS = {
     "chirp_large": "a chirp of large amplitude",
     "chirp_small": "a chirp of small amplitude",
@@ -57,7 +60,7 @@ def separating_plan(
     torque_nm: float,
     names: tuple[str, str],
     *,
-    speed_rad_s: float = _FAST_RAD_S,
+    speed_rad_s: float = FAST_RAD_S,
     shaft_torque_nm: float | None = None,
 ) -> tuple[str, str]:
     """Text in words, and a plan file, of the test at which two models differ most against the noise.
@@ -70,14 +73,14 @@ def separating_plan(
         shaft_torque_nm: largest shaft torque that either model may reach; a share of the torque if None.
     """
     ratio = one.parameters["gear_ratio"]
-    most_shaft = _SHAFT_SHARE * ratio * torque_nm if shaft_torque_nm is None else shaft_torque_nm
+    most_shaft = SHAFT_SHARE * ratio * torque_nm if shaft_torque_nm is None else shaft_torque_nm
     best: tuple[float, _Test | None] = (-1.0, None)
     for name in _WORDS:
-        for share in _SHARES:
+        for share in SHARES:
             test = _test(name, share * torque_nm, names)
             a, b = _outputs(one, test), _outputs(other, test)
             within = all(_within(o, speed_rad_s, most_shaft) for o in (a, b))
-            if not within and share != _SHARES[-1]:
+            if not within and share != SHARES[-1]:
                 continue
             measured = np.isfinite(noise)
             squares = (((a - b) / noise) ** 2)[:, measured].sum(axis=1)
@@ -87,7 +90,7 @@ def separating_plan(
             break
     level, chosen = best
     if chosen is None:  # nothing stays within: the gentlest of all
-        chosen, level = _test("chirp_small", _SHARES[-1] * torque_nm, names), 0.0
+        chosen, level = _test("chirp_small", SHARES[-1] * torque_nm, names), 0.0
     peak = float(np.max(np.abs(chosen.torque)))
     words = f"{_WORDS[chosen.name]}, up to {peak:.3g} N m: the two differ by {level:.2g} noise levels rms"
     return words, chosen.text
@@ -121,7 +124,7 @@ def _test(name: str, torque: float, names: tuple[str, str]) -> _Test:
         "# to 'hil diagnose' together with the others.\n" + str(yaml.safe_dump(table, sort_keys=False))
     )
     plan = plan_from_text(text, "separating plan", Path())
-    speeds = [s.speed_km_h / 3.6 / _WHEEL_RADIUS_M for s in plan.steps if isinstance(s, HoldSpeed)]
+    speeds = [s.speed_km_h / 3.6 / WHEEL_RADIUS_M for s in plan.steps if isinstance(s, HoldSpeed)]
     played = [s.samples(SAMPLE_TIME_S, 0) for s in plan.steps if isinstance(s, Excitation)]
     return _Test(name, plan, text, np.concatenate(played), speeds[-1] if speeds else 0.0)
 
@@ -130,15 +133,15 @@ def _steps(name: str, torque: float) -> Steps:
     """The steps of a plan; torque in N m. The dynos simulate the vehicle while torque is played."""
     if name == "stairs":
         levels = [round(s * torque, 2) for s in (0, 0.5, -0.5, 0.1, -0.1, 1, -1, 0)]
-        hold = _DURATION_S / len(levels)
+        hold = DURATION_S / len(levels)
         return [_played("stairs", segment=name, levels_nm=levels, hold_s=hold)]
     if name == "coast":  # the step 'coast' would leave the dynos holding their speed
         levels = [0.0, 0.0]
-        return [_held(_FAST_KM_H), _played("stairs", segment=name, levels_nm=levels, hold_s=_DURATION_S / 2)]
+        return [_held(FAST_KM_H), _played("stairs", segment=name, levels_nm=levels, hold_s=DURATION_S / 2)]
     amplitude, bias, speed = {
-        "chirp_large": (1.0, 0.0, _SLOW_KM_H),
-        "chirp_small": (0.2, 0.0, _SLOW_KM_H),
-        "chirp_biased": (0.35, 0.6, _SLOW_KM_H / 2),
+        "chirp_large": (1.0, 0.0, SLOW_KM_H),
+        "chirp_small": (0.2, 0.0, SLOW_KM_H),
+        "chirp_biased": (0.35, 0.6, SLOW_KM_H / 2),
         "chirp_standstill": (1.0, 0.0, 0.0),
     }[name]
     chirp = _played(
@@ -146,7 +149,7 @@ def _steps(name: str, torque: float) -> Steps:
         segment=name,
         from_hz=0.1,
         to_hz=30,
-        duration_s=_DURATION_S,
+        duration_s=DURATION_S,
         amplitude_nm=round(amplitude * torque, 3),
         bias_nm=round(bias * torque, 3),
     )
@@ -154,7 +157,7 @@ def _steps(name: str, torque: float) -> Steps:
 
 
 def _held(speed_km_h: float) -> dict[str, dict[str, Any]]:
-    return {"hold_speed": {"speed_km_h": speed_km_h, "duration_s": _SETTLE_S}}
+    return {"hold_speed": {"speed_km_h": speed_km_h, "duration_s": SETTLE_S}}
 
 
 def _played(kind: str, **values: Any) -> dict[str, dict[str, Any]]:

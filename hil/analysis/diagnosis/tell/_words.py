@@ -13,13 +13,20 @@ from hil.analysis.diagnosis.data._gap import CONDITIONS, GapMap
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._orders import order_lines
+from hil.analysis.diagnosis.tell._thresholds import (
+    BAND_SHARES,
+    CHANNEL_SHARE,
+    DEPENDS,
+    EVERYWHERE,
+    LEAST_RECORDINGS,
+    LINE,
+    ORDER_SHARE,
+    SLOW_BINS,
+    WORDS_SEGMENT,
+)
 from hil.core.channels import OUTPUTS
 
 Array = npt.NDArray[np.float64]
-
-_SEGMENT = 1024
-_SLOW_BINS = 2  # what lies below drifts, it is no line
-_LINE = 8.0  # a spectral line stands this far above its neighbours
 
 
 @dataclass(frozen=True)
@@ -41,25 +48,27 @@ def where(problem: Problem, without: list[Array], with_: list[Array], before: Ga
         power += np.sum(change**2, axis=0)
         density += _density(change, trace.dt, frequency, False).sum(axis=1) * len(change)
     ranked = np.argsort(-power)
-    channels = tuple(OUTPUTS[i] for i in ranked if power[i] > 0.3 * power[ranked[0]])
+    channels = tuple(OUTPUTS[i] for i in ranked if power[i] > CHANNEL_SHARE * power[ranked[0]])
     share = np.cumsum(density) / max(float(density.sum()), 1e-30)
-    low, high = np.interp([0.1, 0.9], share, frequency)
+    low, high = np.interp(BAND_SHARES, share, frequency)
     fall = np.nan_to_num(before.by_condition**2 - after.by_condition**2)[:, ranked[0]]
     condition = CONDITIONS[int(np.argmax(fall))]
     spread = (
-        "at all operating conditions" if fall.max() < 2.0 * max(float(np.median(fall)), 1e-12) else condition
+        "at all operating conditions"
+        if fall.max() < EVERYWHERE * max(float(np.median(fall)), 1e-12)
+        else condition
     )
     return Where(channels, (round(float(low), 2), round(float(high), 2)), spread)
 
 
 def _common_frequency(steps: list[float]) -> Array:
     """Frequencies in Hz that recordings with these sample times have in common."""
-    return np.linspace(0.0, 0.5 / max(steps), _SEGMENT // 2 + 1)
+    return np.linspace(0.0, 0.5 / max(steps), WORDS_SEGMENT // 2 + 1)
 
 
 def _density(values: Array, step: float, frequency: Array, detrend: Literal["constant", False]) -> Array:
     """Power density of `values` (n x 3), sampled every `step` seconds, at `frequency`."""
-    length = min(_SEGMENT, len(values))
+    length = min(WORDS_SEGMENT, len(values))
     own, density = signal.welch(values, 1 / step, nperseg=length, axis=0, detrend=detrend)
     return np.column_stack([np.interp(frequency, own, column) for column in density.T])
 
@@ -78,19 +87,19 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
     top = 1 + int(np.argmax(density[1:]))
     around = float(np.median(density[max(1, top - 20) : top + 20]))
     words = [f"the gap is largest in {OUTPUTS[column]}"]
-    line = top > _SLOW_BINS and density[top] > _LINE * around
+    line = top > SLOW_BINS and density[top] > LINE * around
     orders = [
         (o.score, side, o.order) for side in ("wheel", "motor") for o in order_lines(problem, fit, side, 1)
     ]  # type: ignore[arg-type]
     excess = max(fit.cost - problem.rows, 1.0)
     strongest = max(orders, default=(0.0, "", 0.0))
-    if strongest[0] > 0.4 * excess:
+    if strongest[0] > ORDER_SHARE * excess:
         words.append(f"it follows {strongest[1]} speed at order {strongest[2]:.3g}")
     elif line:
         words.append(f"it is a line at {frequency[top]:.3g} Hz, at whatever speed")
     else:
         share = np.cumsum(density) / density.sum()
-        low, high = np.interp([0.1, 0.9], share, frequency)
+        low, high = np.interp(BAND_SHARES, share, frequency)
         words.append(f"it lies between {low:.2g} and {high:.2g} Hz")
     by = np.nan_to_num(gaps.by_condition[:, column])
     words.append(f"it is strongest at: {CONDITIONS[int(np.argmax(by))]}")
@@ -107,12 +116,12 @@ def _dependence(problem: Problem, fit: Fit, column: int) -> str:
         torques.append(float(np.std(trace.torque)))
         known = trace.measured[:, 0] if trace.has[0] else trace.measured[:, 1]
         speeds.append(float(np.mean(np.abs(known))))
-    if len(levels) < 4:
+    if len(levels) < LEAST_RECORDINGS:
         return ""
     names = []
     for name, values in (("torque amplitude", torques), ("speed", speeds)):
         if np.std(values) > 0 and np.std(levels) > 0:
             r = float(np.corrcoef(np.log(np.maximum(levels, 1e-9)), np.log(np.maximum(values, 1e-9)))[0, 1])
-            if abs(r) > 0.75:
+            if abs(r) > DEPENDS:
                 names.append(f"it {'grows' if r > 0 else 'falls'} with {name}")
     return ", ".join(names) or "it depends little on torque amplitude and speed"

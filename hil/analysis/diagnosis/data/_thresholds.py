@@ -1,0 +1,190 @@
+"""Thresholds of the data: what is refused, what is noise, what is a gap."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from hil.analysis.diagnosis._threshold import Means
+
+CLIPPED_SHARE: Annotated[
+    float, Means("share of samples", "from this share at its end on a channel may be clipped", "bad_input")
+] = 0.03
+FEW_LEVELS: Annotated[
+    int, Means("levels", "a channel with fewer tells neither a ratio nor a plateau", "bad_input")
+] = 24
+PLATEAU_SAMPLES: Annotated[
+    int,
+    Means("samples", "a shorter plateau is no clip; how far around one readings are looked at", "bad_input"),
+] = 20
+FROZEN_SAMPLES: Annotated[
+    int, Means("samples", "a noisy channel that reads the same for longer is frozen", "bad_input")
+] = 200
+STEEP: Annotated[
+    float,
+    Means("steps of the reading", "a plateau is a clip where readings arrive and leave by more", "bad_input"),
+] = 5.0
+ROUNDED: Annotated[
+    float,
+    Means(
+        "of the noise",
+        "a coarser grid has plateaus of its own (rounding itself makes the noise larger)",
+        "bad_input",
+    ),
+] = 0.2
+TORQUE_MOVES: Annotated[
+    float, Means("of its range", "torque that moves more should leave a mark in a plateau", "bad_input")
+] = 0.1
+MOVES_NOISE: Annotated[float, Means("noise levels", "a channel that does more moves", "bad_input")] = 5.0
+FROZEN_STILL: Annotated[
+    float,
+    Means(
+        "share of steps",
+        "a channel that stands still more often elsewhere is rounded, not frozen",
+        "bad_input",
+    ),
+] = 0.1
+FROZEN_NOISY: Annotated[
+    float,
+    Means("share of steps", "that must turn back elsewhere for a channel to count as noisy", "bad_input"),
+] = 0.3
+BELOW_STEPS: Annotated[
+    float, Means("steps of the grid", "a speed that moves by less may stand still as rounded", "bad_input")
+] = 3.0
+SPEEDS_UP: Annotated[
+    float, Means("of the largest speed", "a slow speed that rises by more speeds up", "bad_input")
+] = 0.05
+
+SEGMENT_S: Annotated[
+    float, Means("s", "segments over which physics comes and goes and noise does not", "coherence")
+] = 2.0
+SLOW_LINES: Annotated[
+    int, Means("frequencies", "slower than a segment, with the window's leakage", "coherence")
+] = 2
+RED: Annotated[
+    float,
+    Means(
+        "times the power next to them",
+        "how far noise may rise towards the slow frequencies; more is drift",
+        "coherence",
+    ),
+] = 20.0
+LEAST_SEGMENTS: Annotated[
+    int, Means("segments", "fewer give no coherence: segments are made shorter", "coherence")
+] = 12
+KEPT: Annotated[
+    float, Means("of the largest", "regressors below it say the same as others and count once", "coherence")
+] = 1e-6
+NEIGHBOURS: Annotated[
+    float, Means("frequencies", "of a Hann window count as one in the variance", "coherence")
+] = 1.9
+SEGMENTS_ALIKE: Annotated[
+    float, Means("correlation", "of neighbouring Hann segments at half overlap", "coherence")
+] = 1.0 / 6.0
+
+STANDSTILL_SHARE: Annotated[
+    float, Means("of the largest speed", "below it the axle is near standstill", "hidden")
+] = 0.03
+REVERSAL_S: Annotated[
+    float, Means("s", "so long after torque changes its sign counts as reversal", "hidden")
+] = 0.15
+LARGE_TORQUE: Annotated[float, Means("of the largest torque", "above it torque is large", "hidden")] = 0.6
+HIGH_SPEED: Annotated[float, Means("of the largest speed", "above it speed is high", "hidden")] = 0.6
+
+LEAST_GRID: Annotated[float, Means("of the noise", "a finer grid explains nothing", "hidden")] = 0.2
+COARSE_GRID: Annotated[float, Means("noise levels", "a finer grid is dithered by the noise", "hidden")] = 1.0
+ROUNDING_ALIKE: Annotated[
+    float, Means("root of the samples in a block", "so many neighbouring rounding errors are alike", "hidden")
+] = 2.0
+ON_GRID: Annotated[float, Means("mean phasor", "from it on readings lie on a grid", "hidden")] = 0.98
+LEAST_LEVELS: Annotated[int, Means("levels", "fewer show no grid", "hidden")] = 4
+
+FLOOR_BAND: Annotated[
+    tuple[float, float], Means("of the sample rate", "above all modes: what is left there is noise", "hidden")
+] = (0.25, 0.48)
+
+INVERTED: Annotated[float, Means("correlation", "below it a channel is inverted", "bad_input")] = -0.5
+RELATED: Annotated[
+    float, Means("correlation", "below it two channels have nothing to do with each other", "bad_input")
+] = 0.5
+SPEED_RATIO: Annotated[
+    tuple[float, float],
+    Means(
+        "motor over wheel speed, over the gear ratio",
+        "outside is beyond any error of a parameter or gain",
+        "bad_input",
+    ),
+] = (0.62, 1.6)
+APART_RAD: Annotated[
+    float, Means("rad, wheel side", "smaller turns are lost in play and twist", "bad_input")
+] = 0.2
+TURNED_RAD: Annotated[float, Means("rad rms, wheel side", "a ratio needs larger turns", "bad_input")] = 0.6
+FAST_RAD_S: Annotated[
+    float, Means("rad/s, wheel side", "several times any offset: mean speeds above are compared", "bad_input")
+] = 5.0
+SLOW_S: Annotated[float, Means("s", "torques are compared in means over so long", "bad_input")] = 0.5
+PUSHED_RAD: Annotated[
+    tuple[float, float],
+    Means(
+        "rad rms, wheel side",
+        "of motor and wheel: the torque must push further (play lies between)",
+        "bad_input",
+    ),
+] = (0.1, 0.02)
+AGAINST: Annotated[
+    float, Means("correlation", "below it a speed goes against what the torque does", "bad_input")
+] = -0.6
+LIKE: Annotated[
+    tuple[float, float],
+    Means("factor", "only turns of about the size that the torque gives tell a sign", "bad_input"),
+] = (0.5, 2.0)
+TOO_FAST: Annotated[float, Means("factor", "a speed changes too fast for the torque", "bad_input")] = 4.0
+TORQUE_OFF: Annotated[
+    float,
+    Means(
+        "factor", "shaft torque further from motor torque times gear ratio is in another unit", "bad_input"
+    ),
+] = 3.0
+MOVES: Annotated[float, Means("noise levels", "a channel that does more moves", "bad_input")] = 5.0
+NOISE_ALONE: Annotated[
+    float, Means("noise levels", "a channel that does less reads noise alone", "bad_input")
+] = 1.3
+DEAD_SHARE: Annotated[
+    float, Means("of what the other channel says", "below it a speed may be dead", "bad_input")
+] = 0.05
+LIKE_RPM: Annotated[
+    float, Means("relative", "a factor this near to that between rpm and rad/s is named so", "bad_input")
+] = 0.1
+
+LEAST_SAMPLES: Annotated[int, Means("samples", "a recording with fewer is refused", "bad_input")] = 200
+LEAST_DURATION_S: Annotated[
+    float,
+    Means(
+        "s", "a shorter recording is refused: fewer than some tens of block means say nothing", "bad_input"
+    ),
+] = 0.15
+MOST_SAMPLES: Annotated[
+    int, Means("samples", "of a longer stretch excerpts are read: memory and time are bounded", "bad_input")
+] = 400_000
+EXCERPTS: Annotated[int, Means("stretches", "so many stand for a very long one", "bad_input")] = 10
+FIRST_STAMPS: Annotated[
+    int, Means("samples", "a straight line through the stamps begins with these", "hidden")
+] = 50
+UNEVEN_SHARE: Annotated[
+    float, Means("of a sample", "stamps further off an even grid are noted", "hidden")
+] = 0.01
+NEAR_SHARE: Annotated[
+    float, Means("of a sample", "a reading this near to a point of the grid stands for it", "hidden")
+] = 0.5
+FIT_RATE_HZ: Annotated[
+    float, Means("Hz", "rate of block means: driveline modes end below 60 Hz", "hidden")
+] = 250.0
+START_SAMPLES: Annotated[
+    int, Means("samples", "at most so many are the reading before the torque does anything", "hidden")
+] = 20
+LITTLE_TORQUE: Annotated[
+    float, Means("of the largest", "torque below it is none: a fed back torque is never quite zero", "hidden")
+] = 0.01
+GAP_SAMPLES: Annotated[float, Means("samples", "a longer pause is a gap", "bad_input")] = 20.0
+SLOWEST_SAMPLE_S: Annotated[float, Means("s", "a recording sampled more slowly is refused", "bad_input")] = (
+    0.02
+)

@@ -1,0 +1,26 @@
+"""A fit far from the noise, its errors weighed by their own spectrum."""
+
+from __future__ import annotations
+
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._thresholds import FAR_FROM_NOISE
+from hil.analysis.diagnosis.fit._whitening import whitening_of
+
+
+def reweighted(problem: Problem, best: Fit) -> Fit:
+    """Where even the best leaves far more than noise, errors are weighed by their own spectrum.
+
+    Otherwise the strongest resonance alone would set all parameters. Cost and errors that are handed on are
+    those of the plain weights.
+    """
+    if not best.hypothesis.terms or best.cost < FAR_FROM_NOISE * problem.rows:
+        return best
+    for _ in range(3):
+        other = problem.again(whitening=whitening_of(best.pieces))
+        again = fit(other, best.hypothesis, best.starts, best.theta)
+        best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
+        best.covariance = again.covariance / max(
+            1.0, best.cost / problem.rows
+        )  # its errors are white already
+    return best

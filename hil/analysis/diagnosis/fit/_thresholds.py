@@ -1,0 +1,113 @@
+"""Thresholds of the fit: how far numbers go, how long is fitted."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from hil.analysis.diagnosis._threshold import Means
+
+TOLERANCE: Annotated[
+    float,
+    Means("relative", "calibration tolerance of a parameter: beyond it a wrong value is a finding", "blind"),
+] = 0.02
+REACH: Annotated[
+    float, Means("natural logarithm", "how far a parameter may go as a mere correction", "blind")
+] = 0.03
+PRIOR: Annotated[
+    float, Means("natural logarithm", "standard deviation of a parameter's correction", "blind")
+] = 0.015
+MISMATCH_REACH: Annotated[
+    float,
+    Means("natural logarithm", "how far a wrong parameter may go: a factor of five either way", "blind"),
+] = 1.6
+STEP: Annotated[
+    float, Means("natural logarithm, or typical sizes", "finite difference of a coordinate", "hidden")
+] = 1e-3
+UPPER: Annotated[
+    dict[str, float],
+    Means(
+        "the parameter's",
+        "beyond it an effect is no longer itself: a path that slips at 6 degrees is a spring",
+        "hidden",
+    ),
+] = {"slip_rad": 0.1, "time_constant_s": 0.3}
+COARSE_STEP: Annotated[
+    dict[str, float],
+    Means(
+        "natural logarithm",
+        "finite difference where contact comes and goes: the error is rough in the gap",
+        "hidden",
+    ),
+] = {"half_gap_rad": 0.03}
+FINE_STEP: Annotated[
+    dict[str, float],
+    Means("typical steps", "finite difference of an order, which turns into phase", "hidden"),
+] = {"order": 1e-3}
+
+MOST_ROUNDS: Annotated[int, Means("rounds", "of a fit at most", "hidden")] = 14
+WORTH_A_LEAP: Annotated[
+    float,
+    Means("squared error, noise variances", "a dead time in another sample must gain more", "whole_samples"),
+] = 10.0
+
+TRIALS: Annotated[tuple[float, ...], Means("of a step", "tried in each round", "hidden")] = (1.0, 0.35)
+MOST_REFUSALS: Annotated[int, Means("steps", "refused before a fit gives up", "hidden")] = 4
+
+HUGE: Annotated[float, Means("noise levels", "errors of a diverged simulation are cut to it", "hidden")] = 1e9
+DIVERGED: Annotated[
+    float, Means("noise levels", "a larger change is no derivative that could be followed", "hidden")
+] = 1e9
+REST_SHARE: Annotated[float, Means("of a sample's noise", "how still an axle at rest is held", "hidden")] = (
+    0.1
+)
+REST_SIGMAS: Annotated[
+    float, Means("standard deviations", "a mean speed nearer to zero may be rest", "hidden")
+] = 4.0
+REST_SAMPLES: Annotated[int, Means("samples", "in that mean", "hidden")] = 20
+FINE: Annotated[
+    float,
+    Means(
+        "noise with rounding over that without",
+        "a coarser channel reads zero at many speeds and tells no rest",
+        "hidden",
+    ),
+] = 2.0
+
+FAR_FROM_NOISE: Annotated[
+    float,
+    Means(
+        "noise powers",
+        "where more is left errors are weighed by their own spectrum: else the strongest resonance sets all",
+        "blind",
+    ),
+] = 50.0
+
+WHITENING_ORDER: Annotated[int, Means("blocks", "memory of the filters that make errors white", "hidden")] = (
+    16
+)
+
+EDGE: Annotated[
+    float,
+    Means("of a sample", "a descent of a rigid axle's dead time keeps from either end", "whole_samples"),
+] = 1e-3
+JUST: Annotated[
+    float, Means("of a sample", "a delay nearer to a whole sample is just one", "whole_samples")
+] = 0.02
+COINCIDENCE: Annotated[
+    float,
+    Means(
+        "squared error, noise variances",
+        "price of a channel that is late by just a sample: dead time is by nature",
+        "whole_samples",
+    ),
+] = 50.0
+LEAPS: Annotated[tuple[int, ...], Means("samples", "that a dead time is tried to leap", "whole_samples")] = (
+    -4,
+    -3,
+    -2,
+    -1,
+    1,
+    2,
+    3,
+    4,
+)

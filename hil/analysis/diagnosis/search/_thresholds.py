@@ -1,0 +1,190 @@
+"""Thresholds of the search: what is looked for, what a name must earn."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from hil.analysis.diagnosis._threshold import Means
+
+ALIGNMENT_ROUNDS: Annotated[int, Means("rounds", "of tracking and fitting at most", "alignment")] = 4
+ALIGNMENT_LITTLE: Annotated[
+    float, Means("of what is left", "a round that gains less is the last", "alignment")
+] = 0.02
+WHOLE_ORDER: Annotated[
+    tuple[float, float],
+    Means("orders", "an order so far from a whole one may be that one, bent by drift", "alignment"),
+] = (0.002, 0.15)
+WHOLE_WORSE: Annotated[
+    float,
+    Means(
+        "times what another order leaves",
+        "a whole order may leave: drift that was followed makes up for more",
+        "alignment",
+    ),
+] = 1.02
+
+BOOTSTRAP_DRAWS: Annotated[
+    int, Means("draws", "of the bootstrap: one in twenty false names would be seen", "by_chance")
+] = 19
+ENOUGH_S: Annotated[
+    float,
+    Means("s", "of recordings that the bootstrap looks at: noise scores no more in longer ones", "by_chance"),
+] = 45.0
+
+NEARLY: Annotated[
+    float, Means("of the whole gap", "once it is closed, what is left may be a formula that differs", "blind")
+] = 0.93
+SIGMAS: Annotated[
+    float, Means("standard deviations of noise's own", "physics below it is none", "hidden")
+] = 5.0
+NOTHING: Annotated[
+    float, Means("of a channel's noise power", "physics below it is none: 1 % of gap", "hidden")
+] = 0.02
+SMALL: Annotated[float, Means("gap over noise floor", "below it no further effect is missing", "hidden")] = (
+    1.03
+)
+SMALLISH: Annotated[
+    float, Means("gap over noise floor", "the same, once 99 % of the gap are closed", "hidden")
+] = 1.1
+NEARLY_ALL: Annotated[
+    float, Means("of the whole gap", "once it is closed a little more may be left", "hidden")
+] = 0.99
+
+LEAST_EVIDENCE: Annotated[
+    float, Means("squared error, noise variances", "a name must take off more, after deflation", "blind")
+] = 30.0
+FAR: Annotated[
+    float,
+    Means("noise powers", "with more left formulas differ, and a fault in a sensor is doubted", "hidden"),
+] = 50.0
+DOUBT: Annotated[
+    float, Means("factor of the total", "price of a fault in a sensor far from the noise", "hidden")
+] = 1.02
+PRICE: Annotated[
+    float,
+    Means(
+        "squared error, noise variances",
+        "of each number that an effect brings, when two effects explain the same",
+        "hidden",
+    ),
+] = 8.0
+PLAIN: Annotated[
+    float,
+    Means("of the remaining gap", "if no score promises it, nominal parameters are tried too", "hidden"),
+] = 0.5
+HOPE: Annotated[
+    float, Means("of the remaining gap", "the best linearised score must promise it", "hidden")
+] = 0.1
+SIZES: Annotated[
+    tuple[float, ...],
+    Means("factor", "sizes of an effect that are tried, around what its probe says", "hidden"),
+] = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)
+WIDTHS: Annotated[
+    tuple[float, ...], Means("factor", "widths of a play that are tried once no gap is left", "hidden")
+] = (0.9, 1.1)
+OTHER_SIZES: Annotated[
+    tuple[float, ...],
+    Means("factor", "sizes of an abrupt effect that are fitted from: it has false minima", "hidden"),
+] = (0.75, 1.0, 1.3)
+RACE: Annotated[int, Means("effects", "are fitted at each step", "hidden")] = 5
+PROMISING: Annotated[float, Means("of the best score", "effects below it are not fitted", "hidden")] = 0.4
+RACE_ROUNDS: Annotated[int, Means("rounds", "after which the hopeless are given up", "hidden")] = 3
+OUT_OF_RACE: Annotated[
+    float,
+    Means(
+        "times what the best leaves", "effects that leave more after the first rounds are hopeless", "hidden"
+    ),
+] = 2.5
+OPTIONAL_LEAVES: Annotated[
+    float, Means("of the remaining gap", "an optional number must leave less", "hidden")
+] = 0.8
+WORTH_POLISH: Annotated[
+    float,
+    Means("of the whole gap", "an abrupt effect that closes less is not fitted from other sizes", "hidden"),
+] = 0.3
+RACE_SLACK: Annotated[
+    float,
+    Means(
+        "squared error, noise variances", "that an effect may leave besides before it is hopeless", "hidden"
+    ),
+] = 1000.0
+RELATIVE_PROMISES: Annotated[
+    float,
+    Means("of the best score", "a relative of a promising effect must promise it to be fitted", "hidden"),
+] = 0.1
+
+LARGEST_ORDER: Annotated[dict[str, float], Means("orders", "looked for", "hidden")] = {
+    "wheel": 60.0,
+    "motor": 60.0,
+}
+LEAST_ORDER: Annotated[
+    float, Means("orders", "what turns with a shaft repeats with every turn", "hidden")
+] = 0.5
+BINS_A_TURN: Annotated[int, Means("bins", "a turn of the largest order is sorted into", "hidden")] = 8
+FROM_HZ: Annotated[float, Means("Hz", "ripples slower than this are drift", "hidden")] = 0.5
+LEAST_ANGLE_RAD: Annotated[float, Means("rad", "an axle that turns less shows no order", "hidden")] = 20.0
+SPEED_BINS: Annotated[int, Means("bins", "of speed, in what an order is expected to bring", "hidden")] = 200
+ORDER_GRID: Annotated[int, Means("orders", "at which that is computed", "hidden")] = 600
+
+STRETCH: Annotated[
+    tuple[float, float],
+    Means("factor", "how far a response may be stretched to stand for a neighbouring size", "hidden"),
+] = (0.5, 1.6)
+LATE_S: Annotated[
+    tuple[float, ...], Means("s", "a channel so late has an error that is no longer like its slope", "hidden")
+] = (0.008, 0.04)
+
+ROUNDING_MARGIN: Annotated[
+    float, Means("factor", "rounding may leave so much more than its simulation says", "hidden")
+] = 2.0
+
+SCORED_MISMATCH: Annotated[
+    float, Means("natural logarithm", "how far a wrong parameter's score may reach linearly", "hidden")
+] = 0.5
+PROBE_DIVERGED: Annotated[
+    float, Means("noise levels", "a larger response is a diverged probe and scores nothing", "hidden")
+] = 1e8
+
+MOST_EFFECTS: Annotated[int, Means("names", "at most", "blind")] = 3
+LEAST_SHARE: Annotated[float, Means("of the remaining gap", "a further effect must close it", "blind")] = 0.6
+LEAST_SHARE_OF_REST: Annotated[
+    float, Means("of the remaining gap", "the same, once nearly all is closed", "blind")
+] = 0.88
+PARENTS: Annotated[tuple[int, ...], Means("hypotheses", "are grown to one, two, three effects", "blind")] = (
+    1,
+    3,
+    2,
+)
+LEAST_SO_FAR: Annotated[
+    tuple[float, ...],
+    Means("of the gap", "is closed before a first, second, third effect is looked for", "blind"),
+] = (0.0, 0.2, 0.6)
+RIVAL: Annotated[
+    float, Means("times what the best leaves", "a rival that leaves less is grown further as well", "blind")
+] = 1.5
+
+SLOW_NOISE: Annotated[
+    float,
+    Means(
+        "factor of power", "a speed's noise at low frequency over that above all modes, at most", "tracking"
+    ),
+] = 4.0
+WINDOW_S: Annotated[
+    float, Means("s", "of recording that says of each phase how well it fits", "tracking")
+] = 0.1
+PHASES: Annotated[int, Means("phases", "on a turn", "tracking")] = 72
+REFINED: Annotated[int, Means("steps", "off the grid of phases", "tracking")] = 5
+LEAST_STEP: Annotated[
+    float, Means("rad of phase in a second", "an order may be a little off as well", "tracking")
+] = 0.05
+START_RAD: Annotated[
+    float, Means("rad", "how well the phase at the start is known once the ripple is", "tracking")
+] = 0.3
+SOON_S: Annotated[
+    float, Means("s", "recordings that turn a ripple sooner say the same of its phase", "tracking")
+] = 1.0
+NO_RIPPLE: Annotated[float, Means("N m", "stands for no ripple", "tracking")] = 1e-9
+RIPPLE_DIVERGED: Annotated[
+    float,
+    Means("noise levels", "a larger response is a diverged ripple and says nothing of a phase", "tracking"),
+] = 1e9

@@ -1,0 +1,107 @@
+"""Thresholds of what is told: verdict, confidence, words, separating tests."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from hil.analysis.diagnosis._threshold import Means
+
+HALF_MARGIN: Annotated[float, Means("evidence", "over a rival at which it is about one in ten", "blind")] = (
+    12.0
+)
+CONFIDENCE_FLOOR: Annotated[float, Means("probability", "doubt that always stays", "blind")] = 0.005
+LEAST_TORQUE_NM: Annotated[
+    float, Means("N m", "without more in the recordings nobody knows what a test may ask", "separating")
+] = 0.1
+WORTH_A_PLAN: Annotated[float, Means("probability", "a less likely rival gets no plan", "separating")] = 0.02
+CLOSED_WELL: Annotated[
+    float, Means("gap over noise floor", "below it only the least doubt stays", "blind")
+] = 1.05
+CLOSED_FAIRLY: Annotated[float, Means("gap over noise floor", "below it a name is fairly sure", "blind")] = (
+    1.2
+)
+FAIRLY_SURE: Annotated[float, Means("probability", "at most, where the gap is closed fairly", "blind")] = 0.97
+LESS_SURE: Annotated[float, Means("probability", "at most, where more is left", "blind")] = 0.9
+OPEN_CONFIDENCE: Annotated[
+    float, Means("probability", "of names that are told where no gap was closed", "blind")
+] = 0.05
+
+STEP_NM: Annotated[float, Means("N m", "the step whose overshoot is told", "hidden")] = 20.0
+BAND_HZ: Annotated[tuple[float, float], Means("Hz", "the band whose energy is told", "hidden")] = (
+    8.0,
+    20.0,
+)
+
+DURATION_S: Annotated[float, Means("s", "of a separating test", "separating")] = 20.0
+SETTLE_S: Annotated[float, Means("s", "a speed is held before it", "separating")] = 2.0
+FAST_RAD_S: Annotated[
+    float, Means("rad/s, wheel side", "what every bench for an axle allows", "separating")
+] = 40.0
+SHAFT_SHARE: Annotated[
+    float,
+    Means(
+        "of the torque request times the gear ratio",
+        "shaft torque at most: a resonance gives more than its drive",
+        "separating",
+    ),
+] = 2.5
+SHARES: Annotated[
+    tuple[float, ...], Means("of the largest torque", "tried in turn until all limits are kept", "separating")
+] = (1.0, 0.6, 0.35, 0.2)
+WHEEL_RADIUS_M: Annotated[
+    float, Means("m", "typical: only the speed at which a test begins depends on it", "separating")
+] = 0.33
+SLOW_KM_H: Annotated[float, Means("km/h", "speed of a chirp", "separating")] = 12.0
+FAST_KM_H: Annotated[float, Means("km/h", "speed from which the axle coasts", "separating")] = 36.0
+
+SHUT: Annotated[
+    tuple[tuple[float, float], ...],
+    Means(
+        "share of the gap's power, gap over noise",
+        "closed from that share on if less than that is left: large effects may be closed less finely",
+        "blind",
+    ),
+] = ((0.5, 1.03), (0.95, 1.6), (0.995, math.inf))
+SHUT_BY_LAW: Annotated[
+    float,
+    Means(
+        "share of the gap's power",
+        "from it on where contact, dry friction or hysteresis is among the names: their laws are many",
+        "blind",
+    ),
+] = 0.9
+NOISELESS: Annotated[
+    float, Means("gap over noise", "above it what is left is a matter of formulas, not of noise", "blind")
+] = 100.0
+SHUT_NOISELESS: Annotated[
+    float, Means("share of the gap's power", "from it on a gap without noise is closed", "blind")
+] = 0.9
+MORE: Annotated[
+    float, Means("share of the gap's power", "that each further name must close besides", "blind")
+] = 0.001
+
+WORDS_SEGMENT: Annotated[int, Means("blocks", "of a spectrum that is told in words", "hidden")] = 1024
+SLOW_BINS: Annotated[int, Means("frequencies", "what lies below drifts, it is no line", "hidden")] = 2
+LINE: Annotated[
+    float, Means("times its neighbours", "a spectral line stands so far above them", "hidden")
+] = 8.0
+CHANNEL_SHARE: Annotated[
+    float, Means("of the strongest channel's power", "an effect acts in channels above it", "hidden")
+] = 0.3
+ORDER_SHARE: Annotated[
+    float, Means("of what is left", "an order that explains more is what is left", "hidden")
+] = 0.4
+DEPENDS: Annotated[
+    float, Means("correlation", "of logarithms: above it what is left depends on torque or speed", "hidden")
+] = 0.75
+EVERYWHERE: Annotated[
+    float,
+    Means("times the median condition", "an effect that falls by less acts at all conditions", "hidden"),
+] = 2.0
+BAND_SHARES: Annotated[
+    tuple[float, float], Means("of the power", "the band that is told lies between", "hidden")
+] = (0.1, 0.9)
+LEAST_RECORDINGS: Annotated[
+    int, Means("recordings", "fewer tell no dependence on torque or speed", "hidden")
+] = 4
