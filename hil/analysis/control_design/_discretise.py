@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from hil.core.errors import BadInputError
 from hil.core.model import TransferFunction
+from hil.plant.controller.filters import discretised
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -35,12 +35,16 @@ class DiscreteFilter:
 
 
 def tustin(function: TransferFunction, sample_time_s: float) -> DiscreteFilter:
-    """s = (2/T)(1 - z⁻¹)/(1 + z⁻¹), without prewarping.
+    """What the RMCU makes of a function: Tustin's rule without prewarping, common roots at s = 0 cancelled.
 
     Raises:
-        BadInputError: the function is improper.
+        BadInputError: the function is improper, or of too high an order for the RMCU.
     """
-    if len(np.trim_zeros(function.numerator, "f")) > len(np.trim_zeros(function.denominator, "f")):
-        raise BadInputError("an improper function cannot be made discrete", fix="add a low pass to it")
-    b, a = signal.bilinear(function.numerator, function.denominator, 1 / sample_time_s)
-    return DiscreteFilter(tuple(float(v) for v in b / a[0]), tuple(float(v) for v in a / a[0]), sample_time_s)
+    try:
+        b, a = discretised(function.numerator, function.denominator, sample_time_s)
+    except ValueError as error:
+        raise BadInputError(
+            f"a block cannot be made discrete: {error}",
+            fix="give each block a denominator of its numerator's order or more, and not of a high one",
+        ) from error
+    return DiscreteFilter(tuple(map(float, b)), tuple(map(float, a)), sample_time_s)

@@ -22,26 +22,43 @@ class Filter:
     denominator: Array
 
 
-def tustin(numerator: npt.ArrayLike, denominator: npt.ArrayLike, sample_time_s: float) -> Filter:
-    """Discretise numerator/denominator (descending powers of s) by Tustin's rule, without prewarping.
+def discretised(
+    numerator: npt.ArrayLike, denominator: npt.ArrayLike, sample_time_s: float
+) -> tuple[Array, Array]:
+    """Coefficients b, a (ascending powers of z⁻¹, a[0] = 1) of a function (descending powers of s).
 
-    Roots at s = 0 that stand above and below are cancelled first.
+    By Tustin's rule, s = (2/T)(1 - z⁻¹)/(1 + z⁻¹), without prewarping. Roots at s = 0 that stand above and
+    below are cancelled first.
 
     Raises:
-        ValueError: improper, of too high an order, or unstable.
+        ValueError: improper, without a denominator, or of too high an order for the RMCU.
     """
     above = np.trim_zeros(np.atleast_1d(np.asarray(numerator, dtype=float)), "f")
     below = np.trim_zeros(np.atleast_1d(np.asarray(denominator, dtype=float)), "f")
     while len(above) > 1 and len(below) > 1 and above[-1] == 0.0 and below[-1] == 0.0:
         above, below = above[:-1], below[:-1]
-    if len(below) == 0 or len(above) > len(below) or len(below) > LARGEST_ORDER + 1:
-        raise ValueError(f"a filter of order {len(above) - 1} over {len(below) - 1} cannot be run")
-    if len(below) > 1 and np.max(np.roots(below).real) > 1e-9:
-        raise ValueError("the filter is unstable")
+    if len(below) == 0 or len(above) > len(below):
+        raise ValueError(
+            f"an improper filter, of order {len(above) - 1} over {len(below) - 1}, cannot be run"
+        )
+    if len(below) > LARGEST_ORDER + 1:
+        raise ValueError(f"a filter of order {len(below) - 1} cannot be run, only up to {LARGEST_ORDER}")
     b, a = bilinear(above, below, 1.0 / sample_time_s)
+    return b / a[0], a / a[0]
+
+
+def tustin(numerator: npt.ArrayLike, denominator: npt.ArrayLike, sample_time_s: float) -> Filter:
+    """The filter that the RMCU runs for numerator/denominator (descending powers of s), by `discretised`.
+
+    Raises:
+        ValueError: improper, of too high an order, or unstable.
+    """
+    b, a = discretised(numerator, denominator, sample_time_s)
+    if len(a) > 1 and np.max(np.roots(np.atleast_1d(denominator)).real) > 1e-9:
+        raise ValueError("the filter is unstable")
     padded = np.zeros((2, LARGEST_ORDER + 1))
     padded[0, : len(b)], padded[1, : len(a)] = b, a
-    return Filter(padded[0] / a[0], padded[1] / a[0])
+    return Filter(padded[0], padded[1])
 
 
 @compiled
