@@ -1,11 +1,12 @@
 """The plant: a model file turned into motion by a compiled kernel."""
 
 from hil.plant._held_linear import system
-from hil.plant._many import DELAY as SENSOR_DELAY
-from hil.plant._many import GAIN as SENSOR_GAIN
-from hil.plant._many import OFFSET as SENSOR_OFFSET
 from hil.plant._many import ideal_sensors, simulate_many
 from hil.plant._replay import LONGEST_STEP_S, Start, replay, simulate, start_of
+from hil.plant._sensors import DELAY as SENSOR_DELAY
+from hil.plant._sensors import GAIN as SENSOR_GAIN
+from hil.plant._sensors import OFFSET as SENSOR_OFFSET
+from hil.plant._sensors import bench_sensor
 from hil.plant._slots import pack
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "SENSOR_GAIN",
     "SENSOR_OFFSET",
     "Start",
+    "bench_sensor",
     "ideal_sensors",
     "pack",
     "replay",

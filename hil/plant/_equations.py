@@ -11,46 +11,33 @@ import math
 
 from hil.core.compiled import compiled, inlined
 from hil.plant import _slots as P
+from hil.plant import _states as X
 from hil.plant._backlash import gap_torque
 from hil.plant._friction import friction_level, friction_torque, has_friction
+from hil.plant._tuples import put
 
 # Width of a smooth sign function: small against any speed of interest, large enough for 0.1 ms steps.
 ROLLING_WIDTH_RAD_S = 0.05
 _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel while the dyno leads
-
-# State vector
-(
-    ROTOR_SPEED,
-    TWIST,
-    WHEEL_SPEED,
-    TYRE_TWIST,
-    VEHICLE_SPEED,
-    WHEEL_ANGLE,
-    LAGGED,
-    HOUSING_ANGLE,
-    HOUSING_SPEED,
-    SLIP,
-    SEAT,
-) = range(11)
-STATES = 11
+STATES = X.ALL_STATES
 
 
 @compiled
 def shaft_torque(x, p):  # type: ignore[no-untyped-def]
     """T_s in N m from the state: stiffness (backlash, cubic), damping, hysteresis, wheel-order ripple."""
-    v = x[HOUSING_SPEED] + (x[ROTOR_SPEED] - x[HOUSING_SPEED]) / p[P.GEAR_RATIO] - x[WHEEL_SPEED]
-    e = x[TWIST]
+    v = x[X.HOUSING_SPEED] + (x[X.ROTOR_SPEED] - x[X.HOUSING_SPEED]) / p[P.GEAR_RATIO] - x[X.WHEEL_SPEED]
+    e = x[X.TWIST]
     if p[P.HALF_GAP] > 0.0:
-        e -= x[SEAT]
-        torque = gap_torque(e, v, x[SEAT], p)
-        if abs(x[SEAT]) < p[P.HALF_GAP]:
+        e -= x[X.SEAT]
+        torque = gap_torque(e, v, x[X.SEAT], p)
+        if abs(x[X.SEAT]) < p[P.HALF_GAP]:
             e = 0.0
     else:
         torque = p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v
-    torque += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * x[SLIP]
+    torque += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * x[X.SLIP]
     if p[P.WHEEL_ORDER_AMPLITUDE] != 0.0:
         torque += p[P.WHEEL_ORDER_AMPLITUDE] * math.sin(
-            p[P.WHEEL_ORDER] * x[WHEEL_ANGLE] + p[P.WHEEL_ORDER_PHASE]
+            p[P.WHEEL_ORDER] * x[X.WHEEL_ANGLE] + p[P.WHEEL_ORDER_PHASE]
         )
     return torque
 
@@ -58,7 +45,7 @@ def shaft_torque(x, p):  # type: ignore[no-untyped-def]
 @compiled
 def relative_speed(x):  # type: ignore[no-untyped-def]
     """Rotor against housing in rad/s: what the motor's sensor sees and what friction acts on."""
-    return x[ROTOR_SPEED] - x[HOUSING_SPEED]
+    return x[X.ROTOR_SPEED] - x[X.HOUSING_SPEED]
 
 
 @compiled
@@ -66,7 +53,7 @@ def smooth_losses(x, p):  # type: ignore[no-untyped-def]
     """Drag and ripple on the rotor in N m, against positive motion: all losses but dry friction."""
     loss = p[P.DRAG] * relative_speed(x) + p[P.FRICTION_OFFSET]
     if p[P.MOTOR_ORDER_AMPLITUDE] != 0.0:
-        angle = p[P.GEAR_RATIO] * (x[TWIST] + x[WHEEL_ANGLE] - x[HOUSING_ANGLE])
+        angle = p[P.GEAR_RATIO] * (x[X.TWIST] + x[X.WHEEL_ANGLE] - x[X.HOUSING_ANGLE])
         loss -= p[P.MOTOR_ORDER_AMPLITUDE] * math.sin(p[P.MOTOR_ORDER] * angle + p[P.MOTOR_ORDER_PHASE])
     return loss
 
@@ -82,7 +69,7 @@ def running_resistance(speed, p):  # type: ignore[no-untyped-def]
 @compiled
 def tyre_torque(x, p):  # type: ignore[no-untyped-def]
     """Torque that the tyre/road coupling takes from the wheel, in N m."""
-    return p[P.TYRE_STIFFNESS] * x[TYRE_TWIST] + p[P.TYRE_DAMPING] * (x[WHEEL_SPEED] - x[VEHICLE_SPEED])
+    return p[P.TYRE_STIFFNESS] * x[X.TYRE_TWIST] + p[P.TYRE_DAMPING] * (x[X.WHEEL_SPEED] - x[X.VEHICLE_SPEED])
 
 
 @compiled
@@ -104,19 +91,21 @@ def derivative(x, p, torque, coupled, load, direction):  # type: ignore[no-untyp
     """
     lagged = 0.0
     if p[P.LAG] > 0.0:
-        lagged = (torque - x[LAGGED]) / p[P.LAG]
-        torque = x[LAGGED]
+        lagged = (torque - x[X.LAGGED]) / p[P.LAG]
+        torque = x[X.LAGGED]
+    slope = put(put(X.AT_REST, X.LAGGED, lagged), X.WHEEL_ANGLE, x[X.WHEEL_SPEED])
     n = p[P.GEAR_RATIO]
     if p[P.KIND] == P.RIGID:
-        wheel_load = running_resistance(x[WHEEL_SPEED], p) if coupled else load
+        wheel_load = running_resistance(x[X.WHEEL_SPEED], p) if coupled else load
         rotor = rigid_acceleration(x, p, torque, wheel_load, direction)
-        return (rotor, 0.0, rotor / n, 0.0, rotor / n, x[WHEEL_SPEED], lagged, 0.0, 0.0, 0.0, 0.0)
-    v = x[HOUSING_SPEED] + relative_speed(x) / n - x[WHEEL_SPEED]
+        slope = put(put(slope, X.ROTOR_SPEED, rotor), X.WHEEL_SPEED, rotor / n)
+        return put(slope, X.VEHICLE_SPEED, rotor / n)
+    v = x[X.HOUSING_SPEED] + relative_speed(x) / n - x[X.WHEEL_SPEED]
     shaft = shaft_torque(x, p)
     driving = torque - smooth_losses(x, p) - shaft / n
     bushes = 0.0
     if p[P.HOUSING_INERTIA] > 0.0:
-        bushes = p[P.MOUNT_STIFFNESS] * x[HOUSING_ANGLE] + p[P.MOUNT_DAMPING] * x[HOUSING_SPEED]
+        bushes = p[P.MOUNT_STIFFNESS] * x[X.HOUSING_ANGLE] + p[P.MOUNT_DAMPING] * x[X.HOUSING_SPEED]
     sticks = False
     if has_friction(p):
         holding = driving
@@ -134,19 +123,22 @@ def derivative(x, p, torque, coupled, load, direction):  # type: ignore[no-untyp
         rotor = housing
     slip = 0.0
     if p[P.HYSTERESIS_STIFFNESS] != 0.0:
-        ratio = x[SLIP] / p[P.HYSTERESIS_SLIP]
+        ratio = x[X.SLIP] / p[P.HYSTERESIS_SLIP]
         slip = v if ratio * v <= 0.0 else v * (1.0 - ratio * ratio)
     if p[P.KIND] == P.TWO_INERTIA:
-        outside = running_resistance(x[WHEEL_SPEED], p) if coupled else load
+        outside = running_resistance(x[X.WHEEL_SPEED], p) if coupled else load
         wheel = (shaft - outside) / p[P.VEHICLE_INERTIA]
         tyre, vehicle = 0.0, wheel
     elif coupled:
         road = tyre_torque(x, p)
         wheel = (shaft - road) / p[P.WHEEL_INERTIA]
-        tyre = x[WHEEL_SPEED] - x[VEHICLE_SPEED]
-        vehicle = (road - running_resistance(x[VEHICLE_SPEED], p)) / p[P.VEHICLE_INERTIA]
+        tyre = x[X.WHEEL_SPEED] - x[X.VEHICLE_SPEED]
+        vehicle = (road - running_resistance(x[X.VEHICLE_SPEED], p)) / p[P.VEHICLE_INERTIA]
     else:
         wheel = (shaft - load) / p[P.WHEEL_INERTIA]
-        tyre = -_TRACKING_RATE_1_S * x[TYRE_TWIST]
-        vehicle = wheel + _TRACKING_RATE_1_S * (x[WHEEL_SPEED] - x[VEHICLE_SPEED])
-    return (rotor, v, wheel, tyre, vehicle, x[WHEEL_SPEED], lagged, x[HOUSING_SPEED], housing, slip, 0.0)
+        tyre = -_TRACKING_RATE_1_S * x[X.TYRE_TWIST]
+        vehicle = wheel + _TRACKING_RATE_1_S * (x[X.WHEEL_SPEED] - x[X.VEHICLE_SPEED])
+    slope = put(put(slope, X.ROTOR_SPEED, rotor), X.TWIST, v)
+    slope = put(put(slope, X.WHEEL_SPEED, wheel), X.TYRE_TWIST, tyre)
+    slope = put(put(slope, X.VEHICLE_SPEED, vehicle), X.SLIP, slip)
+    return put(put(slope, X.HOUSING_ANGLE, x[X.HOUSING_SPEED]), X.HOUSING_SPEED, housing)

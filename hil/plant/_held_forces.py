@@ -1,6 +1,6 @@
 """Nonlinear forces of the driveline as inputs of its linear part, for the kernel of many models.
 
-States stand as in `_held_linear`. The forces are those of `_equations`, without what is linear in them.
+The forces are those of `_equations`, without what is linear in them.
 """
 
 from __future__ import annotations
@@ -9,11 +9,14 @@ import math
 
 from hil.core.compiled import inlined
 from hil.plant import _slots as P
+from hil.plant import _states as X
 from hil.plant._backlash import gap_torque, moved_seat
 from hil.plant._equations import ROLLING_WIDTH_RAD_S
 from hil.plant._friction import friction_level, friction_torque
 
 SLIP, SEAT = range(2)  # of the memory
+SHAFT, LOSS, LOAD = range(3)  # of the forces
+WHEEL, ROTOR = range(2)  # of the angles
 _STANDSTILL_RAD_S = 1e-9  # what rounding leaves of zero
 
 
@@ -42,7 +45,7 @@ def _tanh(u):  # type: ignore[no-untyped-def]
 @inlined
 def twist_rate(x, p):  # type: ignore[no-untyped-def]
     """Of the shafts, rad/s on the wheel side."""
-    return x[7] + (x[0] - x[7]) / p[P.GEAR_RATIO] - x[2]
+    return x[X.HOUSING_SPEED] + (x[X.ROTOR_SPEED] - x[X.HOUSING_SPEED]) / p[P.GEAR_RATIO] - x[X.WHEEL_SPEED]
 
 
 @inlined
@@ -53,7 +56,7 @@ def forces(x, memory, at, p):  # type: ignore[no-untyped-def]
     """
     shaft = 0.0
     if p[P.KIND] != P.RIGID:
-        e = x[1]
+        e = x[X.TWIST]
         if p[P.HALF_GAP] > 0.0:
             v = twist_rate(x, p)
             linear = p[P.SHAFT_STIFFNESS] * e + p[P.SHAFT_DAMPING] * v
@@ -63,15 +66,16 @@ def forces(x, memory, at, p):  # type: ignore[no-untyped-def]
                 e = 0.0
         shaft += p[P.CUBIC] * e * e * e + p[P.HYSTERESIS_STIFFNESS] * memory[SLIP]
         if p[P.WHEEL_ORDER_AMPLITUDE] != 0.0:
-            angle = p[P.WHEEL_ORDER] * at[0] + p[P.WHEEL_ORDER_PHASE]
+            angle = p[P.WHEEL_ORDER] * at[WHEEL] + p[P.WHEEL_ORDER_PHASE]
             shaft += p[P.WHEEL_ORDER_AMPLITUDE] * math.sin(angle)
     loss = p[P.FRICTION_OFFSET]
     if p[P.MOTOR_ORDER_AMPLITUDE] != 0.0:
-        angle = p[P.MOTOR_ORDER] * at[1] + p[P.MOTOR_ORDER_PHASE]
+        angle = p[P.MOTOR_ORDER] * at[ROTOR] + p[P.MOTOR_ORDER_PHASE]
         loss -= p[P.MOTOR_ORDER_AMPLITUDE] * math.sin(angle)
     load = 0.0
     if p[P.ROLLING] != 0.0 or p[P.AERO] != 0.0:
-        load = p[P.ROLLING] * _tanh(x[4] / ROLLING_WIDTH_RAD_S) + p[P.AERO] * x[4] * abs(x[4])
+        speed = x[X.VEHICLE_SPEED]
+        load = p[P.ROLLING] * _tanh(speed / ROLLING_WIDTH_RAD_S) + p[P.AERO] * speed * abs(speed)
     return shaft, loss, load
 
 
@@ -83,7 +87,7 @@ def remembered(memory, old, x, h, p):  # type: ignore[no-untyped-def]
     """
     seat = memory[SEAT]
     if p[P.HALF_GAP] > 0.0:
-        seat = moved_seat(seat, old[1], x[1], h, p)
+        seat = moved_seat(seat, old[X.TWIST], x[X.TWIST], h, p)
     if p[P.HYSTERESIS_STIFFNESS] == 0.0:
         return memory[SLIP], seat
     slip = memory[SLIP]
@@ -103,13 +107,13 @@ def remembered(memory, old, x, h, p):  # type: ignore[no-untyped-def]
 def angles_at(angles, k, part, old, x, at, h, p):  # type: ignore[no-untyped-def]
     """Angles of wheel and rotor in rad at sample `k` + `part`: measured (n x 2), or else as simulated."""
     if angles.shape[0] == 0:
-        wheel = at[0] + 0.5 * h * (old[2] + x[2])
-        return wheel, p[P.GEAR_RATIO] * (x[1] + wheel - x[6])
+        wheel = at[WHEEL] + 0.5 * h * (old[X.WHEEL_SPEED] + x[X.WHEEL_SPEED])
+        return wheel, p[P.GEAR_RATIO] * (x[X.TWIST] + wheel - x[X.HOUSING_ANGLE])
     left = min(k, angles.shape[0] - 2)
     part += k - left
     return (
-        angles[left, 0] + part * (angles[left + 1, 0] - angles[left, 0]),
-        angles[left, 1] + part * (angles[left + 1, 1] - angles[left, 1]),
+        angles[left, WHEEL] + part * (angles[left + 1, WHEEL] - angles[left, WHEEL]),
+        angles[left, ROTOR] + part * (angles[left + 1, ROTOR] - angles[left, ROTOR]),
     )
 
 
@@ -117,13 +121,13 @@ def angles_at(angles, k, part, old, x, at, h, p):  # type: ignore[no-untyped-def
 def shaft_torque(x, f, p, acting):  # type: ignore[no-untyped-def]
     """Torque in N m that a state and its forces show on the wheel side; `acting` before the lag."""
     if p[P.KIND] != P.RIGID:
-        return p[P.SHAFT_STIFFNESS] * x[1] + p[P.SHAFT_DAMPING] * twist_rate(x, p) + f[0]
+        return p[P.SHAFT_STIFFNESS] * x[X.TWIST] + p[P.SHAFT_DAMPING] * twist_rate(x, p) + f[SHAFT]
     n = p[P.GEAR_RATIO]
-    speed = x[0] - x[7]
+    speed = x[X.ROTOR_SPEED] - x[X.HOUSING_SPEED]
     if p[P.LAG] > 0.0:
-        acting = x[5]
-    driving = acting - f[1] - p[P.DRAG] * speed - f[2] / n
+        acting = x[X.LAGGED]
+    driving = acting - f[LOSS] - p[P.DRAG] * speed - f[LOAD] / n
     direction = speed if abs(speed) > _STANDSTILL_RAD_S else 0.0
     driving -= friction_torque(direction, driving, friction_level(speed, p))
     rotor = driving / (p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / (n * n))
-    return p[P.VEHICLE_INERTIA] * rotor / n + f[2]
+    return p[P.VEHICLE_INERTIA] * rotor / n + f[LOAD]

@@ -15,66 +15,68 @@ import numpy.typing as npt
 
 from hil.core.compiled import compiled
 from hil.plant import _slots as P
+from hil.plant import _states as X
 
 Array = npt.NDArray[np.float64]
 
-ROTOR, TWIST, WHEEL, TYRE, VEHICLE, LAGGED, HOUSING_ANGLE, HOUSING = range(8)
-STATES = 8
+# Inputs
+TORQUE, SHAFT, LOSS, LOAD = range(4)
 INPUTS = 4
 _TERMS = 18  # of the series: at a norm of 0.5 the rest is below 1e-17, whatever the units
 
 
 def system(p: Array) -> tuple[Array, Array]:
     """A (8 x 8) and B (8 x 4) of the linear part of a packed model, SI units."""
-    a, b = np.zeros((STATES, STATES)), np.zeros((STATES, INPUTS))
+    a, b = np.zeros((X.LINEAR_STATES, X.LINEAR_STATES)), np.zeros((X.LINEAR_STATES, INPUTS))
     if p[P.KIND] == P.RIGID:
         _rigid(p, a, b)
     else:
         _chain(p, a, b)
     if p[P.LAG] > 0.0:
-        a[:, LAGGED] += b[:, 0]
-        b[:, 0] = 0.0
-        a[LAGGED, :] = 0.0
-        a[LAGGED, LAGGED], b[LAGGED, 0] = -1.0 / p[P.LAG], 1.0 / p[P.LAG]
+        a[:, X.LAGGED] += b[:, TORQUE]
+        b[:, TORQUE] = 0.0
+        a[X.LAGGED, :] = 0.0
+        a[X.LAGGED, X.LAGGED], b[X.LAGGED, TORQUE] = -1.0 / p[P.LAG], 1.0 / p[P.LAG]
     return a, b
 
 
 def _rigid(p: Array, a: Array, b: Array) -> None:
     n = p[P.GEAR_RATIO]
     inertia = p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / n**2
-    for state, share in ((ROTOR, 1.0), (WHEEL, 1.0 / n), (VEHICLE, 1.0 / n)):
-        a[state, ROTOR] = -share * p[P.DRAG] / inertia
+    for state, share in ((X.ROTOR_SPEED, 1.0), (X.WHEEL_SPEED, 1.0 / n), (X.VEHICLE_SPEED, 1.0 / n)):
+        a[state, X.ROTOR_SPEED] = -share * p[P.DRAG] / inertia
         b[state] = np.array([share, 0.0, -share, -share / n]) / inertia
 
 
 def _chain(p: Array, a: Array, b: Array) -> None:
     n = p[P.GEAR_RATIO]
-    slope = np.zeros(STATES)  # of the twist
-    slope[ROTOR], slope[HOUSING], slope[WHEEL] = 1.0 / n, 1.0 - 1.0 / n, -1.0
+    slope = np.zeros(X.LINEAR_STATES)  # of the twist
+    slope[X.ROTOR_SPEED], slope[X.HOUSING_SPEED], slope[X.WHEEL_SPEED] = 1.0 / n, 1.0 - 1.0 / n, -1.0
     shaft = p[P.SHAFT_DAMPING] * slope
-    shaft[TWIST] += p[P.SHAFT_STIFFNESS]
-    loss = np.zeros(STATES)
-    loss[ROTOR], loss[HOUSING] = p[P.DRAG], -p[P.DRAG]
-    a[TWIST] = slope
-    a[ROTOR] = (-loss - shaft / n) / p[P.MOTOR_INERTIA]
-    b[ROTOR] = np.array([1.0, -1.0 / n, -1.0, 0.0]) / p[P.MOTOR_INERTIA]
+    shaft[X.TWIST] += p[P.SHAFT_STIFFNESS]
+    loss = np.zeros(X.LINEAR_STATES)
+    loss[X.ROTOR_SPEED], loss[X.HOUSING_SPEED] = p[P.DRAG], -p[P.DRAG]
+    a[X.TWIST] = slope
+    a[X.ROTOR_SPEED] = (-loss - shaft / n) / p[P.MOTOR_INERTIA]
+    b[X.ROTOR_SPEED] = np.array([1.0, -1.0 / n, -1.0, 0.0]) / p[P.MOTOR_INERTIA]
     if p[P.HOUSING_INERTIA] > 0.0:
-        a[HOUSING_ANGLE, HOUSING] = 1.0
-        a[HOUSING] = (loss - (1.0 - 1.0 / n) * shaft) / p[P.HOUSING_INERTIA]
-        a[HOUSING, HOUSING_ANGLE] -= p[P.MOUNT_STIFFNESS] / p[P.HOUSING_INERTIA]
-        a[HOUSING, HOUSING] -= p[P.MOUNT_DAMPING] / p[P.HOUSING_INERTIA]
-        b[HOUSING] = np.array([-1.0, 1.0 / n - 1.0, 1.0, 0.0]) / p[P.HOUSING_INERTIA]
+        a[X.HOUSING_ANGLE, X.HOUSING_SPEED] = 1.0
+        a[X.HOUSING_SPEED] = (loss - (1.0 - 1.0 / n) * shaft) / p[P.HOUSING_INERTIA]
+        a[X.HOUSING_SPEED, X.HOUSING_ANGLE] -= p[P.MOUNT_STIFFNESS] / p[P.HOUSING_INERTIA]
+        a[X.HOUSING_SPEED, X.HOUSING_SPEED] -= p[P.MOUNT_DAMPING] / p[P.HOUSING_INERTIA]
+        b[X.HOUSING_SPEED] = np.array([-1.0, 1.0 / n - 1.0, 1.0, 0.0]) / p[P.HOUSING_INERTIA]
     if p[P.KIND] == P.TWO_INERTIA:
-        a[WHEEL] = a[VEHICLE] = shaft / p[P.VEHICLE_INERTIA]
-        b[WHEEL] = b[VEHICLE] = np.array([0.0, 1.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
+        a[X.WHEEL_SPEED] = a[X.VEHICLE_SPEED] = shaft / p[P.VEHICLE_INERTIA]
+        b[X.WHEEL_SPEED] = b[X.VEHICLE_SPEED] = np.array([0.0, 1.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
         return
-    road = np.zeros(STATES)
-    road[TYRE], road[WHEEL], road[VEHICLE] = p[P.TYRE_STIFFNESS], p[P.TYRE_DAMPING], -p[P.TYRE_DAMPING]
-    a[WHEEL] = (shaft - road) / p[P.WHEEL_INERTIA]
-    b[WHEEL] = np.array([0.0, 1.0, 0.0, 0.0]) / p[P.WHEEL_INERTIA]
-    a[TYRE, WHEEL], a[TYRE, VEHICLE] = 1.0, -1.0
-    a[VEHICLE] = road / p[P.VEHICLE_INERTIA]
-    b[VEHICLE] = np.array([0.0, 0.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
+    road = np.zeros(X.LINEAR_STATES)
+    road[X.TYRE_TWIST] = p[P.TYRE_STIFFNESS]
+    road[X.WHEEL_SPEED], road[X.VEHICLE_SPEED] = p[P.TYRE_DAMPING], -p[P.TYRE_DAMPING]
+    a[X.WHEEL_SPEED] = (shaft - road) / p[P.WHEEL_INERTIA]
+    b[X.WHEEL_SPEED] = np.array([0.0, 1.0, 0.0, 0.0]) / p[P.WHEEL_INERTIA]
+    a[X.TYRE_TWIST, X.WHEEL_SPEED], a[X.TYRE_TWIST, X.VEHICLE_SPEED] = 1.0, -1.0
+    a[X.VEHICLE_SPEED] = road / p[P.VEHICLE_INERTIA]
+    b[X.VEHICLE_SPEED] = np.array([0.0, 0.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
 
 
 @compiled
@@ -101,7 +103,7 @@ def held_step(a, b, duration):  # type: ignore[no-untyped-def]
     part, doublings = duration, 0
     while 0.5 < norm < math.inf:
         part, norm, doublings = 0.5 * part, 0.5 * norm, doublings + 1
-    one, z = np.eye(STATES), part * a
+    one, z = np.eye(X.LINEAR_STATES), part * a
     # exp(z), phi_1 = (exp(z) - 1)/z and phi_2 = (phi_1 - 1)/z
     phi_2 = one.copy()
     for k in range(_TERMS, 2, -1):
@@ -127,15 +129,15 @@ def step_matrices(p: Array, dt: float, substeps: int) -> tuple[Array, Array, Arr
     h = dt / substeps
     transition, held, rising = held_step(a, b, h)
     late = p[P.TORQUE_DELAY] - np.floor(p[P.TORQUE_DELAY] / dt + 1e-9) * dt
-    torque = np.zeros((substeps, 2, STATES))
+    torque = np.zeros((substeps, 2, X.LINEAR_STATES))
     for index in range(substeps):
         before = float(np.clip(late - index * h, 0.0, h))
         if before >= h - 1e-12:
-            torque[index, 0] = held[:, 0]
+            torque[index, 0] = held[:, TORQUE]
         elif before <= 1e-12:
-            torque[index, 1] = held[:, 0]
+            torque[index, 1] = held[:, TORQUE]
         else:
             rest, new, _ = held_step(a, b, h - before)
-            torque[index, 0] = rest @ held_step(a, b, before)[1][:, 0]
-            torque[index, 1] = new[:, 0]
-    return transition.T.copy(), torque, held[:, 1:].T.copy(), rising[:, 1:].T.copy()
+            torque[index, 0] = rest @ held_step(a, b, before)[1][:, TORQUE]
+            torque[index, 1] = new[:, TORQUE]
+    return transition.T.copy(), torque, held[:, SHAFT:].T.copy(), rising[:, SHAFT:].T.copy()

@@ -14,13 +14,24 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 from hil.core.compiled import compiled, inlined
 from hil.plant import _equations as E
 from hil.plant import _slots as P
+from hil.plant import _states as X
 from hil.plant._backlash import moved_seat
 from hil.plant._friction import has_friction
+from hil.plant._tuples import plus, put
 
 # Columns of the kernel's output
 OUT_MOTOR_SPEED, OUT_WHEEL_SPEED, OUT_SHAFT_TORQUE, OUT_MOTOR_TORQUE, OUT_VEHICLE_SPEED, OUT_LOAD = range(6)
 OUTPUT_COLUMNS = 6
-_PARAMETERS = len(P.NAMES)
+# Columns of a start
+(
+    START_MOTOR_SPEED,
+    START_WHEEL_SPEED,
+    START_SHAFT_TORQUE,
+    START_MOTOR_TORQUE,
+    START_WHEEL_ANGLE,
+) = range(5)
+_PARAMETERS = len(P.SLOTS)
+_STATES = X.ALL_STATES
 
 
 @inlined
@@ -33,33 +44,22 @@ def as_tuple(vector):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _moved(x, h, k):  # type: ignore[no-untyped-def]
-    return (
-        x[0] + h * k[0],
-        x[1] + h * k[1],
-        x[2] + h * k[2],
-        x[3] + h * k[3],
-        x[4] + h * k[4],
-        x[5] + h * k[5],
-        x[6] + h * k[6],
-        x[7] + h * k[7],
-        x[8] + h * k[8],
-        x[9] + h * k[9],
-        x[10] + h * k[10],
-    )
+def as_state(array):  # type: ignore[no-untyped-def]
+    """The state that an array holds, by value."""
+    return to_fixed_tuple(array, _STATES)
 
 
 @inlined
 def _step(x, p, torque, coupled, load, h, direction):  # type: ignore[no-untyped-def]
     """One Runge-Kutta step of `h` seconds; dry friction keeps its direction over it."""
     k1 = E.derivative(x, p, torque, coupled, load, direction)
-    k2 = E.derivative(_moved(x, 0.5 * h, k1), p, torque, coupled, load, direction)
-    k3 = E.derivative(_moved(x, 0.5 * h, k2), p, torque, coupled, load, direction)
-    k4 = E.derivative(_moved(x, h, k3), p, torque, coupled, load, direction)
-    y = _moved(_moved(_moved(_moved(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
+    k2 = E.derivative(plus(x, 0.5 * h, k1), p, torque, coupled, load, direction)
+    k3 = E.derivative(plus(x, 0.5 * h, k2), p, torque, coupled, load, direction)
+    k4 = E.derivative(plus(x, h, k3), p, torque, coupled, load, direction)
+    y = plus(plus(plus(plus(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
     if p[P.HALF_GAP] > 0.0 and p[P.KIND] != P.RIGID:
-        seat = moved_seat(x[E.SEAT], x[E.TWIST], y[E.TWIST], h, p)
-        y = (y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], y[8], y[9], seat)
+        seat = moved_seat(x[X.SEAT], x[X.TWIST], y[X.TWIST], h, p)
+        y = put(y, X.SEAT, seat)
     return y
 
 
@@ -76,7 +76,7 @@ def _steps(x, p, torque, coupled, load, duration, count):  # type: ignore[no-unt
         y = _step(x, p, torque, coupled, load, h, before)
         after = E.relative_speed(y)
         if cut:
-            x = (y[E.HOUSING_SPEED], y[1], y[2], y[3], y[4], y[5], y[6], y[7], y[8], y[9], y[10])
+            x = put(y, X.ROTOR_SPEED, y[X.HOUSING_SPEED])
             h, cut = whole - h, False
         elif before * after < 0.0 and has_friction(p):
             h, cut = h * before / (before - after), True
@@ -123,21 +123,21 @@ def sample(x, p, slewed, old, new, late, dt, coupled, load, longest_step):  # ty
 @compiled
 def outputs(x, p, slewed, coupled, load, row):  # type: ignore[no-untyped-def]
     """Fill `row` with the measurable quantities of a state."""
-    acting = x[E.LAGGED] if p[P.LAG] > 0.0 else slewed
+    acting = x[X.LAGGED] if p[P.LAG] > 0.0 else slewed
     row[OUT_MOTOR_SPEED] = E.relative_speed(x)
-    row[OUT_WHEEL_SPEED] = x[E.WHEEL_SPEED]
+    row[OUT_WHEEL_SPEED] = x[X.WHEEL_SPEED]
     if p[P.KIND] == P.RIGID:
-        outside = E.running_resistance(x[E.WHEEL_SPEED], p) if coupled else load
+        outside = E.running_resistance(x[X.WHEEL_SPEED], p) if coupled else load
         wheel = E.rigid_acceleration(x, p, acting, outside, E.relative_speed(x)) / p[P.GEAR_RATIO]
         row[OUT_SHAFT_TORQUE] = p[P.VEHICLE_INERTIA] * wheel + outside
     else:
         row[OUT_SHAFT_TORQUE] = E.shaft_torque(x, p)
     row[OUT_MOTOR_TORQUE] = acting
-    row[OUT_VEHICLE_SPEED] = x[E.VEHICLE_SPEED]
+    row[OUT_VEHICLE_SPEED] = x[X.VEHICLE_SPEED]
     if coupled and p[P.KIND] == P.THREE_INERTIA:
         row[OUT_LOAD] = E.tyre_torque(x, p)
     elif coupled:
-        row[OUT_LOAD] = E.running_resistance(x[E.WHEEL_SPEED], p)
+        row[OUT_LOAD] = E.running_resistance(x[X.WHEEL_SPEED], p)
     else:
         row[OUT_LOAD] = load
 
@@ -155,38 +155,37 @@ def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel
         tyre = shaft_torque / p[P.TYRE_STIFFNESS]
     if p[P.KIND] == P.RIGID:
         wheel_speed = motor_speed / p[P.GEAR_RATIO]
-    return (
-        motor_speed,
-        twist,
-        wheel_speed,
-        tyre,
-        wheel_speed,
-        wheel_angle,
-        motor_torque,
-        0.0,
-        0.0,
-        0.0,
-        seat,
-    )
+    x = put(put(X.AT_REST, X.ROTOR_SPEED, motor_speed), X.TWIST, twist)
+    x = put(put(x, X.WHEEL_SPEED, wheel_speed), X.TYRE_TWIST, tyre)
+    x = put(put(x, X.VEHICLE_SPEED, wheel_speed), X.WHEEL_ANGLE, wheel_angle)
+    return put(put(x, X.LAGGED, motor_torque), X.SEAT, seat)
 
 
 @compiled
 def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untyped-def]
     """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS); vehicle coupled.
 
-    `start` is [motor speed, wheel speed, shaft torque, motor torque that acted before, wheel angle].
+    `start` has the columns START_…; its motor torque has acted before.
     """
     p = as_tuple(vector)
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     late = max(0.0, p[P.TORQUE_DELAY] - whole * dt)
     if late < 1e-9 * dt:
         late = 0.0
-    slewed = shaped(start[3], p)
-    x = initial_state(p, start[0], start[1], start[2], slewed, start[4])
+    before = start[START_MOTOR_TORQUE]
+    slewed = shaped(before, p)
+    x = initial_state(
+        p,
+        start[START_MOTOR_SPEED],
+        start[START_WHEEL_SPEED],
+        start[START_SHAFT_TORQUE],
+        slewed,
+        start[START_WHEEL_ANGLE],
+    )
     for k in range(torque.shape[0]):
         outputs(x, p, slewed, True, 0.0, out[k])
-        new = torque[k - whole] if k >= whole else start[3]
-        old = torque[k - whole - 1] if k > whole else start[3]
+        new = torque[k - whole] if k >= whole else before
+        old = torque[k - whole - 1] if k > whole else before
         x, slewed = sample(x, p, slewed, old, new, late, dt, True, 0.0, longest_step)
 
 

@@ -15,21 +15,25 @@ from numba import prange
 from hil.core.compiled import compiled, compiled_parallel, inlined
 from hil.plant import _held_forces as F
 from hil.plant import _slots as P
+from hil.plant import _states as X
+from hil.plant._equations import relative_speed
 from hil.plant._friction import friction_level, has_friction, mean_friction
-from hil.plant._held_linear import STATES, step_matrices
+from hil.plant._held_linear import step_matrices
 from hil.plant._kernel import as_tuple
+from hil.plant._sensors import COLUMNS, GAIN, record
+from hil.plant._tuples import plus_product, plus_row, put
 
 Array = npt.NDArray[np.float64]
 
 CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
-GAIN, OFFSET, DELAY = range(3)
+SPEED, WHEEL, SHAFT = range(3)  # of the channels, and of a start
 
 _SEATED_NM = 2.0  # a first shaft torque that surely is in contact
 
 
 def ideal_sensors(sets: int) -> Array:
-    """Gain 1, offset 0, delay 0 s for each of the three channels: sets x 3 x 3."""
-    sensors = np.zeros((sets, len(CHANNELS), 3))
+    """Sensors that read the truth, for each of the three channels: sets x 3 x (gain, offset, delay, step)."""
+    sensors = np.zeros((sets, len(CHANNELS), COLUMNS))
     sensors[:, :, GAIN] = 1.0
     return sensors
 
@@ -49,7 +53,7 @@ def simulate_many(
         parameters: sets x slots, from `pack`.
         torque_nm: shape (n,), held for `dt` seconds each; the first value has acted since long before.
         starts: sets x 3: motor speed, wheel speed (rad/s), shaft torque (N m).
-        sensors: sets x 3 channels x (gain, offset, delay in s).
+        sensors: sets x 3 channels x (gain, offset, delay in s, step), as from `ideal_sensors`.
         angles: n x 2, wheel and rotor angle in rad that ripples follow (as measured); when left out, the
             simulated ones.
 
@@ -59,14 +63,14 @@ def simulate_many(
     sets = len(parameters)
     substeps = np.array([_substeps(p) for p in parameters])
     most = int(substeps.max())
-    transition = np.zeros((sets, STATES, STATES))
-    torque = np.zeros((sets, 2 * most, STATES))
-    held, rising = np.zeros((sets, 3, STATES)), np.zeros((sets, 3, STATES))
+    transition = np.zeros((sets, X.LINEAR_STATES, X.LINEAR_STATES))
+    torque = np.zeros((sets, 2 * most, X.LINEAR_STATES))
+    held, rising = np.zeros((sets, 3, X.LINEAR_STATES)), np.zeros((sets, 3, X.LINEAR_STATES))
     for index, p in enumerate(parameters):
         used = int(substeps[index])
-        matrices = _matrices(p[_LINEAR].tobytes(), dt, used)
+        matrices = _matrices(p[P.LINEAR].tobytes(), dt, used)
         transition[index], held[index], rising[index] = matrices[0], matrices[2], matrices[3]
-        torque[index, : 2 * used] = matrices[1].reshape(-1, STATES)
+        torque[index, : 2 * used] = matrices[1].reshape(-1, X.LINEAR_STATES)
     out = np.empty((sets, len(torque_nm) // block, len(CHANNELS)))
     _run_all(
         np.ascontiguousarray(torque_nm, dtype=float),
@@ -83,31 +87,13 @@ def simulate_many(
     return out
 
 
-#: Slots on which the step matrices depend.
-_LINEAR = [
-    P.KIND,
-    P.MOTOR_INERTIA,
-    P.GEAR_RATIO,
-    P.SHAFT_STIFFNESS,
-    P.SHAFT_DAMPING,
-    P.WHEEL_INERTIA,
-    P.TYRE_STIFFNESS,
-    P.TYRE_DAMPING,
-    P.VEHICLE_INERTIA,
-    P.TORQUE_DELAY,
-    P.LAG,
-    P.DRAG,
-    P.HOUSING_INERTIA,
-    P.MOUNT_STIFFNESS,
-    P.MOUNT_DAMPING,
-]
 _ABRUPT = [P.HALF_GAP, P.HYSTERESIS_STIFFNESS]
 
 
 @lru_cache(maxsize=512)
 def _matrices(linear: bytes, dt: float, substeps: int) -> tuple[Array, Array, Array, Array]:
-    p = np.zeros(len(P.NAMES))
-    p[_LINEAR] = np.frombuffer(linear)
+    p = np.zeros(len(P.SLOTS))
+    p[P.LINEAR] = np.frombuffer(linear)
     return step_matrices(p, dt, substeps)
 
 
@@ -154,48 +140,28 @@ def _shown(acting, ends, dt, whole, p, out):  # type: ignore[no-untyped-def]
 @inlined
 def _first_seat(p, start):  # type: ignore[no-untyped-def]
     """A small torque may lie anywhere in the gap: let it come smoothly to one side."""
-    return p[P.HALF_GAP] * min(max(start[2] / _SEATED_NM, -1.0), 1.0)
+    return p[P.HALF_GAP] * min(max(start[SHAFT] / _SEATED_NM, -1.0), 1.0)
 
 
 @compiled
 def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
+    x = put(put(X.LINEAR_AT_REST, X.LAGGED, acting), X.ROTOR_SPEED, start[SPEED])
     if p[P.KIND] == P.RIGID:
-        wheel = start[0] / p[P.GEAR_RATIO]
-        return (start[0], 0.0, wheel, 0.0, wheel, acting, 0.0, 0.0)
-    twist = start[2] / p[P.SHAFT_STIFFNESS]
+        wheel = start[SPEED] / p[P.GEAR_RATIO]
+        return put(put(x, X.WHEEL_SPEED, wheel), X.VEHICLE_SPEED, wheel)
+    twist = start[SHAFT] / p[P.SHAFT_STIFFNESS]
     twist += _first_seat(p, start)
-    tyre = start[2] / p[P.TYRE_STIFFNESS] if p[P.KIND] == P.THREE_INERTIA else 0.0
-    return (start[0], twist, start[1], tyre, start[1], acting, 0.0, 0.0)
-
-
-@inlined
-def _plus(y, matrix, row, s):  # type: ignore[no-untyped-def]
-    """State y + s·(row of the matrix). States are tuples: the compiler keeps them in registers."""
-    return (
-        y[0] + s * matrix[row, 0],
-        y[1] + s * matrix[row, 1],
-        y[2] + s * matrix[row, 2],
-        y[3] + s * matrix[row, 3],
-        y[4] + s * matrix[row, 4],
-        y[5] + s * matrix[row, 5],
-        y[6] + s * matrix[row, 6],
-        y[7] + s * matrix[row, 7],
-    )
+    tyre = start[SHAFT] / p[P.TYRE_STIFFNESS] if p[P.KIND] == P.THREE_INERTIA else 0.0
+    x = put(put(x, X.TWIST, twist), X.TYRE_TWIST, tyre)
+    return put(put(x, X.WHEEL_SPEED, start[WHEEL]), X.VEHICLE_SPEED, start[WHEEL])
 
 
 @inlined
 def _moved(x, sub, old, new, column, transition):  # type: ignore[no-untyped-def]
     """State after substep `sub` from `x` without any nonlinear force."""
-    y = _plus((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), column, 2 * sub, old)
-    y = _plus(y, column, 2 * sub + 1, new)
-    y = _plus(y, transition, 0, x[0])
-    y = _plus(y, transition, 1, x[1])
-    y = _plus(y, transition, 2, x[2])
-    y = _plus(y, transition, 3, x[3])
-    y = _plus(y, transition, 4, x[4])
-    y = _plus(y, transition, 5, x[5])
-    y = _plus(y, transition, 6, x[6])
-    return _plus(y, transition, 7, x[7])
+    y = plus_row(X.LINEAR_AT_REST, old, column, 2 * sub)
+    y = plus_row(y, new, column, 2 * sub + 1)
+    return plus_product(y, x, transition)
 
 
 @compiled
@@ -204,9 +170,9 @@ def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type
     for k in range(acting.shape[0]):
         new = acting[max(k - whole, 0)]
         old = acting[max(k - whole - 1, 0)]
-        fine[k, 0] = x[0] - x[7]
-        fine[k, 1] = x[2]
-        fine[k, 2] = F.shaft_torque(x, (0.0, 0.0, 0.0), p, shown[k])
+        fine[k, SPEED] = relative_speed(x)
+        fine[k, WHEEL] = x[X.WHEEL_SPEED]
+        fine[k, SHAFT] = F.shaft_torque(x, (0.0, 0.0, 0.0), p, shown[k])
         for sub in range(substeps):
             x = _moved(x, sub, old, new, column, transition)
 
@@ -216,37 +182,39 @@ def _run_forced(drive, whole, p, x, seat, h, substeps, column, transition, held,
     acting, shown = drive
     varies, dry, turns = F.varies(p), has_friction(p), F.turns(p)
     varies = varies or p[P.STRIBECK] != 0.0  # with the speed
-    gain = held[1, 7] - held[1, 0]  # of the relative speed: what a loss of 1 N m takes off it in a step
+    gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
     memory, friction = (0.0, seat), 0.0
-    at = (0.0, p[P.GEAR_RATIO] * x[1])
+    at = (0.0, p[P.GEAR_RATIO] * x[X.TWIST])
     if angles.shape[0] > 0:
-        at = (angles[0, 0], angles[0, 1])
+        at = (angles[0, F.WHEEL], angles[0, F.ROTOR])
     f = F.forces(x, memory, at, p)
     for k in range(acting.shape[0]):
         new = acting[max(k - whole, 0)]
         old = acting[max(k - whole - 1, 0)]
-        fine[k, 0] = x[0] - x[7]
-        fine[k, 1] = x[2]
-        fine[k, 2] = F.shaft_torque(x, f, p, shown[k])
+        fine[k, SPEED] = relative_speed(x)
+        fine[k, WHEEL] = x[X.WHEEL_SPEED]
+        fine[k, SHAFT] = F.shaft_torque(x, f, p, shown[k])
         for sub in range(substeps):
             y = _moved(x, sub, old, new, column, transition)
-            y = _plus(_plus(_plus(y, held, 0, f[0]), held, 1, f[1]), held, 2, f[2])
-            before = x[0] - x[7]
+            y = plus_row(y, f[F.SHAFT], held, F.SHAFT)
+            y = plus_row(plus_row(y, f[F.LOSS], held, F.LOSS), f[F.LOAD], held, F.LOAD)
+            before = relative_speed(x)
             if dry:
                 level = friction_level(before, p)
-                friction = mean_friction(before, y[0] - y[7], gain, level)
-                y = _plus(y, held, 1, friction)
+                friction = mean_friction(before, relative_speed(y), gain, level)
+                y = plus_row(y, friction, held, F.LOSS)
             if varies:
                 part = (sub + 1.0) / substeps
                 later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
                 g = F.forces(y, F.remembered(memory, x, y, h, p), later, p)
-                middle = 0.5 * (before + y[0] - y[7])
-                y = _plus(_plus(y, rising, 0, g[0] - f[0]), rising, 1, g[1] - f[1])
-                y = _plus(y, rising, 2, g[2] - f[2])
+                middle = 0.5 * (before + relative_speed(y))
+                y = plus_row(y, g[F.SHAFT] - f[F.SHAFT], rising, F.SHAFT)
+                y = plus_row(y, g[F.LOSS] - f[F.LOSS], rising, F.LOSS)
+                y = plus_row(y, g[F.LOAD] - f[F.LOAD], rising, F.LOAD)
                 if dry:
                     level = friction_level(middle, p)
-                    free = y[0] - y[7] + gain * friction
-                    y = _plus(y, held, 1, mean_friction(before, free, gain, level) - friction)
+                    free = relative_speed(y) + gain * friction
+                    y = plus_row(y, mean_friction(before, free, gain, level) - friction, held, F.LOSS)
                 if turns:
                     at = F.angles_at(angles, k, part, x, y, at, h, p)
                 memory = F.remembered(memory, x, y, h, p)
@@ -271,23 +239,6 @@ def _run(torque, dt, vector, start, substeps, transition, column, held, rising, 
         _run_linear(drive, whole, p, x, substeps, column, transition, fine)
 
 
-@compiled
-def _averaged(fine, dt, sensor, block, out):  # type: ignore[no-untyped-def]
-    """What the sensors read, averaged over blocks."""
-    n = fine.shape[0]
-    for c in range(3):
-        late = sensor[c, DELAY] / dt
-        whole = math.floor(late)
-        part = late - whole
-        for b in range(out.shape[0]):
-            total = 0.0
-            for k in range(b * block, (b + 1) * block):
-                near = min(max(k - whole, 0), n - 1)
-                far = min(max(k - whole - 1, 0), n - 1)
-                total += (1.0 - part) * fine[near, c] + part * fine[far, c]
-            out[b, c] = sensor[c, GAIN] * total / block + sensor[c, OFFSET]
-
-
 @compiled_parallel
 def _run_all(torque, dt, parameters, starts, sensors, block, substeps, matrices, angles, out):  # type: ignore[no-untyped-def]
     transition, column, held, rising = matrices
@@ -306,4 +257,5 @@ def _run_all(torque, dt, parameters, starts, sensors, block, substeps, matrices,
             angles,
             fine,
         )
-        _averaged(fine, dt, sensors[s], block, out[s])
+        for channel in range(fine.shape[1]):
+            record(fine[:, channel], sensors[s, channel], dt, block, out[s, :, channel])

@@ -1,50 +1,127 @@
-"""Effects between the truth and the recorded channel: skew, gain, offset, quantization, in that order."""
+"""Effects between the truth and the recorded channel: one law for replay, for many models and for the bench.
+
+A sensor reads gain · truth(t - delay) + offset + noise, rounded to its step. A negative delay makes a
+recorded channel early; the bench, whose control acts on what it reads, cannot give that.
+"""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.compiled import compiled, inlined
+from hil.core.errors import BadInputError
 from hil.core.model import Model
+from hil.plant._table import Table
 
 Array = npt.NDArray[np.float64]
+
+SENSOR = Table()
+_column = SENSOR.place
+
+GAIN = _column("gain", "1", "of the reading over the truth")
+OFFSET = _column("offset", "channel's", "added after the gain")
+DELAY = _column("delay_s", "s", "how late the channel is")
+STEP = _column("step", "channel's", "distance between readings; 0: not rounded")
+COLUMNS = len(SENSOR)
+
+_EFFECTS = {
+    "sensor_gain": (GAIN, "gain"),
+    "sensor_offset": (OFFSET, "offset"),
+    "channel_skew": (DELAY, "delay_s"),
+    "sensor_quantization": (STEP, "step"),
+}
+
+
+@inlined
+def samples_late(sensor, dt):  # type: ignore[no-untyped-def]
+    """Whole samples that a reading is late (early: negative), and the part of one that remains."""
+    late = sensor[DELAY] / dt
+    whole = math.floor(late)
+    return whole, late - whole
+
+
+@inlined
+def between(newer, older, part):  # type: ignore[no-untyped-def]
+    """The truth a part of a sample after `older` became old."""
+    return newer + part * (older - newer)
+
+
+@inlined
+def reading(truth, noise, sensor):  # type: ignore[no-untyped-def]
+    """What a sensor makes of the truth at its instant: scaled, shifted, noisy, rounded."""
+    value = truth * sensor[GAIN] + sensor[OFFSET] + noise
+    if sensor[STEP] > 0.0:
+        value = round(value / sensor[STEP]) * sensor[STEP]
+    return value
+
+
+@compiled
+def record(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
+    """Means over `block` samples of what a sensor reads of `truth`, which holds its ends beyond them."""
+    last = truth.shape[0] - 1
+    whole, part = samples_late(sensor, dt)
+    for b in range(out.shape[0]):
+        total = 0.0
+        for k in range(b * block, (b + 1) * block):
+            newer = truth[min(max(k - whole, 0), last)]
+            older = truth[min(max(k - whole - 1, 0), last)]
+            total += reading(between(newer, older, part), 0.0, sensor)
+        out[b] = total / block
+
+
+def sensor_of(model: Model, channel: str) -> Array:
+    """The row of a channel's sensor: its effects in a model together.
+
+    Raises:
+        BadInputError: the channel is rounded twice.
+    """
+    row = np.zeros(COLUMNS)
+    row[GAIN] = 1.0
+    for use in model.effects:
+        if use.id not in _EFFECTS or use.values.get("channel") != channel:
+            continue
+        column, parameter = _EFFECTS[use.id]
+        value = float(use.values[parameter])
+        if column == GAIN:
+            row[GAIN] *= value
+        elif column == STEP and row[STEP] > 0.0:
+            raise BadInputError(
+                f"effect '{use.id}' stands twice for '{channel}'",
+                fix="keep one of the two [[effects]] tables",
+            )
+        else:
+            row[column] += value
+    return row
+
+
+def bench_sensor(model: Model, channel: str, share: float = 1.0) -> Array:
+    """The row of a sensor on the bench that sees `share` of a channel: 0.5 where two sides add up to it.
+
+    Raises:
+        BadInputError: the channel is early, or rounded twice.
+    """
+    row = sensor_of(model, channel)
+    if row[DELAY] < 0.0:
+        raise BadInputError(
+            f"channel_skew: '{channel}' is {-row[DELAY] * 1e3:g} ms early (delay_s = {row[DELAY]:g}), but a "
+            "bench's control acts on what is read: it cannot read what has not happened",
+            where="simulated bench, its model",
+            fix="give a delay_s of 0 or more, or compare with hil simulate, where a channel may be early",
+        )
+    row[[OFFSET, STEP]] *= share
+    return row
 
 
 def measured(model: Model, channels: dict[str, Array], dt: float) -> dict[str, Array]:
     """The channels as the model's sensors would record them, sampled every `dt` seconds."""
     seen = dict(channels)
-    for kind in ("channel_skew", "sensor_gain", "sensor_offset", "sensor_quantization"):
-        for use in model.effects:
-            channel = str(use.values.get("channel", ""))
-            if use.id == kind and channel in seen:
-                seen[channel] = _READS[kind](seen[channel], use.values, dt)
+    ideal = sensor_of(model.with_effects(), "")
+    for name, truth in channels.items():
+        row = sensor_of(model, name)
+        if np.any(row != ideal):
+            seen[name] = np.empty(len(truth))
+            record(np.ascontiguousarray(truth), row, dt, 1, seen[name])
     return seen
-
-
-def _skewed(values: Array, effect: dict[str, float | str], dt: float) -> Array:
-    at = np.arange(len(values), dtype=float)
-    return np.interp(at - float(effect["delay_s"]) / dt, at, values)
-
-
-def _scaled(values: Array, effect: dict[str, float | str], dt: float) -> Array:
-    del dt
-    return values * float(effect["gain"])
-
-
-def _shifted(values: Array, effect: dict[str, float | str], dt: float) -> Array:
-    del dt
-    return values + float(effect["offset"])
-
-
-def _rounded(values: Array, effect: dict[str, float | str], dt: float) -> Array:
-    del dt
-    step = float(effect["step"])
-    return np.round(values / step) * step
-
-
-_READS = {
-    "channel_skew": _skewed,
-    "sensor_gain": _scaled,
-    "sensor_offset": _shifted,
-    "sensor_quantization": _rounded,
-}

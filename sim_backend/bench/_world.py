@@ -12,7 +12,7 @@ from hil.core.dbc import read_dbc
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block, joined
 from hil.core.signals import FrameLayout
-from hil.plant import _equations, _slots
+from hil.plant import _slots, _states, bench_sensor
 from hil.plant.closed_loop import drive as drive
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
@@ -27,12 +27,12 @@ TICK_S = 0.001
 _NOISE_BLOCK = 1000
 _LARGEST_BATCH = 4096
 _SYNC = FrameLayout("SYNC", 0x80, 0, {})
-_SENSED = (
-    "motor_speed_rad_s",
-    "wheel_speed_rad_s",
-    "wheel_speed_rad_s",
-    "shaft_torque_nm",
-    "shaft_torque_nm",
+_SENSED = (  # channel, and each side's share of it
+    ("motor_speed_rad_s", 1.0),
+    ("wheel_speed_rad_s", 1.0),
+    ("wheel_speed_rad_s", 1.0),
+    ("shaft_torque_nm", 0.5),
+    ("shaft_torque_nm", 0.5),
 )
 
 
@@ -107,7 +107,7 @@ class SimulatedBench:
 
     def _make_state(self) -> None:
         p = self._parameters
-        self._x = np.zeros(_equations.STATES)
+        self._x = np.zeros(_states.ALL_STATES)
         self._scalars = np.zeros(T.SCALARS)
         self._scalars[T.RADIUS] = self.settings.wheel_radius_m
         three = p[_slots.KIND] == _slots.THREE_INERTIA
@@ -116,29 +116,14 @@ class SimulatedBench:
         self._drives = np.zeros((2, drive.COLUMNS))
         self._past = np.zeros((T.SENSORS, T.HISTORY))
         self._status = np.zeros(2)
-        self._sensors = np.zeros((T.SENSORS, 4))
-        self._sensors[:, T.SENSOR_GAIN] = 1.0
-        for use in self.settings.model.effects:
-            for sensor, channel in enumerate(_SENSED):
-                if use.values.get("channel") == channel:
-                    self._apply_sensor_effect(sensor, use.id, use.values)
+        self._sensors = np.array(
+            [bench_sensor(self.settings.model, channel, share) for channel, share in _SENSED]
+        )
         noise = self.settings.noise
         self._noise_scale = np.array(
             [noise.motor_speed_rad_s, *[noise.wheel_speed_rad_s] * 2, *[noise.shaft_torque_nm] * 2]
         )
         self._noise = np.zeros((_NOISE_BLOCK, T.SENSORS + 6))
-
-    def _apply_sensor_effect(self, sensor: int, effect: str, values: dict[str, float | str]) -> None:
-        row = self._sensors[sensor]
-        sides = 2.0 if _SENSED[sensor] == "shaft_torque_nm" else 1.0  # each side reads half of the sum
-        if effect == "sensor_gain":
-            row[T.SENSOR_GAIN] *= float(values["gain"])
-        elif effect == "sensor_offset":
-            row[T.SENSOR_OFFSET] += float(values["offset"]) / sides
-        elif effect == "sensor_quantization":
-            row[T.SENSOR_STEP] = float(values["step"]) / sides
-        elif effect == "channel_skew":
-            row[T.SENSOR_DELAY] = max(0.0, float(values["delay_s"]))
 
     def _make_nodes(self) -> None:
         s = self.settings

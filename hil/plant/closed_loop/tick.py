@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 
 from hil.core.compiled import compiled
-from hil.plant import _equations as E
 from hil.plant import _kernel as K
 from hil.plant import _slots as P
+from hil.plant import _states as X
+from hil.plant._sensors import DELAY, GAIN, OFFSET, STEP, between, reading, samples_late
 from hil.plant.closed_loop import drive as D
 from hil.plant.controller import memory as M
 from hil.plant.controller.control import control
@@ -37,7 +38,7 @@ from hil.plant.controller.control import control
 ) = range(20)
 COLUMNS = 20
 SENSORS = 5  # motor speed, wheel left, wheel right, shaft left, shaft right
-SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = range(4)
+SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = GAIN, OFFSET, STEP, DELAY
 
 # Scalars of the world
 SLEWED, WAS_COUPLED, SLIP, RADIUS, V_HAT, LAST_TORQUE, INITIAL_SPEED, DRIVE_INERTIA = range(8)
@@ -47,19 +48,14 @@ HISTORY = 2048
 
 @compiled
 def _sense(value, noise, sensor, past, k, dt):  # type: ignore[no-untyped-def]
-    """A sensor's reading: late, scaled, shifted, noisy, rounded."""
+    """A sensor's reading from the ring of what it saw; never early, and late no longer than the ring."""
     past[k % HISTORY] = value
-    late = min(sensor[SENSOR_DELAY] / dt, HISTORY - 2.0)
-    if late > 0.0:
-        whole = int(late)
-        part = late - whole
-        newer = past[max(k - whole, 0) % HISTORY]
-        older = past[max(k - whole - 1, 0) % HISTORY]
-        value = newer + part * (older - newer)
-    value = value * sensor[SENSOR_GAIN] + sensor[SENSOR_OFFSET] + noise
-    if sensor[SENSOR_STEP] > 0.0:
-        value = round(value / sensor[SENSOR_STEP]) * sensor[SENSOR_STEP]
-    return value
+    whole, part = samples_late(sensor, dt)
+    if whole > HISTORY - 2:
+        whole, part = HISTORY - 2, 0.0
+    newer = past[max(k - whole, 0) % HISTORY]
+    older = past[max(k - whole - 1, 0) % HISTORY]
+    return reading(between(newer, older, part), noise, sensor)
 
 
 @compiled
@@ -67,14 +63,14 @@ def _couple(x, drives, w):  # type: ignore[no-untyped-def]
     """Whether both drives simulate the vehicle; at the start the vehicle takes the wheel's speed."""
     coupled = drives[0, D.MODE] == D.VEHICLE and drives[1, D.MODE] == D.VEHICLE
     if coupled and w[WAS_COUPLED] == 0.0:
-        speed = x[E.WHEEL_SPEED]
+        speed = x[X.WHEEL_SPEED]
         wanted = w[INITIAL_SPEED] / w[RADIUS]
         if abs(wanted - speed) < 1.0:
             speed = wanted
-        x[E.VEHICLE_SPEED] = speed
+        x[X.VEHICLE_SPEED] = speed
     for side in range(2):
         if drives[side, D.MODE] != D.SPEED:
-            drives[side, D.RAMPED_SPEED] = x[E.WHEEL_SPEED]
+            drives[side, D.RAMPED_SPEED] = x[X.WHEEL_SPEED]
             drives[side, D.INTEGRATOR] = 0.0
     w[WAS_COUPLED] = 1.0 if coupled else 0.0
     return coupled
@@ -90,10 +86,10 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
     b, a, z, gains, states = fir
     dt = gains[M.SAMPLE_TIME]
     coupled = _couple(x, drives, w)
-    state = (x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8], x[9], x[10])
+    state = K.as_state(x)
     loads = 0.0
     for side in range(2):
-        drive_load = D.load(drives[side], x[E.WHEEL_SPEED], 0.5 * w[DRIVE_INERTIA], dt)
+        drive_load = D.load(drives[side], x[X.WHEEL_SPEED], 0.5 * w[DRIVE_INERTIA], dt)
         row[LOAD_LEFT + side] = drive_load
         loads += drive_load
     truth = noise[SENSORS:]  # scratch room behind the noise
@@ -110,7 +106,7 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
         )
     # V̂ reaches the RMCU in the dyno controller's frame, one sample late and with that frame's resolution.
     v_hat = w[V_HAT]
-    w[V_HAT] = round((1.0 - w[SLIP]) * w[RADIUS] * x[E.VEHICLE_SPEED] * 1e5) * 1e-5
+    w[V_HAT] = round((1.0 - w[SLIP]) * w[RADIUS] * x[X.VEHICLE_SPEED] * 1e5) * 1e-5
     row[VEHICLE_SPEED] = w[V_HAT]
     row[TORQUE] = truth[K.OUT_MOTOR_TORQUE]
     torque = control(b, a, z, gains, states, mode, request, v_hat, row[MOTOR_SPEED], w[LAST_TORQUE])
@@ -134,5 +130,5 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
     new = torques[(k - whole) % HISTORY]
     old = torques[(k - whole - 1) % HISTORY]
     state, w[SLEWED] = K.sample(state, p, w[SLEWED], old, new, late, dt, coupled, loads, 1e-4)
-    for i in range(E.STATES):
+    for i in range(X.ALL_STATES):
         x[i] = state[i]

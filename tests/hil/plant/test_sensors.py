@@ -1,0 +1,89 @@
+"""One sensor law for replay, for many models and for the bench."""
+
+import numpy as np
+import pytest
+
+from hil.core.errors import BadInputError
+from hil.core.model import EffectUse, Model
+from hil.plant import bench_sensor, ideal_sensors, pack, simulate, simulate_many
+from hil.plant._sensors import sensor_of
+from hil.plant.closed_loop.tick import HISTORY, _sense
+from sim_backend.bench import SimulatedBench, SimulationSettings
+from tests.benches_for_tests import SIM
+
+DT = 1e-3
+CHANNEL = "motor_speed_rad_s"
+RIGID = Model(
+    "rigid",
+    {
+        "motor_inertia": 0.02,
+        "gear_ratio": 8.148,
+        "vehicle_inertia": 303.0,
+        "viscous_drag": 0.02,
+        "torque_delay": 0.0035,
+    },
+)
+
+
+def sensed(delay_s: float, *more: EffectUse) -> Model:
+    values = {"channel": CHANNEL}
+    return RIGID.with_effects(
+        EffectUse("channel_skew", {**values, "delay_s": delay_s}),
+        EffectUse("sensor_gain", {**values, "gain": 1.02}),
+        EffectUse("sensor_offset", {**values, "offset": 0.3}),
+        *more,
+    )
+
+
+def on_the_bench(truth: np.ndarray, sensor: np.ndarray) -> np.ndarray:
+    past = np.zeros(HISTORY)
+    return np.array([_sense(value, 0.0, sensor, past, k, DT) for k, value in enumerate(truth)])
+
+
+@pytest.mark.parametrize("delay_s", [0.0, 0.0004, 0.002, 0.0137])
+def test_replay_many_models_and_bench_read_the_same(delay_s):
+    model = sensed(delay_s, EffectUse("sensor_quantization", {"channel": CHANNEL, "step": 0.25}))
+    torque = 40.0 * np.sin(0.02 * np.arange(400))
+    torque[0] = 0.0
+    truth = simulate(RIGID, torque, DT)[CHANNEL]
+    replayed = simulate(model, torque, DT)[CHANNEL]
+    np.testing.assert_array_equal(on_the_bench(truth, bench_sensor(model, CHANNEL)), replayed)
+    sensors = ideal_sensors(1)
+    sensors[0, 0] = sensor_of(model, CHANNEL)
+    many = simulate_many(pack(model)[None], torque, DT, np.zeros((1, 3)), sensors)[0, :, 0]
+    # the truths of both kernels differ by their step, which may move a reading by one step of the sensor
+    assert np.mean(np.abs(many - replayed) > 1e-9) < 0.02
+    np.testing.assert_allclose(many, replayed, atol=0.25 + 1e-9)
+
+
+def test_an_early_channel_shows_now_what_the_others_show_later():
+    torque = 40.0 * np.sin(0.02 * np.arange(400))
+    torque[0] = 0.0
+    truth = simulate(RIGID, torque, DT)[CHANNEL]
+    early = EffectUse("channel_skew", {"channel": CHANNEL, "delay_s": -0.005})
+    found = simulate(RIGID.with_effects(early), torque, DT)[CHANNEL]
+    np.testing.assert_array_equal(found[:-5], truth[5:])
+    np.testing.assert_array_equal(found[-5:], truth[-1])
+
+
+def test_a_bench_refuses_an_early_channel_when_it_opens():
+    early = RIGID.with_effects(EffectUse("channel_skew", {"channel": CHANNEL, "delay_s": -0.005}))
+    with pytest.raises(BadInputError, match=r"motor_speed_rad_s.* 5 ms early"):
+        SimulatedBench(SimulationSettings(early, SIM.rmcu.dbc, SIM.dyno.eds))
+
+
+def test_a_channel_is_rounded_once():
+    step = EffectUse("sensor_quantization", {"channel": CHANNEL, "step": 0.25})
+    with pytest.raises(BadInputError, match="stands twice for 'motor_speed_rad_s'"):
+        simulate(RIGID.with_effects(step, step), np.zeros(10), DT)
+
+
+def test_each_side_of_the_bench_reads_its_share():
+    model = RIGID.with_effects(
+        EffectUse("sensor_offset", {"channel": "shaft_torque_nm", "offset": 3.0}),
+        EffectUse("sensor_quantization", {"channel": "shaft_torque_nm", "step": 2.0}),
+        EffectUse("sensor_gain", {"channel": "shaft_torque_nm", "gain": 1.1}),
+    )
+    whole, side = bench_sensor(model, "shaft_torque_nm"), bench_sensor(model, "shaft_torque_nm", 0.5)
+    truth = np.linspace(-90.0, 90.0, 41)
+    np.testing.assert_allclose(2.0 * on_the_bench(0.5 * truth, side), on_the_bench(truth, whole))
