@@ -13,6 +13,7 @@ import numpy as np
 
 from drivers.rmcu._parameters import parameters_of
 from hil.core.controller import Controller
+from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.engine._predicted_wire import PredictedWire, wire_of
 from hil.engine.bench_file import BenchFile
@@ -83,8 +84,8 @@ class PredictedRmcu:
 
     fault = "none"
 
-    def __init__(self, loop: PredictedLoop) -> None:
-        self._loop = loop
+    def __init__(self, loop: PredictedLoop, file: BenchFile, wire: PredictedWire) -> None:
+        self._loop, self._dbc, self._known = loop, file.rmcu.dbc, wire.parameters
 
     @property
     def state(self) -> str:
@@ -106,8 +107,20 @@ class PredictedRmcu:
         self._loop.look_on_time()
 
     def write_controller(self, controller: Controller) -> None:
-        """Write every parameter, then apply: a tick each."""
+        """Write every parameter, then apply: a tick each.
+
+        Raises:
+            BadInputError: the DBC has no number for a parameter.
+            BenchError: the RMCU would refuse it.
+        """
         parameters = parameters_of(controller)
+        for name in parameters:
+            if name not in self._known:
+                raise BadInputError(
+                    f"signal 'Index' of 'RMCU_ParameterWrite' has no parameter named '{name}' (VAL_)",
+                    where=str(self._dbc),
+                    fix="use a DBC that fits this controller",
+                )
         self._loop.transact(len(parameters))
         self._loop.closed.set_controller(parameters)
         self._loop.transact(1)
@@ -203,7 +216,7 @@ class PredictedBench:
         self.wire = wire_of(file)
         closed = ClosedLoop(model, file.vehicle.wheel_radius_m, self.wire.rounding)
         self.loop = PredictedLoop(closed)
-        self.rmcu = PredictedRmcu(self.loop)
+        self.rmcu = PredictedRmcu(self.loop, file, self.wire)
         self.dyno = PredictedDyno(self.loop, file, self.wire)
         self.loop.run_for(_LISTEN_S)
         self.dyno.start()

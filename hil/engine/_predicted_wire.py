@@ -28,12 +28,14 @@ class PredictedWire:
     """A bench's wire as a recording sees it.
 
     `first_stamp_s` is how long after its sample the frame appears that a recording's time counts from, and
-    `unsettled_s` by how much earlier the earliest frame of a sample appears. `dictionary` is the dynos'.
+    `unsettled_s` by how much earlier the earliest frame of a sample appears. `parameters` are those of the
+    RMCU that the DBC names; `dictionary` is the dynos'.
     """
 
     rounding: Wire
     first_stamp_s: float
     unsettled_s: float
+    parameters: frozenset[str]
     dictionary: Any
 
 
@@ -69,7 +71,8 @@ def wire_of(bench: BenchFile) -> PredictedWire:
         late={name: shift for name, shift in late.items() if shift},
     )
     earliest_s = min(ends_s[frame] for frame in frames.values())
-    return PredictedWire(rounding, master_s, master_s - earliest_s, dictionary)
+    named = frozenset(dbc.texts.get(("RMCU_ParameterWrite", "Index"), {}))
+    return PredictedWire(rounding, master_s, master_s - earliest_s, named, dictionary)
 
 
 def _frame_ends_s(bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]) -> dict[int, float]:

@@ -32,7 +32,8 @@ class ClosedLoop:
     no noise.
 
     Raises:
-        BadInputError: a model that has no shaft to load, or an effect that stands twice in it.
+        BadInputError: a model that has no shaft to load, an effect that stands twice, or a sensor that would
+            read what has not happened.
     """
 
     def __init__(self, model: Model, wheel_radius_m: float, wire: Wire) -> None:
