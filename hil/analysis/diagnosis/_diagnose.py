@@ -9,7 +9,7 @@ from hil.analysis.diagnosis.data._grid import coarse_noise, grids
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._sanity import examine
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._search import search
@@ -65,9 +65,10 @@ def _diagnosed(
     notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + found_odd
     noise = usable_noise(noise_levels(traces))
     rounded = grids(traces, noise)
-    problem = Problem(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
+    problem = problem_of(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
     hypothesis = Hypothesis(model)
     found = search(problem, hypothesis, show, rounded)
+    problem = problem.with_angles(found.best.angles)
     show("judging")
     verdict = verdict_of(found, bool(rounded))
     by_chance = None

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis, key_of
+from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._least_squares import descent
-from hil.analysis.diagnosis.fit._normal import Normal, reduced
+from hil.analysis.diagnosis.fit._normal import reduced
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, WORTH_A_LEAP
 from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
@@ -17,7 +18,7 @@ from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
 Array = npt.NDArray[np.float64]
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Fit:
     """A hypothesis at its best: `cost` is the sum of squared weighted errors (1 per row for pure noise).
 
@@ -30,10 +31,9 @@ class Fit:
     cost: float
     prior: float
     covariance: Array
-    normals: list[Normal] = field(repr=False)
-    pieces: list[tuple[Array, Array, Array]] = field(repr=False)
+    errors: tuple[Errors, ...] = field(repr=False)
     rounds: int = 0
-    angles: list[Array] = field(default_factory=list, repr=False)
+    angles: tuple[Array, ...] = field(default=(), repr=False)
 
     @property
     def total(self) -> float:
@@ -75,21 +75,19 @@ def fit(
         theta, starts, done = reached.theta, reached.starts, done + reached.rounds
         if by_samples is None or done >= rounds:
             break
-    matrix, _ = reduced(reached.normals)
+    matrix, _ = reduced(reached.at.normals)
     covariance = np.asarray(np.linalg.pinv(matrix + np.diag(precision), hermitian=True), dtype=float)
     prior = float(precision @ theta**2) + (by_samples.coincidence(theta) if by_samples is not None else 0.0)
-    angles = list(problem.angles)
     return Fit(
         hypothesis,
         theta,
         starts,
-        reached.cost,
+        reached.at.cost,
         prior,
         covariance,
-        reached.normals,
-        reached.pieces,
+        reached.at.errors,
         done,
-        angles,
+        problem.angles,
     )
 
 

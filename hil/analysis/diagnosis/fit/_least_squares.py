@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
-from hil.analysis.diagnosis.fit._normal import Normal, reduced, start_step
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._normal import reduced, start_step
+from hil.analysis.diagnosis.fit._problem import Linearised, Problem
 from hil.analysis.diagnosis.fit._thresholds import MOST_REFUSALS, TRIALS
 
 Array = npt.NDArray[np.float64]
@@ -49,15 +49,13 @@ def box_step(matrix: Array, gradient: Array, lower: Array, upper: Array) -> Arra
     return np.clip(x, lower, upper) * scale
 
 
-@dataclass
+@dataclass(frozen=True)
 class Reached:
     """Where a descent ended."""
 
     theta: Array
     starts: list[Array]
-    cost: float
-    normals: list[Normal]
-    pieces: list[tuple[Array, Array, Array]]
+    at: Linearised
     rounds: int
 
 
@@ -74,11 +72,11 @@ def descent(
     coordinates = hypothesis.coordinates()
     lower, upper = bounds
     theta, starts = np.clip(begin[0], lower, upper), begin[1]
-    cost, normals, pieces = problem.linearised(hypothesis, theta, starts)
+    at = problem.linearised(hypothesis, theta, starts)
     damping, refusals, done = 1e-6, 0, 0
     while done < rounds:
         done += 1
-        matrix, gradient = reduced(normals)
+        matrix, gradient = reduced(at.normals)
         matrix = matrix + np.diag(precision)
         gradient = gradient - precision * theta
         damped = matrix + damping * np.diag(np.maximum(np.diag(matrix), 1e-12))
@@ -87,12 +85,12 @@ def descent(
         tried_theta = [theta + share * step for share in TRIALS]
         tried_starts = [
             np.stack([start + start_step(n, share * step) for share in TRIALS])
-            for start, n in zip(starts, normals, strict=True)
+            for start, n in zip(starts, at.normals, strict=True)
         ]
         found = problem.costs([hypothesis.packed(t) for t in tried_theta], tried_starts)
         totals = found + np.array([float(precision @ t**2) for t in tried_theta])
         best = int(np.argmin(totals))
-        gain = cost + float(precision @ theta**2) - float(totals[best])
+        gain = at.cost + float(precision @ theta**2) - float(totals[best])
         if gain <= 0.0 or not np.isfinite(gain):
             refusals += 1
             damping = max(damping * 30.0, 1e-3)
@@ -102,10 +100,10 @@ def descent(
         theta = tried_theta[best]
         starts = [s[best] for s in tried_starts]
         damping = damping / 10.0 if best == 0 else damping * 3.0
-        cost, normals, pieces = problem.linearised(hypothesis, theta, starts)
+        at = problem.linearised(hypothesis, theta, starts)
         if gain < enough:
             break
-    return Reached(theta, starts, cost, normals, pieces, done)
+    return Reached(theta, starts, at, done)
 
 
 def _limited(step: Array, coordinates: tuple[Coordinate, ...]) -> Array:

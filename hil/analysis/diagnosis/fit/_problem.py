@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
 import numpy as np
 import numpy.typing as npt
 from scipy.signal import lfilter
@@ -9,6 +13,7 @@ from scipy.signal import lfilter
 from hil.analysis.diagnosis.data._thresholds import LITTLE_TORQUE
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._normal import Normal, normal_equations
 from hil.analysis.diagnosis.fit._thresholds import DIVERGED, FINE, HUGE, REST_SAMPLES, REST_SHARE, REST_SIGMAS
 from hil.plant import simulate_many
@@ -18,46 +23,56 @@ Array = npt.NDArray[np.float64]
 STARTS = 3  # free initial values of each recording: motor speed, wheel speed, shaft torque
 
 
+@dataclass(frozen=True)
+class Linearised:
+    """Sum of squared errors, and per recording its normal equations and errors."""
+
+    cost: float
+    normals: tuple[Normal, ...]
+    errors: tuple[Errors, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Problem:
     """Recordings with the noise levels that weigh them (`noise`) and those of single readings (`floor`).
 
     `weights` are trace by trace (3,): what one block's error is multiplied by, 0 for a missing channel.
-    Ripples follow the measured angles (`_alignment` corrects them): a simulated angle drifts off as long as
-    the model is not right, and takes the ripple's phase with it.
+    `angles` (rad, samples x wheel and rotor) are what ripples follow, measured ones (`search` corrects them):
+    a simulated angle drifts off as long as the model is not right, and takes the ripple's phase with it.
+    A problem never changes: other angles make another one.
     """
 
-    def __init__(
-        self,
-        traces: list[Trace],
-        noise: Array,
-        gear_ratio: float,
-        *,
-        whitening: Array | None = None,
-        floor: Array | None = None,
-    ) -> None:
-        self.whitening = whitening
-        self.floor = noise if floor is None else floor
-        self.gear_ratio = gear_ratio
-        self.angles = [t.angles(gear_ratio) for t in traces]
-        self.traces = traces
-        self.noise = noise
-        self.weights = [
-            np.where(t.has, np.sqrt(t.block) / np.where(noise > 0, noise, np.inf), 0.0) for t in traces
-        ]
-        self.resting = [_rests(t, noise, self.floor) for t in traces]
-        self.channels = int(np.count_nonzero(np.any([t.has for t in traces], axis=0)))
-        self.rows = int(sum(np.count_nonzero(t.has) * len(t.measured) for t in traces))
+    traces: tuple[Trace, ...]
+    noise: Array
+    floor: Array
+    gear_ratio: float
+    angles: tuple[Array, ...]
+    weights: tuple[Array, ...]
+    resting: tuple[bool, ...]
+    whitening: Array | None = None
 
-    def again(self, *, whitening: Array | None = None) -> Problem:
-        """The same recordings, weights and angles, errors whitened or not."""
-        other = Problem(self.traces, self.noise, self.gear_ratio, whitening=whitening, floor=self.floor)
-        other.angles = self.angles
-        return other
+    @cached_property
+    def channels(self) -> int:
+        """How many channels any recording has."""
+        return int(np.count_nonzero(np.any([t.has for t in self.traces], axis=0)))
 
-    def follow(self, hypothesis: Hypothesis, theta: Array) -> None:
-        """Integrate the angles anew from the speeds as the sensors of `hypothesis` read them."""
+    @cached_property
+    def rows(self) -> int:
+        """How many errors there are: what their squares sum up to where there is nothing but noise."""
+        return int(sum(np.count_nonzero(t.has) * len(t.measured) for t in self.traces))
+
+    def whitened(self, whitening: Array) -> Problem:
+        """The same, errors filtered by `whitening` (3 x order + 1)."""
+        return replace(self, whitening=read_only(whitening))
+
+    def with_angles(self, angles: Sequence[Array]) -> Problem:
+        """The same, ripples following other angles."""
+        return replace(self, angles=tuple(angles))
+
+    def following(self, hypothesis: Hypothesis, theta: Array) -> Problem:
+        """The same, angles integrated anew from the speeds as the sensors of `hypothesis` read them."""
         sensors = hypothesis.packed(theta)[1]
-        self.angles = [t.angles(self.gear_ratio, sensors) for t in self.traces]
+        return self.with_angles([t.angles(self.gear_ratio, sensors) for t in self.traces])
 
     def first_starts(self, hypothesis: Hypothesis) -> list[Array]:
         """Initial values read from the recordings, completed by the model where a channel is missing."""
@@ -105,13 +120,8 @@ class Problem:
             total += (starts[index] ** 2) @ self.start_precision(index)
         return total
 
-    def linearised(
-        self, hypothesis: Hypothesis, theta: Array, starts: list[Array]
-    ) -> tuple[float, list[Normal], list[tuple[Array, Array, Array]]]:
-        """Cost, normal equations, and per recording the errors and weighted derivatives.
-
-        Derivatives are (rows, coordinates) and (rows, STARTS) with rows = blocks x 3 flattened.
-        """
+    def linearised(self, hypothesis: Hypothesis, theta: Array, starts: list[Array]) -> Linearised:
+        """Errors and their derivatives at `theta` and `starts`, by finite differences."""
         coordinates = hypothesis.coordinates()
         points = [hypothesis.packed(theta)]
         for index, c in enumerate(coordinates):
@@ -123,7 +133,7 @@ class Problem:
         signed = np.array(
             [c.step if v + c.step <= c.upper else -c.step for c, v in zip(coordinates, theta, strict=True)]
         )
-        cost, normals, pieces = 0.0, [], []
+        cost, normals, errors = 0.0, [], []
         for index, start in enumerate(starts):
             steps = self.start_steps()
             tried = np.tile(start, (len(slots), 1))
@@ -141,8 +151,8 @@ class Problem:
             initial = (change[len(coordinates) :] / steps[:, None]).T
             cost += float(error @ error) + float(start**2 @ self.start_precision(index))
             normals.append(self._anchored(normal_equations(shared, initial, error), index, start))
-            pieces.append((error, shared, initial))
-        return cost, normals, pieces
+            errors.append(Errors(error, shared, initial))
+        return Linearised(cost, tuple(normals), tuple(errors))
 
     def _anchored(self, n: Normal, index: int, start: Array) -> Normal:
         precision = self.start_precision(index)
@@ -164,6 +174,36 @@ class Problem:
         """Sizes of the finite differences in the initial values."""
         typical = np.array([0.1, 0.0125, 1.0])
         return np.where(np.isfinite(self.noise) & (self.noise > 0), 0.5 * self.noise, typical)
+
+
+def problem_of(
+    traces: Sequence[Trace], noise: Array, gear_ratio: float, *, floor: Array | None = None
+) -> Problem:
+    """Recordings weighed by `noise`, with the angles that their speeds give.
+
+    Args:
+        noise: standard deviation of each channel per sample, rounding included, shape (3,).
+        floor: the same of single readings, without rounding; like `noise` if None.
+    """
+    noise = read_only(noise)
+    floor = noise if floor is None else read_only(floor)
+    weights = [np.where(t.has, np.sqrt(t.block) / np.where(noise > 0, noise, np.inf), 0.0) for t in traces]
+    return Problem(
+        tuple(traces),
+        noise,
+        floor,
+        gear_ratio,
+        tuple(t.angles(gear_ratio) for t in traces),
+        tuple(map(read_only, weights)),
+        tuple(_rests(t, noise, floor) for t in traces),
+    )
+
+
+def read_only(values: Array) -> Array:
+    """A copy that nobody can write to: it is shared."""
+    copy = values.copy()
+    copy.setflags(write=False)
+    return copy
 
 
 def _rests(trace: Trace, noise: Array, floor: Array) -> bool:

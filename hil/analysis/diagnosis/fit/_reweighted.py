@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._thresholds import FAR_FROM_NOISE
@@ -17,10 +19,10 @@ def reweighted(problem: Problem, best: Fit) -> Fit:
     if not best.hypothesis.terms or best.cost < FAR_FROM_NOISE * problem.rows:
         return best
     for _ in range(3):
-        other = problem.again(whitening=whitening_of(best.pieces))
+        other = problem.whitened(whitening_of(best.errors))
         again = fit(other, best.hypothesis, best.starts, best.theta)
         best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
-        best.covariance = again.covariance / max(
-            1.0, best.cost / problem.rows
-        )  # its errors are white already
+        # its errors are white already
+        covariance = again.covariance / max(1.0, best.cost / problem.rows)
+        best = replace(best, covariance=covariance)
     return best

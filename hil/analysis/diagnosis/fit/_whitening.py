@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import toeplitz
 
+from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._thresholds import WHITENING_ORDER
 
 Array = npt.NDArray[np.float64]
 
 
-def whitening_of(pieces: list[tuple[Array, Array, Array]]) -> Array:
+def whitening_of(of_recordings: Sequence[Errors]) -> Array:
     """Filters (3 x order + 1) that make the errors of a fit white with unit variance, one a channel.
 
     Autoregression by the Yule-Walker equations over all recordings.
     """
     filters = np.zeros((3, WHITENING_ORDER + 1))
     filters[:, 0] = 1.0
-    errors = [error.reshape(-1, 3) for error, _, _ in pieces]
+    errors = [one.channels for one in of_recordings]
     for column in range(3):
         rows = [e[:, column] for e in errors]
         count = sum(len(e) for e in rows)

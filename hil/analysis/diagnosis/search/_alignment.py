@@ -25,7 +25,7 @@ def has_ripple(hypothesis: Hypothesis) -> bool:
 
 
 def aligned(problem: Problem, one: Fit) -> Fit:
-    """The fit again after the angles of `problem` were corrected by what its ripples show."""
+    """The fit again, with angles corrected by what its ripples show."""
     if not has_ripple(one.hypothesis):
         return one
     best = _in_turns(problem, one, one.theta)
@@ -43,12 +43,8 @@ def aligned(problem: Problem, one: Fit) -> Fit:
 def _in_turns(problem: Problem, one: Fit, theta: Array, *, order_known: bool = False) -> Fit:
     """Track and fit, from `theta`, while it makes `one` better."""
     for _ in range(ALIGNMENT_ROUNDS):
-        before = list(problem.angles)
-        problem.follow(one.hypothesis, theta)
-        theta = track(problem, one.hypothesis, theta, one.starts, order_known=order_known)
-        again = fit(problem, one.hypothesis, one.starts, theta)
+        again = _turn(problem, one, theta, order_known=order_known)
         if again.total >= one.total:
-            problem.angles = before
             return one
         little = one.total - again.total < ALIGNMENT_LITTLE * (one.total - problem.rows)
         one, theta = again, again.theta
@@ -57,16 +53,17 @@ def _in_turns(problem: Problem, one: Fit, theta: Array, *, order_known: bool = F
     return one
 
 
+def _turn(problem: Problem, one: Fit, theta: Array, *, order_known: bool) -> Fit:
+    """The hypothesis of `one`, its ripples followed from `theta`, then fitted."""
+    problem = problem.following(one.hypothesis, theta)
+    theta, problem = track(problem, one.hypothesis, theta, one.starts, order_known=order_known)
+    return fit(problem, one.hypothesis, one.starts, theta)
+
+
 def _with_whole_order(problem: Problem, best: Fit, index: int, whole: float) -> Fit:
     """`best` from a whole order, its number `index`: what turns with a shaft repeats with every turn."""
-    found = list(problem.angles)
     theta = best.theta.copy()
     theta[index] = whole
-    problem.follow(best.hypothesis, theta)
-    theta = track(problem, best.hypothesis, theta, best.starts, order_known=True)
-    first = fit(problem, best.hypothesis, best.starts, theta)
+    first = _turn(problem, best, theta, order_known=True)
     other = _in_turns(problem, first, first.theta, order_known=True)
-    if other.total < WHOLE_WORSE * best.total:
-        return other
-    problem.angles = found
-    return best
+    return other if other.total < WHOLE_WORSE * best.total else best

@@ -26,7 +26,7 @@ def most_by_chance(problem: Problem, fit: Fit, draws: int = BOOTSTRAP_DRAWS) -> 
     """
     rng = np.random.default_rng(0)
     candidates = probes(problem, fit)
-    surrogates = {i: _surrogates(fit.pieces[i][0].reshape(-1, 3), draws, rng) for i in _liveliest(problem)}
+    surrogates = {i: _surrogates(fit.errors[i].channels, draws, rng) for i in _liveliest(problem)}
     matrix, gradients = products(problem, fit, candidates, surrogates)
     base = len(fit.theta)
     precision = np.array([1.0 / c.prior**2 for c in fit.hypothesis.coordinates()])

@@ -86,14 +86,14 @@ class Evidence:
 
 def split_of(problem: Problem, one: Fit) -> Split:
     """Physics and noise in the errors of a fit."""
-    return split(problem.traces, problem.weights, [error.reshape(-1, 3) for error, _, _ in one.pieces])
+    return split(problem.traces, problem.weights, [errors.channels for errors in one.errors])
 
 
 def colour(one: Fit) -> float:
     """How many neighbouring errors count as one: 1 for white errors, more for coloured ones."""
     rise, power = 0.0, 0.0
-    for error, _, _ in one.pieces:
-        e = error.reshape(-1, 3)
+    for errors in one.errors:
+        e = errors.channels
         power += float(np.sum(e * e))
         for lag in (1, 2, 3, 5, 8, 13, 21):
             rise += _SPAN[lag] * float(np.sum(e[lag:] * e[:-lag]))

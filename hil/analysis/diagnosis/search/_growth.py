@@ -67,11 +67,10 @@ class Step:
 
 def grow(evidence: Evidence, parent: Fit) -> Step:
     """`parent` with each promising further effect."""
-    problem = evidence.problem
     if has_ripple(parent.hypothesis):
-        problem.angles = list(parent.angles)
+        problem = evidence.problem.with_angles(parent.angles)
     else:
-        problem.follow(parent.hypothesis, parent.theta)
+        problem = evidence.problem.following(parent.hypothesis, parent.theta)
     blocks = problem.rows / max(problem.channels, 1)
     scores = screen(problem, parent)
     if not scores or scores[0].gain < PLAIN * evidence.left(parent) * blocks:
@@ -81,7 +80,7 @@ def grow(evidence: Evidence, parent: Fit) -> Step:
         return Step(parent, scores, [])
     step = Step(parent, scores, _race(problem, parent, scores))
     if step.fits:
-        best = aligned(problem, _refined(evidence, step.fits[0]))
+        best = aligned(problem, _refined(problem, evidence, step.fits[0]))
         step.fits[0] = _polished(evidence, best)
     return step
 
@@ -118,7 +117,7 @@ def rank(one: Fit) -> float:
 
     Far from the noise formulas differ, and a small advantage of a fault in a sensor says nothing.
     """
-    rows = sum(len(error) for error, _, _ in one.pieces)
+    rows = sum(len(errors.rows) for errors in one.errors)
     if one.total > FAR * rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids):
         return DOUBT * one.total + PRICE * len(one.theta)
     return one.total + PRICE * len(one.theta)
@@ -179,7 +178,7 @@ def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
     return found
 
 
-def _refined(evidence: Evidence, best: Fit) -> Fit:
+def _refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
     """Optional parameters of dry friction, where they pay."""
     for term in best.hypothesis.terms:
         if term.id == "coulomb_friction":
@@ -187,7 +186,7 @@ def _refined(evidence: Evidence, best: Fit) -> Fit:
                 opened = Hypothesis(
                     best.hypothesis.base, best.hypothesis.terms, (*best.hypothesis.open, name)
                 )
-                tried = fit(evidence.problem, opened, best.starts, carried(best, opened))
+                tried = fit(problem, opened, best.starts, carried(best, opened))
                 if evidence.left(tried) < OPTIONAL_LEAVES * evidence.left(best) and (
                     evidence.between(best, tried) > LEAST_EVIDENCE
                 ):
@@ -214,8 +213,9 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
 
 def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:
     """The best of `best` and of fits from `theta` with its number `index` times each factor."""
+    problem = evidence.problem.with_angles(best.angles)
     for factor in factors:
         other = theta.copy()
         other[index] += np.log(factor)
-        best = min(best, fit(evidence.problem, best.hypothesis, evidence.base.starts, other), key=rank)
+        best = min(best, fit(problem, best.hypothesis, evidence.base.starts, other), key=rank)
     return best

@@ -47,7 +47,7 @@ def order_lines(
     angles, images, powers, speeds = [], [], [], []
     slots = pack(fit.hypothesis.model(fit.theta))
     for index, trace in enumerate(problem.traces):
-        error = fit.pieces[index][0].reshape(-1, 3)
+        error = fit.errors[index].channels
         dt = trace.dt * trace.block
         turned = problem.angles[index][:, 0 if side == "wheel" else 1]
         angle = blocks(turned[:, None], trace.block)[:, 0]

@@ -39,7 +39,7 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
     Gains count from the total `against`; from what the parameters alone can reach if None.
     """
     candidates = probes(problem, fit)
-    errors = {index: error[:, None] for index, (error, _, _) in enumerate(fit.pieces)}
+    errors = {index: one.rows[:, None] for index, one in enumerate(fit.errors)}
     matrix, gradients = products(problem, fit, candidates, errors)
     gradient = gradients[:, 0]
     base = len(fit.theta)
@@ -116,7 +116,7 @@ def products(
     matrix = np.zeros((size, size))
     gradient = np.zeros((size, next(iter(errors.values())).shape[1]))
     for index, error in errors.items():
-        _, shared, initial = fit.pieces[index]
+        shared, initial = fit.errors[index].by_coordinate, fit.errors[index].by_start
         starts = np.tile(fit.starts[index], (len(packed), 1))
         simulated = problem.outputs(index, slots, sensors, starts)
         change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(len(packed) - 1, -1)

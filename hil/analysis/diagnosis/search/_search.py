@@ -68,9 +68,7 @@ def search(
             if found.evidence.share(found.best) > NEARLY:
                 enough = RIVAL * found.evidence.left(found.best)
                 frontier = [f for f in frontier if found.evidence.left(f) <= enough]
-    found = _needed(problem, found)
-    problem.angles = list(found.best.angles)
-    return found
+    return _needed(problem, found)
 
 
 def _distinct(fits: list[Fit]) -> list[Fit]:
@@ -94,9 +92,8 @@ def _needed(problem: Problem, found: Found) -> Found:
     """Drop effects that the later ones made needless."""
     best = found.best
     for index in range(len(best.hypothesis.terms) - 1):
-        problem.angles = list(best.angles)
         fewer = best.hypothesis.without(index)
-        tried = fit(problem, fewer, best.starts, carried(best, fewer))
+        tried = fit(problem.with_angles(best.angles), fewer, best.starts, carried(best, fewer))
         if found.evidence.closed(tried) or not earned(found.evidence, tried, best):
             found.best = tried
             return found

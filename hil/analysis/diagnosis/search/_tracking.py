@@ -59,14 +59,15 @@ def track(
     *,
     order_known: bool = False,
     phase_known: bool = False,
-) -> Array:
-    """Turn the angles of every recording to where the ripples of `hypothesis` say, in place.
+) -> tuple[Array, Problem]:
+    """Turn the angles of every recording to where the ripples of `hypothesis` say.
 
     Args:
         order_known, phase_known: those of `theta` are right, what differs is drift of the angles.
 
     Returns:
-        `theta` with what all recordings have in common put into order and phase, where these are not known.
+        `theta` with what all recordings have in common put into order and phase, where these are not known;
+        and the problem with the turned angles.
     """
     theta = theta.copy()
     coordinates = hypothesis.coordinates()
@@ -84,22 +85,24 @@ def track(
         ]
         more = 0.0 if order_known else _common_order(windows, paths)
         turn = 0.0 if phase_known else _common_phase(windows, paths, order, more)
+        angles = []
         for index, (one, path) in enumerate(zip(windows, paths, strict=True)):
             drift = path - turn - more * one.angle
             drift -= 2.0 * np.pi * np.round(drift[0] / (2.0 * np.pi))
-            _turn(problem, index, column, one.times, drift / (order + more))
+            angles.append(_turned(problem, index, column, one.times, drift / (order + more)))
+        problem = problem.with_angles(angles)
         for i, c in enumerate(coordinates):
             if c.term == term and c.name in ("order", "phase_rad"):
                 theta[i] += more if c.name == "order" else turn
-    return theta
+    return theta, problem
 
 
-def _turn(problem: Problem, index: int, column: int, times: Array, drift: Array) -> None:
-    """Add a drift in rad, given at `times` in s, to one column of a recording's angles."""
+def _turned(problem: Problem, index: int, column: int, times: Array, drift: Array) -> Array:
+    """A recording's angles with a drift in rad, given at `times` in s, added to one column."""
     trace = problem.traces[index]
     angles = problem.angles[index].copy()
     angles[:, column] += np.interp(np.arange(len(trace.torque)) * trace.dt, times, drift)
-    problem.angles[index] = angles
+    return angles
 
 
 def tracked_gain(problem: Problem, parent: Fit, use: EffectUse) -> float:

@@ -11,7 +11,7 @@ from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, g
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._fit import Fit, carried
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._simulated import settled_starts, simulated_samples
 from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
 from hil.analysis.diagnosis.search._alignment import has_ripple
@@ -43,7 +43,7 @@ class Judged:
         kept = best if verdict == "named" and best.hypothesis.terms else base
         problem = self.problem
         colouring = self.found.evidence.colouring(self.found.best)
-        problem.floor = problem.floor * colouring
+        floor = problem.floor * colouring
         after = simulated_samples(problem, kept.hypothesis, kept.theta, kept.starts)
         before = self._nominal(problem)
         map_before, map_after = (gap_map(problem.traces, problem.noise, s) for s in (before, after))
@@ -69,8 +69,8 @@ class Judged:
             parameter_updates=updates,
             alternatives=alternatives_of(self.found, verdict),
             considered=self._considered(kept),
-            gap_before=channel_gaps(problem.traces, problem.floor, before),
-            gap_after=channel_gaps(problem.traces, problem.floor, after),
+            gap_before=channel_gaps(problem.traces, floor, before),
+            gap_after=channel_gaps(problem.traces, floor, after),
             holdout_before=held_before,
             holdout_after=held_after,
             map_before=map_before,
@@ -98,7 +98,7 @@ class Judged:
         noise = usable_noise(noise_levels(self.holdout))
         colouring = self.found.evidence.colouring(self.found.best)
         weighed = np.where(np.isfinite(self.problem.noise), self.problem.noise, noise)  # rounding included
-        problem = Problem(self.holdout, weighed, ratio, floor=noise * colouring)
+        problem = problem_of(self.holdout, weighed, ratio, floor=noise * colouring)
         gaps = []
         for hypothesis, theta in (
             (self.found.base.hypothesis, self.found.base.hypothesis.start()),
@@ -106,8 +106,8 @@ class Judged:
         ):
             starts = settled_starts(problem, hypothesis, theta, problem.first_starts(hypothesis))
             if has_ripple(hypothesis):
-                problem.follow(hypothesis, theta)
-                track(problem, hypothesis, theta, starts, order_known=True, phase_known=True)
+                followed = problem.following(hypothesis, theta)
+                _, problem = track(followed, hypothesis, theta, starts, order_known=True, phase_known=True)
                 starts = settled_starts(problem, hypothesis, theta, starts)
             shown = simulated_samples(problem, hypothesis, theta, starts)
             gaps.append(channel_gaps(problem.traces, problem.floor, shown))

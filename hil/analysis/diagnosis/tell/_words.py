@@ -78,8 +78,8 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
     power = np.zeros(3)
     frequency = _common_frequency([t.dt * t.block for t in problem.traces])
     densities = []
-    for trace, (error, _, _) in zip(problem.traces, fit.pieces, strict=True):
-        e = error.reshape(-1, 3)
+    for trace, errors in zip(problem.traces, fit.errors, strict=True):
+        e = errors.channels
         power += np.sum(e**2, axis=0) - len(e) * trace.has
         densities.append(_density(e, trace.dt * trace.block, frequency, "constant"))
     column = int(np.argmax(power))
@@ -109,10 +109,10 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
 
 def _dependence(problem: Problem, fit: Fit, column: int) -> str:
     levels, torques, speeds = [], [], []
-    for trace, (error, _, _) in zip(problem.traces, fit.pieces, strict=True):
+    for trace, errors in zip(problem.traces, fit.errors, strict=True):
         if not trace.has[column]:
             continue
-        levels.append(float(np.std(error.reshape(-1, 3)[:, column])))
+        levels.append(float(np.std(errors.channels[:, column])))
         torques.append(float(np.std(trace.torque)))
         known = trace.measured[:, 0] if trace.has[0] else trace.measured[:, 1]
         speeds.append(float(np.mean(np.abs(known))))

@@ -15,7 +15,7 @@ import pytest
 from hil.analysis.diagnosis import examine, unbroken
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._trace import trace_of
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.cli import main
 from hil.core.errors import BadInputError
 from hil.core.model import Model, parameter_names, save_model
@@ -334,7 +334,7 @@ def test_rest_is_seen_though_the_torque_is_never_quite_zero() -> None:
         channels[MOTOR] = channels[MOTOR] + 3.0  # an offset of one speed hides no rest
         trace = trace_of(dataclasses.replace(recording, channels=channels))
         noise = usable_noise(noise_levels([trace]))
-        assert Problem([trace], noise, BASE["gear_ratio"]).resting == [True]
+        assert problem_of([trace], noise, BASE["gear_ratio"]).resting == [True]
         coarse = noise * np.array([1.0, 50.0, 1.0])  # whose rounding reads zero at many speeds
-        assert Problem([trace], coarse, BASE["gear_ratio"], floor=noise).resting == [False]
+        assert problem_of([trace], coarse, BASE["gear_ratio"], floor=noise).resting == [False]
     assert fed_back

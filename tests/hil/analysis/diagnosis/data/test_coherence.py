@@ -11,7 +11,7 @@ from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.core.model import Model
 from tests.hil.analysis.diagnosis.reference_plant import BASE, Truth, recordings
 
@@ -19,7 +19,7 @@ from tests.hil.analysis.diagnosis.reference_plant import BASE, Truth, recordings
 @pytest.fixture(scope="module")
 def problem() -> Problem:
     traces = [trace_of(r) for r in recordings(Truth(), 5, short=True, off=0.0)]
-    return Problem(traces, noise_levels(traces), BASE["gear_ratio"])
+    return problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
 
 
 @pytest.fixture(scope="module")
@@ -37,18 +37,18 @@ def slow_noise(seed: int, size: int) -> np.ndarray:
 
 def with_errors(problem: Problem, one: Fit, extra: list[np.ndarray] | None = None) -> tuple[Split, Fit]:
     """As if the noise-free simulation of `one` had been measured with known errors."""
-    pieces, traces = [], []
-    for index, (error, shared, initial) in enumerate(one.pieces):
-        e = slow_noise(index, len(error) // 3)
+    made_of, traces = [], []
+    for index, errors in enumerate(one.errors):
+        e = slow_noise(index, len(errors.channels))
         if extra is not None:
             e = e + extra[index]
         trace, weights = problem.traces[index], problem.weights[index]
-        measured = trace.measured + (e - error.reshape(-1, 3)) / weights
+        measured = trace.measured + (e - errors.channels) / weights
         traces.append(replace(trace, measured=measured))
-        pieces.append((e.ravel(), shared, initial))
-    made = replace(one, pieces=pieces)
-    again = Problem(traces, problem.noise, problem.gear_ratio)
-    return split(again.traces, again.weights, [e.reshape(-1, 3) for e, _, _ in pieces]), made
+        made_of.append(replace(errors, rows=e.ravel()))
+    made = replace(one, errors=tuple(made_of))
+    again = problem_of(traces, problem.noise, problem.gear_ratio)
+    return split(again.traces, again.weights, [e.channels for e in made_of]), made
 
 
 def test_slow_noise_is_no_physics(problem, perfect):
@@ -60,8 +60,8 @@ def test_slow_noise_is_no_physics(problem, perfect):
 def test_what_two_channels_share_is_physics(problem, perfect):
     rng = np.random.default_rng(9)
     extra = []
-    for error, _, _ in perfect.pieces:
-        common = 0.5 * rng.normal(size=len(error) // 3)
+    for errors in perfect.errors:
+        common = 0.5 * rng.normal(size=len(errors.channels))
         extra.append(np.column_stack([common, -common, 0.0 * common]))
     parts, _ = with_errors(problem, perfect, extra)
     # closed form above 2 Hz: common power 0.25, squared, over common and white power

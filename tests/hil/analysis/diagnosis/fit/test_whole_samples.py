@@ -7,7 +7,7 @@ from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
@@ -38,7 +38,7 @@ def fitted(tmp_path):
         for name, noise in zip(OUTPUTS, (0.5, 0.05, 1.0), strict=True):
             channels[name] = clean[name] + rng.normal(0.0, noise, len(time))
         traces = [trace_of(Recording(channels, tmp_path / "one.csv"))]
-        problem = Problem(traces, noise_levels(traces), PARAMETERS["gear_ratio"])
+        problem = problem_of(traces, noise_levels(traces), PARAMETERS["gear_ratio"])
         return problem, fit(problem, hypothesis)
 
     return run

@@ -8,7 +8,7 @@ from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._screen import screen
 from hil.core.channels import INPUT, OUTPUTS, TIME
@@ -31,7 +31,7 @@ def noisy(path, seed: int, memory: float) -> Problem:
         slow = lfilter([1.0], [1.0, -memory], rng.normal(0.0, 0.1 * level, len(time)))
         channels[name] = clean[name] + slow + rng.normal(0.0, level, len(time))
     traces = [trace_of(Recording(channels, path / "one.csv"))]
-    return Problem(traces, noise_levels(traces), BASE["gear_ratio"])
+    return problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
 
 
 @pytest.mark.parametrize("memory", [0.0, 0.98])

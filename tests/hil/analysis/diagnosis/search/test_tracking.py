@@ -10,7 +10,7 @@ import pytest
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._sanity import examine
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.search._tracking import track
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.model import EffectUse
@@ -25,9 +25,9 @@ def followed(id_: str, *channels: str, amplitude_nm: float = 5.0) -> np.ndarray:
     part = dataclasses.replace(whole, channels={n: whole[n] for n in ("time_s", INPUT, *channels)})
     traces, _ = examine(MODEL, [part])
     noise = usable_noise(noise_levels(traces))
-    problem = Problem(traces, noise, MODEL.parameters["gear_ratio"])
+    problem = problem_of(traces, noise, MODEL.parameters["gear_ratio"])
     hypothesis = Hypothesis(MODEL, (EffectUse(id_, {**RIPPLE, "amplitude_nm": amplitude_nm}),))
-    return track(problem, hypothesis, hypothesis.start(), problem.first_starts(hypothesis))
+    return track(problem, hypothesis, hypothesis.start(), problem.first_starts(hypothesis))[0]
 
 
 @pytest.mark.parametrize("id_", ["wheel_order_disturbance", "motor_order_ripple"])
