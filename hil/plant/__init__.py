@@ -1,6 +1,6 @@
 """The plant: a model file turned into motion by a compiled kernel."""
 
-from hil.plant._held_linear import system
+from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._many import ideal_sensors, simulate_many
 from hil.plant._replay import LONGEST_STEP_S, Start, replay, simulate, start_of
 from hil.plant._sensors import DELAY as SENSOR_DELAY
@@ -14,9 +14,12 @@ __all__ = [
     "SENSOR_DELAY",
     "SENSOR_GAIN",
     "SENSOR_OFFSET",
+    "LinearSystem",
     "Start",
     "bench_sensor",
     "ideal_sensors",
+    "linear_system",
+    "linear_system_of",
     "pack",
     "replay",
     "simulate",

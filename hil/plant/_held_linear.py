@@ -16,67 +16,11 @@ import numpy.typing as npt
 from hil.core.compiled import compiled
 from hil.plant import _slots as P
 from hil.plant import _states as X
+from hil.plant._linear import SHAFT, TORQUE, system
 
 Array = npt.NDArray[np.float64]
 
-# Inputs
-TORQUE, SHAFT, LOSS, LOAD = range(4)
-INPUTS = 4
 _TERMS = 18  # of the series: at a norm of 0.5 the rest is below 1e-17, whatever the units
-
-
-def system(p: Array) -> tuple[Array, Array]:
-    """A (8 x 8) and B (8 x 4) of the linear part of a packed model, SI units."""
-    a, b = np.zeros((X.LINEAR_STATES, X.LINEAR_STATES)), np.zeros((X.LINEAR_STATES, INPUTS))
-    if p[P.KIND] == P.RIGID:
-        _rigid(p, a, b)
-    else:
-        _chain(p, a, b)
-    if p[P.LAG] > 0.0:
-        a[:, X.LAGGED] += b[:, TORQUE]
-        b[:, TORQUE] = 0.0
-        a[X.LAGGED, :] = 0.0
-        a[X.LAGGED, X.LAGGED], b[X.LAGGED, TORQUE] = -1.0 / p[P.LAG], 1.0 / p[P.LAG]
-    return a, b
-
-
-def _rigid(p: Array, a: Array, b: Array) -> None:
-    n = p[P.GEAR_RATIO]
-    inertia = p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / n**2
-    for state, share in ((X.ROTOR_SPEED, 1.0), (X.WHEEL_SPEED, 1.0 / n), (X.VEHICLE_SPEED, 1.0 / n)):
-        a[state, X.ROTOR_SPEED] = -share * p[P.DRAG] / inertia
-        b[state] = np.array([share, 0.0, -share, -share / n]) / inertia
-
-
-def _chain(p: Array, a: Array, b: Array) -> None:
-    n = p[P.GEAR_RATIO]
-    slope = np.zeros(X.LINEAR_STATES)  # of the twist
-    slope[X.ROTOR_SPEED], slope[X.HOUSING_SPEED], slope[X.WHEEL_SPEED] = 1.0 / n, 1.0 - 1.0 / n, -1.0
-    shaft = p[P.SHAFT_DAMPING] * slope
-    shaft[X.TWIST] += p[P.SHAFT_STIFFNESS]
-    loss = np.zeros(X.LINEAR_STATES)
-    loss[X.ROTOR_SPEED], loss[X.HOUSING_SPEED] = p[P.DRAG], -p[P.DRAG]
-    a[X.TWIST] = slope
-    a[X.ROTOR_SPEED] = (-loss - shaft / n) / p[P.MOTOR_INERTIA]
-    b[X.ROTOR_SPEED] = np.array([1.0, -1.0 / n, -1.0, 0.0]) / p[P.MOTOR_INERTIA]
-    if p[P.HOUSING_INERTIA] > 0.0:
-        a[X.HOUSING_ANGLE, X.HOUSING_SPEED] = 1.0
-        a[X.HOUSING_SPEED] = (loss - (1.0 - 1.0 / n) * shaft) / p[P.HOUSING_INERTIA]
-        a[X.HOUSING_SPEED, X.HOUSING_ANGLE] -= p[P.MOUNT_STIFFNESS] / p[P.HOUSING_INERTIA]
-        a[X.HOUSING_SPEED, X.HOUSING_SPEED] -= p[P.MOUNT_DAMPING] / p[P.HOUSING_INERTIA]
-        b[X.HOUSING_SPEED] = np.array([-1.0, 1.0 / n - 1.0, 1.0, 0.0]) / p[P.HOUSING_INERTIA]
-    if p[P.KIND] == P.TWO_INERTIA:
-        a[X.WHEEL_SPEED] = a[X.VEHICLE_SPEED] = shaft / p[P.VEHICLE_INERTIA]
-        b[X.WHEEL_SPEED] = b[X.VEHICLE_SPEED] = np.array([0.0, 1.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
-        return
-    road = np.zeros(X.LINEAR_STATES)
-    road[X.TYRE_TWIST] = p[P.TYRE_STIFFNESS]
-    road[X.WHEEL_SPEED], road[X.VEHICLE_SPEED] = p[P.TYRE_DAMPING], -p[P.TYRE_DAMPING]
-    a[X.WHEEL_SPEED] = (shaft - road) / p[P.WHEEL_INERTIA]
-    b[X.WHEEL_SPEED] = np.array([0.0, 1.0, 0.0, 0.0]) / p[P.WHEEL_INERTIA]
-    a[X.TYRE_TWIST, X.WHEEL_SPEED], a[X.TYRE_TWIST, X.VEHICLE_SPEED] = 1.0, -1.0
-    a[X.VEHICLE_SPEED] = road / p[P.VEHICLE_INERTIA]
-    b[X.VEHICLE_SPEED] = np.array([0.0, 0.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
 
 
 @compiled
