@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup test test-slow blind lint bench figures lock clean
+.PHONY: run setup test test-slow bad-inputs blind lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -31,9 +31,13 @@ lint: setup
 test: lint
 	$(BIN)/python -m pytest -n 2 -m "not slow"
 
-# What takes minutes: the fixed part of the blind diagnosis set.
+# What takes minutes: the fixed part of the blind diagnosis set, bad inputs, the wheel, long hunts for faults.
 test-slow: setup
 	$(BIN)/python -m pytest -n 2 -m slow
+
+# Bad input, signals and broken streams on every command, as processes: docs/reference/bad-inputs.md.
+bad-inputs: setup
+	$(BIN)/python -m tests.bad_inputs --write
 
 # The whole blind diagnosis set: hundreds of cases, results in docs/reference/blind-results.md.
 blind: setup

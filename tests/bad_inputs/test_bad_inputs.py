@@ -4,7 +4,7 @@ import pytest
 
 from tests.bad_inputs.__main__ import AT_ONCE, try_all
 from tests.bad_inputs.all_cases import all_cases, quick_cases
-from tests.bad_inputs.case import FILES, REFUSED, Case, Outcome
+from tests.bad_inputs.case import FILES, REFUSED, SIGNALS, Case, Outcome
 from tests.bad_inputs.judging import HALF_WRITTEN, HANG, TRACEBACK, UNCLEAR, WRONG_CODE, faults_of
 from tests.bad_inputs.page import failures_of, page_of
 
@@ -45,6 +45,9 @@ def test_the_quickest_commands_stand_bad_input(tmp_path):
 
 
 @pytest.mark.slow
-def test_every_command_stands_bad_input(tmp_path):
+def test_a_quarter_of_all_cases_stands_bad_input(tmp_path):
+    """All of them, and the signals, are `make bad-inputs`; signals at a run's moments are in tests/hil/cli."""
     assert AT_ONCE == 2
-    assert failures_of(try_all(all_cases(), tmp_path)) == []
+    cases = [case for case in all_cases() if case.kind != SIGNALS][::4]
+    assert len({case.command for case in cases}) >= 9
+    assert failures_of(try_all(cases, tmp_path)) == []
