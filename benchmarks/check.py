@@ -33,8 +33,8 @@ def main() -> None:
     _show("prediction", 5, _of_this_process(lambda: predict(plan, bench, model)))
     _show("prediction and judging", 5, _of_this_process(lambda: forecast(plan, bench)))
     _show("run through frames, recorded and judged", 3, _of_this_process(run))
-    _show("process `hil check acceptance`", 5, lambda: _of_a_process(_COMMAND, "check", "acceptance"))
-    _show("of that, its imports", 5, lambda: _of_a_process(_IMPORTS))
+    _show("process `hil check acceptance`", 3, lambda: _of_a_process(_COMMAND, "check", "acceptance"))
+    _show("of that, its imports", 3, lambda: _of_a_process(_IMPORTS))
 
 
 def _show(what: str, times: int, measured_s: Callable[[], float]) -> None:
