@@ -6,8 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
-from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
-from hil.analysis.diagnosis.data._sanity import examine
+from hil.analysis.diagnosis.data._sanity import examined
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
@@ -60,10 +59,10 @@ def _diagnosed(
 ) -> Diagnosis:
     began = time.perf_counter()
     show("reading the noise")
-    traces, found_odd = examine(model, recordings)
-    held, _ = examine(model, holdout, traces)
-    notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + found_odd
-    noise = usable_noise(noise_levels(traces))
+    seen = examined(model, recordings)
+    held = examined(model, holdout, seen.traces)
+    traces, noise = seen.traces, seen.noise
+    notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + seen.notes
     rounded = grids(traces, noise)
     problem = problem_of(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
     hypothesis = Hypothesis(model)

@@ -69,9 +69,28 @@ def check(model: Model, traces: list[Trace], noise: Array, beside: Sequence[Trac
     return notes
 
 
+@dataclass(frozen=True)
+class Examined:
+    """Recordings made ready for fits, the noise of their channels per sample (3,), and notes on them."""
+
+    traces: list[Trace]
+    noise: Array
+    notes: list[str]
+
+
 def examine(
     model: Model, recordings: Sequence[Recording], beside: Sequence[Trace] = ()
 ) -> tuple[list[Trace], list[str]]:
+    """The traces and notes of `examined`.
+
+    Raises:
+        BadInputError: like `examined`.
+    """
+    found = examined(model, recordings, beside)
+    return found.traces, found.notes
+
+
+def examined(model: Model, recordings: Sequence[Recording], beside: Sequence[Trace] = ()) -> Examined:
     """Recordings as they come from a file made ready for fits, and what `check` notes on them.
 
     Args:
@@ -84,8 +103,9 @@ def examine(
         refuse_implausible(recording)
     traces = [trace_of(part) for r in recordings for piece in unbroken(r) for part in excerpts(piece)]
     if not traces:
-        return [], []
-    return traces, check(model, traces, usable_noise(noise_levels(traces)), beside)
+        return Examined([], np.full(3, np.nan), [])
+    noise = usable_noise(noise_levels(traces))
+    return Examined(traces, noise, check(model, traces, noise, beside))
 
 
 def _kind(error: BadInputError) -> str:

@@ -82,24 +82,24 @@ SEGMENTS_ALIKE: Annotated[
 ] = 1.0 / 6.0
 
 STANDSTILL_SHARE: Annotated[
-    float, Means("of the largest speed", "below it the axle is near standstill", "hidden")
+    float, Means("of the largest speed", "below it the axle is near standstill", "gap")
 ] = 0.03
 REVERSAL_S: Annotated[
-    float, Means("s", "so long after torque changes its sign counts as reversal", "hidden")
+    float, Means("s", "so long after torque changes its sign counts as reversal", "gap")
 ] = 0.15
-LARGE_TORQUE: Annotated[float, Means("of the largest torque", "above it torque is large", "hidden")] = 0.6
-HIGH_SPEED: Annotated[float, Means("of the largest speed", "above it speed is high", "hidden")] = 0.6
+LARGE_TORQUE: Annotated[float, Means("of the largest torque", "above it torque is large", "gap")] = 0.6
+HIGH_SPEED: Annotated[float, Means("of the largest speed", "above it speed is high", "gap")] = 0.6
 
-LEAST_GRID: Annotated[float, Means("of the noise", "a finer grid explains nothing", "hidden")] = 0.2
-COARSE_GRID: Annotated[float, Means("noise levels", "a finer grid is dithered by the noise", "hidden")] = 1.0
+LEAST_GRID: Annotated[float, Means("of the noise", "a finer grid explains nothing", "grid")] = 0.2
+COARSE_GRID: Annotated[float, Means("noise levels", "a finer grid is dithered by the noise", "grid")] = 1.0
 ROUNDING_ALIKE: Annotated[
-    float, Means("root of the samples in a block", "so many neighbouring rounding errors are alike", "hidden")
+    float, Means("root of the samples in a block", "so many neighbouring rounding errors are alike", "grid")
 ] = 2.0
-ON_GRID: Annotated[float, Means("mean phasor", "from it on readings lie on a grid", "hidden")] = 0.98
-LEAST_LEVELS: Annotated[int, Means("levels", "fewer show no grid", "hidden")] = 4
+ON_GRID: Annotated[float, Means("mean phasor", "from it on readings lie on a grid", "grid")] = 0.98
+LEAST_LEVELS: Annotated[int, Means("levels", "fewer show no grid", "grid")] = 4
 
 FLOOR_BAND: Annotated[
-    tuple[float, float], Means("of the sample rate", "above all modes: what is left there is noise", "hidden")
+    tuple[float, float], Means("of the sample rate", "above all modes: what is left there is noise", "noise")
 ] = (0.25, 0.48)
 
 INVERTED: Annotated[float, Means("correlation", "below it a channel is inverted", "bad_input")] = -0.5
@@ -167,22 +167,22 @@ MOST_SAMPLES: Annotated[
 ] = 400_000
 EXCERPTS: Annotated[int, Means("stretches", "so many stand for a very long one", "bad_input")] = 10
 FIRST_STAMPS: Annotated[
-    int, Means("samples", "a straight line through the stamps begins with these", "hidden")
+    int, Means("samples", "a straight line through the stamps begins with these", "trace")
 ] = 50
-UNEVEN_SHARE: Annotated[
-    float, Means("of a sample", "stamps further off an even grid are noted", "hidden")
-] = 0.01
+UNEVEN_SHARE: Annotated[float, Means("of a sample", "stamps further off an even grid are noted", "trace")] = (
+    0.01
+)
 NEAR_SHARE: Annotated[
-    float, Means("of a sample", "a reading this near to a point of the grid stands for it", "hidden")
+    float, Means("of a sample", "a reading this near to a point of the grid stands for it", "trace")
 ] = 0.5
 FIT_RATE_HZ: Annotated[
-    float, Means("Hz", "rate of block means: driveline modes end below 60 Hz", "hidden")
+    float, Means("Hz", "rate of block means: driveline modes end below 60 Hz", "trace")
 ] = 250.0
 START_SAMPLES: Annotated[
-    int, Means("samples", "at most so many are the reading before the torque does anything", "hidden")
+    int, Means("samples", "at most so many are the reading before the torque does anything", "trace")
 ] = 20
 LITTLE_TORQUE: Annotated[
-    float, Means("of the largest", "torque below it is none: a fed back torque is never quite zero", "hidden")
+    float, Means("of the largest", "torque below it is none: a fed back torque is never quite zero", "trace")
 ] = 0.01
 GAP_SAMPLES: Annotated[float, Means("samples", "a longer pause is a gap", "bad_input")] = 20.0
 SLOWEST_SAMPLE_S: Annotated[float, Means("s", "a recording sampled more slowly is refused", "bad_input")] = (

@@ -50,26 +50,28 @@ WORTH_A_LEAP: Annotated[
     Means("squared error, noise variances", "a dead time in another sample must gain more", "whole_samples"),
 ] = 10.0
 
-TRIALS: Annotated[tuple[float, ...], Means("of a step", "tried in each round", "hidden")] = (1.0, 0.35)
-MOST_REFUSALS: Annotated[int, Means("steps", "refused before a fit gives up", "hidden")] = 4
+TRIALS: Annotated[tuple[float, ...], Means("of a step", "tried in each round", "least_squares")] = (1.0, 0.35)
+MOST_REFUSALS: Annotated[int, Means("steps", "refused before a fit gives up", "least_squares")] = 4
 
-HUGE: Annotated[float, Means("noise levels", "errors of a diverged simulation are cut to it", "hidden")] = 1e9
+HUGE: Annotated[float, Means("noise levels", "errors of a diverged simulation are cut to it", "problem")] = (
+    1e9
+)
 DIVERGED: Annotated[
-    float, Means("noise levels", "a larger change is no derivative that could be followed", "hidden")
+    float, Means("noise levels", "a larger change is no derivative that could be followed", "problem")
 ] = 1e9
-REST_SHARE: Annotated[float, Means("of a sample's noise", "how still an axle at rest is held", "hidden")] = (
+REST_SHARE: Annotated[float, Means("of a sample's noise", "how still an axle at rest is held", "problem")] = (
     0.1
 )
 REST_SIGMAS: Annotated[
-    float, Means("standard deviations", "a mean speed nearer to zero may be rest", "hidden")
+    float, Means("standard deviations", "a mean speed nearer to zero may be rest", "problem")
 ] = 4.0
-REST_SAMPLES: Annotated[int, Means("samples", "in that mean", "hidden")] = 20
+REST_SAMPLES: Annotated[int, Means("samples", "in that mean", "problem")] = 20
 FINE: Annotated[
     float,
     Means(
         "noise with rounding over that without",
         "a coarser channel reads zero at many speeds and tells no rest",
-        "hidden",
+        "problem",
     ),
 ] = 2.0
 
@@ -82,9 +84,9 @@ FAR_FROM_NOISE: Annotated[
     ),
 ] = 50.0
 
-WHITENING_ORDER: Annotated[int, Means("blocks", "memory of the filters that make errors white", "hidden")] = (
-    16
-)
+WHITENING_ORDER: Annotated[
+    int, Means("blocks", "memory of the filters that make errors white", "whitening")
+] = 16
 
 EDGE: Annotated[
     float,

@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._probes import mismatches, probes
-from hil.analysis.diagnosis.search._screen import index_of, products
+from hil.analysis.diagnosis.search._probes import probes
+from hil.analysis.diagnosis.search._screen import mismatch_columns, probe_columns, products
 from hil.analysis.diagnosis.search._thresholds import BOOTSTRAP_DRAWS, ENOUGH_S
 
 Array = npt.NDArray[np.float64]
@@ -34,13 +34,9 @@ def most_by_chance(problem: Problem, fit: Fit, draws: int = BOOTSTRAP_DRAWS) -> 
     known = np.arange(base)
     rest = _drops(matrix, gradients, known)
     most = 0.0
-    at = base
-    for probe in candidates:
-        columns = np.concatenate([known, np.arange(at, at + len(probe.directions))])
-        at += len(probe.directions)
+    for _, columns in probe_columns(candidates, base):
         most = max(most, float(np.max(_drops(matrix, gradients, columns) - rest)))
-    for use in mismatches(fit.hypothesis):
-        index = index_of(fit.hypothesis, str(use.values["parameter"]))
+    for _, index in mismatch_columns(fit.hypothesis):
         freed = matrix.copy()
         freed[index, index] -= precision[index]
         most = max(most, float(np.max(_drops(freed, gradients, known) - rest)))

@@ -16,17 +16,15 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import aligned, has_ripple
 from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._thresholds import (
-    DOUBT,
-    FAR,
     HOPE,
     LEAST_EVIDENCE,
     OPTIONAL_LEAVES,
     OTHER_SIZES,
     OUT_OF_RACE,
     PLAIN,
-    PRICE,
     PROMISING,
     RACE,
     RACE_ROUNDS,
@@ -41,7 +39,6 @@ from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
 
-_SENSOR_FAULTS = ("sensor_gain", "sensor_offset", "channel_skew")
 _ABRUPT = ("backlash", "torque_deadband", "torque_rate_limit", "torque_saturation")
 _RELATIVES = {
     "dead_time": ("actuator_lag", "channel_skew"),
@@ -112,17 +109,6 @@ def _better(scores: list[Score], others: list[Score]) -> list[Score]:
     return sorted(best.values(), key=lambda s: -s.gain)
 
 
-def rank(one: Fit) -> float:
-    """Total and a price of every number: smaller is better.
-
-    Far from the noise formulas differ, and a small advantage of a fault in a sensor says nothing.
-    """
-    rows = sum(len(errors.rows) for errors in one.errors)
-    if one.total > FAR * rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids):
-        return DOUBT * one.total + PRICE * len(one.theta)
-    return one.total + PRICE * len(one.theta)
-
-
 def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
     """Fits of the promising effects, best first; the hopeless are given up after a few rounds."""
     chosen = _chosen(scores)
@@ -137,7 +123,7 @@ def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
             finished.append(fit(problem, one.hypothesis, one.starts, one.theta))
         else:
             finished.append(one)
-    return sorted(finished, key=lambda f: f.total + PRICE * len(f.theta))
+    return sorted(finished, key=lambda f: f.total + price(f))
 
 
 def _chosen(scores: list[Score]) -> list[Score]:

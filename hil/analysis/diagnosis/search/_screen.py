@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -53,16 +53,12 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
     if against is not None:
         rest = fit.total - against
     best: dict[tuple[str, str], Score] = {}
-    at = base
-    for probe in candidates:
-        columns = np.arange(at, at + len(probe.directions))
-        at += len(probe.directions)
+    for probe, columns in probe_columns(candidates, base):
         low = np.concatenate([lower, [d.lower for d in probe.directions]])
         high = np.concatenate([upper, [d.upper for d in probe.directions]])
-        gain, amounts = _gain(matrix, gradient, low, high, np.concatenate([np.arange(base), columns]))
+        gain, amounts = _gain(matrix, gradient, low, high, columns)
         _keep(best, Score(probe.use(amounts[base:]), gain - rest))
-    for use in mismatches(fit.hypothesis):
-        index = index_of(fit.hypothesis, str(use.values["parameter"]))
+    for use, index in mismatch_columns(fit.hypothesis):
         low, high = lower.copy(), upper.copy()
         low[index], high[index] = -SCORED_MISMATCH, SCORED_MISMATCH
         freed = matrix.copy()
@@ -80,9 +76,19 @@ def _keep(best: dict[tuple[str, str], Score], score: Score) -> None:
         best[score.key] = score
 
 
-def index_of(hypothesis: Hypothesis, name: str) -> int:
+def probe_columns(candidates: Sequence[Probe], base: int) -> Iterator[tuple[Probe, npt.NDArray[np.int_]]]:
+    """Every probe with the columns of `products` that it may use: the `base` first, and its directions."""
+    at = base
+    for probe in candidates:
+        yield probe, np.concatenate([np.arange(base), np.arange(at, at + len(probe.directions))])
+        at += len(probe.directions)
+
+
+def mismatch_columns(hypothesis: Hypothesis) -> Iterator[tuple[EffectUse, int]]:
+    """Every parameter that may be wrong, with the column that is then held no longer."""
     names = [c.name if c.term < 0 else "" for c in hypothesis.coordinates()]
-    return names.index(name)
+    for use in mismatches(hypothesis):
+        yield use, names.index(str(use.values["parameter"]))
 
 
 def _gain(

@@ -17,8 +17,9 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
-from hil.analysis.diagnosis.search._growth import Step, grow, rank
+from hil.analysis.diagnosis.search._growth import Step, grow
 from hil.analysis.diagnosis.search._quantization import rounding_of
+from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
     LEAST_EVIDENCE,
     LEAST_SHARE,

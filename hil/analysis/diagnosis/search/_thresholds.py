@@ -35,19 +35,19 @@ NEARLY: Annotated[
     float, Means("of the whole gap", "once it is closed, what is left may be a formula that differs", "blind")
 ] = 0.93
 SIGMAS: Annotated[
-    float, Means("standard deviations of noise's own", "physics below it is none", "hidden")
+    float, Means("standard deviations of noise's own", "physics below it is none", "evidence")
 ] = 5.0
 NOTHING: Annotated[
-    float, Means("of a channel's noise power", "physics below it is none: 1 % of gap", "hidden")
+    float, Means("of a channel's noise power", "physics below it is none: 1 % of gap", "evidence")
 ] = 0.02
-SMALL: Annotated[float, Means("gap over noise floor", "below it no further effect is missing", "hidden")] = (
-    1.03
-)
+SMALL: Annotated[
+    float, Means("gap over noise floor", "below it no further effect is missing", "evidence")
+] = 1.03
 SMALLISH: Annotated[
-    float, Means("gap over noise floor", "the same, once 99 % of the gap are closed", "hidden")
+    float, Means("gap over noise floor", "the same, once 99 % of the gap are closed", "evidence")
 ] = 1.1
 NEARLY_ALL: Annotated[
-    float, Means("of the whole gap", "once it is closed a little more may be left", "hidden")
+    float, Means("of the whole gap", "once it is closed a little more may be left", "evidence")
 ] = 0.99
 
 LEAST_EVIDENCE: Annotated[
@@ -55,17 +55,17 @@ LEAST_EVIDENCE: Annotated[
 ] = 30.0
 FAR: Annotated[
     float,
-    Means("noise powers", "with more left formulas differ, and a fault in a sensor is doubted", "hidden"),
+    Means("noise powers", "with more left formulas differ, and a fault in a sensor is doubted", "rank"),
 ] = 50.0
 DOUBT: Annotated[
-    float, Means("factor of the total", "price of a fault in a sensor far from the noise", "hidden")
+    float, Means("factor of the total", "price of a fault in a sensor far from the noise", "rank")
 ] = 1.02
 PRICE: Annotated[
     float,
     Means(
         "squared error, noise variances",
         "of each number that an effect brings, when two effects explain the same",
-        "hidden",
+        "rank",
     ),
 ] = 8.0
 PLAIN: Annotated[
@@ -113,18 +113,18 @@ RELATIVE_PROMISES: Annotated[
     Means("of the best score", "a relative of a promising effect must promise it to be fitted", "hidden"),
 ] = 0.1
 
-LARGEST_ORDER: Annotated[dict[str, float], Means("orders", "looked for", "hidden")] = {
+LARGEST_ORDER: Annotated[dict[str, float], Means("orders", "looked for", "orders")] = {
     "wheel": 60.0,
     "motor": 60.0,
 }
 LEAST_ORDER: Annotated[
-    float, Means("orders", "what turns with a shaft repeats with every turn", "hidden")
+    float, Means("orders", "what turns with a shaft repeats with every turn", "orders")
 ] = 0.5
-BINS_A_TURN: Annotated[int, Means("bins", "a turn of the largest order is sorted into", "hidden")] = 8
-FROM_HZ: Annotated[float, Means("Hz", "ripples slower than this are drift", "hidden")] = 0.5
-LEAST_ANGLE_RAD: Annotated[float, Means("rad", "an axle that turns less shows no order", "hidden")] = 20.0
-SPEED_BINS: Annotated[int, Means("bins", "of speed, in what an order is expected to bring", "hidden")] = 200
-ORDER_GRID: Annotated[int, Means("orders", "at which that is computed", "hidden")] = 600
+BINS_A_TURN: Annotated[int, Means("bins", "a turn of the largest order is sorted into", "orders")] = 8
+FROM_HZ: Annotated[float, Means("Hz", "ripples slower than this are drift", "orders")] = 0.5
+LEAST_ANGLE_RAD: Annotated[float, Means("rad", "an axle that turns less shows no order", "orders")] = 20.0
+SPEED_BINS: Annotated[int, Means("bins", "of speed, in what an order is expected to bring", "orders")] = 200
+ORDER_GRID: Annotated[int, Means("orders", "at which that is computed", "orders")] = 600
 
 STRETCH: Annotated[
     tuple[float, float],
@@ -135,14 +135,14 @@ LATE_S: Annotated[
 ] = (0.008, 0.04)
 
 ROUNDING_MARGIN: Annotated[
-    float, Means("factor", "rounding may leave so much more than its simulation says", "hidden")
+    float, Means("factor", "rounding may leave so much more than its simulation says", "quantization")
 ] = 2.0
 
 SCORED_MISMATCH: Annotated[
-    float, Means("natural logarithm", "how far a wrong parameter's score may reach linearly", "hidden")
+    float, Means("natural logarithm", "how far a wrong parameter's score may reach linearly", "screen")
 ] = 0.5
 PROBE_DIVERGED: Annotated[
-    float, Means("noise levels", "a larger response is a diverged probe and scores nothing", "hidden")
+    float, Means("noise levels", "a larger response is a diverged probe and scores nothing", "screen")
 ] = 1e8
 
 MOST_EFFECTS: Annotated[int, Means("names", "at most", "blind")] = 3

@@ -8,8 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, gap_map
-from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
-from hil.analysis.diagnosis.data._trace import Trace
+from hil.analysis.diagnosis.data._sanity import Examined
 from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._simulated import settled_starts, simulated_samples
@@ -34,7 +33,7 @@ class Judged:
     problem: Problem
     found: Found
     verdict: Verdict
-    holdout: list[Trace]
+    holdout: Examined
     by_chance: float | None = None
 
     def diagnosis(self, rounded: list[EffectUse], notes: list[str], seconds: float) -> Diagnosis:
@@ -92,13 +91,13 @@ class Judged:
         return simulated_samples(problem, hypothesis, theta, starts)
 
     def _held(self, kept: Fit) -> tuple[dict[str, ChannelGap], dict[str, ChannelGap]]:
-        if not self.holdout:
+        if not self.holdout.traces:
             return {}, {}
         ratio = kept.hypothesis.base.parameters["gear_ratio"]
-        noise = usable_noise(noise_levels(self.holdout))
+        noise = self.holdout.noise
         colouring = self.found.evidence.colouring(self.found.best)
         weighed = np.where(np.isfinite(self.problem.noise), self.problem.noise, noise)  # rounding included
-        problem = problem_of(self.holdout, weighed, ratio, floor=noise * colouring)
+        problem = problem_of(self.holdout.traces, weighed, ratio, floor=noise * colouring)
         gaps = []
         for hypothesis, theta in (
             (self.found.base.hypothesis, self.found.base.hypothesis.start()),

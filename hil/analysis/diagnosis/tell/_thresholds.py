@@ -27,8 +27,8 @@ OPEN_CONFIDENCE: Annotated[
     float, Means("probability", "of names that are told where no gap was closed", "blind")
 ] = 0.05
 
-STEP_NM: Annotated[float, Means("N m", "the step whose overshoot is told", "hidden")] = 20.0
-BAND_HZ: Annotated[tuple[float, float], Means("Hz", "the band whose energy is told", "hidden")] = (
+STEP_NM: Annotated[float, Means("N m", "the step whose overshoot is told", "consequences")] = 20.0
+BAND_HZ: Annotated[tuple[float, float], Means("Hz", "the band whose energy is told", "consequences")] = (
     8.0,
     20.0,
 )
@@ -81,27 +81,27 @@ MORE: Annotated[
     float, Means("share of the gap's power", "that each further name must close besides", "blind")
 ] = 0.001
 
-WORDS_SEGMENT: Annotated[int, Means("blocks", "of a spectrum that is told in words", "hidden")] = 1024
-SLOW_BINS: Annotated[int, Means("frequencies", "what lies below drifts, it is no line", "hidden")] = 2
-LINE: Annotated[
-    float, Means("times its neighbours", "a spectral line stands so far above them", "hidden")
-] = 8.0
+WORDS_SEGMENT: Annotated[int, Means("blocks", "of a spectrum that is told in words", "words")] = 1024
+SLOW_BINS: Annotated[int, Means("frequencies", "what lies below drifts, it is no line", "words")] = 2
+LINE: Annotated[float, Means("times its neighbours", "a spectral line stands so far above them", "words")] = (
+    8.0
+)
 CHANNEL_SHARE: Annotated[
-    float, Means("of the strongest channel's power", "an effect acts in channels above it", "hidden")
+    float, Means("of the strongest channel's power", "an effect acts in channels above it", "words")
 ] = 0.3
 ORDER_SHARE: Annotated[
-    float, Means("of what is left", "an order that explains more is what is left", "hidden")
+    float, Means("of what is left", "an order that explains more is what is left", "words")
 ] = 0.4
 DEPENDS: Annotated[
-    float, Means("correlation", "of logarithms: above it what is left depends on torque or speed", "hidden")
+    float, Means("correlation", "of logarithms: above it what is left depends on torque or speed", "words")
 ] = 0.75
 EVERYWHERE: Annotated[
     float,
-    Means("times the median condition", "an effect that falls by less acts at all conditions", "hidden"),
+    Means("times the median condition", "an effect that falls by less acts at all conditions", "words"),
 ] = 2.0
 BAND_SHARES: Annotated[
-    tuple[float, float], Means("of the power", "the band that is told lies between", "hidden")
+    tuple[float, float], Means("of the power", "the band that is told lies between", "words")
 ] = (0.1, 0.9)
 LEAST_RECORDINGS: Annotated[
-    int, Means("recordings", "fewer tell no dependence on torque or speed", "hidden")
+    int, Means("recordings", "fewer tell no dependence on torque or speed", "words")
 ] = 4

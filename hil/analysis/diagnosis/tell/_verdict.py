@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from hil.analysis.diagnosis.search._search import Found
@@ -14,16 +16,39 @@ _BY_LAW = ("backlash", "coulomb_friction", "shaft_hysteresis")
 def verdict_of(found: Found, rounded: bool) -> Verdict:
     """Named if the accepted effects close the gap, unknown if a gap stays, else none."""
     evidence, best = found.evidence, found.best
-    if best.hypothesis.terms:
-        share, worst = evidence.share(best), evidence.worst(best)
-        if evidence.worst(found.base) > NOISELESS:
-            return "named" if share > SHUT_NOISELESS else "unknown"
-        several = len(best.hypothesis.terms) - 1
-        limits: tuple[tuple[float, float], ...] = SHUT
-        if any(id_ in _BY_LAW for id_ in best.hypothesis.ids):
-            limits = (*SHUT, (SHUT_BY_LAW, np.inf))
-        shut = any(share > least + MORE * several and worst < most for least, most in limits)
-        return "named" if shut else "unknown"
-    if not evidence.closed(best):
+    if not best.hypothesis.terms:
+        return verdict_without_effects(evidence.closed(best), rounded)
+    return verdict_on(
+        best.hypothesis.ids, evidence.worst(found.base), evidence.share(best), evidence.worst(best)
+    )
+
+
+def verdict_without_effects(closed: bool, rounded: bool) -> Verdict:
+    """The verdict where no effect was accepted.
+
+    Args:
+        closed: nothing but noise is left.
+        rounded: a channel's rounding was found: it is named, though no fit needs it.
+    """
+    if not closed:
         return "unknown"
     return "named" if rounded else "none"
+
+
+def verdict_on(ids: Sequence[str], before: float, share: float, left: float) -> Verdict:
+    """The verdict on accepted effects.
+
+    Args:
+        ids: of the effects.
+        before: gap over noise of the channel that is worst off, without them.
+        share: of the gap's power that they close.
+        left: gap over noise that they leave in the channel that is worst off.
+    """
+    if before > NOISELESS:
+        return "named" if share > SHUT_NOISELESS else "unknown"
+    limits = SHUT
+    if any(id_ in _BY_LAW for id_ in ids):
+        limits = (*SHUT, (SHUT_BY_LAW, np.inf))
+    least_more = MORE * (len(ids) - 1)
+    shut = any(share > least + least_more and left < most for least, most in limits)
+    return "named" if shut else "unknown"

@@ -1,0 +1,24 @@
+"""Which of two fits is preferred: what they leave, and what their numbers cost."""
+
+from __future__ import annotations
+
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.search._thresholds import DOUBT, FAR, PRICE
+
+_SENSOR_FAULTS = ("sensor_gain", "sensor_offset", "channel_skew")
+
+
+def price(one: Fit) -> float:
+    """What the numbers of a fit cost, in squared errors over the noise variance."""
+    return PRICE * len(one.theta)
+
+
+def rank(one: Fit) -> float:
+    """Total and a price of every number: smaller is better.
+
+    Far from the noise formulas differ, and a small advantage of a fault in a sensor says nothing.
+    """
+    rows = sum(len(errors.rows) for errors in one.errors)
+    if one.total > FAR * rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids):
+        return DOUBT * one.total + price(one)
+    return one.total + price(one)

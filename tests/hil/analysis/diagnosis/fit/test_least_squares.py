@@ -1,0 +1,42 @@
+"""Steps within bounds, and descents that reach the minimum."""
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._least_squares import box_step, descent
+from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
+
+MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "step"),
+    [
+        ((-9.0, -9.0), (9.0, 9.0), (0.2, 0.6)),
+        ((-9.0, -9.0), (0.1, 9.0), (0.1, 1.9 / 3.0)),
+        ((-9.0, -9.0), (9.0, 0.5), (0.25, 0.5)),
+        ((0.3, -9.0), (9.0, 0.5), (0.3, 0.5)),
+    ],
+)
+def test_a_step_within_bounds(
+    lower: tuple[float, float], upper: tuple[float, float], step: tuple[float, float]
+) -> None:
+    found = box_step(MATRIX, np.array([1.0, 2.0]), np.array(lower), np.array(upper))
+    assert found == pytest.approx(step)
+
+
+def test_without_numbers_to_go_by_no_step_is_taken() -> None:
+    assert np.all(box_step(np.full((2, 2), np.nan), np.ones(2), -np.ones(2), np.ones(2)) == 0.0)
+
+
+def test_a_descent_lowers_the_cost_and_keeps_to_its_rounds() -> None:
+    problem, hypothesis = one_problem(), Hypothesis(MODEL)
+    theta = hypothesis.start() + 0.02
+    starts = problem.first_starts(hypothesis)
+    wide = np.full(len(theta), 0.03)
+    first = problem.linearised(hypothesis, theta, starts)
+    reached = descent(problem, hypothesis, (theta, starts), (-wide, wide), np.zeros(len(theta)), 3, 0.0)
+    assert reached.at.cost < 0.5 * first.cost
+    assert reached.rounds <= 3
+    assert np.all(np.abs(reached.theta) <= wide)

@@ -1,0 +1,55 @@
+"""One short recording of an axle: enough to call a part of the diagnosis by itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from hil.analysis.diagnosis.data._noise import noise_levels
+from hil.analysis.diagnosis.data._trace import Trace, trace_of
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._errors import Errors
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit._problem import Problem, problem_of
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.model import EffectUse, Model
+from hil.core.recording import Recording
+from hil.plant import simulate
+from tests.hil.analysis.diagnosis.reference_plant import BASE
+
+MODEL = Model("three_inertia", dict(BASE))
+NOISE = (0.5, 0.05, 1.0)
+
+
+def recorded(*effects: EffectUse, seconds: float = 4.0, seed: int = 1) -> Recording:
+    """A chirp through the model with `effects`, white noise on every channel."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(0.0, seconds, 1e-3)
+    torque = 20.0 * np.sin(2 * np.pi * (0.5 * time + 1.5 * time**2))
+    channels = {TIME: time, INPUT: torque}
+    clean = simulate(MODEL.with_effects(*effects), torque, 1e-3)
+    for name, level in zip(OUTPUTS, NOISE, strict=True):
+        channels[name] = clean[name] + rng.normal(0.0, level, len(time))
+    return Recording(channels, Path("one.csv"))
+
+
+def one_trace(*effects: EffectUse, seconds: float = 4.0) -> Trace:
+    """The same, made ready."""
+    return trace_of(recorded(*effects, seconds=seconds))
+
+
+def one_problem(*effects: EffectUse, seconds: float = 4.0) -> Problem:
+    """The same, weighed by its noise."""
+    traces = [one_trace(*effects, seconds=seconds)]
+    return problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
+
+
+def left(total: float, *effects: EffectUse, rows: int = 300) -> Fit:
+    """A fit of `effects` that leaves `total`, spread evenly over `rows` errors."""
+    hypothesis = Hypothesis(MODEL, effects)
+    theta = hypothesis.start()
+    size = len(theta)
+    error = np.full(rows, np.sqrt(total / rows))
+    errors = Errors(error, np.zeros((rows, size)), np.zeros((rows, 3)))
+    return Fit(hypothesis, theta, [np.zeros(3)], total, 0.0, np.eye(size), (errors,))

@@ -1,0 +1,29 @@
+"""Sizes at which effects are tried first."""
+
+import numpy as np
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.search._probes import mismatches, probes
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
+from hil.core.model import EffectUse
+from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
+
+GAIN = EffectUse("sensor_gain", {"channel": OUTPUTS[2], "gain": 1.2})
+
+
+def test_every_probe_is_an_effect_that_may_be_added() -> None:
+    problem = one_problem()
+    one = fit(problem, Hypothesis(MODEL, (GAIN,)), rounds=0)
+    for probe in probes(problem, one):
+        use = probe.use(np.ones(len(probe.directions)))
+        assert MODEL.kind in EFFECTS[use.id].needs
+        assert (use.id, use.values.get("channel", "")) != ("sensor_gain", OUTPUTS[2])
+        packed, _ = one.hypothesis.with_term(use).packed(one.hypothesis.with_term(use).start())
+        assert np.isfinite(packed[:3]).all()
+
+
+def test_every_parameter_may_be_wrong_but_dead_time() -> None:
+    found = {use.values["parameter"] for use in mismatches(Hypothesis(MODEL))}
+    assert found == set(MODEL.parameters) - {"torque_delay"}

@@ -1,0 +1,58 @@
+"""When a hypothesis earns its further names, and a whole search on little data."""
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.search._growth import grown
+from hil.analysis.diagnosis.search._search import earned, search
+from hil.core.channels import OUTPUTS
+from hil.core.model import EffectUse
+from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
+
+OFFSET = EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0})
+LAG = EffectUse("actuator_lag", {"time_constant_s": 0.01})
+POOR, RICH = left(300.0), left(200.0, LAG)
+
+
+class Told:
+    """Evidence that says what a table says."""
+
+    def __init__(self, drop: float, whole: float, closed: float) -> None:
+        self.drop, self.whole, self.closed = drop, whole, closed
+
+    def between(self, poorer: object, richer: object) -> float:
+        return self.drop
+
+    def left(self, one: object) -> float:
+        return 1.0 - self.closed if one is RICH else 1.0
+
+    def share(self, one: object) -> float:
+        return self.whole
+
+
+@pytest.mark.parametrize(
+    ("drop", "whole", "closed", "earns"),
+    [
+        (31.0, 0.0, 0.61, True),
+        (29.0, 0.0, 0.99, False),  # too little evidence
+        (31.0, 0.0, 0.59, False),  # too small a share of the gap
+        (31.0, 0.94, 0.87, False),  # where nearly all was closed before, it must be more
+        (31.0, 0.94, 0.89, True),
+    ],
+)
+def test_a_further_name_is_earned(drop: float, whole: float, closed: float, earns: bool) -> None:
+    assert earned(Told(drop, whole, closed), POOR, RICH) is earns  # type: ignore[arg-type]
+
+
+def test_a_hidden_offset_is_found_alone() -> None:
+    found = search(one_problem(OFFSET), Hypothesis(MODEL), lambda text: None)
+    assert found.best.hypothesis.keys == (("sensor_offset", OUTPUTS[2]),)
+    assert found.evidence.closed(found.best)
+
+
+def test_an_effect_is_grown_from_its_best_size() -> None:
+    problem = one_problem(LAG)
+    base = search(one_problem(), Hypothesis(MODEL), lambda text: None).base
+    one = grown(problem, base, EffectUse("actuator_lag", {"time_constant_s": 0.007}), 3)
+    assert np.exp(one.theta[-1]) == pytest.approx(0.01, rel=0.2)

@@ -1,0 +1,31 @@
+"""What a search found, told: gaps and effects agree with the fits."""
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis.data._sanity import Examined
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.search._search import search
+from hil.analysis.diagnosis.tell._judged import Judged
+from hil.analysis.diagnosis.tell._result import NamedEffect
+from hil.core.channels import OUTPUTS
+from hil.core.model import EffectUse
+from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
+
+OFFSET = EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0})
+NOTHING_HELD = Examined([], np.full(3, np.nan), [])
+
+
+def test_a_named_effect_comes_with_its_error_and_an_unknown_gap_with_its_signature() -> None:
+    problem = one_problem(OFFSET)
+    found = search(problem, Hypothesis(MODEL), lambda text: None)
+    floor = problem.floor.copy()
+    named = Judged(problem, found, "named", NOTHING_HELD).diagnosis([], ["a note"], 1.0)
+    assert isinstance(named.effects[0], NamedEffect)
+    assert named.effects[0].standard_error["offset"] == pytest.approx(0.1, abs=0.1)
+    assert (named.signature, named.notes, named.holdout_after) == ("", ("a note",), {})
+    unknown = Judged(problem, found, "unknown", NOTHING_HELD).diagnosis([], [], 1.0)
+    assert unknown.effects == ()
+    assert OUTPUTS[2] in unknown.signature
+    assert np.array_equal(problem.floor, floor)
+    assert unknown.gap_before == named.gap_before

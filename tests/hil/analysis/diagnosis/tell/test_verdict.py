@@ -1,0 +1,45 @@
+"""When a gap counts as closed: a table."""
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis.tell._verdict import verdict_on, verdict_without_effects
+
+LAG = ("actuator_lag",)
+
+
+@pytest.mark.parametrize(
+    ("closed", "rounded", "verdict"),
+    [
+        (True, False, "none"),
+        (True, True, "named"),
+        (False, False, "unknown"),
+        (False, True, "unknown"),
+    ],
+)
+def test_without_effects(closed: bool, rounded: bool, verdict: str) -> None:
+    assert verdict_without_effects(closed, rounded) == verdict
+
+
+@pytest.mark.parametrize(
+    ("ids", "before", "share", "left", "verdict"),
+    [
+        (LAG, 5.0, 0.51, 1.02, "named"),  # the noise is reached
+        (LAG, 5.0, 0.49, 1.02, "unknown"),  # and yet half of the gap is still there
+        (LAG, 5.0, 0.51, 1.04, "unknown"),
+        (LAG, 5.0, 0.96, 1.59, "named"),  # nearly all is closed
+        (LAG, 5.0, 0.96, 1.61, "unknown"),
+        (LAG, 5.0, 0.94, 1.59, "unknown"),
+        (LAG, 50.0, 0.996, 9.0, "named"),  # a large effect is closed less finely
+        (LAG, 50.0, 0.994, 9.0, "unknown"),
+        (("backlash",), 50.0, 0.91, 9.0, "named"),  # laws of contact are many
+        (("backlash",), 50.0, 0.89, 9.0, "unknown"),
+        (("actuator_lag", "coulomb_friction"), 50.0, 0.902, 9.0, "named"),
+        (("actuator_lag", "coulomb_friction"), 50.0, 0.9005, 9.0, "unknown"),  # a further name must pay
+        (("actuator_lag", "sensor_gain"), 50.0, 0.9955, 9.0, "unknown"),
+        (LAG, 101.0, 0.91, np.inf, "named"),  # without noise formulas differ
+        (LAG, 101.0, 0.89, 1.0, "unknown"),
+    ],
+)
+def test_with_effects(ids: tuple[str, ...], before: float, share: float, left: float, verdict: str) -> None:
+    assert verdict_on(ids, before, share, left) == verdict
