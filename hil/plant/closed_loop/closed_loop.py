@@ -17,12 +17,13 @@ from hil.plant.closed_loop.advance import advance
 from hil.plant.closed_loop.shown import Wire, rounded
 from hil.plant.controller import LARGEST_TORQUE_NM, build, in_range
 from hil.plant.controller import memory as M
+from hil.plant.controller.parameters import INCOMPLETE, OUT_OF_RANGE
 
 Array = npt.NDArray[np.float64]
 TICK_S = 0.001
 SIDES = (0, 1)  # left, right
 _FIRST_ROWS = 1 << 14
-_OUT_OF_RANGE, _INCOMPLETE = "out_of_range", "incomplete"
+_REASONS = {OUT_OF_RANGE: "out_of_range", INCOMPLETE: "incomplete"}
 
 
 class ClosedLoop:
@@ -68,7 +69,9 @@ class ClosedLoop:
         stored = dict(zip(parameters, map(float, values), strict=True))
         for name, value in stored.items():
             if not in_range(name, value):
-                raise BenchError(f"refused parameter '{name}' = {value:g}: {_OUT_OF_RANGE}", where="RMCU")
+                raise BenchError(
+                    f"refused parameter '{name}' = {value:g}: {_REASONS[OUT_OF_RANGE]}", where="RMCU"
+                )
         result = build(stored, self._memory)
         if result:
             raise BenchError(f"refused the controller's parameters: {_REASONS[result]}", where="RMCU")
@@ -159,6 +162,3 @@ class ClosedLoop:
             self._rows[self.samples : end],
         )
         self.samples = end
-
-
-_REASONS = {2: _OUT_OF_RANGE, 4: _INCOMPLETE}

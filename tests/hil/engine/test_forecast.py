@@ -259,6 +259,14 @@ def test_what_the_bench_does_not_allow_is_refused_as_in_a_run():
         forecast(plan(steps), SIM)
 
 
+def test_a_dbc_without_a_number_for_a_parameter_is_refused(tmp_path):
+    text = SIM.rmcu.dbc.read_text("utf-8").replace('8 "k_p"', '8 "gain"')
+    (tmp_path / "rmcu.dbc").write_text(text)
+    rmcu = SIM.rmcu.model_copy(update={"dbc": tmp_path / "rmcu.dbc"})
+    with pytest.raises(BadInputError, match="no parameter named 'k_p'"):
+        forecast(plan(STEPS), SIM.model_copy(update={"rmcu": rmcu}))
+
+
 def test_a_model_without_a_shaft_is_refused():
     simulation = SIM.simulation.model_copy(update={"model": SIM.source.parent / "paper_functions.toml"})
     with pytest.raises(BadInputError, match="cannot be a simulated bench"):
