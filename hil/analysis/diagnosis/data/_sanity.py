@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._broken_channels import coarse, refuse_broken_channels
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
+from hil.analysis.diagnosis.data._pair import Pair
 from hil.analysis.diagnosis.data._thresholds import (
     AGAINST,
     APART_RAD,
@@ -128,40 +129,9 @@ def _ratio_and_inertia(model: Model) -> tuple[float, float]:
     return p["gear_ratio"], inertia
 
 
-@dataclass
-class _Pair:
-    """Sums of squares and of products of two things that go together: `y` should equal `x`."""
-
-    xx: float = 0.0
-    yy: float = 0.0
-    xy: float = 0.0
-    count: int = 0
-
-    def add(self, x: Array, y: Array) -> None:
-        self.xx, self.yy, self.xy = self.xx + float(x @ x), self.yy + float(y @ y), self.xy + float(x @ y)
-        self.count += len(x)
-
-    @property
-    def correlation(self) -> float:
-        return self.xy / max(float(np.sqrt(self.xx * self.yy)), 1e-30)
-
-    @property
-    def factor(self) -> float:
-        """How much larger y is than x; noise in either makes no difference to first order."""
-        return float(np.sqrt(self.yy / max(self.xx, 1e-30)))
-
-    @property
-    def sizes(self) -> tuple[float, float]:
-        """Rms of x and of y."""
-        count = max(self.count, 1)
-        return float(np.sqrt(self.xx / count)), float(np.sqrt(self.yy / count))
-
-
-def _speeds(
-    traces: list[Trace], ratio: float, noise: Array, pushes: dict[str, _Pair]
-) -> BadInputError | None:
+def _speeds(traces: list[Trace], ratio: float, noise: Array, pushes: dict[str, Pair]) -> BadInputError | None:
     """Motor speed against wheel speed: sign, order of magnitude, ratio."""
-    uneven, even = _Pair(), _Pair()
+    uneven, even = Pair(), Pair()
     both = [t for t in traces if t.has[0] and t.has[1] and not (coarse(t, 0) or coarse(t, 1))]
     for t in both:
         wheel, motor = t.measured[:, 1], t.measured[:, 0] / ratio
@@ -214,7 +184,7 @@ def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
     )
 
 
-def _push(traces: list[Trace], column: int, ratio: float, per_impulse: float) -> _Pair:
+def _push(traces: list[Trace], column: int, ratio: float, per_impulse: float) -> Pair:
     """How far the axle turned by a speed (y), and by the torque's impulse (x), rad wheel side.
 
     Even turning and an even change of speed are left out: offsets, friction, resistance.
@@ -223,7 +193,7 @@ def _push(traces: list[Trace], column: int, ratio: float, per_impulse: float) ->
         ratio: of the speed to the wheel's.
         per_impulse: wheel speed for 1 N m s of motor torque.
     """
-    pair = _Pair()
+    pair = Pair()
     for t in traces:
         if t.has[column]:
             count, step = len(t.measured), t.block * t.dt
@@ -235,7 +205,7 @@ def _push(traces: list[Trace], column: int, ratio: float, per_impulse: float) ->
     return pair
 
 
-def _pushed(pushes: dict[str, _Pair], fine: list[str]) -> BadInputError | None:
+def _pushed(pushes: dict[str, Pair], fine: list[str]) -> BadInputError | None:
     """Whether torque moves the axle the right way, and no more than it can.
 
     Args:
@@ -263,7 +233,7 @@ def _pushed(pushes: dict[str, _Pair], fine: list[str]) -> BadInputError | None:
 
 def _shaft(traces: list[Trace], ratio: float, noise: Array) -> BadInputError | None:
     """Shaft torque against motor torque at low frequency: sign and order of magnitude."""
-    pair = _Pair()
+    pair = Pair()
     having = [t for t in traces if t.has[2]]
     for t in having:
         length = max(1, round(SLOW_S / t.dt))

@@ -13,7 +13,8 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._least_squares import box_step
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._probes import Probe, mismatches, probes
+from hil.analysis.diagnosis.search._probe import Probe
+from hil.analysis.diagnosis.search._probes import mismatches, probes
 from hil.analysis.diagnosis.search._thresholds import PROBE_DIVERGED, SCORED_MISMATCH
 from hil.core.model import EffectUse
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.search._probe import Scene
 from hil.analysis.diagnosis.search._probes import mismatches, probes
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
@@ -27,3 +28,11 @@ def test_every_probe_is_an_effect_that_may_be_added() -> None:
 def test_every_parameter_may_be_wrong_but_dead_time() -> None:
     found = {use.values["parameter"] for use in mismatches(Hypothesis(MODEL))}
     assert found == set(MODEL.parameters) - {"torque_delay"}
+
+
+def test_a_scene_knows_the_largest_torques() -> None:
+    problem = one_problem()
+    scene = Scene(problem, fit(problem, Hypothesis(MODEL), rounds=0))
+    assert scene.torque == np.max(np.abs(problem.traces[0].torque))
+    assert scene.shaft_torque == np.max(np.abs(problem.traces[0].measured[:, 2]))
+    assert scene.model.parameters["gear_ratio"] > 1.0
