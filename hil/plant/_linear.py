@@ -58,8 +58,9 @@ class LinearSystem:
         column = self.inputs.index(source)
         s = 2j * np.pi * np.asarray(frequency_hz, dtype=float)
         found = np.empty((len(self.outputs), len(s)), dtype=complex)
-        felt = np.any(self.a != 0.0, axis=0) | np.any(self.c != 0.0, axis=0)
-        a, b, c = self.a[felt][:, felt], self.b[felt, column], np.ascontiguousarray(self.c[:, felt])
+        used = np.any(self.a != 0.0, axis=0) | np.any(self.c != 0.0, axis=0)
+        used &= np.any(self.a != 0.0, axis=1) | np.any(self.b != 0.0, axis=1)
+        a, b, c = self.a[used][:, used], self.b[used, column], np.ascontiguousarray(self.c[:, used])
         _respond(a, b, c, self.d[:, column].copy(), s, found)
         if column == TORQUE:
             found *= np.exp(-self.delay_s * s)

@@ -4,6 +4,7 @@ import control
 import numpy as np
 import pytest
 
+from hil.analysis.identification import chain_response
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.plant import linear_system, simulate
@@ -52,6 +53,12 @@ def by_impedances(p: dict[str, float], s: np.ndarray) -> np.ndarray:
 def test_three_inertias_are_their_impedances():
     expected = by_impedances(THREE.parameters, 2j * np.pi * FREQUENCY)
     np.testing.assert_allclose(linear_system(THREE).response(FREQUENCY), expected, rtol=1e-10)
+
+
+@pytest.mark.parametrize("model", [RIGID, TWO, THREE], ids=lambda model: model.kind)
+def test_the_closed_forms_of_identification_are_this_system(model):
+    found = chain_response(model.kind, model.parameters, FREQUENCY)
+    np.testing.assert_allclose(found, linear_system(model).response(FREQUENCY), rtol=1e-10)
 
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS)
