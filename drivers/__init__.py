@@ -3,7 +3,7 @@
 from drivers.dyno import DynoDriver, DynoNodes, VehicleParameters, identifiers_of, read_dyno
 from drivers.loop import TICK_S, BusLoop
 from drivers.measurement import Binding, SampleAssembler
-from drivers.rmcu import RmcuDriver, read_rmcu
+from drivers.rmcu import RmcuDriver, parameters_of, read_rmcu
 from drivers.wire import Wire
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "VehicleParameters",
     "Wire",
     "identifiers_of",
+    "parameters_of",
     "read_dyno",
     "read_rmcu",
 ]

@@ -33,7 +33,7 @@ class BusLoop:
         self.wires = wires
         self.stop_requested = False
         self.shielded = False
-        self._next_s = clock.now_s()
+        self._anchor_s, self._since_anchor = clock.now_s(), 0  # a sum of ticks would drift
         self._ticks = 0
         self._duties: list[_Duty] = []
         self._callbacks: dict[str, dict[int, FrameCallback]] = {wire.name: {} for wire in wires}
@@ -92,11 +92,15 @@ class BusLoop:
         if self.stop_requested and not self.shielded:
             self.stop_requested = False
             raise InterruptError("stopped by the operator")
-        self._next_s += TICK_S
-        self.clock.sleep_until(self._next_s)
+        self._since_anchor += 1
+        next_s = self._anchor_s + self._since_anchor * TICK_S
+        self.clock.sleep_until(next_s)
         now_s = self.clock.now_s()
-        if now_s - self._next_s > 10 * TICK_S:
-            self._next_s = now_s  # do not chase lost time: devices time out by themselves
+        if now_s - next_s > 10 * TICK_S:
+            self._anchor_s, self._since_anchor = (
+                now_s,
+                0,
+            )  # do not chase lost time: devices time out by themselves
         self._ticks += 1
         for duty in self._duties:
             duty.run_if_due(now_s)

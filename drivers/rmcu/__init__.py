@@ -1,5 +1,6 @@
 """The Rear Motor Control Unit on its CAN bus."""
 
 from drivers.rmcu._driver import RmcuDriver, read_rmcu
+from drivers.rmcu._parameters import parameters_of
 
-__all__ = ["RmcuDriver", "read_rmcu"]
+__all__ = ["RmcuDriver", "parameters_of", "read_rmcu"]

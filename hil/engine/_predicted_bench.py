@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from drivers.rmcu._parameters import parameters_of
+from drivers import parameters_of
 from hil.core.controller import Controller
 from hil.core.errors import BadInputError
 from hil.core.model import Model

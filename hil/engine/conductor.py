@@ -23,7 +23,7 @@ from test_plans import Array, PlannedSegment, Quantity, Work
 
 _SPEED_TOLERANCE_RAD_S = 0.5
 _SPEED_GRACE_S = 5.0
-_RELEASE_S = 0.2  # torque is taken away over this time after a stretch of samples
+RELEASE_S = 0.2  # torque is taken away over this time after a stretch of samples
 
 
 class BenchConductor:
@@ -89,7 +89,7 @@ class BenchConductor:
         """Request the samples one each tick, then take the torque away and switch it off."""
         self._check.play(quantity, samples_nm, segment)
         rmcu, loop = self._bench.rmcu, self._bench.loop
-        tail = np.linspace(samples_nm[-1], 0.0, round(_RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
+        tail = np.linspace(samples_nm[-1], 0.0, round(RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
         if segment:
             self._begin(segment, loop.clock.now_s(), len(samples_nm))
         sent = 0

@@ -20,8 +20,7 @@ from hil.core.result import Segment
 from hil.engine._predicted_bench import PredictedBench
 from hil.engine.bench import Bench
 from hil.engine.bench_file import BenchFile
-from hil.engine.conductor import _RELEASE_S as RELEASE_S
-from hil.engine.conductor import BenchConductor
+from hil.engine.conductor import RELEASE_S, BenchConductor
 from hil.engine.recorder import Recorder
 from hil.plant.closed_loop import TICK_S
 from test_plans import Array, Plan, PlannedSegment, Quantity
