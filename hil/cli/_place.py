@@ -160,6 +160,8 @@ def _make(folder: Path, made: list[Path]) -> None:
     while not place.exists() and place != place.parent:
         missing.append(place)
         place = place.parent
+    if not place.is_dir():
+        raise BadInputError("is not a directory", where=str(place), fix="choose another place with --out")
     make_directory(folder)
     made += reversed(missing)
 

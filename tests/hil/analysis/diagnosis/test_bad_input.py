@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,7 +15,7 @@ from hil.analysis.diagnosis import examine, unbroken
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._problem import problem_of
-from hil.cli import main
+from hil.cli._app import guarded
 from hil.core.errors import BadInputError
 from hil.core.model import Model, parameter_names, save_model
 from hil.core.recording import Recording
@@ -43,11 +42,9 @@ def run(tmp_path, monkeypatch, capsys):
     save_model(MODEL, tmp_path / "model.toml")
 
     def call(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["hil", "diagnose", "--out", "out", *arguments])
-        with pytest.raises(SystemExit) as left:
-            main()
+        code = guarded(["diagnose", "--out", "out", *arguments])
         said = capsys.readouterr()
-        return int(left.value.code or 0), said.out, said.err
+        return code, said.out, said.err
 
     return call
 
@@ -334,7 +331,7 @@ def test_rest_is_seen_though_the_torque_is_never_quite_zero() -> None:
         channels[MOTOR] = channels[MOTOR] + 3.0  # an offset of one speed hides no rest
         trace = trace_of(dataclasses.replace(recording, channels=channels))
         noise = usable_noise(noise_levels([trace]))
-        assert problem_of([trace], noise, BASE["gear_ratio"]).resting == [True]
+        assert problem_of([trace], noise, BASE["gear_ratio"]).resting == (True,)
         coarse = noise * np.array([1.0, 50.0, 1.0])  # whose rounding reads zero at many speeds
         assert problem_of([trace], coarse, BASE["gear_ratio"], floor=noise).resting == [False]
     assert fed_back
