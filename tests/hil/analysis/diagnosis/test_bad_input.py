@@ -333,5 +333,5 @@ def test_rest_is_seen_though_the_torque_is_never_quite_zero() -> None:
         noise = usable_noise(noise_levels([trace]))
         assert problem_of([trace], noise, BASE["gear_ratio"]).resting == (True,)
         coarse = noise * np.array([1.0, 50.0, 1.0])  # whose rounding reads zero at many speeds
-        assert problem_of([trace], coarse, BASE["gear_ratio"], floor=noise).resting == [False]
+        assert problem_of([trace], coarse, BASE["gear_ratio"], floor=noise).resting == (False,)
     assert fed_back
