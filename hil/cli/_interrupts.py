@@ -33,6 +33,10 @@ class Interrupts:
         for number in NUMBERS:
             signal.signal(number, signal.SIG_IGN)
 
+    def answered(self) -> None:
+        """Somebody has taken the signal for what it is, and says so in words of its own."""
+        self.arrived = False
+
     def tell(self) -> None:
         """Say it, once."""
         if not self._told:

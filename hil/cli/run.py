@@ -10,7 +10,7 @@ from typing import Annotated, TypeVar
 import typer
 
 from hil.cli._interrupts import INTERRUPTS
-from hil.cli._output import Show, console, count_in_words, print_criteria, print_json, progress, warn
+from hil.cli._output import Show, console, count_in_words, print_criteria, print_json, progress
 from hil.cli._place import Place, results_in
 from hil.cli._streams import complain
 from hil.core.errors import BenchError, HilError, InterruptError
@@ -123,6 +123,7 @@ class _Conclusion:
             INTERRUPTS.raise_from_now_on()
             return write_documents(recording, result, self._place.folder)
         except KeyboardInterrupt:
+            INTERRUPTS.answered()
             self._stop.ask()
             return {}
         finally:
@@ -173,8 +174,6 @@ def _print(result: RunResult, folder: Path) -> None:
         highlight=False,
     )
     shown = "html" if "html" in result.files else "recording"
-    if shown == "recording":
-        warn("there is no report")
     page.print(f"{'report' if shown == 'html' else shown}: {folder / result.files[shown]}", highlight=False)
 
 

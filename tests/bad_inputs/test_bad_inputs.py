@@ -46,7 +46,7 @@ def test_the_quickest_commands_stand_bad_input(tmp_path):
 
 @pytest.mark.slow
 def test_a_quarter_of_all_cases_stands_bad_input(tmp_path):
-    """All of them, and the signals, are `make bad-inputs`; signals at a run's moments are in tests/hil/cli."""
+    """All of them, and the signals, are `make bad-inputs`; a run's signals are in tests/hil/cli too."""
     assert AT_ONCE == 2
     cases = [case for case in all_cases() if case.kind != SIGNALS][::4]
     assert len({case.command for case in cases}) >= 9
