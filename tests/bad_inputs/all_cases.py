@@ -13,7 +13,7 @@ from tests.bad_inputs.stream_cases import stream_cases
 from tests.bad_inputs.value_cases import value_cases
 
 _QUICK_COMMANDS = ("hil", "schema", "export")
-_QUICK = 25
+_QUICK = 10
 
 
 def all_cases() -> list[Case]:

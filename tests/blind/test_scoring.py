@@ -127,6 +127,7 @@ def test_a_case_is_the_same_again_and_its_files_hold_no_answer(tmp_path):
     assert texts[0] == texts[1]
 
 
+@pytest.mark.slow
 def test_a_run_with_a_stand_in_writes_both_files(tmp_path):
     spec = Spec("none", "none", "none", 0)
     result = run_case(2, spec, says_nothing, tmp_path / "kept", 0.1)

@@ -11,6 +11,7 @@ from test_plans import load_plan
 from tests.benches_for_tests import SIM, plan, sim_bench
 
 
+@pytest.mark.slow
 def test_commissioning_finds_the_axle_that_the_bench_was_given_and_tames_it(tmp_path):
     outcome = run_plan(RunRequest(load_plan("commissioning"), sim_bench("commissioning"), tmp_path))
     assert (outcome.error, outcome.result.verdict) == (None, "pass")

@@ -53,6 +53,7 @@ def test_the_same_out_twice_needs_overwrite_and_leaves_nothing_of_the_first(tmp_
     assert 'skipped="1"' in (out / "junit.xml").read_text()
 
 
+@pytest.mark.slow
 def test_without_out_runs_are_numbered(tmp_path: Path) -> None:
     plan = plan_in(tmp_path)
     for _ in range(2):
@@ -81,6 +82,7 @@ def test_a_plan_without_criteria_is_not_green(tmp_path: Path) -> None:
     assert 'class="banner pass"' not in page
 
 
+@pytest.mark.slow
 def test_reports_are_renewed_in_place_but_not_those_of_another_recording(tmp_path: Path) -> None:
     out = tmp_path / "out"
     hil("run", plan_in(tmp_path), "--out", out)
@@ -116,6 +118,7 @@ def test_a_signal_at_any_time_leaves_a_result(number: int, sign: str, tmp_path: 
     assert read_recording(out / "recording.mcap", least_samples=0).damage == []
 
 
+@pytest.mark.slow
 def test_a_disk_that_fills_up_while_reports_are_written_is_exit_code_3(tmp_path: Path) -> None:
     """The limit on a file's size stands in for a full disk: the recording fits, the report does not."""
     out = tmp_path / "out"
@@ -128,6 +131,7 @@ def test_a_disk_that_fills_up_while_reports_are_written_is_exit_code_3(tmp_path:
     assert {p.name for p in out.iterdir()} == {"result.json", *result["files"].values()}
 
 
+@pytest.mark.slow
 def test_a_recording_with_a_broken_bit_proves_nothing_and_every_command_says_so(tmp_path: Path) -> None:
     out = tmp_path / "out"
     hil("run", plan_in(tmp_path), "--out", out)
