@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup test test-slow bad-inputs blind lint bench figures lock clean
+.PHONY: run setup test test-slow hunt bad-inputs blind lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -29,11 +29,15 @@ lint: setup
 	$(BIN)/mypy
 
 test: lint
-	$(BIN)/python -m pytest -n 2 -m "not slow"
+	$(BIN)/python -m pytest -n 2 -m "not slow and not hunt"
 
 # What takes minutes: the fixed part of the blind diagnosis set, bad inputs, the wheel, long hunts for faults.
 test-slow: setup
 	$(BIN)/python -m pytest -n 2 -m slow
+
+# Hundreds of degenerate recordings through every analysis.
+hunt: setup
+	$(BIN)/python -m pytest -n 2 -m hunt
 
 # Bad input, signals and broken streams on every command, as processes: docs/reference/bad-inputs.md.
 bad-inputs: setup

@@ -22,7 +22,7 @@ from tests.hil.analysis.degenerate import CHANGES, MODEL, SHAPES, recording
 
 pytestmark = pytest.mark.filterwarnings("ignore")
 
-#: What takes long because nothing is wrong with it in the end; run with the slow tests.
+#: What takes long because nothing is wrong with it in the end; run by `make hunt`.
 _LONG = (
     *("jitter", "a gap", "tiny torque", "rounded time", "early start", "step only"),
     *("constant motor_torque_ref_nm", "zero motor_torque_ref_nm"),
@@ -62,7 +62,7 @@ def test_diagnosis(change: str, shape: str) -> None:
     survives_diagnosis(change, shape)
 
 
-@pytest.mark.slow
+@pytest.mark.hunt
 @pytest.mark.parametrize(("change", "shape"), REST)
 def test_diagnosis_of_the_rest(change: str, shape: str) -> None:
     survives_diagnosis(change, shape)
@@ -74,7 +74,7 @@ def test_identification(change: str, shape: str) -> None:
     survives_identification(change, shape, order=3)
 
 
-@pytest.mark.slow
+@pytest.mark.hunt
 @pytest.mark.parametrize("shape", ["4000 samples", "every 0.1 s", "every 20 ms"])
 @pytest.mark.parametrize("change", CHANGES)
 def test_identification_of_what_can_be_fitted(change: str, shape: str) -> None:
@@ -124,14 +124,14 @@ def test_design(model: Model, pole: float) -> None:
     survives_design(model, pole)
 
 
-@pytest.mark.slow
+@pytest.mark.hunt
 @given(st.one_of(chains(), functions()), st.floats(1e-6, 3000.0))
 @settings(max_examples=1000, deadline=None)
 def test_design_of_many(model: Model, pole: float) -> None:
     survives_design(model, pole)
 
 
-@pytest.mark.slow
+@pytest.mark.hunt
 def test_figures_of_a_loop_without_any_good_lead() -> None:
     model = MODEL.with_parameters(torque_delay=0.2)
     found = design(model, DesignSpec(pole_rad_s=3.0), unstable_too=True)
