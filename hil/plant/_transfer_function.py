@@ -7,7 +7,6 @@ import math
 import numpy as np
 import numpy.typing as npt
 from scipy.linalg import expm
-from scipy.signal import tf2ss
 
 from hil.core.compiled import compiled
 from hil.core.model import TransferFunction
@@ -20,6 +19,8 @@ def respond(function: TransferFunction, torque: Array, dt: float, start: float) 
 
     Only a free integrator can hold an output without input: `start` goes to it where there is one.
     """
+    from scipy.signal import tf2ss  # slow to import, and seldom needed
+
     denominator = np.trim_zeros(np.asarray(function.denominator), "f")
     numerator = np.trim_zeros(np.asarray(function.numerator), "f")
     while len(numerator) > 1 and numerator[-1] == 0.0 == denominator[-1]:

@@ -6,7 +6,6 @@ from typing import ClassVar, Self
 
 import numpy as np
 from pydantic import Field, model_validator
-from scipy import signal
 
 from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
@@ -46,6 +45,8 @@ class BandEnergy(WindowMetric):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """Sum of density times line spacing over the shares of lines in the band (Parseval)."""
+        from scipy import signal  # slow to import
+
         start_s, end_s = self.bounds_s(segment)
         time, values = cut(recording, segment, self.channel, start_s, end_s, with_end=False)
         count = round((end_s - start_s) / recording.sample_time_s)

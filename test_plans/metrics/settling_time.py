@@ -6,7 +6,6 @@ from typing import ClassVar
 
 import numpy as np
 from pydantic import Field
-from scipy import signal
 
 from hil.core.recording import Recording
 from hil.core.result import Segment
@@ -97,6 +96,8 @@ class SettlingTime(WindowMetric):
                 f"a low-pass at {self.low_pass_hz:g} Hz needs more than {2 * self.low_pass_hz:g} samples a "
                 f"second, the recording has {1 / spacing_s:.4g}"
             )
+        from scipy import signal  # slow to import
+
         sections = signal.butter(_FILTER_ORDER, self.low_pass_hz, fs=1 / spacing_s, output="sos")
         # Padding by a few time constants lets the filter start and end at rest.
         padding = min(len(values) - 1, int(np.ceil(1 / (self.low_pass_hz * spacing_s))))

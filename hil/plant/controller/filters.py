@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import bilinear
 
 from hil.core.compiled import compiled
 
@@ -33,6 +32,8 @@ def discretised(
     Raises:
         ValueError: improper, without a denominator, or of too high an order for the RMCU.
     """
+    from scipy.signal import bilinear  # slow to import: not for commands that only read files
+
     above = np.trim_zeros(np.atleast_1d(np.asarray(numerator, dtype=float)), "f")
     below = np.trim_zeros(np.atleast_1d(np.asarray(denominator, dtype=float)), "f")
     while len(above) > 1 and len(below) > 1 and above[-1] == 0.0 and below[-1] == 0.0:

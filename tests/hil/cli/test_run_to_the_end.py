@@ -35,6 +35,7 @@ def bench_in(directory: Path, *changes: tuple[str, str]) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_the_same_out_twice_needs_overwrite_and_leaves_nothing_of_the_first(tmp_path: Path) -> None:
     plan, out = plan_in(tmp_path), tmp_path / "out"
     hil("run", plan, "--out", out)
