@@ -10,8 +10,9 @@ import numpy as np
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model, parameter_names
 from tests.blind.experiments import SAMPLE_S, Experiment, holdout_set, in_closed_loop, main_set
-from tests.blind.families import FAMILIES, RIGID, Hidden, Setting, fits
-from tests.blind.outsiders import OUTSIDERS, outsider_fits
+from tests.blind.families import FAMILIES, RIGID, Draw, Hidden, Setting, fits
+from tests.blind.later_families import LATER_FAMILIES, QUIET, later_fits
+from tests.blind.outsiders import LATER_OUTSIDERS, OUTSIDERS, outsider_fits
 from tests.blind.plant import Array, Truth
 from tests.blind.sizing import Bench, Ruler, largest_share, likeness
 from tests.blind.specs import SIZES, Spec
@@ -28,6 +29,7 @@ _TYPICAL = {
     "viscous_drag": 0.002,
     "torque_delay": 0.008,
 }
+_ALL: dict[str, Draw] = FAMILIES | LATER_FAMILIES
 _SPREAD = 0.25  # how far plants differ from the typical one
 _CALIBRATION = 0.015  # how far a model is from its plant; files state 2 %
 _CLOSED_LOOP_SHARE = 0.15
@@ -83,7 +85,7 @@ def draw_case(seed: int, spec: Spec, length: float = 1.0) -> Case:
     bench = Bench(base, experiments)
     deviation = np.std(np.concatenate(bench.plain), axis=0)
     noise = NoiseLevel(
-        deviation * np.exp(rng.uniform(np.log(0.005), np.log(0.02), 3)),
+        deviation * np.exp(rng.uniform(np.log(0.005), np.log(0.02), 3)) * QUIET.get(spec.subject, 1.0),
         rng.uniform(0.0, 0.15),
         rng.uniform(2.0, 15.0),
     )
@@ -110,10 +112,14 @@ def _off(rng: np.random.Generator) -> float:
 def _kind(rng: np.random.Generator, spec: Spec) -> str:
     kinds = ("three_inertia", "two_inertia", "rigid")
     draws = rng.choice(kinds, size=60, p=(0.55, 0.3, 0.15))
-    check = outsider_fits if spec.group == "outside" else fits
-    if spec.subject in FAMILIES or spec.subject in OUTSIDERS:
+    check = outsider_fits if spec.group == "outside" else _fits
+    if spec.subject in _ALL or spec.group == "outside":
         return str(next(kind for kind in draws if check(spec.subject, kind)))
     return str(draws[0])
+
+
+def _fits(subject: str, kind: str) -> bool:
+    return later_fits(subject, kind) if subject in LATER_FAMILIES else fits(subject, kind)
 
 
 def _nominal(rng: np.random.Generator, kind: str) -> dict[str, float]:
@@ -146,7 +152,8 @@ def _sized(
 ) -> tuple[tuple[Hidden], float]:
     """The subject at the size that was asked for; drawn again when these outputs cannot show it."""
     outside = spec.group == "outside"
-    draw = OUTSIDERS[spec.subject] if outside else FAMILIES[spec.subject]
+    draw = (OUTSIDERS | LATER_OUTSIDERS)[spec.subject] if outside else _ALL[spec.subject]
+    registered = FAMILIES if spec.subject in OUTSIDERS else _ALL
     ruler = Ruler(bench, noise.deviations, _own_parameter(spec.subject))
     wanted = share_of(SIZES[spec.size])
     best: tuple[float, Hidden, float] | None = None
@@ -160,7 +167,7 @@ def _sized(
         hidden = family.of_size(size)
         left = share
         if outside and 1.0 / _MISSED < share / wanted < _MISSED:
-            known = [FAMILIES[id](rng, setting) for id in FAMILIES if fits(id, bench.base.kind)]
+            known = [registered[id](rng, setting) for id in registered if _fits(id, bench.base.kind)]
             middles = [f.of_size(float(np.sqrt(f.smallest * f.largest))) for f in known]
             left = ruler.unexplained(ruler.residual(hidden), middles)
         missed = abs(np.log(max(left, 1e-9) / wanted))
@@ -191,10 +198,9 @@ def _pair(
 ) -> tuple[tuple[Hidden, ...], float]:
     """Two effects, each large enough alone, whose traces differ."""
     ruler = Ruler(bench, noise.deviations)
-    names = RIGID if bench.base.kind == "rigid" else [id for id in FAMILIES if fits(id, bench.base.kind)]
     while True:
-        first, second = (FAMILIES[str(id)](rng, setting) for id in rng.choice(names, 2, replace=False))
-        if {first.id, second.id} in _NOT_TOGETHER:
+        first, second = (_ALL[id](rng, setting) for id in _pair_names(rng, spec, bench.base.kind))
+        if first.id == second.id or {first.id, second.id} in _NOT_TOGETHER:
             continue
         hidden, traces = [], []
         for family in (first, second):
@@ -207,6 +213,15 @@ def _pair(
         channels = [s.channel for h in hidden for s in h.sensors]
         if len(channels) == len(set(channels)) and likeness(*traces) < _ALIKE:
             return tuple(hidden), min(largest_share(t) for t in traces)
+
+
+def _pair_names(rng: np.random.Generator, spec: Spec, kind: str) -> list[str]:
+    """Two of the first effects, or the subject, which joined later, and any other."""
+    names = [*RIGID] if kind == "rigid" else [id for id in FAMILIES if fits(id, kind)]
+    if spec.subject not in LATER_FAMILIES:
+        return [str(id) for id in rng.choice(names, 2, replace=False)]
+    later = [id for id in LATER_FAMILIES if later_fits(id, kind) and id not in (spec.subject, *QUIET)]
+    return [spec.subject, str(rng.choice([*names, *later]))]
 
 
 def _mismatch(

@@ -120,7 +120,7 @@ def _wanted(spec: Spec, options: argparse.Namespace) -> bool:
         return False
     if options.size and spec.size not in options.size:
         return False
-    return not options.only or spec.subject in options.only
+    return not options.only or bool({spec.subject, spec.subject.split(":")[0]} & {*options.only})
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -128,7 +128,12 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1, help="another seed, other plants and noise")
     parser.add_argument("--cases", type=int, help="about this many, in the full set's proportions")
     parser.add_argument("--group", action="append", choices=GROUPS, help="only this group; may be repeated")
-    parser.add_argument("--only", action="append", metavar="EFFECT", help="only this effect; may be repeated")
+    parser.add_argument(
+        "--only",
+        action="append",
+        metavar="EFFECT",
+        help="only this effect in all its forms, or one form (backlash:damped); may be repeated",
+    )
     parser.add_argument("--size", action="append", help="only large, clear, middle or edge; may be repeated")
     parser.add_argument("--jobs", type=int, default=2, help="cases at a time")
     parser.add_argument("--threads", type=int, default=1, help="threads of each diagnosis")

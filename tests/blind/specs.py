@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from tests.blind.families import FAMILIES
-from tests.blind.outsiders import OUTSIDERS
+from tests.blind.later_families import LATER_FAMILIES
+from tests.blind.outsiders import LATER_OUTSIDERS, OUTSIDERS
 
 GROUPS = ("single", "pair", "none", "outside", "mismatch", "one_recording")
 
@@ -40,11 +41,21 @@ def full_set() -> list[Spec]:
     specs += [
         Spec("outside", id, size, turn)
         for turn in range(3)
-        for id in OUTSIDERS
+        for id in (*OUTSIDERS, *LATER_OUTSIDERS)
         for size in ("clear", "middle")
     ]
     specs += [Spec("mismatch", "parameter_mismatch", "any", turn) for turn in range(24)]
     specs += [Spec("one_recording", id, "clear", turn) for turn in range(2) for id in FAMILIES]
+    specs += [
+        Spec("single", id, size, turn) for turn in range(2) for id in LATER_FAMILIES for size in _GRADES
+    ]
+    specs += [Spec("single", id, "large", 0) for id in LATER_FAMILIES]
+    specs += [
+        Spec("pair", id, "clear" if turn % 2 else "middle", turn)
+        for turn in range(4)
+        for id in LATER_FAMILIES
+    ]
+    specs += [Spec("one_recording", id, "clear", turn) for turn in range(2) for id in LATER_FAMILIES]
     return specs
 
 

@@ -10,13 +10,14 @@ from hil.core.effects import EFFECTS
 from hil.core.model import load_model
 from hil.core.recording import read_recording
 from tests.blind.casefiles import Answer, write_case
-from tests.blind.cases import draw_case
+from tests.blind.cases import draw_case, share_of
 from tests.blind.diagnosing import Reply, says_nothing
 from tests.blind.families import FAMILIES
-from tests.blind.outsiders import OUTSIDERS
+from tests.blind.later_families import LATER_FAMILIES
+from tests.blind.outsiders import LATER_OUTSIDERS, OUTSIDERS
 from tests.blind.run import main, run_case
-from tests.blind.scoring import errors_of, score
-from tests.blind.specs import GROUPS, Spec, full_set, subset
+from tests.blind.scoring import KNOWN, errors_of, score
+from tests.blind.specs import GROUPS, SIZES, Spec, full_set, subset
 
 NOISE = {"motor_speed_rad_s": 0.01, "wheel_speed_rad_s": 0.02, "shaft_torque_nm": 0.02}
 
@@ -89,6 +90,13 @@ def test_errors_of_parameters():
     assert loop == pytest.approx({"slip_torque_nm": 0.0})
 
 
+def test_flanks_are_compared_where_they_are_told_in_the_same_way():
+    truth = {"half_gap_rad": 0.01, "restitution": 0.8}
+    told = {"half_gap_rad": 0.011, "contact_damping_nms_rad": 20.0}
+    assert errors_of("backlash", truth, told) == pytest.approx({"half_gap_rad": 0.1})
+    assert errors_of("backlash", truth, truth | {"restitution": 0.72})["restitution"] == pytest.approx(0.1)
+
+
 def test_a_wrong_name_with_high_confidence_is_not_honest():
     spec = Spec("one_recording", "backlash", "clear", 0)
     assert not score(spec, "two_inertia", _answer(BACKLASH), _reply("named", (*GAIN, 0.95))).honest
@@ -98,7 +106,8 @@ def test_a_wrong_name_with_high_confidence_is_not_honest():
 def test_every_registered_effect_can_be_hidden_and_none_of_the_outsiders_is_registered():
     contract = set(FAMILIES) | {"parameter_mismatch"}
     assert contract <= set(EFFECTS)
-    assert not set(OUTSIDERS) & set(EFFECTS)
+    assert set(KNOWN) == contract | {id for id in LATER_FAMILIES if ":" not in id}
+    assert not {*OUTSIDERS, *LATER_OUTSIDERS} & set(EFFECTS)
 
 
 def test_a_subset_has_every_group_and_is_the_same_again():
@@ -125,6 +134,41 @@ def test_a_case_is_the_same_again_and_its_files_hold_no_answer(tmp_path):
         assert answer.effects[0][0] == "torque_saturation"
         EFFECTS["torque_saturation"].check(answer.effects[0][1], "answer")
     assert texts[0] == texts[1]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("subject", [*LATER_FAMILIES])
+@pytest.mark.parametrize("size", ["clear", "middle", "edge"])
+def test_effects_that_joined_later_are_drawn_at_the_size_that_is_asked_for(subject, size):
+    case = draw_case(1, Spec("single", subject, size, 0), 0.5)
+    assert [h.id for h in case.hidden] == [subject.split(":")[0]]
+    assert 1 / 1.5 < case.share / share_of(SIZES[size]) < 1.5
+
+
+@pytest.mark.slow
+def test_a_pair_has_the_effect_that_joined_later_and_another():
+    for subject in LATER_FAMILIES:
+        case = draw_case(1, Spec("pair", subject, "clear", 1), 0.3)
+        assert case.hidden[0].id == subject.split(":")[0]
+        assert len({h.id for h in case.hidden}) == 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("spec", "share", "laws"),
+    [
+        (Spec("pair", "any", "middle", 0), 1.4983368, [{"limit_nm": 43.886446}, {"cubic": 3193.3052}]),
+        (
+            Spec("outside", "outside:shaft_asymmetry", "clear", 0),
+            2.5523546,
+            [{"shaft_asymmetry": 0.06899049}],
+        ),
+    ],
+)
+def test_what_joins_the_set_leaves_the_cases_that_were_there(spec, share, laws):
+    case = draw_case(11, spec, 0.1)
+    assert case.share == pytest.approx(share, rel=1e-6)
+    assert [h.laws for h in case.hidden] == [pytest.approx(one, rel=1e-6) for one in laws]
 
 
 @pytest.mark.slow

@@ -13,6 +13,7 @@ from tests.blind.reference.controller import pi_torque
 from tests.blind.reference.friction import bristle_after, friction_torque, running_resistance, settled_bristle
 from tests.blind.reference.hysteresis import ELEMENTS, advance
 from tests.blind.reference.torque_path import acting, delayed
+from tests.blind.reference.tyre import CELLS, angle_behind, patch_after
 
 _ITERATIONS = 2  # contraction is below 0.01 at 50 µs: two leave less than 1e-6
 
@@ -28,10 +29,11 @@ class Chain(NamedTuple):
 
 
 class Inner(NamedTuple):
-    """Bristle, tyre deflection and twist of the shafts in rad; shaft torque in N m."""
+    """Bristle, tyre deflection, lateness of the dyno and twist of the shafts in rad; shaft torque in N m."""
 
     bristle: float
     deflection: float
+    behind: float
     wound: float
     shaft: float
 
@@ -96,12 +98,30 @@ def _accelerations(p: Any, x: Chain, v: Chain, drive: float, shaft: float, tyre:
 
 
 @njit(error_model="numpy")
-def _tyre_after(p: Any, deflection: float, slip_speed: float, span_s: float) -> float:
-    """Tyre deflection in rad after `span_s`; with a finite slip angle it slides as in Dahl's model (1968)."""
-    if math.isinf(p.slip_angle):
-        return deflection + span_s * slip_speed
-    steady = math.copysign(p.slip_angle, slip_speed)
-    return steady + (deflection - steady) * math.exp(-abs(slip_speed) * span_s / p.slip_angle)
+def _road(p: Any, vehicle: float, behind: float, span_s: float) -> Any:
+    """(speed in rad/s of what the tyre rolls on, angle by which the dyno is behind) after `span_s`."""
+    if p.dyno_lag_s <= 0.0:
+        return vehicle, behind
+    behind = angle_behind(p, behind, vehicle, span_s)
+    return behind / p.dyno_lag_s, behind
+
+
+@njit(error_model="numpy")
+def _tyre_after(
+    p: Any,
+    deflection: float,
+    patch: np.ndarray,
+    patch_mid: np.ndarray,
+    slip: float,
+    road: float,
+    span_s: float,
+) -> Any:
+    """(deflection in rad, elastic torque in N m) of the tyre after `span_s` at constant speeds."""
+    if p.slip_stiffness > 0.0:
+        radius = p.wheel_radius
+        return deflection, patch_after(p, patch, patch_mid, radius * slip, radius * road, span_s)
+    deflection += span_s * slip
+    return deflection, p.tyre_stiffness * deflection
 
 
 @njit(error_model="numpy", forceinline=True)
@@ -113,6 +133,8 @@ def _step(
     inner: Inner,
     memory: np.ndarray,
     memory_mid: np.ndarray,
+    patch: np.ndarray,
+    patch_mid: np.ndarray,
     torque: float,
     start_s: float,
     h: float,
@@ -120,7 +142,7 @@ def _step(
     """Angles, speeds, accelerations and inner state after `h` s at a constant motor torque.
 
     Iterates for the middle of the step. `a` are the last accelerations; `inner.shaft` is the torque at the
-    end; `memory` of the hysteresis is changed in place.
+    end; `memory` of the hysteresis and `patch` of the tyre are changed in place.
     """
     middle = start_s + 0.5 * h
     v_mid = _ahead(v, a, 0.5 * h)  # with the last acceleration, a good first guess
@@ -134,12 +156,18 @@ def _step(
         beside = advance(p, memory, memory_mid, _twist(p, v_mid), 0.5 * h)
         through = _through_shafts(p, x_mid, v_mid, inner.wound, 0.5 * h, middle)[1]
         shaft = _with_ripple(p, through + beside, x_mid.wheel)
-        slip = v_mid.wheel - v_mid.vehicle
-        tyre = p.tyre_stiffness * _tyre_after(p, inner.deflection, slip, 0.5 * h) + p.tyre_damping * slip
+        road = _road(p, v_mid.vehicle, inner.behind, 0.5 * h)[0]
+        slip = v_mid.wheel - road
+        held = _tyre_after(p, inner.deflection, patch, patch_mid, slip, road, 0.5 * h)[1]
+        tyre = held + p.tyre_damping * slip
         a = _accelerations(p, x_mid, v_mid, drive, shaft, tyre, middle)
         v_mid = _ahead(v, a, 0.5 * h)
     bristle = bristle_after(p, inner.bristle, v_mid.rotor - v_mid.housing, h)
-    deflection = _tyre_after(p, inner.deflection, v_mid.wheel - v_mid.vehicle, h)
+    road = _road(p, v_mid.vehicle, inner.behind, 0.5 * h)[0]
+    behind = _road(p, v_mid.vehicle, inner.behind, h)[1]
+    deflection = _tyre_after(p, inner.deflection, patch, patch_mid, v_mid.wheel - road, road, h)[0]
+    if p.slip_stiffness > 0.0:
+        patch[:] = patch_mid
     beside = advance(p, memory, memory_mid, _twist(p, v_mid), h)
     if p.hysteresis > 0.0:
         memory[:] = memory_mid
@@ -154,7 +182,7 @@ def _step(
     # over the whole step the mean rate counts; a spring's torque needs the rate at its end
     play = p.half_gap > 0.0 and p.contact_form == SERIES
     wound, through = _through_shafts(p, x, v_mid if play else v, inner.wound, h, start_s + h)
-    return x, v, a, Inner(bristle, deflection, wound, _with_ripple(p, through + beside, x.wheel))
+    return x, v, a, Inner(bristle, deflection, behind, wound, _with_ripple(p, through + beside, x.wheel))
 
 
 @njit(error_model="numpy")
@@ -176,10 +204,11 @@ def simulate_chain(
     out = np.empty((len(ref), 3))
     h = sample_s / substeps
     memory, memory_mid = np.zeros(ELEMENTS), np.zeros(ELEMENTS)
+    patch, patch_mid = np.zeros(CELLS), np.zeros(CELLS)
     x = Chain(seat * p.half_gap * p.gear_ratio, 0.0, 0.0, 0.0, 0.0)
     v = Chain(wheel_speed * p.gear_ratio, 0.0, wheel_speed, wheel_speed, wheel_speed)
     a = Chain(0.0, 0.0, 0.0, 0.0, 0.0)
-    inner = Inner(settled_bristle(p, v.rotor), 0.0, 0.0, 0.0)
+    inner = Inner(settled_bristle(p, v.rotor), 0.0, p.dyno_lag_s * wheel_speed, 0.0, 0.0)
     smooth = p.lag_s > 0.0 or not math.isinf(p.rate_nm_s)
     lagged = torque = 0.0
     loop = np.zeros(2)
@@ -197,5 +226,5 @@ def simulate_chain(
             before = torque
             lagged, torque = acting(p, request, lagged, before, start + 0.5 * h, h)
             mean = 0.5 * (before + torque) if smooth else torque
-            x, v, a, inner = _step(p, x, v, a, inner, memory, memory_mid, mean, start, h)
+            x, v, a, inner = _step(p, x, v, a, inner, memory, memory_mid, patch, patch_mid, mean, start, h)
     return out

@@ -17,6 +17,14 @@ def elastic(p: Any, twist: float, time_s: float) -> float:
     return stiffness * twist + p.cubic * twist * twist * twist
 
 
+@njit(error_model="numpy")
+def _flank_damping(p: Any, depth: float, closing: float) -> float:
+    """Torque in N m that closed flanks add when they close at `closing` rad/s; it sets in with the depth."""
+    if depth <= 0.0:
+        return 0.0
+    return p.contact_damping * depth / (depth + p.contact_depth) * closing
+
+
 #: Forms of the free play.
 SERIES, DISSIPATIVE = 1.0, 2.0
 #: Stiffness of the flanks over that of the shafts: stiff enough to leave the base model's stiffness alone.
@@ -52,7 +60,8 @@ def series_contact(p: Any, wound: float, twist: float, rate: float, span_s: floa
     rest = (wound - start) * math.exp(-speed * span_s)
     after = start + part * rate * span_s + rest
     torque = stiffness * after + damping * (part * rate - speed * rest)
-    return after, side * max(0.0, side * torque)
+    depth = side * (twist + rate * span_s) - p.half_gap
+    return after, side * max(0.0, side * torque + _flank_damping(p, depth, side * rate))
 
 
 @njit(error_model="numpy")
@@ -64,13 +73,13 @@ def shaft_torque(p: Any, twist: float, rate: float, time_s: float) -> float:
     """
     gap = p.half_gap
     if gap <= 0.0:
-        return elastic(p, twist, time_s) + p.shaft_damping * rate
+        return elastic(p, twist, time_s) + (p.shaft_damping + p.squeeze_damping * abs(rate)) * rate
     if twist > gap:
         depth = twist - gap
         damping = p.shaft_damping * depth / (depth + p.contact_depth)
-        return max(0.0, elastic(p, depth, time_s) + damping * rate)
+        return max(0.0, elastic(p, depth, time_s) + damping * rate + _flank_damping(p, depth, rate))
     if twist < -gap:
         depth = -twist - gap
         damping = p.shaft_damping * depth / (depth + p.contact_depth)
-        return min(0.0, elastic(p, -depth, time_s) + damping * rate)
+        return min(0.0, elastic(p, -depth, time_s) + damping * rate - _flank_damping(p, depth, -rate))
     return 0.0

@@ -25,7 +25,23 @@ def bristle_after(p: Any, bristle: float, speed: float, span_s: float) -> float:
     if speed == 0.0 or p.coulomb <= 0.0:
         return bristle
     steady = math.copysign(sliding_torque(p, speed) / p.bristle_stiffness, speed)
+    if p.bristle_exponent != 1.0:
+        return steady * (1.0 - _missing_after(p, 1.0 - bristle / steady, abs(speed) * span_s / abs(steady)))
     return steady + (bristle - steady) * math.exp(-abs(speed) * span_s / abs(steady))
+
+
+@njit(error_model="numpy")
+def _missing_after(p: Any, missing: float, turned: float) -> float:
+    """Share of the steady torque that is missing, after an angle `turned` in units of the settling angle.
+
+    Dahl (1968) with an exponent n: d(share)/d(angle) = -share**n; below 1 it is met at a finite angle.
+    """
+    power = 1.0 - p.bristle_exponent
+    missing = max(missing, 0.0)
+    if missing == 0.0:
+        return 0.0
+    left = missing**power - power * turned
+    return left ** (1.0 / power) if left > 0.0 else 0.0
 
 
 @njit(error_model="numpy")
@@ -41,6 +57,8 @@ def friction_torque(p: Any, bristle: float, speed: float) -> float:
     """Torque in N m against the rotor: bristles, their damping, and what is equal in both directions."""
     if p.coulomb <= 0.0:
         return p.friction_offset
+    if p.bristle_exponent != 1.0:
+        return p.bristle_stiffness * bristle + p.friction_offset
     rate = speed - p.bristle_stiffness * abs(speed) * bristle / sliding_torque(p, speed)
     return p.bristle_stiffness * bristle + p.bristle_damping * rate + p.friction_offset
 

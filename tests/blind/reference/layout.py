@@ -28,6 +28,7 @@ OFF: dict[str, float] = {
     "half_gap": 0.0,
     "contact_form": 1.0,  # 1: compliant flanks in series with the shafts, 2: dissipative flanks
     "contact_depth": 1e-3,
+    "contact_damping": 0.0,  # N m s/rad of closed flanks, beside the shafts' own
     "cubic": 0.0,
     "hysteresis": 0.0,  # 1: Bouc-Wen, 2: Masing
     "hysteresis_stiffness": 0.0,
@@ -39,6 +40,7 @@ OFF: dict[str, float] = {
     "stribeck_speed": 4.0,
     "bristle_stiffness": 2000.0,
     "bristle_damping": 0.5,
+    "bristle_exponent": 1.0,  # 1: LuGre, Dahl; others: Dahl's exponent
     "friction_offset": 0.0,
     "motor_order": 0.0,
     "motor_amplitude": 0.0,
@@ -52,6 +54,11 @@ OFF: dict[str, float] = {
     "wheel_order": 0.0,
     "wheel_amplitude": 0.0,
     "wheel_phase": 0.0,
+    "wheel_radius": 0.33,
+    "slip_stiffness": 0.0,  # N m per slip; 0: the tyre is a spring
+    "relaxation_length": 1.0,
+    "patch_cells": 1.0,
+    "dyno_lag_s": 0.0,
     "rolling": 0.0,
     "rolling_speed": 0.02,
     "aero": 0.0,
@@ -61,7 +68,7 @@ OFF: dict[str, float] = {
     "fade_time_s": 20.0,
     "shaft_asymmetry": 0.0,  # relative change of stiffness in negative twist
     "shaft_drift": 0.0,  # relative change of stiffness per second
-    "slip_angle": math.inf,  # rad, deflection at which the tyre slides wholly
+    "squeeze_damping": 0.0,  # N m s²/rad², shaft torque by the square of the twist rate
     "absorber_inertia": 0.0,
     "absorber_stiffness": 0.0,
     "absorber_damping": 0.0,
