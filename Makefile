@@ -20,6 +20,7 @@ $(BIN)/uv: requirements/tool.txt
 $(STAMP): $(BIN)/uv requirements/all.txt pyproject.toml
 	VIRTUAL_ENV=$(VENV) $(BIN)/uv pip install --quiet --compile-bytecode --require-hashes -r requirements/all.txt
 	VIRTUAL_ENV=$(VENV) $(BIN)/uv pip install --quiet --no-deps --no-build-isolation -e .
+	$(BIN)/python -m compileall -q hil drivers test_plans reports sim_backend
 	@touch $(STAMP)
 
 lint: setup

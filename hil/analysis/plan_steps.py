@@ -1,4 +1,7 @@
-"""Identification and control design as steps of a plan: chirp, identify, design, step tests in one run."""
+"""Identification and control design as steps of a plan: chirp, identify, design, step tests in one run.
+
+The schema of plans needs the steps' keys only: what does the work is imported when it is done.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +11,6 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from hil.analysis.control_design import DesignSpec, design
-from hil.analysis.frequency_response import experiments_of, frf_from_csv
-from hil.analysis.identification import identify
-from hil.analysis.outputs import control_design as design_outputs
-from hil.analysis.outputs import identification as identify_outputs
-from hil.core.model import load_model
 from hil.core.recording import Recording
 from test_plans import Conductor, Outlook, Pace, Step
 from test_plans.steps import Name, designed_file
@@ -40,9 +37,13 @@ class IdentifyStep(Step):
         return Outlook(0.0, speed_m_s)
 
     def _work(self, recording: Recording, made: Path) -> Mapping[str, bytes]:
+        from hil.analysis.frequency_response import experiments_of
+        from hil.analysis.identification import identify
+        from hil.analysis.outputs.identification import output_files
+
         del made
         experiments = experiments_of(recording, segments=self.use)
-        return identify_outputs.output_files(identify(experiments, order=self.order))
+        return output_files(identify(experiments, order=self.order))
 
 
 class DesignStep(Step):
@@ -67,6 +68,11 @@ class DesignStep(Step):
         return Outlook(0.0, speed_m_s)
 
     def _work(self, recording: Recording, made: Path) -> Mapping[str, bytes]:
+        from hil.analysis.control_design import DesignSpec, design
+        from hil.analysis.frequency_response import frf_from_csv
+        from hil.analysis.outputs.control_design import output_files
+        from hil.core.model import load_model
+
         del recording
         spec = DesignSpec(
             stabilisation=self.stabilization,
@@ -78,7 +84,7 @@ class DesignStep(Step):
             name=self.name,
         )
         found = design(load_model(made / MODEL), spec)
-        files = design_outputs.output_files(found, frf_from_csv(made / RESPONSES))
+        files = output_files(found, frf_from_csv(made / RESPONSES))
         controller = files.pop("controller.toml")
         named = {f"{self.name}_{name}": content for name, content in files.items()}
         return {str(designed_file(self.name)): controller, **named}

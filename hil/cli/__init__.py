@@ -5,6 +5,7 @@ This module imports next to nothing, so that Ctrl-C during the slow imports is a
 
 from __future__ import annotations
 
+import os
 import sys
 
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
@@ -14,6 +15,8 @@ def main() -> None:
     """Run the command line of this process and exit with its code."""
     try:
         INTERRUPTS.raise_from_now_on()
+        # The matrices here are small: more threads of OpenBLAS would only wait for each other, and cost time.
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         from hil.cli._app import run_command_line
 
         code = run_command_line()

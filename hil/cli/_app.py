@@ -19,17 +19,17 @@ from hil.cli._streams import complain, tolerate_outputs
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.files import of_the_system
 
-# name: (module, one line for `hil --help`). Modules are imported when their command is used.
+# name: one line for `hil --help`. The module hil.cli.commands.NAME is imported when the command is used.
 _COMMANDS = {
-    "run": ("hil.cli.run", "Run a test plan on a bench, and report."),
-    "check": ("hil.cli.check", "Validate a plan, estimate its duration, predict its peaks."),
-    "report": ("hil.cli.report", "Make the report again from a recording."),
-    "identify": ("hil.cli.identify", "Frequency responses and fits from recordings."),
-    "design": ("hil.cli.design", "Controller from a model, with margins."),
-    "diagnose": ("hil.cli.diagnose", "Find where model and measurement disagree, name the effect, add it."),
-    "simulate": ("hil.cli.simulate", "Replay a recording's torque through a model."),
-    "export": ("hil.cli.export", "Write a recording as CSV, Parquet or MDF4."),
-    "schema": ("hil.cli.schema", "JSON schema of plan files, for editors."),
+    "run": "Run a test plan on a bench, and report.",
+    "check": "Validate a plan, estimate its duration, predict its peaks.",
+    "report": "Make the report again from a recording.",
+    "identify": "Frequency responses and fits from recordings.",
+    "design": "Controller from a model, with margins.",
+    "diagnose": "Find where model and measurement disagree, name the effect, add it.",
+    "simulate": "Replay a recording's torque through a model.",
+    "export": "Write a recording as CSV, Parquet or MDF4.",
+    "schema": "JSON schema of plan files, for editors.",
 }
 
 
@@ -64,7 +64,7 @@ def _dispatch(arguments: list[str]) -> int:
         near = difflib.get_close_matches(name, _COMMANDS, 1)
         hint = f"did you mean '{near[0]}'?" if near else "see hil --help"
         raise BadInputError(f"there is no command '{name}'", fix=hint)
-    command = importlib.import_module(_COMMANDS[name][0]).command
+    command = importlib.import_module(f"hil.cli.commands.{name}").command
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
     settings = {"help_option_names": ["-h", "--help"]}
     app.command(name, help=command.__doc__, context_settings=settings)(_with_exit_code(command))
@@ -89,7 +89,7 @@ def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
 
 def _help() -> str:
     width = max(map(len, _COMMANDS))
-    lines = [f"  {name:<{width}}  {text}" for name, (_, text) in _COMMANDS.items()]
+    lines = [f"  {name:<{width}}  {text}" for name, text in _COMMANDS.items()]
     head = (
         "Usage: hil COMMAND [ARGS]...\n\nHardware-in-the-loop bench service for electric axles.\n\nCommands:"
     )

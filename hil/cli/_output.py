@@ -7,15 +7,17 @@ import json
 import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from hil.cli._streams import complain
-from hil.core.recording import Recording
 from hil.core.result import CriterionResult, CriterionVerdict
+
+if TYPE_CHECKING:
+    from hil.core.recording import Recording
 
 _STYLE: dict[CriterionVerdict, str] = {
     "pass": "green",

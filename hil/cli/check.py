@@ -5,31 +5,24 @@ from __future__ import annotations
 import datetime
 import tempfile
 from pathlib import Path
-from typing import Annotated
 
-import typer
 from rich.table import Table
 
 from hil.cli._output import console, print_criteria, print_json, progress
 from hil.core.channels import CHANNELS
-from hil.engine import DEFAULT_BENCH, load_bench
+from hil.engine import load_bench
 from hil.engine.forecast import Forecast, forecast
 from hil.engine.preflight import preflight
 from test_plans import Pace, Plan, estimate_duration_s, load_plan
 
 
-def command(
-    plan: Annotated[str, typer.Argument(help="plan file, or the name of a shipped plan")],
-    bench: Annotated[str, typer.Option(help="bench file, or the name of a shipped bench")] = DEFAULT_BENCH,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
+def carry_out(
+    *,
+    plan: str,
+    bench: str,
+    as_json: bool,
 ) -> int:
-    """Validate a plan, estimate its duration, predict its peaks and criteria, compare with the limits.
-
-    Exit code: 0 it fits the bench, 1 a predicted peak is beyond a limit, 2 it cannot be run at all. A
-    criterion that is predicted to fail is said and changes no exit code: the axle is what the run is for.
-    """
+    """Carry the command out; its exit code."""
     checked, file = load_plan(plan), load_bench(bench)
     with tempfile.TemporaryDirectory() as directory:
         preflight(checked, file, Path(directory), datetime.datetime.now(datetime.UTC).date())

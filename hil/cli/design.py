@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, get_args
-
-import typer
+from typing import Any, get_args
 
 from hil.analysis.control_design import DesignSpec, MarginLimits, Normalisation, Objective, design
 from hil.analysis.frequency_response import frf_from_csv
@@ -19,52 +17,30 @@ from hil.core.model import load_model
 _PAPER = DesignSpec()
 
 
-def command(
-    model: Annotated[Path, typer.Option("--model", help="Model file of any kind.")],
-    out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
-    optimize: Annotated[
-        bool, typer.Option("--optimize", help="Search lead and pole for the lowest sensitivity in 8-20 Hz.")
-    ] = False,
-    objective: Annotated[
-        str, typer.Option("--objective", help="What --optimize minimises: max or rms.")
-    ] = "max",
-    lead_deg: Annotated[float, typer.Option("--lead-deg", help="P_h of (6), degrees.")] = _PAPER.lead_deg,
-    lead_hz: Annotated[float, typer.Option("--lead-hz", help="f_ph of (7), Hz.")] = _PAPER.lead_hz,
-    normalisation: Annotated[
-        str,
-        typer.Option("--normalisation", help="Where the lead has gain one: dc, centre or high_frequency."),
-    ] = _PAPER.normalisation,
-    notch_hz: Annotated[
-        float | None, typer.Option("--notch-hz", help="Notch at this frequency (8) instead of the lead.")
-    ] = None,
-    notch_width: Annotated[float, typer.Option("--notch-width", help="ζ of (8).")] = _PAPER.notch_width,
-    notch_depth: Annotated[float, typer.Option("--notch-depth", help="d of (8).")] = _PAPER.notch_depth,
-    pole: Annotated[float, typer.Option("--pole", help="p of (4)(5), rad/s.")] = _PAPER.pole_rad_s,
-    inertia: Annotated[
-        float | None, typer.Option("--inertia", help="J_l/N² + J_m of (4)(5), kg m²; default: the model's.")
-    ] = None,
-    gear_ratio: Annotated[
-        float | None, typer.Option("--gear-ratio", help="N of the observer; default: the model's.")
-    ] = None,
-    wheel_inertia: Annotated[
-        float | None, typer.Option("--wheel-inertia", help="J_l of (9), wheels and dyno rotors, kg m².")
-    ] = None,
-    torque_limit: Annotated[
-        float, typer.Option("--torque-limit", help="Largest motor torque, N m.")
-    ] = _PAPER.torque_limit_nm,
-    largest_sensitivity: Annotated[
-        float, typer.Option("--largest-sensitivity", help="Limit of |S| for --optimize.")
-    ] = _PAPER.limits.sensitivity_peak,
-    frf: Annotated[
-        Path | None, typer.Option("--frf", help="Measured responses; default: frf.csv beside the model.")
-    ] = None,
-    name: Annotated[str, typer.Option("--name", help="Name of the controller.")] = "",
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace an earlier design in --out.")
-    ] = False,
-    json_: Annotated[bool, typer.Option("--json", help="Print design.json and nothing else.")] = False,
+def carry_out(
+    *,
+    model: Path,
+    out: Path,
+    optimize: bool,
+    objective: str,
+    lead_deg: float,
+    lead_hz: float,
+    normalisation: str,
+    notch_hz: float | None,
+    notch_width: float,
+    notch_depth: float,
+    pole: float,
+    inertia: float | None,
+    gear_ratio: float | None,
+    wheel_inertia: float | None,
+    torque_limit: float,
+    largest_sensitivity: float,
+    frf: Path | None,
+    name: str,
+    overwrite: bool,
+    json_: bool,
 ) -> int:
-    """Gains, lead or notch, filters, Nyquist, sensitivity, margins and the trade-off chart for a model."""
+    """Carry the command out; its exit code."""
     spec = DesignSpec(
         stabilisation="phase" if notch_hz is None else "gain",
         pole_rad_s=pole,

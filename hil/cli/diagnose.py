@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any
-
-import typer
+from typing import Any
 
 from hil.analysis.diagnosis import LEAST_SAMPLES, Diagnosis, diagnose
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
@@ -21,27 +19,16 @@ _FILES = ("model.toml", "diagnosis.json", "report.html", "report.pdf")
 _WORTH_A_LINE = 0.02
 
 
-def command(
-    recordings: Annotated[
-        list[Path], typer.Argument(help="Recordings to explain (.mcap, .csv, .parquet, .mf4).")
-    ],
-    model: Annotated[Path, typer.Option("--model", help="Model file to start from.")],
-    out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
-    holdout: Annotated[
-        list[Path] | None,
-        typer.Option(
-            "--holdout", help="Recording that no fit sees, only the final figures; may be repeated."
-        ),
-    ] = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace an earlier diagnosis in --out.")
-    ] = False,
-    json_: Annotated[bool, typer.Option("--json", help="Print diagnosis.json and nothing else.")] = False,
+def carry_out(
+    *,
+    recordings: list[Path],
+    model: Path,
+    out: Path,
+    holdout: list[Path] | None,
+    overwrite: bool,
+    json_: bool,
 ) -> int:
-    """Find where a model and recordings disagree, name the missing effect, add it to the model.
-
-    Writes model.toml, diagnosis.json, report.html and report.pdf, all or none.
-    """
+    """Carry the command out; its exit code."""
     base = load_model(model)
     _refuse_twice(recordings, holdout or [])
     inputs = [model, *recordings, *(holdout or [])]

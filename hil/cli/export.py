@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from hil.cli._output import console, print_json, warn_of_damage
 from hil.cli._place import refuse_file
 from hil.core.recording import read_recording, write_recording
 
 
-def command(
-    recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet or .mf4")],
-    out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet or .mf4")],
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
+def carry_out(
+    *,
+    recording: Path,
+    out: Path,
+    overwrite: bool,
+    as_json: bool,
 ) -> int:
-    """Write a recording's channels as CSV, Parquet or MDF4; what was lost of them is said."""
+    """Carry the command out; its exit code."""
     refuse_file(out, [recording], overwrite=overwrite)
     table = read_recording(recording)
     warn_of_damage([table])

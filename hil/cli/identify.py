@@ -3,67 +3,36 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, get_args
-
-import typer
+from typing import get_args
 
 from hil.analysis.frequency_response import Experiment, Method, experiments_of
-from hil.analysis.identification import ORDERS, identify
+from hil.analysis.identification import identify
 from hil.analysis.outputs.identification import output_files, summary_of, text_of
 from hil.analysis.plausible import refuse_same_data
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import refuse_missing, results_in
-from hil.core.channels import INPUT
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 
 _LEAST_SAMPLES = 100
 
 
-def command(
-    recordings: Annotated[
-        list[Path], typer.Argument(help="Recordings (.mcap, .csv, .parquet, .mf4); several are merged.")
-    ],
-    out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
-    segment: Annotated[
-        list[str] | None,
-        typer.Option("--segment", help="Id of a segment to use; default: every chirp and multisine."),
-    ] = None,
-    input_channel: Annotated[str, typer.Option("--input", help="Channel that excites.")] = INPUT,
-    from_hz: Annotated[
-        float | None,
-        typer.Option("--from-hz", min=1e-4, help="Lowest frequency; default: 0.05 or what is excited."),
-    ] = None,
-    to_hz: Annotated[
-        float | None,
-        typer.Option("--to-hz", min=1e-3, help="Highest frequency; default: 30 or what is excited."),
-    ] = None,
-    order: Annotated[
-        int | None,
-        typer.Option(
-            "--order", min=ORDERS[0], max=ORDERS[-1], help="Order of the denominator; default: by evidence."
-        ),
-    ] = None,
-    gear_ratio: Annotated[
-        float | None, typer.Option("--gear-ratio", min=1e-3, help="Known gear ratio of the chain.")
-    ] = None,
-    method: Annotated[str, typer.Option("--method", help="auto, lpm, periodic, h1, h2 or hv.")] = "auto",
-    hold_ms: Annotated[
-        float | None,
-        typer.Option(
-            "--hold-ms",
-            min=0.0,
-            help="How long the input keeps a value; default: the sample time, at most 1 ms.",
-        ),
-    ] = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace an earlier identification in --out.")
-    ] = False,
-    json_: Annotated[
-        bool, typer.Option("--json", help="Print identification.json and nothing else.")
-    ] = False,
+def carry_out(
+    *,
+    recordings: list[Path],
+    out: Path,
+    segment: list[str] | None,
+    input_channel: str,
+    from_hz: float | None,
+    to_hz: float | None,
+    order: int | None,
+    gear_ratio: float | None,
+    method: str,
+    hold_ms: float | None,
+    overwrite: bool,
+    json_: bool,
 ) -> int:
-    """Frequency responses, transfer functions with dead time, and the driveline chain of recordings."""
+    """Carry the command out; its exit code."""
     chosen = _method(method)
     for path in recordings:
         refuse_missing(path)

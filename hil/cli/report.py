@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from hil.cli._output import (
     console,
@@ -27,21 +24,14 @@ from reports import HTML, JUNIT, PDF, recording_named_in, write_reports
 from test_plans import judge, plan_from_text
 
 
-def command(
-    source: Annotated[
-        Path, typer.Argument(metavar="DIR_OR_RECORDING", help="a run's directory, or a recording")
-    ],
-    out: Annotated[Path | None, typer.Option(help="where to write; default: beside the recording")] = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="replace the reports of another recording")
-    ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="print the result on stdout, nothing else")] = False,
+def carry_out(
+    *,
+    source: Path,
+    out: Path | None,
+    overwrite: bool,
+    as_json: bool,
 ) -> int:
-    """Make the report again from a recording; the criteria are computed anew from its channels.
-
-    Beside its own recording a report is renewed in place. A recording that another tool made gets a report
-    of its channels, without verdict.
-    """
+    """Carry the command out; its exit code."""
     path = source / RECORDING if source.is_dir() else source
     refuse_missing(path)
     folder = out or path.parent

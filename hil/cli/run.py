@@ -5,9 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, TypeVar
-
-import typer
+from typing import TypeVar
 
 from hil.cli._interrupts import INTERRUPTS
 from hil.cli._output import Show, console, count_in_words, print_criteria, print_json, progress
@@ -18,7 +16,7 @@ from hil.core.files import write_atomically
 from hil.core.model import load_model
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
-from hil.engine import DEFAULT_BENCH, RECORDING, RunOutcome, RunRequest, StopRequest, load_bench, run_plan
+from hil.engine import RECORDING, RunOutcome, RunRequest, StopRequest, load_bench, run_plan
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import load_plan
 
@@ -27,32 +25,18 @@ RESULT = "result.json"
 NAMES = (RECORDING, RESULT, JUNIT, HTML, PDF)
 
 
-def command(
-    plan: Annotated[
-        str, typer.Argument(help="plan file, or the name of a shipped plan: acceptance, identification")
-    ],
-    bench: Annotated[str, typer.Option(help="bench file, or the name of a shipped bench")] = DEFAULT_BENCH,
-    out: Annotated[
-        Path | None,
-        typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
-    ] = None,
-    model: Annotated[Path | None, typer.Option(help="model file for the simulated bench")] = None,
-    operator: Annotated[str, typer.Option(help="who runs the bench; stands in the report")] = "",
-    yes: Annotated[
-        str,
-        typer.Option(
-            "--yes", metavar="NAME", help="who confirms every operator prompt; stands in the report"
-        ),
-    ] = "",
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print result.json on stdout, nothing else")
-    ] = False,
+def carry_out(
+    *,
+    plan: str,
+    bench: str,
+    out: Path | None,
+    model: Path | None,
+    operator: str,
+    yes: str,
+    overwrite: bool,
+    as_json: bool,
 ) -> int:
-    """Run a test plan on a bench and write recording.mcap, result.json, report.html, report.pdf, junit.xml.
-
-    Exit code: 0 passed, 1 a criterion failed, 2 bad input, 3 the bench failed, 130 interrupted.
-    """
+    """Carry the command out; its exit code."""
     checked, bench_file = load_plan(plan), load_bench(bench)
     stop = StopRequest()
     request = RunRequest(

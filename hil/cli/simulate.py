@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from hil.cli._output import console, print_json, warn_of_damage
 from hil.cli._place import refuse_file
@@ -14,19 +11,15 @@ from hil.core.recording import read_recording, write_recording
 from hil.plant import replay
 
 
-def command(
-    model: Annotated[Path, typer.Option(help="model file")],
-    source: Annotated[Path, typer.Option("--input", help="recording with motor_torque_ref_nm")],
-    out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet or .mf4")],
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
+def carry_out(
+    *,
+    model: Path,
+    source: Path,
+    out: Path,
+    overwrite: bool,
+    as_json: bool,
 ) -> int:
-    """Replay a recording's motor_torque_ref_nm through a model, from the recording's initial speeds.
-
-    The model's outputs are written at the recording's time stamps.
-    """
+    """Carry the command out; its exit code."""
     refuse_file(out, [source, model], overwrite=overwrite)
     chosen = load_model(model)
     recording = read_recording(source)

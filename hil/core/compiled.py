@@ -7,8 +7,8 @@ project files that it imports, directly or not, are what they were, under the na
 
 from __future__ import annotations
 
-import ast
 import hashlib
+import re
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
@@ -16,10 +16,16 @@ from typing import Any, TypeVar
 
 from numba import njit
 from numba.core.caching import FunctionCache
+from numba.core.runtime.nrt import rtsys
 
 _F = TypeVar("_F", bound=Callable[..., object])
 # No 'nnan' or 'ninf': limits that are off are infinite, and a diverged simulation must show as NaN.
 _FAST = {"contract", "arcp", "reassoc", "nsz"}
+_IMPORT = re.compile(
+    r"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(?:\(([^)]*)\)|([^\n(]*))|import[ \t]+([^\n]*))",
+    re.MULTILINE,
+)
+_COMMENT = re.compile(r"#[^\n]*")
 
 
 def compiled(function: _F) -> Any:
@@ -48,9 +54,30 @@ class _Cache(FunctionCache):  # type: ignore[misc]
 
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)
-        self._cache_file._source_stamp = source_stamp(
-            function.__module__, Path(function.__code__.co_filename)
-        )
+        self._source = function.__module__, Path(function.__code__.co_filename)
+        self._stamped = False
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """A function from the cache; None if it has to be compiled, for which numba makes itself ready.
+
+        numba makes itself ready in any case and imports all that it can compile, for half a second. What is
+        loaded needs the allocator only, and the salt of Python's hashes if it hashes: nothing here does.
+        """
+        rtsys.initialize(target_context)
+        self._stamp()
+        with self._guard_against_spurious_io_errors():
+            return self._load_overload(sig, target_context)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Put a function into the cache."""
+        self._stamp()
+        super().save_overload(sig, data)
+
+    def _stamp(self) -> None:
+        """Late: most processes use few of the functions that they import."""
+        if not self._stamped:
+            self._cache_file._source_stamp = source_stamp(*self._source)
+            self._stamped = True
 
 
 def source_stamp(module: str, file: Path) -> str:
@@ -94,9 +121,20 @@ def _file_of(name: str, project: Path) -> Path | None:
 
 
 def _named(source: str) -> Iterator[tuple[str, ...]]:
-    """What each import may mean: a module in a package, or else something that the package itself holds."""
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Import):
-            yield from ((one.name,) for one in node.names)
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            yield from ((f"{node.module}.{one.name}", node.module) for one in node.names)
+    """What each import may mean: a module in a package, or else something that the package itself holds.
+
+    A pattern finds them in a tenth of the time that a syntax tree takes; at worst it takes a line of a
+    docstring for one more.
+    """
+    for package, several, one, modules in _IMPORT.findall(source):
+        for name in _names(modules):
+            yield (name,)
+        for name in _names(several or one):
+            yield f"{package}.{name}", package
+
+
+def _names(listed: str) -> Iterator[str]:
+    for part in _COMMENT.sub("", listed).split(","):
+        words = part.split()  # `name as another`
+        if words:
+            yield words[0]

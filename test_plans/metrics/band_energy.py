@@ -11,6 +11,7 @@ from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.metrics._metric import ChannelName, NoValueError
+from test_plans.metrics._periodogram import periodogram
 from test_plans.metrics._window import WindowMetric, cut
 
 
@@ -45,8 +46,6 @@ class BandEnergy(WindowMetric):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """Sum of density times line spacing over the shares of lines in the band (Parseval)."""
-        from scipy import signal  # slow to import
-
         start_s, end_s = self.bounds_s(segment)
         time, values = cut(recording, segment, self.channel, start_s, end_s, with_end=False)
         count = round((end_s - start_s) / recording.sample_time_s)
@@ -57,13 +56,7 @@ class BandEnergy(WindowMetric):
         if self.to_hz - self.from_hz < 2 * line_hz:
             raise NoValueError(f"the band is narrower than two spectral lines of {line_hz:.3g} Hz")
         even = np.interp(start_s + spacing * np.arange(count), time, values)
-        frequency, density = signal.periodogram(
-            signal.detrend(even, type="linear"),
-            fs=1 / spacing,
-            window="hann",
-            detrend=False,
-            scaling="density",
-        )
+        frequency, density = periodogram(even, spacing)
         upper = np.minimum(frequency + 0.5 * line_hz, self.to_hz)
         lower = np.maximum(frequency - 0.5 * line_hz, self.from_hz)
         return float(density @ np.maximum(upper - lower, 0.0))

@@ -11,10 +11,9 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
 from test_plans.metrics import _reference
+from test_plans.metrics._low_pass import ORDER, low_passed
 from test_plans.metrics._metric import ChannelName, DidNotSettleError, NoValueError
 from test_plans.metrics._window import WindowMetric, cut, evenly
-
-_FILTER_ORDER = 2
 
 
 class SettlingTime(WindowMetric):
@@ -47,7 +46,7 @@ class SettlingTime(WindowMetric):
         return (
             f"Time from the step after which {self.subject} stays within ±{self.band_percent:g} % of {size} "
             f"around its mean over the last {self.mean_s:g} s, {self.window}. The channel is low-pass "
-            f"filtered at {self.low_pass_hz:g} Hz (Butterworth, order {_FILTER_ORDER}, forward and "
+            f"filtered at {self.low_pass_hz:g} Hz (Butterworth, order {ORDER}, forward and "
             f"backward). Outside during the last {self.mean_s:g} s: did not settle."
         )
 
@@ -96,12 +95,7 @@ class SettlingTime(WindowMetric):
                 f"a low-pass at {self.low_pass_hz:g} Hz needs more than {2 * self.low_pass_hz:g} samples a "
                 f"second, the recording has {1 / spacing_s:.4g}"
             )
-        from scipy import signal  # slow to import
-
-        sections = signal.butter(_FILTER_ORDER, self.low_pass_hz, fs=1 / spacing_s, output="sos")
-        # Padding by a few time constants lets the filter start and end at rest.
-        padding = min(len(values) - 1, int(np.ceil(1 / (self.low_pass_hz * spacing_s))))
-        return np.asarray(signal.sosfiltfilt(sections, values, padlen=padding), dtype=float)
+        return low_passed(values, self.low_pass_hz, spacing_s)
 
 
 class SettlingShaftTorque(SettlingTime):

@@ -3,33 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from hil.core.channels import WHEEL_ANGLE
 from hil.core.errors import BadInputError
-from hil.core.recording._csv_reader import read_csv
-from hil.core.recording._csv_writer import write_csv
-from hil.core.recording._mcap_reader import read_frames, read_mcap
+from hil.core.recording._formats import READ, WRITTEN, reader_of, writer_of
+from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_writer import RecordingWriter
-from hil.core.recording._mdf import read_mdf, write_mdf
-from hil.core.recording._parquet import read_parquet, write_parquet
 from hil.core.recording._run import RUN, SEGMENT, run_of
 from hil.core.recording._table import Event, Recording, checked
-
-_READERS: dict[str, Callable[[Path], Recording]] = {
-    ".mcap": read_mcap,
-    ".csv": read_csv,
-    ".parquet": read_parquet,
-    ".mf4": read_mdf,
-}
-_WRITERS: dict[str, Callable[[Recording, Path], None]] = {
-    ".csv": write_csv,
-    ".parquet": write_parquet,
-    ".mf4": write_mdf,
-}
 
 
 def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = False) -> Recording:
@@ -41,10 +25,10 @@ def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = 
     Raises:
         BadInputError: names file, line and column where it can.
     """
-    reader = _READERS.get(path.suffix.lower())
+    reader = reader_of(path.suffix.lower())
     if reader is None:
         raise BadInputError(
-            f"recordings end in {', '.join(_READERS)}", where=str(path), fix="rename or convert the file"
+            f"recordings end in {', '.join(READ)}", where=str(path), fix="rename or convert the file"
         )
     return checked(reader(path), least_samples=least_samples, allow_missing=allow_missing)
 
@@ -85,9 +69,9 @@ def _with_wheel_angle(recording: Recording) -> Recording:
 
 def write_recording(recording: Recording, path: Path) -> None:
     """Write `.csv`, `.parquet` or `.mf4`, whole or not at all."""
-    writer = _WRITERS.get(path.suffix.lower())
+    writer = writer_of(path.suffix.lower())
     if writer is None:
-        raise BadInputError(f"an export ends in {', '.join(_WRITERS)}", where=str(path))
+        raise BadInputError(f"an export ends in {', '.join(WRITTEN)}", where=str(path))
     writer(recording, path)
 
 

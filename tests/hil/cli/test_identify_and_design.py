@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from hil.cli import design, identify
+from hil.cli.commands import design, identify
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from hil.core.model import load_model

@@ -1,11 +1,15 @@
 """A compiled function is never older than its sources."""
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from hil.core.compiled import _named
+
+ROOT = Path(__file__).parents[3]
 TABLE = "FIRST, SECOND = {order}\n"
 LAW = """
 from hil.core.compiled import inlined
@@ -75,3 +79,23 @@ def test_the_stamp_follows_imports_but_not_what_is_not_imported(tmp_path):
     first = stamp("0, 1", "A = 1")
     assert stamp("0, 1", "A = 2") == first
     assert stamp("1, 0", "A = 1") != first
+
+
+def test_imports_are_found_as_the_parser_finds_them():
+    def parsed(source):
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.Import):
+                yield from ((one.name,) for one in node.names)
+            elif isinstance(node, ast.ImportFrom) and not node.level:
+                yield from ((f"{node.module}.{one.name}", node.module) for one in node.names)
+
+    files = [
+        f for package in ("hil/core", "hil/plant", "sim_backend") for f in (ROOT / package).rglob("*.py")
+    ]
+    assert len(files) > 50
+    for file in files:
+        source = file.read_text("utf-8")
+        assert set(_named(source)) == set(parsed(source)), file
+    assert list(_named("from a.b import (  # why\n    c as d,\n    e,\n)\nimport f, g\n")) == [
+        ("a.b.c", "a.b"), ("a.b.e", "a.b"), ("f",), ("g",)
+    ]  # fmt: skip

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import signal
 
 from test_plans import Array
 from test_plans.metrics import BandEnergy, BandEnergyMotorSpeed, NoValueError
+from test_plans.metrics._periodogram import periodogram
 from tests.test_plans.signals import STEP, recording_of, time_axis
 
 METRIC = BandEnergyMotorSpeed()
@@ -99,3 +101,13 @@ def test_no_value() -> None:
         narrow.compute(recording_of(time_axis(), motor_speed_rad_s=time_axis()), STEP)
     with pytest.raises(ValueError, match="not above from_hz"):
         BandEnergy(channel="motor_speed_rad_s", from_hz=10.0, to_hz=10.0)
+
+
+@pytest.mark.parametrize("samples", [3, 100, 1001])
+def test_the_spectrum_is_that_of_scipy(samples: int) -> None:
+    values = np.cumsum(np.random.default_rng(1).normal(size=samples)) + 100
+    flat = signal.detrend(values, type="linear")
+    frequency, density = signal.periodogram(flat, fs=250, window="hann", detrend=False, scaling="density")
+    found = periodogram(values, 0.004)
+    assert found[0] == pytest.approx(frequency)
+    assert found[1] == pytest.approx(density, abs=1e-9 * density.max())

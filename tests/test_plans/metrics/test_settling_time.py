@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import signal
 
 from test_plans.metrics import DidNotSettleError, NoValueError, SettlingShaftTorque, SettlingTime
+from test_plans.metrics._low_pass import low_passed
 from tests.test_plans.signals import STEP, recording_of, second_order_step, time_axis
 
 
@@ -77,3 +79,13 @@ def test_no_value() -> None:
     slow = time_axis(sample_time_s=0.01)
     with pytest.raises(NoValueError, match="needs more than 100 samples"):
         SettlingShaftTorque().compute(recording_of(slow, shaft_torque_nm=np.zeros(len(slow))), STEP)
+
+
+@pytest.mark.parametrize("samples", [2, 10, 501])
+@pytest.mark.parametrize("corner_hz", [3.0, 50.0, 400.0])
+def test_the_low_pass_is_that_of_scipy(samples: int, corner_hz: float) -> None:
+    values = np.cumsum(np.random.default_rng(1).normal(size=samples))
+    padding = min(samples - 1, int(np.ceil(1000 / corner_hz)))
+    sections = signal.butter(2, corner_hz, fs=1000, output="sos")
+    expected = signal.sosfiltfilt(sections, values, padlen=padding)
+    assert low_passed(values, corner_hz, 0.001) == pytest.approx(expected, rel=1e-9, abs=1e-9)

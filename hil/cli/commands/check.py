@@ -1,0 +1,27 @@
+"""`hil check`: everything that can be known of a plan before a bench is touched."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+
+def command(
+    plan: Annotated[str, typer.Argument(help="plan file, or the name of a shipped plan")],
+    bench: Annotated[str, typer.Option(help="bench file, or the name of a shipped bench")] = "sim",
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Validate a plan, estimate its duration, predict its peaks and criteria, compare with the limits.
+
+    Exit code: 0 it fits the bench, 1 a predicted peak is beyond a limit, 2 it cannot be run at all. A
+    criterion that is predicted to fail is said and changes no exit code: the axle is what the run is for.
+    """
+    import_python_can()
+    from hil.cli.check import carry_out
+
+    return carry_out(plan=plan, bench=bench, as_json=as_json)

@@ -1,0 +1,36 @@
+"""`hil diagnose`: why recordings and a model differ, the missing effect, and the better model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    recordings: Annotated[
+        list[Path], typer.Argument(help="Recordings to explain (.mcap, .csv, .parquet, .mf4).")
+    ],
+    model: Annotated[Path, typer.Option("--model", help="Model file to start from.")],
+    out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
+    holdout: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--holdout", help="Recording that no fit sees, only the final figures; may be repeated."
+        ),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier diagnosis in --out.")
+    ] = False,
+    json_: Annotated[bool, typer.Option("--json", help="Print diagnosis.json and nothing else.")] = False,
+) -> int:
+    """Find where a model and recordings disagree, name the missing effect, add it to the model.
+
+    Writes model.toml, diagnosis.json, report.html and report.pdf, all or none.
+    """
+    from hil.cli.diagnose import carry_out
+
+    return carry_out(
+        recordings=recordings, model=model, out=out, holdout=holdout, overwrite=overwrite, json_=json_
+    )

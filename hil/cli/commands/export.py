@@ -1,0 +1,22 @@
+"""`hil export`: a recording for other tools."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet or .mf4")],
+    out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet or .mf4")],
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Write a recording's channels as CSV, Parquet or MDF4; what was lost of them is said."""
+    from hil.cli.export import carry_out
+
+    return carry_out(recording=recording, out=out, overwrite=overwrite, as_json=as_json)

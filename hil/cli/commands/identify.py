@@ -1,0 +1,61 @@
+"""`hil identify`: from recordings to frequency responses, transfer functions and a driveline chain."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    recordings: Annotated[
+        list[Path], typer.Argument(help="Recordings (.mcap, .csv, .parquet, .mf4); several are merged.")
+    ],
+    out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
+    segment: Annotated[
+        list[str] | None,
+        typer.Option("--segment", help="Id of a segment to use; default: every chirp and multisine."),
+    ] = None,
+    input_channel: Annotated[
+        str, typer.Option("--input", help="Channel that excites.")
+    ] = "motor_torque_ref_nm",
+    from_hz: Annotated[
+        float | None,
+        typer.Option("--from-hz", min=1e-4, help="Lowest frequency; default: 0.05 or what is excited."),
+    ] = None,
+    to_hz: Annotated[
+        float | None,
+        typer.Option("--to-hz", min=1e-3, help="Highest frequency; default: 30 or what is excited."),
+    ] = None,
+    order: Annotated[
+        int | None,
+        typer.Option("--order", min=2, max=7, help="Order of the denominator; default: by evidence."),
+    ] = None,
+    gear_ratio: Annotated[
+        float | None, typer.Option("--gear-ratio", min=1e-3, help="Known gear ratio of the chain.")
+    ] = None,
+    method: Annotated[str, typer.Option("--method", help="auto, lpm, periodic, h1, h2 or hv.")] = "auto",
+    hold_ms: Annotated[
+        float | None,
+        typer.Option(
+            "--hold-ms",
+            min=0.0,
+            help="How long the input keeps a value; default: the sample time, at most 1 ms.",
+        ),
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace an earlier identification in --out.")
+    ] = False,
+    json_: Annotated[
+        bool, typer.Option("--json", help="Print identification.json and nothing else.")
+    ] = False,
+) -> int:
+    """Frequency responses, transfer functions with dead time, and the driveline chain of recordings."""
+    from hil.cli.identify import carry_out
+
+    return carry_out(
+        recordings=recordings, out=out, segment=segment, input_channel=input_channel,
+        from_hz=from_hz, to_hz=to_hz, order=order, gear_ratio=gear_ratio, method=method,
+        hold_ms=hold_ms, overwrite=overwrite, json_=json_
+    )  # fmt: skip

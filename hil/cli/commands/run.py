@@ -1,0 +1,45 @@
+"""`hil run`: a plan on a bench, with its recording and reports."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+
+def command(
+    plan: Annotated[
+        str, typer.Argument(help="plan file, or the name of a shipped plan: acceptance, identification")
+    ],
+    bench: Annotated[str, typer.Option(help="bench file, or the name of a shipped bench")] = "sim",
+    out: Annotated[
+        Path | None,
+        typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
+    ] = None,
+    model: Annotated[Path | None, typer.Option(help="model file for the simulated bench")] = None,
+    operator: Annotated[str, typer.Option(help="who runs the bench; stands in the report")] = "",
+    yes: Annotated[
+        str,
+        typer.Option(
+            "--yes", metavar="NAME", help="who confirms every operator prompt; stands in the report"
+        ),
+    ] = "",
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print result.json on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Run a test plan on a bench and write recording.mcap, result.json, report.html, report.pdf, junit.xml.
+
+    Exit code: 0 passed, 1 a criterion failed, 2 bad input, 3 the bench failed, 130 interrupted.
+    """
+    import_python_can()
+    from hil.cli.run import carry_out
+
+    return carry_out(
+        plan=plan, bench=bench, out=out, model=model, operator=operator, yes=yes,
+        overwrite=overwrite, as_json=as_json
+    )  # fmt: skip

@@ -1,0 +1,107 @@
+"""Commands start fast: each imports what it needs, when it needs it."""
+
+import importlib
+import inspect
+import pkgutil
+import subprocess
+import sys
+
+import pytest
+
+from hil.analysis.control_design import DesignSpec
+from hil.analysis.identification import ORDERS
+from hil.cli import commands
+from hil.cli._app import _COMMANDS, guarded
+from hil.core.channels import INPUT
+from hil.engine import DEFAULT_BENCH
+from tests.hil.cli.test_commands import hil
+
+SLOW = {
+    "numpy",
+    "scipy",
+    "numba",
+    "pandas",
+    "pyarrow",
+    "pydantic",
+    "can",
+    "asammdf",
+    "matplotlib",
+    "plotly",
+    "rich",
+}
+_SHOW_MODULES = (
+    "import sys; sys.argv[0] = 'hil'\n"
+    "from hil.cli import main\n"
+    "try: main()\n"
+    "finally: print('\\n'.join(sys.modules), file=sys.stderr)"
+)
+
+
+def modules_of(*arguments):
+    """What a command's process has imported when it ends."""
+    done = subprocess.run(
+        [sys.executable, "-c", _SHOW_MODULES, *arguments], capture_output=True, text=True, check=True
+    )
+    return set(done.stderr.split())
+
+
+def test_every_command_is_listed_and_every_listed_one_is_there(capsys):
+    assert set(_COMMANDS) == {module.name for module in pkgutil.iter_modules(commands.__path__)}
+    assert guarded(["--help"]) == 0
+    told = capsys.readouterr().out
+    assert all(f"  {name} " in told and text in told for name, text in _COMMANDS.items())
+
+
+@pytest.mark.parametrize("name", _COMMANDS)
+def test_the_work_takes_what_the_command_takes(name):
+    command = inspect.signature(importlib.import_module(f"hil.cli.commands.{name}").command)
+    work = inspect.signature(importlib.import_module(f"hil.cli.{name}").carry_out)
+    assert list(command.parameters) == list(work.parameters)
+
+
+@pytest.mark.parametrize("name", _COMMANDS)
+def test_help_imports_nothing_slow(name, capsys):
+    assert guarded([name, "--help"]) == 0
+    assert f"hil {name}" in capsys.readouterr().out
+
+
+def test_help_of_a_run_imports_nothing_slow():
+    assert not modules_of("run", "--help") & SLOW
+
+
+def test_options_say_the_defaults_that_the_work_would_take():
+    def defaults(name):
+        parameters = inspect.signature(importlib.import_module(f"hil.cli.commands.{name}").command).parameters
+        return {key: parameter.default for key, parameter in parameters.items()}
+
+    paper, given = DesignSpec(), defaults("design")
+    for option in ("lead_deg", "lead_hz", "normalisation", "notch_width", "notch_depth", "objective"):
+        assert given[option] == getattr(paper, option)
+    assert given["pole"] == paper.pole_rad_s
+    assert given["torque_limit"] == paper.torque_limit_nm
+    assert given["largest_sensitivity"] == paper.limits.sensitivity_peak
+    assert defaults("run")["bench"] == defaults("check")["bench"] == DEFAULT_BENCH
+    assert defaults("identify")["input_channel"] == INPUT
+    for order in (ORDERS[0] - 1, ORDERS[-1] + 1):
+        assert guarded(["identify", "x.csv", "--out", "x", "--order", str(order)]) == 2
+
+
+def test_checking_a_plan_leaves_out_what_it_does_not_use(tmp_path):
+    plan = tmp_path / "p.yaml"
+    plan.write_text("name: p\nsteps:\n  - wait: {duration_s: 0.1}\n")
+    hil("check", plan)  # the kernels are in the cache from here on
+    modules = modules_of("check", str(plan))
+    assert "can" in modules
+    for name in ("asammdf", "pandas", "pyarrow", "matplotlib", "plotly", "typst", "jinja2"):
+        assert name not in modules
+    assert "numba.np.arraymath" not in modules, "what is loaded needs none of numba's implementations"
+
+
+def test_asammdf_can_be_imported_after_python_can(tmp_path):
+    code = (
+        "from hil.cli._lean_imports import import_python_can as i; i()\n"
+        "import can, sys; assert 'asammdf' not in sys.modules\n"
+        "import asammdf; print(asammdf.MDF.__name__)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "MDF\n"
