@@ -1,22 +1,46 @@
-"""Drivers: the RMCU and the dynamometers on the wire, in one loop, by one clock."""
+"""Drivers: devices on their wires, in one loop, by one clock."""
 
-from drivers.dyno import DynoDriver, DynoNodes, VehicleParameters, identifiers_of, read_dyno
+from drivers.device import Device, MotorControl, WheelLoad
+from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
+from drivers.frame_source import Binding, FrameSource
 from drivers.loop import TICK_S, BusLoop
-from drivers.measurement import Binding, SampleAssembler
-from drivers.rmcu import RmcuDriver, parameters_of, read_rmcu
+from drivers.measurement import SampleAssembler
+from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu
+from drivers.samples import SampleQueue, Samples, SampleSource, Stream
+from drivers.serial_line import SerialLine
+from drivers.table import Connections, DeviceTable, File, LoadTable, Name, VehicleParameters
 from drivers.wire import Wire
 
+#: Kinds of device that come with the project; others come by entry point.
+OWN_KINDS: tuple[tuple[str, type[DeviceTable]], ...] = (("rmcu-can", RmcuTable), ("rcs-canopen", DynoTable))
+
 __all__ = [
+    "OWN_KINDS",
     "TICK_S",
     "Binding",
     "BusLoop",
+    "Connections",
+    "Device",
+    "DeviceTable",
     "DynoDriver",
     "DynoNodes",
+    "DynoTable",
+    "File",
+    "FrameSource",
+    "LoadTable",
+    "MotorControl",
+    "Name",
     "RmcuDriver",
+    "RmcuTable",
     "SampleAssembler",
+    "SampleQueue",
+    "SampleSource",
+    "Samples",
+    "SerialLine",
+    "Stream",
     "VehicleParameters",
+    "WheelLoad",
     "Wire",
-    "identifiers_of",
     "parameters_of",
     "read_dyno",
     "read_rmcu",

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 
 from drivers.wire import Wire
 from hil.core.clock import Clock
-from hil.core.errors import InterruptError
+from hil.core.errors import BenchError, InterruptError
 from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 
 TICK_S = 0.001
@@ -19,12 +20,22 @@ FrameCallback = Callable[[int, bytes, float], None]
 BlockCallback = Callable[[str, FrameBlock], None]
 
 
+class Port(Protocol):
+    """A wire of another kind than CAN: a serial line, a socket."""
+
+    def drain(self) -> bytes:
+        """Every byte that came since the last call; never waits."""
+        ...
+
+
 class BusLoop:
     """Steps through time in 1 ms ticks on the thread of its caller.
 
     - `every`: duties such as heartbeats; they run in every step, whoever waits.
     - `on_frame`: callbacks for seldom frames (SDO, heartbeat, EMCY, parameter replies).
-    - `on_block`: callbacks for everything, in blocks of at most 10 ms.
+    - `on_block`: callbacks for everything on CAN, in blocks of at most 10 ms.
+    - `serve`: callbacks for what comes on other wires, at most 10 ms old.
+    - `on_drained`: callbacks for when every wire has been looked at.
     - `stop_requested`: set by a signal handler; the next step raises InterruptError, unless `shielded`.
     """
 
@@ -39,6 +50,8 @@ class BusLoop:
         self._callbacks: dict[str, dict[int, FrameCallback]] = {wire.name: {} for wire in wires}
         self._wanted = {wire.name: np.zeros(_STANDARD_IDS, bool) for wire in wires}
         self._block_callbacks: list[BlockCallback] = []
+        self._served: list[tuple[Port, Callable[[bytes, float], None]]] = []
+        self._drained: list[Callable[[], None]] = []
 
     def every(self, period_s: float, duty: Callable[[], None]) -> None:
         """Call `duty` every `period_s` of the clock, from now on."""
@@ -52,6 +65,14 @@ class BusLoop:
     def on_block(self, callback: BlockCallback) -> None:
         """Call `callback(bus, block)` for everything sent and received."""
         self._block_callbacks.append(callback)
+
+    def serve(self, port: Port, take: Callable[[bytes, float], None]) -> None:
+        """Call `take(data, time_s)` with what comes on `port`, in whatever pieces it comes."""
+        self._served.append((port, take))
+
+    def on_drained(self, callback: Callable[[], None]) -> None:
+        """Call `callback()` each time that every wire and port has been looked at."""
+        self._drained.append(callback)
 
     def step(self) -> None:
         """Wait for the next tick; do what is due.
@@ -79,14 +100,34 @@ class BusLoop:
         return condition()
 
     def drain(self) -> None:
-        """Take what has come on every bus and hand it out."""
+        """Take what has come on every bus and port and hand it out.
+
+        Raises:
+            BenchError: a bus or a port failed; the others have been looked at all the same.
+        """
+        failures: list[BenchError] = []
         for wire in self.wires:
-            block = wire.drain()
-            if not len(block):
+            try:
+                block = wire.drain()
+            except BenchError as error:
+                failures.append(error)
                 continue
-            for callback in self._block_callbacks:
-                callback(wire.name, block)
-            self._dispatch(wire.name, block)
+            if len(block):
+                for callback in self._block_callbacks:
+                    callback(wire.name, block)
+                self._dispatch(wire.name, block)
+        for port, take in self._served:
+            try:
+                data = port.drain()
+            except BenchError as error:
+                failures.append(error)
+                continue
+            if data:
+                take(data, self.clock.now_s())
+        for drained in self._drained:
+            drained()
+        if failures:
+            raise failures[0]
 
     def _wait_for_tick(self) -> None:
         if self.stop_requested and not self.shielded:

@@ -1,29 +1,14 @@
-"""From frames to channels: rows of samples on the RMCU's time base."""
+"""From samples to channels: rows on the time base of the RMCU, whoever measured."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from drivers.samples import Array, Samples, Stream
 from hil.core.channels import TIME
-from hil.core.frames import FrameBlock, joined, standard
-from hil.core.signals import Signal
-
-Array = npt.NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Binding:
-    """A signal of a frame on a bus that gives a channel."""
-
-    bus: str
-    frame_id: int
-    signal: Signal
-    channel: str
-
 
 # Channels that are computed from both sides: (name, left, right, sum instead of mean)
 _BOTH_SIDES = (
@@ -32,73 +17,73 @@ _BOTH_SIDES = (
     ("dyno_torque_ref_nm", "dyno_torque_left_nm", "dyno_torque_right_nm", True),
 )
 _NEAREST_WITHIN = 2.5  # sample times; beyond, a value is missing (NaN)
-_SETTLED_S = 0.003  # frames older than this, before the newest of the slowest bus, have all arrived
 _GIVEN_UP_S = 0.1  # a stream that is silent for this long holds up nobody
+_SLOWER = 1.5  # sample times; a stream slower than this leaves rows without a value
 
 
 class SampleAssembler:
-    """Puts the frames of all buses together into samples.
+    """Puts the samples of all streams together into rows.
 
-    The first binding's frame is the time base: each of its frames is one sample, and `time_s` counts
-    sample times from the first (a lost frame leaves a gap). Every other channel takes the frame nearest
-    in time, which is the one of the same millisecond where the devices' clocks agree to half a sample.
+    The first stream is the time base: each of its samples is one row, and `time_s` counts sample times from
+    the first (a lost frame leaves a gap). A stream of the same rate gives each row its sample nearest in
+    time, which is the one of the same millisecond where the devices' clocks agree to half a sample. A sample
+    of a slower stream stands once, in the row nearest to it: the rows between have no value (NaN), for none
+    was measured. Of a faster stream each row has the sample nearest to it.
+
+    `late` counts samples of slower streams that came after their row was written; they are left out.
     """
 
-    def __init__(self, bindings: Sequence[Binding], sample_time_s: float) -> None:
-        self._bindings = list(bindings)
+    def __init__(self, streams: Sequence[Stream], sample_time_s: float) -> None:
         self._sample_time_s = sample_time_s
-        self._keys = sorted({(b.bus, b.frame_id) for b in bindings})
-        self._master = (bindings[0].bus, bindings[0].frame_id)
-        self._blocks: dict[str, list[FrameBlock]] = {bus: [] for bus in {b.bus for b in bindings}}
-        self._waiting = {key: _Stream() for key in self._keys}
+        self._waiting: dict[Stream, _Waiting] = {stream: _Waiting(stream) for stream in streams}
+        self._base = self._waiting[streams[0]]
+        self._slow = [w for w in self._waiting.values() if w.stream.period_s > _SLOWER * sample_time_s]
+        self._even = [w for w in self._waiting.values() if w not in self._slow]
         self._count = 0
         self._last_stamp_s: float | None = None
-        measured = [b.channel for b in bindings]
+        self.late = 0
+        measured = [channel for stream in streams for channel in stream.channels]
         derived = [name for name, left, right, _ in _BOTH_SIDES if left in measured and right in measured]
         self.names = [TIME, *measured, *derived]
 
-    def add(self, bus: str, block: FrameBlock) -> None:
-        """Take the frames of one bus."""
-        if bus in self._blocks:
-            self._blocks[bus].append(standard(block))
+    def add(self, samples: Samples) -> None:
+        """Take samples of a stream."""
+        self._waiting[samples.stream].extend(samples)
 
     def rows(self, *, everything: bool = False) -> Array:
         """Samples that are complete (`everything`: also the newest), one row each, columns as `names`."""
-        self._sort_in()
-        master = self._waiting[self._master]
-        count = len(master.stamps)
-        if not everything:
-            # The buses are drained one after the other: wait for the slowest, but not for a dead one.
-            oldest_s = min(max(s.newest_s, master.newest_s - _GIVEN_UP_S) for s in self._waiting.values())
-            count = int(np.searchsorted(master.stamps, oldest_s - _SETTLED_S))
+        for waiting in self._waiting.values():
+            waiting.join()
+        count = len(self._base.stamps) if everything else self._complete()
         if count <= 0:
             return np.zeros((0, len(self.names)))
-        stamps = master.stamps[:count]
+        stamps = self._base.stamps[:count]
+        begun = self._count > 0
         columns: dict[str, Array] = {TIME: self._sample_times(stamps)}
-        for key, stream in self._waiting.items():
-            at = stream.nearest(stamps, _NEAREST_WITHIN * self._sample_time_s)
-            for binding in self._bindings:
-                if (binding.bus, binding.frame_id) == key:
-                    columns[binding.channel] = stream.values(binding.signal, at)
+        within_s = _NEAREST_WITHIN * self._sample_time_s
+        for waiting in self._waiting.values():
+            if waiting in self._slow:
+                values, late = waiting.placed(stamps, within_s)
+                self.late += late if begun else 0
+            else:
+                values = waiting.nearest(stamps, within_s)
+            columns |= dict(zip(waiting.stream.channels, values.T, strict=True))
         for name, left, right, is_sum in _BOTH_SIDES:
             if name in self.names:
                 both = columns[left] + columns[right]
                 columns[name] = both if is_sum else 0.5 * both
-        for stream in self._waiting.values():
-            stream.forget(
-                stamps[-1] - _SETTLED_S if stream is not master else np.nextafter(stamps[-1], np.inf)
-            )
+        for waiting in self._even:
+            last_s = stamps[-1] - waiting.stream.late_s
+            waiting.forget(np.nextafter(stamps[-1], np.inf) if waiting is self._base else last_s)
         return np.column_stack([columns[name] for name in self.names])
 
-    def _sort_in(self) -> None:
-        for bus, blocks in self._blocks.items():
-            if not blocks:
-                continue
-            block = joined(blocks)
-            self._blocks[bus] = []
-            for key in self._keys:
-                if key[0] == bus:
-                    self._waiting[key].extend(block[block["id"] == key[1]])
+    def _complete(self) -> int:
+        """How many rows can be written: what may still come is awaited, but not from a dead device."""
+        newest_s = self._base.newest_s
+        until_s = [max(w.newest_s, newest_s - _GIVEN_UP_S) - w.stream.late_s for w in self._even]
+        # Between two samples of a slow stream nothing can be awaited but that the next one comes late.
+        until_s += [newest_s - w.stream.late_s for w in self._slow]
+        return int(np.searchsorted(self._base.stamps, min(until_s)))
 
     def _sample_times(self, stamps: Array) -> Array:
         previous = stamps[0] - self._sample_time_s if self._last_stamp_s is None else self._last_stamp_s
@@ -108,36 +93,59 @@ class SampleAssembler:
         return np.round((numbers - 1) * self._sample_time_s, 9)
 
 
-class _Stream:
-    """Frames of one identifier that wait to become samples."""
+class _Waiting:
+    """Samples of one stream that wait to stand in a row."""
 
-    def __init__(self) -> None:
+    def __init__(self, stream: Stream) -> None:
+        self.stream = stream
         self.stamps: Array = np.zeros(0)
-        self._payloads: npt.NDArray[np.uint64] = np.zeros(0, np.uint64)
+        self._values: Array = np.zeros((0, len(stream.channels)))
+        self._new: list[Samples] = []
 
     @property
     def newest_s(self) -> float:
         return float(self.stamps[-1]) if len(self.stamps) else -np.inf
 
-    def extend(self, block: FrameBlock) -> None:
-        self.stamps = np.concatenate([self.stamps, block["time_s"]])
-        self._payloads = np.concatenate([self._payloads, block["data"]])
+    def extend(self, samples: Samples) -> None:
+        self._new.append(samples)
 
-    def nearest(self, stamps: Array, within_s: float) -> npt.NDArray[np.int64]:
-        """Index of the frame nearest to each stamp; -1 where none is near enough."""
+    def join(self) -> None:
+        if self._new:
+            self.stamps = np.concatenate([self.stamps, *(new.time_s for new in self._new)])
+            self._values = np.concatenate([self._values, *(new.values for new in self._new)])
+            self._new = []
+
+    def nearest(self, stamps: Array, within_s: float) -> Array:
+        """For each stamp the sample nearest to it, (len(stamps), channels); NaN where none is near enough."""
         if not len(self.stamps):
-            return np.full(len(stamps), -1)
-        after = np.clip(np.searchsorted(self.stamps, stamps), 0, len(self.stamps) - 1)
-        before = np.maximum(after - 1, 0)
-        closer = np.abs(self.stamps[before] - stamps) <= np.abs(self.stamps[after] - stamps)
-        at = np.where(closer, before, after)
-        return np.where(np.abs(self.stamps[at] - stamps) <= within_s, at, -1)
+            return np.full((len(stamps), self._values.shape[1]), np.nan)
+        at = _nearest(self.stamps, stamps)
+        found = self._values[at]
+        found[np.abs(self.stamps[at] - stamps) > within_s] = np.nan
+        return found
 
-    def values(self, signal: Signal, at: npt.NDArray[np.int64]) -> Array:
-        if not len(self._payloads):
-            return np.full(len(at), np.nan)
-        return np.where(at >= 0, signal.decode(self._payloads[at]), np.nan)
+    def placed(self, stamps: Array, within_s: float) -> tuple[Array, int]:
+        """Each sample at the stamp nearest to it, NaN elsewhere; and how many came after their row.
+
+        Takes away what has been placed; what lies behind the last stamp goes on waiting.
+        """
+        found = np.full((len(stamps), self._values.shape[1]), np.nan)
+        due = int(np.searchsorted(self.stamps, stamps[-1], side="right"))
+        times = self.stamps[:due]
+        at = _nearest(stamps, times)
+        near = np.abs(stamps[at] - times) <= within_s
+        found[at[near]] = self._values[:due][near]
+        self.stamps, self._values = self.stamps[due:], self._values[due:]
+        return found, int(np.sum(times[~near] < stamps[0]))
 
     def forget(self, before_s: float) -> None:
         keep = int(np.searchsorted(self.stamps, before_s))
-        self.stamps, self._payloads = self.stamps[keep:], self._payloads[keep:]
+        self.stamps, self._values = self.stamps[keep:], self._values[keep:]
+
+
+def _nearest(places: Array, times: Array) -> npt.NDArray[np.int64]:
+    """Index of the place nearest to each time; of two as near the earlier."""
+    after = np.clip(np.searchsorted(places, times), 0, len(places) - 1)
+    before = np.maximum(after - 1, 0)
+    closer = np.abs(places[before] - times) <= np.abs(places[after] - times)
+    return np.where(closer, before, after)

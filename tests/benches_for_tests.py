@@ -24,7 +24,8 @@ def running(name: str = "test", **changes: Any) -> Iterator[Bench]:
     """An open simulated bench with its dynos started."""
     with open_bench(sim_bench(name, **changes)) as bench:
         bench.loop.run_for(0.2)
-        bench.dyno.start()
+        bench.start_heartbeats()
+        bench.dyno.come_up()
         yield bench
 
 

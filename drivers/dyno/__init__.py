@@ -1,6 +1,7 @@
-"""The dynamometers on their CANopen bus."""
+"""Dynamometers on CANopen, as one device."""
 
-from drivers.dyno._driver import DynoDriver, DynoNodes, VehicleParameters
+from drivers.dyno._driver import DynoDriver, DynoNodes
 from drivers.dyno._node import identifiers_of, read_dyno
+from drivers.dyno._table import DynoTable
 
-__all__ = ["DynoDriver", "DynoNodes", "VehicleParameters", "identifiers_of", "read_dyno"]
+__all__ = ["DynoDriver", "DynoNodes", "DynoTable", "identifiers_of", "read_dyno"]

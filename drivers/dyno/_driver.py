@@ -18,31 +18,20 @@ from drivers.dyno._node import (
     SWITCHED_ON,
     DynoNode,
 )
-from drivers.loop import BusLoop
-from drivers.measurement import Binding
+from drivers.frame_source import FrameSource
+from drivers.loop import TICK_S, BusLoop
+from drivers.table import VehicleParameters
 from drivers.wire import Wire
 from hil.core.errors import BenchError
 
 SPEED_MODE, VEHICLE_MODE = 3, -1
 _SHUTDOWN, _SWITCH_ON, _ENABLE, _DISABLE_VOLTAGE, _FAULT_RESET = 0x06, 0x07, 0x0F, 0x00, 0x80
-_HOST_HEARTBEAT_S = 0.05
 _HOST_SILENCE_MS = 200
 _NODE_HEARTBEAT_MS = 100
 _SYNC_PERIOD_US = 1000
 _SYNC_PRODUCER = 1 << 30
 _STATE_TIMEOUT_S = 0.5
 _ACCELERATION_UNIT_RAD_S2 = 1e-4
-
-
-@dataclass(frozen=True)
-class VehicleParameters:
-    """What the dynos' vehicle model is told; None leaves the value that the controller has."""
-
-    wheel_radius_m: float = 0.33
-    slip: float = 0.0
-    inertia_kg_m2: float | None = None
-    rolling_nm: float | None = None
-    aero_nms2_rad2: float | None = None
 
 
 @dataclass(frozen=True)
@@ -56,7 +45,11 @@ class DynoNodes:
 
 
 class DynoDriver:
-    """Rear left and right dynamometer together; front ones are watched and left idle."""
+    """Rear left and right dynamometer together, a `WheelLoad`; front ones are watched and left idle."""
+
+    name = "dynos"
+    heartbeat_s = 0.05
+    safe_within_s = 0.5
 
     def __init__(
         self, loop: BusLoop, wire: Wire, eds: Path, nodes: DynoNodes, vehicle: VehicleParameters
@@ -68,20 +61,17 @@ class DynoDriver:
         self.right = DynoNode(network, wire.name, nodes.rear_right, "rear right", eds)
         self.rear = (self.left, self.right)
         self.idle = [DynoNode(network, wire.name, i, name, eds) for name, i in nodes.idle.items()]
+        source = FrameSource([*self.left.bindings("left"), *self.right.bindings("right")], TICK_S)
+        self.sources = (source,)
         loop.on_block(self._take_block)
+        loop.on_block(source.take)
 
-    @property
-    def bindings(self) -> list[Binding]:
-        """Where the dynos' channels lie on their bus."""
-        return [*self.left.bindings("left"), *self.right.bindings("right")]
-
-    def start(self) -> None:
+    def come_up(self) -> None:
         """Bring the nodes to operation: supervision, SYNC, vehicle model. The drives stay without torque.
 
         Raises:
             BenchError: a node is missing, does not answer or refuses a value.
         """
-        self._loop.every(_HOST_HEARTBEAT_S, self._beat)
         everyone = [*self.rear, *self.idle]
         self._loop.wait_for(lambda: all(n.last_heartbeat_s > -np.inf for n in everyone), 3.0)
         missing = [f"{n.name} (node {n.id})" for n in everyone if n.last_heartbeat_s == -np.inf]
@@ -137,12 +127,12 @@ class DynoDriver:
         """Mean of both wheels, newest value."""
         return 0.5 * (self.left.wheel_speed_rad_s + self.right.wheel_speed_rad_s)
 
-    def disable(self) -> None:
+    def make_safe(self) -> None:
         """Tell both drives to give no torque; returns at once."""
         for node in self.rear:
             node.command(_DISABLE_VOLTAGE)
 
-    def is_off(self) -> bool:
+    def is_safe(self) -> bool:
         """Whether both drives say that they give no torque, and say so now."""
         return all(n.in_state(SWITCH_ON_DISABLED) or n.in_state(FAULT) for n in self.rear)
 
@@ -177,8 +167,12 @@ class DynoDriver:
             if value is not None:
                 node.write(0x2000, subindex, value, name)
 
-    def _beat(self) -> None:
+    def beat(self) -> None:
+        """The host's heartbeat, which the dynos watch."""
         self._wire.send(0x700 + self._host, b"\x05")
+
+    def close(self) -> None:
+        """Nothing of its own is open."""
 
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus == self._wire.name:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.dyno._canopen import LoopNetwork, LoopNode
-from drivers.measurement import Binding
+from drivers.frame_source import Binding
 from hil.core.errors import BenchError
 from hil.core.frames import newest
 from hil.core.pdo import layout_of_pdo, read_eds

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from drivers.loop import BusLoop
-from drivers.measurement import Binding
+from drivers.frame_source import Binding, FrameSource
+from drivers.loop import TICK_S, BusLoop
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
 from hil.core.checksum import crc8_many
 from hil.core.controller import Controller
-from hil.core.dbc import Dbc, Needed, read_dbc
+from hil.core.dbc import Dbc, Names, Needed, read_dbc
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import newest
 from hil.core.printable import printable
@@ -41,25 +41,39 @@ _NEEDED = {
 }
 
 
-def read_rmcu(dbc: Path) -> Dbc:
-    """What the driver uses of the RMCU's DBC.
+# What the bench does not look at, but an RMCU's frames may hold: names for it can be given too.
+_ALSO = {
+    "RMCU_Control": ("Saturated", "ParametersValid", "Counter", "Crc"),
+    "RCS_Vehicle": ("Counter", "Valid", "Crc"),
+}
+
+#: Messages of an RMCU with their signals, by our names, which are those of benches/rmcu.dbc.
+RMCU_SIGNALS = {name: (*needed.signals, *_ALSO.get(name, ())) for name, needed in _NEEDED.items()}
+
+
+def read_rmcu(dbc: Path, names: Names | None = None) -> Dbc:
+    """What the driver uses of the RMCU's DBC, which calls things by `names`.
 
     Raises:
         BadInputError: it lacks a message or signal that is needed, or describes one that cannot be used.
     """
-    return read_dbc(dbc, _NEEDED)
+    return read_dbc(dbc, _NEEDED, names)
 
 
 class RmcuDriver:
-    """Requests, parameters and state of the RMCU.
+    """Requests, parameters and state of the RMCU: a `MotorControl`.
 
     Raises:
         BadInputError: the DBC lacks a message or signal that is needed, or describes one that cannot be used.
     """
 
-    def __init__(self, loop: BusLoop, wire: Wire, dbc: Path) -> None:
+    name = "RMCU"
+    heartbeat_s = None  # its requests expire: it needs no other sign of life
+    safe_within_s = 0.5
+
+    def __init__(self, loop: BusLoop, wire: Wire, dbc: Path, names: Names | None = None) -> None:
         self._loop, self._wire = loop, wire
-        read = read_rmcu(dbc)
+        read = read_rmcu(dbc, names)
         self._layouts, self._texts, self._dbc = read.layouts, read.texts, dbc
         self._request = self._layouts["RMCU_Request"]
         self._reply = self._layouts["RMCU_ParameterReply"]
@@ -71,12 +85,14 @@ class RmcuDriver:
         self.fault = ""
         self.torque_ref_nm = math.nan
         self.last_seen_s = -math.inf
+        source = FrameSource(self._bindings(), TICK_S)
+        self.sources = (source,)
         loop.on_frame(wire, self._reply.id, self._take_reply)
         loop.on_block(self._take_block)
+        loop.on_block(source.take)
 
-    @property
-    def bindings(self) -> list[Binding]:
-        """Where the RMCU's channels lie on its bus; the first is the master of the time base."""
+    def _bindings(self) -> list[Binding]:
+        """Where the RMCU's channels lie on its bus; the first is the time base of a recording."""
         status, control = self._layouts["RMCU_Status"], self._layouts["RMCU_Control"]
         bus = self._wire.name
         return [
@@ -86,6 +102,25 @@ class RmcuDriver:
             Binding(bus, control.id, control.signals["DrivingTorqueRef"], "driving_torque_ref_nm"),
             Binding(bus, control.id, control.signals["DrivingTorqueEst"], "driving_torque_est_nm"),
         ]
+
+    def come_up(self) -> None:
+        """Nothing to configure: it must have sent its status by now.
+
+        Raises:
+            BenchError: it has not.
+        """
+        if self.state == "":
+            raise BenchError("the RMCU sends no status", where="RMCU", fix="is it powered and on this bus?")
+
+    def beat(self) -> None:
+        """Not needed."""
+
+    def troubles(self) -> list[str]:
+        """Its fault, if it is in one."""
+        return [f"the RMCU went to fault: {self.fault}"] if self.state == "fault" else []
+
+    def close(self) -> None:
+        """Nothing of its own is open."""
 
     def requests(self, mode: str, values_nm: npt.NDArray[np.float64]) -> list[bytes]:
         """Payloads of consecutive request frames (N m), with counter and CRC, to be sent one each tick."""
@@ -100,11 +135,11 @@ class RmcuDriver:
         """Send one payload made by `requests`."""
         self._wire.send(self._request.id, payload)
 
-    def request_off(self) -> None:
+    def make_safe(self) -> None:
         """Ask for torque off, now."""
         self.send(self.requests("off", np.zeros(1))[0])
 
-    def is_off(self) -> bool:
+    def is_safe(self) -> bool:
         """Whether the RMCU says that it gives no torque, and says so now."""
         fresh = self._loop.clock.now_s() - self.last_seen_s < 0.05
         return fresh and self.state == "off" and self.torque_ref_nm == 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -45,32 +45,71 @@ class Needed:
 
 
 @dataclass(frozen=True)
+class Names:
+    """What a DBC calls messages, signals and values, by our name for them; what is left out has our name.
+
+    `messages`: name of each message; `signals`: by message, the name of each signal; `values`: by message
+    and signal, each text of its value table. Messages and signals on the left are always ours.
+    """
+
+    messages: Mapping[str, str] = field(default_factory=dict)
+    signals: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    values: Mapping[str, Mapping[str, Mapping[str, str]]] = field(default_factory=dict)
+
+    def message(self, ours: str) -> str:
+        """The DBC's name of our message."""
+        return self.messages.get(ours, ours)
+
+    def signal(self, message: str, ours: str) -> str:
+        """The DBC's name of a signal of our message."""
+        return self.signals.get(message, {}).get(ours, ours)
+
+    def text(self, message: str, signal: str, ours: str) -> str:
+        """What the DBC calls a value of our signal."""
+        return self.values.get(message, {}).get(signal, {}).get(ours, ours)
+
+    def ours(self, message: str) -> dict[str, str]:
+        """Our name of each signal that has another in the DBC."""
+        return {theirs: ours for ours, theirs in self.signals.get(message, {}).items()}
+
+    def our_texts(self, message: str, signal: str) -> dict[str, str]:
+        """Our text of each value that has another in the DBC."""
+        return {theirs: ours for ours, theirs in self.values.get(message, {}).get(signal, {}).items()}
+
+
+@dataclass(frozen=True)
 class Dbc:
-    """Layouts by message name; value tables (text to number) by message and signal name."""
+    """Layouts by message; value tables (text to number) by message and signal; all by our names."""
 
     layouts: dict[str, FrameLayout]
     texts: dict[tuple[str, str], dict[str, int]]
 
 
-def read_dbc(path: Path, needed: Mapping[str, Needed]) -> Dbc:
+def read_dbc(path: Path, needed: Mapping[str, Needed], names: Names | None = None) -> Dbc:
     """Layouts and value tables of the messages that are needed; others in the file are not looked at.
+
+    Args:
+        needed: by our names.
+        names: what the file calls them; ours if left out.
 
     Raises:
         BadInputError: not a DBC, or a needed message or signal is missing or cannot be used: file, message,
-            signal.
+            signal, as the file calls them.
     """
+    names = names or Names()
     database = _database(path)
-    found = {}
-    for name, parts in needed.items():
+    found: dict[str, Message] = {}
+    for ours, parts in needed.items():
+        name = names.message(ours)
         try:
             message = database.get_message_by_name(name)
         except KeyError:
             raise BadInputError(
                 f"has no message '{name}'", where=str(path), fix="use the RMCU's DBC"
             ) from None
-        for mistake in _mistakes(message, parts):
+        for mistake in _mistakes(message, _as_called(parts, names, ours)):
             raise BadInputError(f"message '{name}'{mistake}", where=str(path), fix=_FIX)
-        found[name] = message
+        found[ours] = message
     for a, b in combinations(found.values(), 2):
         if a.frame_id == b.frame_id:
             raise BadInputError(
@@ -78,13 +117,41 @@ def read_dbc(path: Path, needed: Mapping[str, Needed]) -> Dbc:
                 where=str(path),
                 fix=_FIX,
             )
+    layouts = {ours: _renamed(layout_of(message), names.ours(ours)) for ours, message in found.items()}
+    return Dbc(layouts, dict(_texts(found, names)))
+
+
+def _as_called(needed: Needed, names: Names, message: str) -> Needed:
+    """What is needed of a message, as the file calls it."""
+
+    def called(signals: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(names.signal(message, signal) for signal in signals)
+
     texts = {
-        (name, signal.name): {str(text): int(number) for number, text in signal.choices.items()}
-        for name, message in found.items()
-        for signal in message.signals
-        if signal.choices
+        names.signal(message, signal): tuple(names.text(message, signal, text) for text in wanted)
+        for signal, wanted in needed.texts.items()
     }
-    return Dbc({name: layout_of(message) for name, message in found.items()}, texts)
+    checksum = names.signal(message, needed.checksum) if needed.checksum else ""
+    return Needed(called(needed.signals), called(needed.whole), texts, checksum)
+
+
+def _renamed(layout: FrameLayout, ours: Mapping[str, str]) -> FrameLayout:
+    signals = {ours.get(name, name): signal for name, signal in layout.signals.items()}
+    return replace(layout, signals=signals)
+
+
+def _texts(found: Mapping[str, Message], names: Names) -> Iterator[tuple[tuple[str, str], dict[str, int]]]:
+    """Value tables by our names."""
+    for message, described in found.items():
+        signals = names.ours(message)
+        for signal in described.signals:
+            if signal.choices:
+                name = signals.get(signal.name, signal.name)
+                texts = names.our_texts(message, name)
+                yield (
+                    (message, name),
+                    {texts.get(str(text), str(text)): int(n) for n, text in signal.choices.items()},
+                )
 
 
 def _database(path: Path) -> Database:

@@ -1,7 +1,8 @@
 """A run: pre-flight, arm, carry out, safe state, record."""
 
 from hil.engine.bench import Bench, open_bench
-from hil.engine.bench_file import DEFAULT_BENCH, BenchFile, load_bench
+from hil.engine.bench_file import DEFAULT_BENCH, load_bench
+from hil.engine.bench_tables import BenchFile
 from hil.engine.run import RECORDING, RunOutcome, RunRequest, run_plan
 from hil.engine.stopping import STOP_SIGNALS, StopRequest
 

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from itertools import combinations
+from typing import Any
 
 import can
 
-from drivers import identifiers_of, read_dyno, read_rmcu
+from drivers import DynoTable, RmcuTable
 from hil.core.errors import BadInputError
 from hil.core.printable import is_printable, printable
-from sim_backend.bench import DYNO_BUS, RMCU_BUS, check_device_files
-
-if TYPE_CHECKING:
-    from hil.engine.bench_file import BenchFile
+from hil.engine._simulable import check_simulable
+from hil.engine.bench_tables import BenchFile
+from sim_backend.bench import DYNO_BUS, RMCU_BUS
 
 SIMULATED = "hil-sim"
 
@@ -40,47 +40,35 @@ def unprintable(data: dict[str, Any], place: str = "") -> list[str]:
 
 def contradictions(bench: BenchFile) -> list[str]:
     """Mistakes that show without opening another file."""
-    return [*_of_nodes(bench), *_of_uses(bench), *_of_interfaces(bench)]
+    own = [
+        f"{key}.{mistake}" for key, table in bench.device_tables.items() for mistake in table.contradictions()
+    ]
+    return [*own, *_of_uses(bench), *_of_interfaces(bench), *_of_simulation(bench)]
 
 
 def device_mistakes(bench: BenchFile) -> list[str]:
-    """What is wrong with the DBC and the EDS, and identifiers that meet on one bus."""
+    """What is wrong with the files of devices, and identifiers that meet on one bus."""
     found = []
-    for key, path, read in (
-        ("rmcu.dbc", bench.rmcu.dbc, read_rmcu),
-        ("dyno.eds", bench.dyno.eds, lambda path: read_dyno(path, bench.dyno.rear_left)),
-    ):
-        try:
-            read(path)
-        except BadInputError as error:
-            found.append(f"{key} = '{printable(path.name)}': {_on_one_line(error)}")
+    for key, table in bench.device_tables.items():
+        for file, error in table.unusable_files():
+            name = printable(getattr(table, file).name)
+            found.append(f"{key}.{file} = '{name}': {_on_one_line(error)}")
     if not found and bench.simulation:
         try:
-            check_device_files(bench.rmcu.dbc, bench.dyno.eds)
+            check_simulable(bench)
         except BadInputError as error:
             found.append(f"for the simulated bench: {_on_one_line(error)}")
-    if not found and bench.rmcu.bus == bench.dyno.bus:
-        found += _of_identifiers(bench)
-    return found
+    return found or list(_of_identifiers(bench))
 
 
-def nodes_of(bench: BenchFile) -> dict[str, int]:
-    """Node ids on the dynos' bus by their keys."""
-    d = bench.dyno
-    idle = {f"idle.{name}": node for name, node in d.idle.items()}
-    return {"rear_left": d.rear_left, "rear_right": d.rear_right, **idle, "host_node": d.host_node}
-
-
-def _of_nodes(bench: BenchFile) -> Iterator[str]:
-    seen: dict[int, str] = {}
-    for key, node in nodes_of(bench).items():
-        other = seen.setdefault(node, key)
-        if other != key:
-            yield f"dyno.{key} = {node}: is also {other}; every node on a bus has an id of its own"
+def _buses_of(bench: BenchFile) -> dict[str, str]:
+    """The CAN bus that each device is on, by the key of its table."""
+    buses = {key: getattr(table, "bus", None) for key, table in bench.device_tables.items()}
+    return {key: bus for key, bus in buses.items() if isinstance(bus, str)}
 
 
 def _of_uses(bench: BenchFile) -> Iterator[str]:
-    used = {"rmcu.bus": bench.rmcu.bus, "dyno.bus": bench.dyno.bus}
+    used = {f"{key}.bus": bus for key, bus in _buses_of(bench).items()}
     known = ", ".join(bench.buses) or "none"
     for key, wanted in used.items():
         if wanted not in bench.buses:
@@ -97,6 +85,15 @@ def _of_uses(bench: BenchFile) -> Iterator[str]:
                 f"buses.{name}.channel = '{printable(bus.channel)}': is also buses.{other}; "
                 "give each bus a channel of its own, or put RMCU and dynos on one bus"
             )
+
+
+def _of_simulation(bench: BenchFile) -> Iterator[str]:
+    """Kinds of device that the simulated bench does not stand in for."""
+    if bench.simulation:
+        for key, table, kind in (("rmcu", bench.rmcu, RmcuTable), ("dyno", bench.dyno, DynoTable)):
+            if not isinstance(table, kind):
+                known = kind.model_fields["kind"].default
+                yield f"{key}.kind = '{printable(table.kind)}': the simulated bench has only '{known}'"
 
 
 def _of_interfaces(bench: BenchFile) -> Iterator[str]:
@@ -119,11 +116,11 @@ def _of_interfaces(bench: BenchFile) -> Iterator[str]:
 
 
 def _of_simulated_bus(bench: BenchFile, name: str) -> Iterator[str]:
-    bus = bench.buses[name]
-    role = RMCU_BUS if name == bench.rmcu.bus else DYNO_BUS
-    if bench.rmcu.bus == bench.dyno.bus:
+    bus, buses = bench.buses[name], _buses_of(bench)
+    role = RMCU_BUS if name == buses.get("rmcu") else DYNO_BUS
+    if buses.get("rmcu") == buses.get("dyno"):
         yield f"dyno.bus = '{name}': is also rmcu.bus; the simulated bench has a bus for each"
-    elif name in (bench.rmcu.bus, bench.dyno.bus) and bus.channel != f"{bench.name}/{role}":
+    elif name in (buses.get("rmcu"), buses.get("dyno")) and bus.channel != f"{bench.name}/{role}":
         yield (
             f"buses.{name}.channel = '{printable(bus.channel)}': "
             f"with name = '{bench.name}' this simulated bus is '{bench.name}/{role}'"
@@ -133,15 +130,17 @@ def _of_simulated_bus(bench: BenchFile, name: str) -> Iterator[str]:
 
 
 def _of_identifiers(bench: BenchFile) -> Iterator[str]:
-    """Identifiers of RMCU and CANopen frames that would be taken for each other."""
-    taken: dict[int, str] = {}
-    for key, node in nodes_of(bench).items():
-        taken |= identifiers_of(node, key)
-    for layout in read_rmcu(bench.rmcu.dbc).layouts.values():
-        if layout.id in taken:
+    """Identifiers of frames of two devices that would be taken for each other."""
+    buses = _buses_of(bench)
+    for (first, bus), (second, other) in combinations(buses.items(), 2):
+        if bus != other:
+            continue
+        tables = bench.device_tables
+        taken, later = tables[first].identifiers(), tables[second].identifiers()
+        for number in sorted(taken.keys() & later.keys()):
             yield (
-                f"dyno.bus = '{bench.dyno.bus}': is also rmcu.bus, and 0x{layout.id:03X} is both "
-                f"'{layout.name}' and {taken[layout.id]}; give them a bus each, or other identifiers"
+                f"{second}.bus = '{bus}': is also {first}.bus, and 0x{number:03X} is both "
+                f"{taken[number]} and {later[number]}; give them a bus each, or other identifiers"
             )
 
 

@@ -16,7 +16,8 @@ from hil.core.controller import Controller
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.engine._predicted_wire import PredictedWire, wire_of
-from hil.engine.bench_file import BenchFile
+from hil.engine._simulable import rmcu_of
+from hil.engine.bench_tables import BenchFile
 from hil.plant.closed_loop import SIDES, TICK_S, ClosedLoop
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
@@ -85,19 +86,19 @@ class PredictedRmcu:
     fault = "none"
 
     def __init__(self, loop: PredictedLoop, file: BenchFile, wire: PredictedWire) -> None:
-        self._loop, self._dbc, self._known = loop, file.rmcu.dbc, wire.parameters
+        self._loop, self._dbc, self._known = loop, rmcu_of(file).dbc, wire.parameters
 
     @property
     def state(self) -> str:
         """What the RMCU said last."""
         return _STATES[int(self._loop.newest[0, T.STATE])]
 
-    def is_off(self) -> bool:
+    def is_safe(self) -> bool:
         """Whether the RMCU says that it gives no torque."""
         torque = self._loop.closed.wire.channel("motor_torque_ref_nm", self._loop.newest)
         return self.state == "off" and float(torque[0]) == 0.0
 
-    def request_off(self) -> None:
+    def make_safe(self) -> None:
         """Ask for torque off."""
         self._loop.closed.off()
 
@@ -137,7 +138,7 @@ class PredictedDyno:
         """Mean of both wheels, newest value."""
         return float(0.5 * sum(self._wheel_speeds_rad_s()))
 
-    def start(self) -> None:
+    def come_up(self) -> None:
         """Supervision, vehicle model, SYNC, operation: the objects that are written, and their time."""
         v, closed = self._file.vehicle, self._loop.closed
         told = [v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2]
@@ -185,7 +186,7 @@ class PredictedDyno:
             closed.drive_mode(side, D.VEHICLE)
             self._loop.transact(_SDO_TICKS)
 
-    def disable(self) -> None:
+    def make_safe(self) -> None:
         """Both drives without torque, and until they say so."""
         for side in SIDES:
             self._loop.closed.drive_mode(side, D.FREE)
@@ -219,10 +220,10 @@ class PredictedBench:
         self.rmcu = PredictedRmcu(self.loop, file, self.wire)
         self.dyno = PredictedDyno(self.loop, file, self.wire)
         self.loop.run_for(_LISTEN_S)
-        self.dyno.start()
+        self.dyno.come_up()
         self.began = closed.samples
         self.loop.run_for(_LISTEN_S)
-        self.rmcu.request_off()
+        self.rmcu.make_safe()
         self.dyno.enable(file.dyno.speed_ramp_m_s2 / file.vehicle.wheel_radius_m)
 
     def peak(self, channel: str) -> float:

@@ -9,7 +9,8 @@ from typing import Any
 from drivers import TICK_S, read_dyno, read_rmcu
 from hil.core.dbc import Dbc
 from hil.core.signals import FrameLayout
-from hil.engine.bench_file import BenchFile
+from hil.engine._simulable import dyno_of, rmcu_of
+from hil.engine.bench_tables import BenchFile
 from hil.plant.closed_loop import Wire
 from sim_backend.bench import frame_time_s
 
@@ -45,9 +46,9 @@ def wire_of(bench: BenchFile) -> PredictedWire:
     Raises:
         BadInputError: a device file cannot be used.
     """
-    dbc = read_rmcu(bench.rmcu.dbc)
-    dictionary, left = read_dyno(bench.dyno.eds, bench.dyno.rear_left)
-    _, right = read_dyno(bench.dyno.eds, bench.dyno.rear_right)
+    dbc, dyno = read_rmcu(rmcu_of(bench).dbc, rmcu_of(bench).names), dyno_of(bench)
+    dictionary, left = read_dyno(dyno.eds, dyno.rear_left)
+    _, right = read_dyno(dyno.eds, dyno.rear_right)
     signals = {name: dbc.layouts[message].signals[signal] for name, (message, signal) in _RMCU.items()}
     frames = {name: dbc.layouts[message].id for name, (message, _) in _RMCU.items()}
     for side, (_, values, status) in (("left", left), ("right", right)):
@@ -80,7 +81,7 @@ def _frame_ends_s(bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]) ->
     rmcu = [dbc.layouts[name] for name in ("RCS_Vehicle", "RMCU_Status", "RMCU_Control")]
     sync = FrameLayout("SYNC", 0x80, 0, {})
     found: dict[int, float] = {}
-    for bus, layouts in ((bench.rmcu.bus, rmcu), (bench.dyno.bus, [sync, *dynos])):
+    for bus, layouts in ((rmcu_of(bench).bus, rmcu), (dyno_of(bench).bus, [sync, *dynos])):
         rate = bench.buses[bus].bit_rate
         ends = accumulate(frame_time_s(layout.length, rate) for layout in layouts)
         found |= {layout.id: end_s for layout, end_s in zip(layouts, ends, strict=True)}

@@ -1,78 +1,162 @@
-"""Opens a bench: buses, clock, drivers; real or simulated by what the bench file says."""
+"""Opens a bench: buses, clock, devices; real or simulated by what the bench file says."""
 
 from __future__ import annotations
 
 import contextlib
 import time
 from collections.abc import Iterator
+from contextlib import ExitStack
 from dataclasses import dataclass
 
 import can
 
-from drivers import BusLoop, DynoDriver, DynoNodes, RmcuDriver, VehicleParameters, Wire
+from drivers import (
+    BusLoop,
+    Connections,
+    Device,
+    MotorControl,
+    SampleSource,
+    Stream,
+    VehicleParameters,
+    WheelLoad,
+    Wire,
+)
+from hil.core.channels import TIME
 from hil.core.clock import Clock, WallClock
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model, load_model
 from hil.core.printable import printable
-from hil.engine.bench_file import BenchFile
-from sim_backend.bench import Noise, SimulatedBench, SimulationSettings
+from hil.engine._simulable import simulated
+from hil.engine.bench_tables import BenchFile
 from sim_backend.can_interface import attach, detach
 
 
 @dataclass
 class Bench:
-    """An open bench."""
+    """An open bench; `further` are the devices beside the RMCU and the dynos, by name."""
 
     file: BenchFile
     loop: BusLoop
-    rmcu: RmcuDriver
-    dyno: DynoDriver
+    rmcu: MotorControl
+    dyno: WheelLoad
     model: Model | None
+    further: dict[str, Device]
 
     @property
     def simulated(self) -> bool:
         """Whether there is no hardware."""
         return self.model is not None
 
+    @property
+    def devices(self) -> list[Device]:
+        """All devices, in the order in which they come up."""
+        return [self.rmcu, self.dyno, *self.further.values()]
+
+    @property
+    def sources(self) -> list[SampleSource]:
+        """Whatever gives samples."""
+        return [source for device in self.devices for source in device.sources]
+
+    @property
+    def streams(self) -> list[Stream]:
+        """What is sampled; the first is the time base of a recording."""
+        return [stream for source in self.sources for stream in source.streams]
+
+    def start_heartbeats(self) -> None:
+        """Let every device that watches the host know from now on that it lives."""
+        for device in self.devices:
+            if device.heartbeat_s is not None:
+                self.loop.every(device.heartbeat_s, device.beat)
+
 
 @contextlib.contextmanager
 def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench]:
-    """Open every bus and make the drivers; close the buses at the end.
+    """Open every bus and every device; close all at the end.
 
     Args:
         model: takes the place of the bench file's model on a simulated bench.
 
     Raises:
-        BadInputError: a file that the bench file names cannot be used.
-        BenchError: a bus cannot be opened.
+        BadInputError: a file that the bench file names cannot be used, or devices that do not go together.
+        BenchError: a bus or a port cannot be opened.
     """
     clock: Clock = WallClock()
     offset_s = time.time() - clock.now_s()
-    if file.simulation:
-        model = model or load_model(file.simulation.model)
-        world = _simulated(file, model)
-        attach(file.name, world)
-        clock, offset_s = world, 0.0
-    elif model is not None:
+    if model is not None and not file.simulation:
         raise BadInputError(
             "--model goes with a simulated bench only", where=str(file.source), fix="leave --model out"
         )
-    wires: dict[str, Wire] = {}
-    try:
+    with ExitStack() as opened:
+        if file.simulation:
+            model = model or load_model(file.simulation.model)
+            world = simulated(file, model)
+            attach(file.name, world)
+            opened.callback(detach, file.name)
+            clock, offset_s = world, 0.0
+        wires: dict[str, Wire] = {}
         for name, bus in file.buses.items():
-            opened = _open(name, bus.interface, bus.channel, bus.bit_rate, bus.options)
-            wires[name] = Wire(name, opened, clock, epoch_offset_s=offset_s)
-        loop = BusLoop(clock, list(wires.values()))
-        v, d = file.vehicle, file.dyno
+            wire = _open(name, bus.interface, bus.channel, bus.bit_rate, bus.options)
+            wires[name] = Wire(name, wire, clock, epoch_offset_s=offset_s)
+            opened.callback(wires[name].close)
+        v = file.vehicle
         vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)
-        nodes = DynoNodes(d.rear_left, d.rear_right, dict(d.idle), d.host_node)
-        rmcu = RmcuDriver(loop, wires[file.rmcu.bus], file.rmcu.dbc)
-        dyno = DynoDriver(loop, wires[d.bus], d.eds, nodes, vehicle)
-        yield Bench(file, loop, rmcu, dyno, model)
-    finally:
-        for wire in wires.values():
-            wire.close()
-        detach(file.name)
+        loop = BusLoop(clock, list(wires.values()))
+        connections = Connections(loop, wires, vehicle, simulated=file.simulation is not None)
+        bench = _with_devices(file, connections, model, opened)
+        _refuse_channels(bench)
+        yield bench
+
+
+def _with_devices(file: BenchFile, connections: Connections, model: Model | None, opened: ExitStack) -> Bench:
+    devices: dict[str, Device] = {}
+    for key, table in file.device_tables.items():
+        name = key.removeprefix("devices.")
+        device = devices[key] = table.open(name, connections)
+        opened.callback(device.close)
+    rmcu, dyno = devices.pop("rmcu"), devices.pop("dyno")
+    if not isinstance(rmcu, MotorControl):
+        raise _wrong_place(file, "rmcu", "makes no motor torque")
+    if not isinstance(dyno, WheelLoad):
+        raise _wrong_place(file, "dyno", "does not turn wheels")
+    further = {key.removeprefix("devices."): device for key, device in devices.items()}
+    return Bench(file, connections.loop, rmcu, dyno, model, further)
+
+
+def _wrong_place(file: BenchFile, key: str, what: str) -> BadInputError:
+    kind = file.device_tables[key].kind
+    return BadInputError(
+        f"{key}.kind = '{printable(kind)}': {what}",
+        where=printable(file.source, 200),
+        fix="give it under [devices], see docs/how-to/bench-file.md",
+    )
+
+
+def _refuse_channels(bench: Bench) -> None:
+    """Channels that no recording can hold, that come twice, or that are limited and do not come at all."""
+    where = printable(bench.file.source, 200)
+    seen = {TIME: "the time base"}
+    for stream in bench.streams:
+        for channel in stream.channels:
+            if not (channel.isidentifier() and channel.isascii()):
+                raise BadInputError(
+                    f"a channel cannot be called '{printable(channel, 60)}'",
+                    where=stream.where,
+                    fix="use letters, digits and _, with the unit at the end: oil_temperature_k",
+                )
+            if channel in seen:
+                raise BadInputError(
+                    f"channel '{channel}' is also given by {seen[channel]}",
+                    where=stream.where,
+                    fix="every channel has one source; leave a device out, or call one otherwise",
+                )
+            seen[channel] = stream.where
+    for channel in bench.file.limits.channels:
+        if channel not in seen:
+            raise BadInputError(
+                f"limits.channels.{printable(channel, 60)}: no device gives this channel",
+                where=where,
+                fix=f"there are: {', '.join(list(seen)[1:])}",
+            )
 
 
 def _open(name: str, interface: str, channel: str, bit_rate: int, options: dict[str, object]) -> can.BusABC:
@@ -84,23 +168,3 @@ def _open(name: str, interface: str, channel: str, bit_rate: int, options: dict[
             where=f"bus '{name}' ({interface} {channel})",
             fix="check [buses] in the bench file, the adapter and its driver",
         ) from error
-
-
-def _simulated(file: BenchFile, model: Model) -> SimulatedBench:
-    assert file.simulation is not None
-    noise = file.simulation.noise
-    return SimulatedBench(
-        SimulationSettings(
-            model=model,
-            dbc=file.rmcu.dbc,
-            eds=file.dyno.eds,
-            rear_left=file.dyno.rear_left,
-            rear_right=file.dyno.rear_right,
-            idle=tuple(file.dyno.idle.values()),
-            rmcu_bit_rate=file.buses[file.rmcu.bus].bit_rate,
-            dyno_bit_rate=file.buses[file.dyno.bus].bit_rate,
-            wheel_radius_m=file.vehicle.wheel_radius_m,
-            seed=file.simulation.seed,
-            noise=Noise(noise.motor_speed_rad_s, noise.wheel_speed_rad_s, noise.shaft_torque_nm),
-        )
-    )

@@ -1,137 +1,25 @@
-"""Bench files: interfaces, node ids, DBC/EDS, limits, calibration, DUT. A plan never names hardware."""
+"""Bench files: interfaces, devices, limits, calibration, DUT. A plan never names hardware."""
 
 from __future__ import annotations
 
-import datetime
 import importlib.resources
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import ValidationError
 
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.core.printable import printable
 from hil.engine._bench_checks import contradictions, device_mistakes, unprintable
+from hil.engine._device_tables import device_tables, told
+from hil.engine.bench_tables import BenchFile
 
 DEFAULT_BENCH = "sim"
 
 _FIX = "see docs/how-to/bench-file.md"
-_LONGEST_NAME = 64
 _LOADED = ("text", "source")  # fields of the loaded bench that are no keys of the file
-
-
-def _date(value: object) -> object:
-    """A date as TOML has it, also in quotes; no number, which would count as seconds since 1970."""
-    if isinstance(value, str) and len(value) == len("2027-06-30"):
-        return datetime.date.fromisoformat(value)
-    if not isinstance(value, datetime.date) or isinstance(value, datetime.datetime):
-        raise ValueError("is no date; write the last valid day as 2027-06-30")
-    return value
-
-
-def _plain_name(value: object) -> object:
-    """A name that can stand in a file's name, a topic and a channel."""
-    if isinstance(value, str) and (set(value) & {"/", "\\"} or value.strip(" .") != value):
-        raise ValueError("is a path or has spaces around it; give a plain name, such as 'rear_axle'")
-    return value
-
-
-Name = Annotated[str, Field(min_length=1, max_length=_LONGEST_NAME), BeforeValidator(_plain_name)]
-File = Annotated[Path, Field(strict=False)]
-Day = Annotated[datetime.date, BeforeValidator(_date)]
-NodeId = Annotated[int, Field(ge=1, le=127)]
-Limit = Annotated[float, Field(gt=0, le=1e6, description="beyond 1e6 it would limit nothing")]
-Deviation = Annotated[float, Field(ge=0, le=1e4)]
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True)
-
-
-class Bus(_Table):
-    """One CAN bus, opened by python-can."""
-
-    interface: str = Field(min_length=1)
-    channel: str = Field(min_length=1)
-    bit_rate: int = Field(ge=10_000, le=1_000_000, description="bit/s")
-    options: dict[str, Any] = Field({}, description="further arguments for can.Bus")
-
-
-class Rmcu(_Table):
-    """Where the RMCU is."""
-
-    bus: str
-    dbc: File
-
-
-class Dyno(_Table):
-    """Where the dynamometers are."""
-
-    bus: str
-    eds: File
-    rear_left: NodeId = 3
-    rear_right: NodeId = 4
-    idle: dict[Name, NodeId] = Field({}, description="nodes that are watched but not used")
-    host_node: NodeId = 127
-    speed_ramp_m_s2: float = Field(4.0, ge=0.01, le=100.0)
-
-
-class Vehicle(_Table):
-    """The dynos' vehicle model; what is left out keeps the controller's value."""
-
-    wheel_radius_m: float = Field(0.33, ge=0.01, le=10.0)
-    slip: float = Field(0.0, ge=0, lt=1)
-    inertia_kg_m2: float | None = Field(None, gt=0, le=1e6)
-    rolling_nm: float | None = Field(None, ge=0, le=1e6)
-    aero_nms2_rad2: float | None = Field(None, ge=0, le=1e6)
-
-
-class Limits(_Table):
-    """What the bench never exceeds; magnitudes. They lie below every plan."""
-
-    motor_torque_nm: Limit
-    driving_torque_nm: Limit
-    shaft_torque_nm: Limit
-    motor_speed_rad_s: Limit
-    wheel_speed_rad_s: Limit
-    vehicle_speed_m_s: Limit
-    persistence_s: float = Field(0.005, ge=0, le=10, description="a limit trips when exceeded for longer")
-
-
-class NoiseTable(_Table):
-    """Standard deviations of the simulated sensors."""
-
-    motor_speed_rad_s: Deviation = 0.02
-    wheel_speed_rad_s: Deviation = 0.002
-    shaft_torque_nm: Deviation = 0.5
-
-
-class Simulation(_Table):
-    """A simulated bench in place of hardware."""
-
-    model: File
-    seed: int = Field(1, ge=0, le=2**63 - 1)
-    noise: NoiseTable = NoiseTable()
-
-
-class BenchFile(_Table):
-    """One bench file; paths are absolute once it is loaded."""
-
-    name: Name
-    title: str = ""
-    operator: str = ""
-    buses: dict[Name, Bus]
-    rmcu: Rmcu
-    dyno: Dyno
-    limits: Limits
-    vehicle: Vehicle = Vehicle()
-    dut: dict[str, str] = {}
-    calibration: dict[str, Day] = Field({}, description="sensor: valid until")
-    simulation: Simulation | None = None
-    text: str = ""
-    source: File = Path()
 
 
 def load_bench(name_or_path: str | Path) -> BenchFile:
@@ -163,16 +51,18 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
     """
     where = printable(path, 200)
     _refuse(where, [*unprintable(data), *(f"{key}: unknown key" for key in _LOADED if key in data)])
+    devices, mistakes = device_tables(data)
     try:
-        bench = BenchFile.model_validate({**data, "text": text, "source": path.resolve()})
+        bench = BenchFile.model_validate({**data, **devices, "text": text, "source": path.resolve()})
     except ValidationError as error:
-        _refuse(where, [_told(dict(mistake)) for mistake in error.errors()])
+        _refuse(where, [*mistakes, *told(error, known=mistakes)])
         raise
-    _refuse(where, contradictions(bench))
+    _refuse(where, mistakes or contradictions(bench))
     base = path.resolve().parent
     changes: dict[str, Any] = {
-        "rmcu": bench.rmcu.model_copy(update={"dbc": base / bench.rmcu.dbc}),
-        "dyno": bench.dyno.model_copy(update={"eds": base / bench.dyno.eds}),
+        "rmcu": bench.rmcu.beside(base),
+        "dyno": bench.dyno.beside(base),
+        "devices": {name: table.beside(base) for name, table in bench.devices.items()},
     }
     if bench.simulation:
         changes["simulation"] = bench.simulation.model_copy(update={"model": base / bench.simulation.model})
@@ -192,19 +82,6 @@ def _refuse(where: str, mistakes: list[str]) -> None:
     if mistakes:
         lines = "".join(f"\n  {mistake}" for mistake in mistakes)
         raise BadInputError(f"{len(mistakes)} mistakes{lines}", where=where, fix=_FIX)
-
-
-def _told(mistake: dict[str, Any]) -> str:
-    """One of pydantic's errors: key, value, and what would be right."""
-    key = printable(".".join(str(part) for part in mistake["loc"] if part != "[key]"), 120)
-    if mistake["type"] == "missing":
-        return f"{key}: is missing"
-    if mistake["type"] == "extra_forbidden":
-        return f"{key}: unknown key"
-    value = mistake["input"]
-    shown = "a table" if isinstance(value, dict) else printable(repr(value), 60)
-    said = str(mistake["msg"]).removeprefix("Value error, ")
-    return f"{key} = {shown}: {said[:1].lower()}{said[1:]}"
 
 
 def _shipped_bench(name: str) -> Path:

@@ -200,10 +200,10 @@ class BenchConductor:
 
     def _switch_off(self) -> None:
         rmcu, loop = self._bench.rmcu, self._bench.loop
-        rmcu.request_off()
-        if not loop.wait_for(rmcu.is_off, 0.1):
-            rmcu.request_off()  # one lost frame must not end a run
-            if not loop.wait_for(rmcu.is_off, 0.1):
+        rmcu.make_safe()
+        if not loop.wait_for(rmcu.is_safe, 0.1):
+            rmcu.make_safe()  # one lost frame must not end a run
+            if not loop.wait_for(rmcu.is_safe, 0.1):
                 raise BenchError(f"the RMCU does not switch off (state {rmcu.state})", where="RMCU")
 
     def _event(self, kind: str, text: str) -> None:

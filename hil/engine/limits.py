@@ -1,18 +1,16 @@
-"""The bench's limits, watched on every sample of every frame, below any plan."""
+"""The bench's limits, watched on every sample of every source, below any plan."""
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+from collections.abc import Sequence
+from dataclasses import dataclass
 
-from drivers import Binding
+import numpy as np
+
+from drivers import Samples, Stream
 from hil.core.compiled import compiled
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock, standard
-from hil.core.signals import double_of, single_of, swapped
-from hil.engine.bench_file import Limits
-
-_SILENCE_S = 0.1
+from hil.engine.bench_tables import Limits
 
 
 def limits_of_channels(limits: Limits) -> dict[str, float]:
@@ -29,111 +27,136 @@ def limits_of_channels(limits: Limits) -> dict[str, float]:
     }
 
 
-class LimitWatch:
-    """Trips when a channel stays beyond its limit for longer than the persistence, or falls silent."""
+@dataclass(frozen=True)
+class Range:
+    """Where a channel may be, in its unit, and for how long (s) it may be elsewhere."""
 
-    def __init__(self, bindings: list[Binding], limits: Limits, sample_time_s: float) -> None:
-        largest = limits_of_channels(limits)
-        self._watched = [b for b in bindings if b.channel in largest]
-        self._limits = np.array([largest[b.channel] for b in self._watched])
-        self._allowed = max(1, round(limits.persistence_s / sample_time_s))
-        self._largest = np.zeros(len(self._watched))
-        self._beyond = np.zeros(len(self._watched), np.int64)
-        self._seen_s = np.full(len(self._watched), -np.inf)
-        self._tables = {bus: self._table(bus) for bus in {b.bus for b in self._watched}}
-        self._latest_s = 0.0
+    channel: str
+    below: float
+    above: float
+    persistence_s: float
+
+
+def ranges_of(limits: Limits) -> list[Range]:
+    """Every limit of a bench file: magnitudes of the axle's channels, and those given by channel."""
+    found = [
+        Range(channel, -largest, largest, limits.persistence_s)
+        for channel, largest in limits_of_channels(limits).items()
+    ]
+    for channel, given in limits.channels.items():
+        below = -np.inf if given.below is None else given.below
+        above = np.inf if given.above is None else given.above
+        persistence_s = limits.persistence_s if given.persistence_s is None else given.persistence_s
+        found.append(Range(channel, below, above, persistence_s))
+    return found
+
+
+class LimitWatch:
+    """Trips when a channel stays out of its range for longer than the persistence, or a stream falls silent.
+
+    The persistence counts in samples of the channel's own stream, at least one: a single odd sample never
+    trips. A value that the device does not know (NaN) is not known to be within the range.
+    """
+
+    def __init__(self, streams: Sequence[Stream], limits: Limits) -> None:
+        ranges = ranges_of(limits)
+        self._watched = {stream: _Watched(stream, ranges) for stream in streams}
+        self._seen_s = dict.fromkeys(streams, -np.inf)
         self.active = False
 
     @property
     def largest(self) -> dict[str, float]:
-        """Largest magnitude of each watched channel so far."""
-        return {b.channel: float(v) for b, v in zip(self._watched, self._largest, strict=True)}
+        """Largest magnitude of each limited channel so far."""
+        found: dict[str, float] = {}
+        for watched in self._watched.values():
+            found |= watched.largest()
+        return found
 
-    def take(self, bus: str, block: FrameBlock) -> None:
-        """Look at the frames of one bus.
+    def take(self, samples: Samples, now_s: float) -> None:
+        """Look at samples that were handed out at `now_s` of the bench clock.
 
         Raises:
-            BenchError: a limit tripped, or frames stopped coming.
+            BenchError: a limit tripped.
         """
-        self._latest_s = max(self._latest_s, float(block["time_s"][-1]))
-        if bus not in self._tables:
-            return
-        block = standard(block)
-        tripped = _scan(
-            block["id"],
-            block["time_s"],
-            block["data"],
-            *self._tables[bus],
-            self._limits,
-            self._allowed,
-            self._largest,
-            self._beyond,
-            self._seen_s,
-        )
-        if self.active and tripped >= 0:
-            self._trip(tripped)
-        if self.active and self._latest_s - self._seen_s.min() > _SILENCE_S:
-            silent = self._watched[int(np.argmin(self._seen_s))]
+        self._seen_s[samples.stream] = now_s
+        tripped = self._watched[samples.stream].look(samples)
+        if self.active and tripped:
             raise BenchError(
-                f"frame 0x{silent.frame_id:03X} ({silent.channel}) has stopped coming",
-                where=f"bus '{silent.bus}'",
-                fix="is the device powered?",
+                tripped,
+                where="bench limits",
+                fix="lower the plan's torque or speed; the limit is in the bench file",
             )
 
-    def _trip(self, index: int) -> None:
-        binding, limit = self._watched[index], self._limits[index]
-        unit = binding.signal.unit
-        raise BenchError(
-            f"limit tripped: {binding.channel} reached {self._largest[index]:.4g} {unit}, "
-            f"the limit is {limit:g} {unit}",
-            where="bench limits",
-            fix="lower the plan's torque or speed; the limit is in the bench file",
-        )
+    def look_for_silence(self, now_s: float) -> None:
+        """Call when every source has been asked.
 
-    def _table(self, bus: str) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64]]:
-        """Index, frame id, shift, length, signed, big-endian, float; scale, offset: of a bus's signals."""
-        entries = [(i, b) for i, b in enumerate(self._watched) if b.bus == bus]
-        places = [
-            (
-                i,
-                b.frame_id,
-                b.signal.shift,
-                b.signal.length,
-                b.signal.signed,
-                b.signal.big_endian,
-                b.signal.is_float,
-            )
-            for i, b in entries
-        ]
-        return np.array(places, np.int64), np.array([(b.signal.scale, b.signal.offset) for _, b in entries])
+        Raises:
+            BenchError: samples stopped coming.
+        """
+        if not self.active:
+            return
+        for stream, seen_s in self._seen_s.items():
+            if now_s - seen_s > stream.silence_s:
+                raise BenchError(
+                    f"{stream.label} has stopped coming", where=stream.where, fix="is the device powered?"
+                )
+
+
+class _Watched:
+    """The ranges of one stream's channels."""
+
+    def __init__(self, stream: Stream, ranges: list[Range]) -> None:
+        self._ranges = [r for r in ranges if r.channel in stream.channels]
+        self._units = [stream.units[stream.channels.index(r.channel)] for r in self._ranges]
+        self._columns = np.array([stream.channels.index(r.channel) for r in self._ranges], np.int64)
+        self._ends = np.array([(r.below, r.above) for r in self._ranges]).reshape(-1, 2)
+        allowed = [max(1, round(r.persistence_s / stream.period_s)) for r in self._ranges]
+        self._allowed = np.array(allowed, np.int64)
+        self._extremes = np.zeros((len(self._ranges), 2))
+        self._beyond = np.zeros(len(self._ranges), np.int64)
+        self._any = False
+
+    def look(self, samples: Samples) -> str:
+        """What to say of a limit that tripped; empty if none did."""
+        if not self._ranges:
+            return ""
+        if not self._any:
+            self._any = True
+            self._extremes[:] = np.nan_to_num(samples.values[:1, self._columns].T, nan=np.inf)
+        index = _scan(samples.values, self._columns, self._ends, self._allowed, self._extremes, self._beyond)
+        return self._told(index) if index >= 0 else ""
+
+    def largest(self) -> dict[str, float]:
+        magnitudes = np.max(np.abs(self._extremes), axis=1)
+        return {r.channel: float(v) for r, v in zip(self._ranges, magnitudes, strict=True)}
+
+    def _told(self, index: int) -> str:
+        r, unit = self._ranges[index], self._units[index]
+        lowest, highest = self._extremes[index]
+        if r.below == -r.above:  # a magnitude
+            reached, limit = max(-lowest, highest), r.above
+        else:
+            reached, limit = (highest, r.above) if highest > r.above else (lowest, r.below)
+        return f"limit tripped: {r.channel} reached {reached:.4g} {unit}, the limit is {limit:g} {unit}"
 
 
 @compiled
-def _scan(ids, times, payloads, places, scales, limits, allowed, largest, beyond, seen):  # type: ignore[no-untyped-def]
-    """Update largest values, samples beyond the limit and last times; index of a tripped signal or -1."""
+def _scan(values, columns, ends, allowed, extremes, beyond):  # type: ignore[no-untyped-def]
+    """Update extremes and samples beyond the limit; index of a tripped range or -1."""
     tripped = -1
-    for frame in range(ids.shape[0]):
-        for entry in range(places.shape[0]):
-            index, frame_id, shift, length, signed, big_endian, is_float = places[entry]
-            if ids[frame] != frame_id:
-                continue
-            word = payloads[frame]
-            if big_endian:
-                word = swapped(word)
-            bits = (word >> np.uint64(shift)) & (~np.uint64(0) >> np.uint64(64 - length))
-            if is_float:
-                read = single_of(bits) if length == 32 else double_of(bits)
-            else:
-                raw = np.int64(bits)
-                if signed and raw >> (length - 1):
-                    raw -= 1 << length
-                read = np.float64(raw)
-            value = abs(read * scales[entry, 0] + scales[entry, 1])
+    for entry in range(columns.shape[0]):
+        for sample in range(values.shape[0]):
+            value = values[sample, columns[entry]]
             if np.isnan(value):  # a device that does not know its value is not known to be within the limit
                 value = np.inf
-            seen[index] = times[frame]
-            largest[index] = max(largest[index], value)
-            beyond[index] = beyond[index] + 1 if value > limits[index] else 0
-            if beyond[index] > allowed:
-                tripped = index
+            extremes[entry, 0] = min(extremes[entry, 0], value)
+            extremes[entry, 1] = max(extremes[entry, 1], value)
+            inside = ends[entry, 0] <= value <= ends[entry, 1]
+            # Nothing is above an open end, but what is not known is not within either.
+            if inside and not np.isinf(value):
+                beyond[entry] = 0
+            else:
+                beyond[entry] += 1
+            if beyond[entry] > allowed[entry]:
+                tripped = entry
     return tripped

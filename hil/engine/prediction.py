@@ -19,7 +19,7 @@ from hil.core.recording import Event, Recording
 from hil.core.result import Segment
 from hil.engine._predicted_bench import PredictedBench
 from hil.engine.bench import Bench
-from hil.engine.bench_file import BenchFile
+from hil.engine.bench_tables import BenchFile
 from hil.engine.conductor import RELEASE_S, BenchConductor
 from hil.engine.recorder import Recorder
 from hil.plant.closed_loop import TICK_S
@@ -57,8 +57,8 @@ def predict(plan: Plan, bench: BenchFile, model: Model) -> Prediction:
         conductor = PredictionConductor(ready, recorder, Path(directory))
         for step in (*plan.steps, *plan.finally_):
             step.carry_out(conductor)
-    ready.rmcu.request_off()
-    ready.dyno.disable()
+    ready.rmcu.make_safe()
+    ready.dyno.make_safe()
     peaks = {name: ready.peak(name) for name in ready.wire.rounding.channels}
     return Prediction(recorder.everything(), tuple(conductor.segments), peaks, conductor.made)
 

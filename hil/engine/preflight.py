@@ -10,7 +10,7 @@ import numpy as np
 
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
-from hil.engine.bench_file import BenchFile
+from hil.engine.bench_tables import BenchFile
 from test_plans import Array, Plan, PlannedSegment, Quantity, Work, estimate_duration_s
 
 _BYTES_PER_SECOND = 250_000  # a recording takes some 170 kB for each second of bench time, and a report

@@ -1,56 +1,59 @@
-"""Takes every frame of a run into the recording, and decodes it on the way."""
+"""Takes every frame and every sample of a run into the recording."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
-from drivers import Binding, SampleAssembler
+from drivers import SampleAssembler, Samples, Stream
 from hil.core.channels import TIME
-from hil.core.frames import FrameBlock, standard
+from hil.core.frames import FrameBlock
 from hil.core.recording import Event, Recording, RecordingWriter
 
 _FLUSH_S = 0.5
 
 
 class Recorder:
-    """Writes raw frames as they come and decoded samples every half second.
+    """Writes raw frames as they come and rows of samples every half second.
 
-    `start_s` is the bench time of the first sample; recording times count from there.
+    The first stream is the time base. `start_s` is the bench time of its first sample; recording times count
+    from there.
     """
 
-    def __init__(self, path: Path, bindings: list[Binding], buses: list[str], sample_time_s: float) -> None:
-        self._assembler = SampleAssembler(bindings, sample_time_s)
+    def __init__(self, path: Path, streams: Sequence[Stream], buses: list[str], sample_time_s: float) -> None:
+        self._assembler = SampleAssembler(streams, sample_time_s)
         self.writer = RecordingWriter(path, self._assembler.names, buses)
-        self._master = (bindings[0].bus, bindings[0].frame_id)
+        self._base = streams[0]
         self._chunks: list[npt.NDArray[np.float64]] = []
         self._flushed_s = -np.inf
         self.start_s: float | None = None
-        self._decoding = False
+        self._begun = False
         self.events: list[Event] = []
 
-    def take(self, bus: str, block: FrameBlock) -> None:
-        """Record the frames of one bus."""
-        latest_s = float(block["time_s"][-1])
+    def take_frames(self, bus: str, block: FrameBlock) -> None:
+        """Record the raw frames of one bus."""
         self.writer.add_frames(bus, block)
-        if not self._decoding:
+
+    def take(self, samples: Samples) -> None:
+        """Record samples of any source."""
+        if not self._begun:
             return
-        self._assembler.add(bus, block)
-        if self.start_s is None and bus == self._master[0]:
-            usual = standard(block)
-            first = usual[usual["id"] == self._master[1]]
-            if len(first):
-                self.start_s = float(first["time_s"][0])
-                self._flushed_s = latest_s
+        self._assembler.add(samples)
+        if samples.stream is not self._base:
+            return
+        if self.start_s is None:
+            self.start_s = self._flushed_s = float(samples.time_s[0])
+        latest_s = float(samples.time_s[-1])
         if latest_s - self._flushed_s > _FLUSH_S:
             self._flushed_s = latest_s
             self._write_rows()
 
     def begin(self) -> None:
-        """Decode from the next frames on: every device is giving its channels now."""
-        self._decoding = True
+        """Keep samples from the next ones on: every device is giving its channels now."""
+        self._begun = True
 
     def event(self, clock_s: float, kind: str, text: str) -> None:
         """Record what happened at a time of the bench clock."""
@@ -65,12 +68,15 @@ class Recorder:
         return max(0.0, round(clock_s - self.start_s, 3))
 
     def finish_rows(self) -> Recording:
-        """Decode what is left; the whole run's channels, for judging."""
+        """Write what is left; the whole run's channels, for judging."""
         self._write_rows(everything=True)
+        if self._assembler.late and self.start_s is not None:
+            text = f"{self._assembler.late} samples came too late for their row and were left out"
+            self.event(self.start_s + float(self._chunks[-1][-1, 0]), "late", text)
         return self.so_far()
 
     def so_far(self) -> Recording:
-        """The channels decoded until now."""
+        """The channels written until now."""
         self._write_rows()
         names = self._assembler.names
         rows = np.concatenate(self._chunks) if self._chunks else np.zeros((0, len(names)))

@@ -18,7 +18,7 @@ from hil.core.model import Model, model_to_toml
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, RunResult, SafeState, verdict_of
 from hil.engine.bench import Bench, open_bench
-from hil.engine.bench_file import BenchFile
+from hil.engine.bench_tables import BenchFile
 from hil.engine.conductor import BenchConductor
 from hil.engine.limits import LimitWatch
 from hil.engine.preflight import preflight
@@ -91,7 +91,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
 class _Run:
     def __init__(self, request: RunRequest, bench: Bench) -> None:
         self._request, self._bench = request, bench
-        self._bindings = [*bench.rmcu.bindings, *bench.dyno.bindings]
+        self._names = " and ".join(device.name for device in bench.devices)
         self._error: HilError | None = None
         self._unsafe: list[str] = []
         self._armed = False
@@ -100,12 +100,12 @@ class _Run:
     def carry_out(self) -> RunOutcome:
         request, bench = self._request, self._bench
         buses = [wire.name for wire in bench.loop.wires]
-        self._recorder = Recorder(request.out / RECORDING, self._bindings, buses, TICK_S)
-        self._watch = LimitWatch(self._bindings, request.bench.limits, TICK_S)
+        self._recorder = Recorder(request.out / RECORDING, bench.streams, buses, TICK_S)
+        self._watch = LimitWatch(bench.streams, request.bench.limits)
         self._store_inputs()
         self._conductor = BenchConductor(bench, self._recorder, request.out, self._prompt)
-        bench.loop.on_block(self._recorder.take)
-        bench.loop.on_block(self._watch.take)
+        bench.loop.on_block(self._recorder.take_frames)
+        bench.loop.on_drained(self._take_samples)
         started = time.perf_counter()
         try:
             self._come_up()
@@ -115,13 +115,13 @@ class _Run:
         except HilError as error:
             self._fail(error)
         except Exception as error:  # a fault of ours must leave a safe bench and say what it was
-            self._try_event("traceback", traceback.format_exc())
+            self._note_fault(error)
             self._fail(BenchError(f"internal error: {type(error).__name__}: {error}", fix="please report it"))
         finally:
             # Also when the interpreter itself is going down: nobody may be left with torque on.
             bench.loop.shielded = True
             self._watch.active = False  # its work is done: what is beyond a limit is being taken down
-            self._unsafe = reach_safe_state(bench) if self._armed else []
+            self._unsafe = reach_safe_state(bench, self._note_fault) if self._armed else []
         return self._finish(time.perf_counter() - started)
 
     def _prompt(self, text: str) -> str:
@@ -138,15 +138,18 @@ class _Run:
         bench = self._bench
         self._begin_s = bench.loop.clock.now_s()
         bench.loop.run_for(_LISTEN_S)
-        if bench.rmcu.state == "":
-            raise BenchError("the RMCU sends no status", where="RMCU", fix="is it powered and on this bus?")
-        bench.dyno.start()
+        bench.start_heartbeats()
+        bench.rmcu.come_up()
+        bench.dyno.come_up()
+        for device in bench.further.values():
+            self._armed = True  # what a further device does once it is up, only the device knows
+            device.come_up()
         self._recorder.begin()
         bench.loop.run_for(_LISTEN_S)
-        self._recorder.event(bench.loop.clock.now_s(), "preflight", "RMCU and dynos answer")
+        self._recorder.event(bench.loop.clock.now_s(), "preflight", f"{self._names} answer")
         self._armed = True  # from here on the safe state is owed, whatever happens
         ramp = self._request.bench.dyno.speed_ramp_m_s2 / self._request.bench.vehicle.wheel_radius_m
-        bench.rmcu.request_off()
+        bench.rmcu.make_safe()
         bench.dyno.enable(ramp)
         self._watch.active = True
         bench.loop.every(0.05, self._supervise)
@@ -163,14 +166,28 @@ class _Run:
             # The bench is well: torque off, then the plan's own end steps, undisturbed.
             self._fail(error)
             self._bench.loop.shielded = True
-            self._bench.rmcu.request_off()
+            self._bench.rmcu.make_safe()
         for step in plan.finally_:
             step.carry_out(conductor)
 
     def _supervise(self) -> None:
-        troubles = self._bench.dyno.troubles()
-        if troubles and not self._bench.loop.shielded:
-            raise BenchError("; ".join(troubles), where="dynos", fix="look at the dyno controller")
+        for device in self._bench.devices:
+            troubles = device.troubles()
+            if troubles and not self._bench.loop.shielded:
+                raise BenchError("; ".join(troubles), where=device.name, fix=f"look at: {device.name}")
+
+    def _take_samples(self) -> None:
+        """Whoever measured: all is recorded, all is watched."""
+        now_s = self._bench.loop.clock.now_s()
+        for source in self._bench.sources:
+            for samples in source.samples():
+                self._recorder.take(samples)
+                self._watch.take(samples, now_s)
+        self._watch.look_for_silence(now_s)
+
+    def _note_fault(self, error: Exception) -> None:
+        """A fault of ours, or of a device's code: where it happened stands in the recording."""
+        self._try_event("traceback", "".join(traceback.format_exception(error)))
 
     def _show_progress(self) -> None:
         passed_s = self._bench.loop.clock.now_s() - self._begin_s
@@ -193,7 +210,7 @@ class _Run:
         safe: SafeState = "not_needed"
         if self._armed:
             safe = "not_confirmed" if self._unsafe else "confirmed"
-            self._try_event("safe_state", "; ".join(self._unsafe) or "confirmed by RMCU and dynos")
+            self._try_event("safe_state", "; ".join(self._unsafe) or f"confirmed by {self._names}")
         if self._unsafe and not isinstance(self._error, BenchError):
             self._error = BenchError(
                 "; ".join(self._unsafe), where="safe state", fix="cut the drives' power before you go near"

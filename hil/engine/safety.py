@@ -3,66 +3,76 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
-from drivers import TICK_S
+from drivers import TICK_S, Device
 from hil.core.errors import HilError
 from hil.engine.bench import Bench
 
 _REPEAT_S = 0.01
 
+Fault = Callable[[Exception], None]
 
-@dataclass
-class Device:
-    """A device on its way to safety: `command` is repeated until `is_safe` or the deadline."""
 
-    name: str
-    command: Callable[[], None]
-    is_safe: Callable[[], bool]
-    deadline_s: float
-    failure: str = ""
+class _Descent:
+    """A device on its way to safety: told again and again until it is there or its deadline has passed."""
 
-    def try_command(self) -> None:
-        """Command; a failure is kept, not raised: the other devices still need their turn."""
+    def __init__(self, device: Device, fault: Fault) -> None:
+        self._device, self._fault = device, fault
+        self.deadline_s = device.safe_within_s
+        self.failure = ""
+
+    def make_safe(self) -> None:
+        """Tell it; a failure is kept, not raised: the other devices still need their turn."""
         try:
-            self.command()
+            self._device.make_safe()
         except HilError as error:
             self.failure = error.what
+        except Exception as error:  # a fault in a device's code
+            self._keep(error)
+
+    def is_safe(self) -> bool:
+        """Whether it is there."""
+        try:
+            return self._device.is_safe()
+        except Exception as error:  # a fault in a device's code: then nothing is known
+            self._keep(error)
+            return False
 
     def complaint(self) -> str:
         """What to tell when it did not become safe."""
         reason = f": {self.failure}" if self.failure else ""
-        return f"{self.name} did not confirm its safe state within {self.deadline_s:g} s{reason}"
+        return f"{self._device.name} did not confirm its safe state within {self.deadline_s:g} s{reason}"
+
+    def _keep(self, error: Exception) -> None:
+        if not self.failure:
+            self.failure = f"{type(error).__name__}: {error}"
+            self._fault(error)
 
 
-def devices_of(bench: Bench) -> list[Device]:
-    """The devices that can put torque on the axle."""
-    return [
-        Device("RMCU", bench.rmcu.request_off, bench.rmcu.is_off, 0.5),
-        Device("dynos", bench.dyno.disable, bench.dyno.is_off, 0.5),
-    ]
+def reach_safe_state(bench: Bench, fault: Fault = lambda error: None) -> list[str]:
+    """Bring all devices to their safe state; the complaints of those that did not confirm it in time.
 
-
-def reach_safe_state(bench: Bench) -> list[str]:
-    """Bring all devices to no torque; the complaints of those that did not confirm it in time.
-
-    Never raises for a device or a bus that fails: it goes on with the others.
+    Never raises for a device or a bus that fails: it goes on with the others. `fault` is told what is a
+    mistake in a device's code.
     """
     bench.loop.shielded = True
-    devices = devices_of(bench)
+    descents = [_Descent(device, fault) for device in bench.devices]
     start_s = bench.loop.clock.now_s()
-    waiting = list(devices)
-    tick = 0
+    waiting = list(descents)
+    tick, told = 0, False
     while waiting:
         if tick % round(_REPEAT_S / TICK_S) == 0:
-            for device in waiting:
-                device.try_command()
+            for descent in waiting:
+                descent.make_safe()
         try:
             bench.loop.wait_for(lambda: False, TICK_S)
-        except HilError:
+        except Exception as error:
+            if not isinstance(error, HilError) and not told:
+                told = True
+                fault(error)
             # A dead bus must not keep the others from being served; time still has to pass.
             bench.loop.clock.sleep_until(bench.loop.clock.now_s() + TICK_S)
         tick += 1
         passed_s = bench.loop.clock.now_s() - start_s
         waiting = [d for d in waiting if not d.is_safe() and passed_s < d.deadline_s]
-    return [d.complaint() for d in devices if not d.is_safe()]
+    return [d.complaint() for d in descents if not d.is_safe()]

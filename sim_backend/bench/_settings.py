@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hil.core.dbc import Names
 from hil.core.model import Model
 
 
@@ -32,3 +33,4 @@ class SimulationSettings:
     wheel_radius_m: float = 0.33
     seed: int = 1
     noise: Noise = field(default_factory=Noise)
+    names: Names = field(default_factory=Names)  # what the DBC calls things

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hil.core.dbc import read_dbc
+from hil.core.dbc import Names, read_dbc
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block, joined
 from hil.core.signals import FrameLayout
@@ -36,13 +36,13 @@ _SENSED = (  # channel, and each side's share of it
 )
 
 
-def check_device_files(dbc: Path, eds: Path) -> None:
-    """Refuse a DBC or an EDS that no simulated bench can be made of.
+def check_device_files(dbc: Path, eds: Path, names: Names | None = None) -> None:
+    """Refuse a DBC, which calls things by `names`, or an EDS that no simulated bench can be made of.
 
     Raises:
         BadInputError: file and what it lacks.
     """
-    read_dbc(dbc, NEEDED)
+    read_dbc(dbc, NEEDED, names)
     read_node(eds, 1)
 
 
@@ -127,7 +127,7 @@ class SimulatedBench:
 
     def _make_nodes(self) -> None:
         s = self.settings
-        dbc = read_dbc(s.dbc, NEEDED)
+        dbc = read_dbc(s.dbc, NEEDED, s.names)
         self.rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data))
         self._vehicle = dbc.layouts["RCS_Vehicle"]
         rows = {s.rear_left: self._drives[0], s.rear_right: self._drives[1]}

@@ -20,9 +20,9 @@ def test_states_are_reached_and_left():
     with running("states") as bench:
         bench.dyno.enable(10.0)
         assert bench.dyno.left.state == "operation enabled"
-        assert not bench.dyno.is_off()
-        bench.dyno.disable()
-        assert bench.loop.wait_for(bench.dyno.is_off, 0.1)
+        assert not bench.dyno.is_safe()
+        bench.dyno.make_safe()
+        assert bench.loop.wait_for(bench.dyno.is_safe, 0.1)
 
 
 def test_enabling_resets_a_fault_without_passing_through_torque():
@@ -49,7 +49,7 @@ def test_missing_nodes_are_named():
         nodes = DynoNodes(3, 4, {"front left": 9})
         driver = DynoDriver(BusLoop(world, [wire]), wire, SIM.dyno.eds, nodes, VehicleParameters())
         with pytest.raises(BenchError, match=r"front left \(node 9\)"):
-            driver.start()
+            driver.come_up()
         wire.close()
 
 

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivers import Binding, SampleAssembler
+from drivers import Binding, FrameSource, SampleAssembler
 from hil.core.frames import FRAME
 from hil.core.signals import Signal
 
@@ -23,13 +23,16 @@ def frames(frame_id, stamps, values=None):
 
 
 def assemble(rmcu, left, right, chunks=1):
-    assembler = SampleAssembler(BINDINGS, 1e-3)
+    source = FrameSource(BINDINGS, 1e-3)
+    assembler = SampleAssembler(source.streams, 1e-3)
     rows = []
     for part in range(chunks):
         times = rmcu["time_s"][part * len(rmcu) // chunks : (part + 1) * len(rmcu) // chunks]
         for bus, block in (("rmcu", rmcu), ("dyno", left), ("dyno", right)):
             first, last = times[0] - 0.5e-3, times[-1] + 0.5e-3
-            assembler.add(bus, block[(block["time_s"] >= first) & (block["time_s"] < last)])
+            source.take(bus, block[(block["time_s"] >= first) & (block["time_s"] < last)])
+        for samples in source.samples():
+            assembler.add(samples)
         rows.append(assembler.rows(everything=part == chunks - 1))
     return assembler.names, np.concatenate(rows)
 
@@ -74,6 +77,7 @@ def test_a_device_that_falls_silent_gives_missing_values_not_old_ones():
 
 
 def test_nothing_yet_is_no_rows():
-    assert SampleAssembler(BINDINGS, 1e-3).rows().shape[0] == 0
+    streams = FrameSource(BINDINGS, 1e-3).streams
+    assert SampleAssembler(streams, 1e-3).rows().shape[0] == 0
     with pytest.raises(ValueError, match="not in list"):
-        SampleAssembler(BINDINGS, 1e-3).names.index("wheel_speed_rad_s")
+        SampleAssembler(streams, 1e-3).names.index("wheel_speed_rad_s")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from drivers import Binding, SampleAssembler
+from drivers import Binding, FrameSource, SampleAssembler
 from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, newest, standard
 from hil.core.signals import Signal
-from hil.engine.bench_file import Limits
+from hil.engine.bench_tables import Limits
 from hil.engine.limits import LimitWatch
 
 SPEED = Binding("rmcu", 0x110, Signal("MotorSpeed", 0, 16, scale=0.1, unit="rad/s"), "motor_speed_rad_s")
@@ -30,15 +30,20 @@ def test_another_kind_of_frame_with_the_same_number_is_not_decoded(flags: int) -
     )
     assert list(standard(mixed)["data"]) == [100, 101]
     assert newest(mixed, 0x110) == (0.001, 101)
-    assembler = SampleAssembler([SPEED], 1e-3)
-    assembler.add("rmcu", mixed)
+    source = FrameSource([SPEED], 1e-3)
+    source.take("rmcu", mixed)
+    assembler = SampleAssembler(source.streams, 1e-3)
+    for samples in source.samples():
+        assembler.add(samples)
     assert assembler.rows(everything=True)[:, 1] == pytest.approx([10.0, 10.1])
-    watch = LimitWatch([SPEED], LIMITS, 1e-3)
+    watch = LimitWatch(source.streams, LIMITS)
     watch.active = True
     for start in range(20):
         later = mixed.copy()
         later["time_s"] += 0.002 * start
-        watch.take("rmcu", later)  # 6,000 rad/s in the other frames trips nothing
+        source.take("rmcu", later)  # 6,000 rad/s in the other frames trips nothing
+        for samples in source.samples():
+            watch.take(samples, 0.0)
     assert watch.largest["motor_speed_rad_s"] == pytest.approx(10.1)
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drivers import Binding
+from drivers import Binding, FrameSource
 from hil.core.errors import BenchError
 from hil.core.frames import FRAME
 from hil.core.recording import read_recording
@@ -78,20 +78,26 @@ def test_a_speed_as_a_float_gives_the_same_channels(turn, tmp_path):
 @pytest.mark.parametrize(("length", "is_float"), [(16, False), (32, True), (64, True)])
 def test_limits_read_a_signal_as_it_is_laid_out(length, is_float, big):
     signal = Signal("s", 0, length, signed=True, is_float=is_float, big_endian=big, unit="rad/s")
-    watch = LimitWatch([Binding("b", 0x110, signal, "motor_speed_rad_s")], SIM.limits, 0.001)
+    source = FrameSource([Binding("b", 0x110, signal, "motor_speed_rad_s")], 0.001)
+    watch = LimitWatch(source.streams, SIM.limits)
     block = np.zeros(3, FRAME)
     block["time_s"], block["id"] = [0.001, 0.002, 0.003], 0x110
     block["data"] = signal.encode([-300.0, 20.0, 250.0])
-    watch.take("b", block)
+    source.take("b", block)
+    (samples,) = source.samples()
+    watch.take(samples, 0.0)
     assert watch.largest == {"motor_speed_rad_s": 300.0}
 
 
 def test_a_speed_that_is_not_a_number_trips_its_limit():
     signal = Signal("s", 0, 32, is_float=True, unit="rad/s")
-    watch = LimitWatch([Binding("b", 0x110, signal, "motor_speed_rad_s")], SIM.limits, 0.001)
+    source = FrameSource([Binding("b", 0x110, signal, "motor_speed_rad_s")], 0.001)
+    watch = LimitWatch(source.streams, SIM.limits)
     watch.active = True
     block = np.zeros(20, FRAME)
     block["time_s"], block["id"] = np.arange(20) * 0.001, 0x110
     block["data"] = signal.encode(np.full(20, np.nan))
+    source.take("b", block)
+    (samples,) = source.samples()
     with pytest.raises(BenchError, match="limit tripped"):
-        watch.take("b", block)
+        watch.take(samples, 0.0)

@@ -15,7 +15,7 @@ from hil.core.model import load_model, model_from_dict
 from hil.core.recording import read_recording, run_of, write_recording
 from hil.engine import RunRequest, load_bench, run_plan
 from hil.engine._predicted_wire import wire_of
-from hil.engine.bench_file import NoiseTable
+from hil.engine.bench_tables import NoiseTable
 from hil.engine.forecast import forecast
 from hil.engine.limits import limits_of_channels
 from hil.engine.prediction import predict

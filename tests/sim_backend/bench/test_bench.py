@@ -134,7 +134,7 @@ def test_faults_of_devices_show_on_the_wire():
         world = attached("faults")
         world.fail(Fault.RMCU_SILENT)
         bench.loop.run_for(0.2)
-        assert not bench.rmcu.is_off()
+        assert not bench.rmcu.is_safe()
         world.fail(Fault.DYNO_SILENT)
         bench.loop.run_for(0.5)
         assert any("heartbeat lost" in text for text in bench.dyno.troubles())

@@ -65,14 +65,18 @@ def short_run(model: Model, directory: Path) -> np.ndarray:
     save_model(model, directory / "model.toml")
     simulation = SIM.simulation.model_copy(update={"model": directory / "model.toml"})
     with running("reference", simulation=simulation) as bench:
-        assembler = SampleAssembler([*bench.rmcu.bindings, *bench.dyno.bindings], 1e-3)
-        bench.loop.on_block(assembler.add)
+        assembler = SampleAssembler(bench.streams, 1e-3)
+        for source in bench.sources:
+            list(source.samples())  # what came before counts for nothing
         bench.dyno.enable(10.0)
         bench.dyno.release_vehicle(0.0)
         for payload in bench.rmcu.requests("motor_torque", 40.0 * np.sin(np.arange(800) * 0.02)):
             bench.rmcu.send(payload)
             bench.loop.step()
         bench.loop.drain()
+        for source in bench.sources:
+            for samples in source.samples():
+                assembler.add(samples)
         rows = assembler.rows(everything=True)
         columns = [assembler.names.index(name) for name in CHANNELS]
     return rows[-800::EVERY, columns]

@@ -1,0 +1,126 @@
+"""What every device of a bench can do, whatever its make and its wire, and the two that turn the axle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+import numpy.typing as npt
+
+from drivers.samples import SampleSource
+from hil.core.controller import Controller
+
+
+@runtime_checkable
+class Device(Protocol):
+    """A device on the bench. The engine knows no more of it than this.
+
+    Nothing here is called from another thread, and only `come_up` may wait, by stepping the loop.
+    """
+
+    @property
+    def name(self) -> str:
+        """As people call it, for messages and events."""
+        ...
+
+    @property
+    def sources(self) -> Sequence[SampleSource]:
+        """What it measures; all of it is recorded and can be limited."""
+        ...
+
+    @property
+    def heartbeat_s(self) -> float | None:
+        """How often `beat` is called, seconds; None: it watches nobody."""
+        ...
+
+    @property
+    def safe_within_s(self) -> float:
+        """How long it may take to become safe, seconds."""
+        ...
+
+    def come_up(self) -> None:
+        """Find it, configure it, read back; it beats already.
+
+        Raises:
+            BenchError: it does not answer, or refuses.
+        """
+        ...
+
+    def beat(self) -> None:
+        """Tell it that the host lives."""
+        ...
+
+    def troubles(self) -> list[str]:
+        """What is wrong with it now, a sentence each; asked several times a second while a run goes on."""
+        ...
+
+    def make_safe(self) -> None:
+        """Tell it to go to its safe state; returns at once, and is repeated until `is_safe`."""
+        ...
+
+    def is_safe(self) -> bool:
+        """Whether the device says that it is in its safe state, and says so now; old news is no news."""
+        ...
+
+    def close(self) -> None:
+        """Let go of what it opened itself; the buses are closed by the bench."""
+        ...
+
+
+@runtime_checkable
+class MotorControl(Device, Protocol):
+    """What stands under [rmcu]: it makes the motor's torque from requests."""
+
+    @property
+    def state(self) -> str:
+        """off, torque, driving_force, fault; empty before it has said anything."""
+        ...
+
+    @property
+    def fault(self) -> str:
+        """Why it is in fault."""
+        ...
+
+    def requests(self, mode: str, values_nm: npt.NDArray[np.float64]) -> list[bytes]:
+        """Payloads for samples of torque (N m), shape (n,), to be sent one each tick."""
+        ...
+
+    def send(self, payload: bytes) -> None:
+        """Send one payload made by `requests`."""
+        ...
+
+    def write_controller(self, controller: Controller) -> None:
+        """Load a controller and read it back.
+
+        Raises:
+            BadInputError: it cannot take this controller.
+            BenchError: it does not answer, or refuses.
+        """
+        ...
+
+
+@runtime_checkable
+class WheelLoad(Device, Protocol):
+    """What stands under [dyno]: it turns the wheels, at a speed or like a vehicle."""
+
+    @property
+    def wheel_speed_rad_s(self) -> float:
+        """Mean of both wheels, newest value."""
+        ...
+
+    def enable(self, acceleration_rad_s2: float) -> None:
+        """Switch on, holding the present speed; ramps with this acceleration from now on.
+
+        Raises:
+            BenchError: it does not switch on.
+        """
+        ...
+
+    def hold_speed(self, speed_rad_s: float) -> None:
+        """Ramp both wheels to a speed (rad/s) and hold it there; returns at once."""
+        ...
+
+    def release_vehicle(self, initial_speed_m_s: float) -> None:
+        """Simulate the vehicle from now on, starting at a speed in m/s."""
+        ...

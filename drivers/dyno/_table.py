@@ -1,0 +1,71 @@
+"""The table of dynamometers on CANopen, described by an EDS."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated
+
+from pydantic import Field
+
+from drivers.dyno._driver import DynoDriver, DynoNodes
+from drivers.dyno._node import identifiers_of, read_dyno
+from drivers.table import Connections, File, LoadTable, Name
+from hil.core.errors import BadInputError
+
+NodeId = Annotated[int, Field(ge=1, le=127)]
+
+
+class DynoTable(LoadTable):
+    """Where the dynamometers are."""
+
+    kind: str = "rcs-canopen"
+    bus: str
+    eds: File
+    rear_left: NodeId = 3
+    rear_right: NodeId = 4
+    idle: dict[Name, NodeId] = Field({}, description="nodes that are watched but not used")
+    host_node: NodeId = 127
+
+    @property
+    def nodes(self) -> dict[str, int]:
+        """Node ids on the bus by their keys."""
+        idle = {f"idle.{name}": node for name, node in self.idle.items()}
+        return {
+            "rear_left": self.rear_left,
+            "rear_right": self.rear_right,
+            **idle,
+            "host_node": self.host_node,
+        }
+
+    def open(self, name: str, connections: Connections) -> DynoDriver:
+        """Make the driver.
+
+        Raises:
+            BadInputError: the EDS cannot be used.
+        """
+        del name  # there is one pair of dynos
+        nodes = DynoNodes(self.rear_left, self.rear_right, dict(self.idle), self.host_node)
+        wire = connections.wires[self.bus]
+        return DynoDriver(connections.loop, wire, self.eds, nodes, connections.vehicle)
+
+    def contradictions(self) -> Iterator[str]:
+        """Node ids that two nodes share."""
+        seen: dict[int, str] = {}
+        for key, node in self.nodes.items():
+            other = seen.setdefault(node, key)
+            if other != key:
+                yield f"{key} = {node}: is also {other}; every node on a bus has an id of its own"
+
+    def unusable_files(self) -> Iterator[tuple[str, BadInputError]]:
+        """The EDS, if it cannot be used."""
+        try:
+            read_dyno(self.eds, self.rear_left)
+        except BadInputError as error:
+            yield "eds", error
+
+    def identifiers(self) -> Mapping[int, str]:
+        """What the nodes send or hear."""
+        taken: dict[int, str] = {}
+        for key, node in self.nodes.items():
+            taken |= identifiers_of(node, key)
+        return taken

@@ -1,0 +1,64 @@
+"""A serial line as devices see it: write, take what has come, never wait."""
+
+from __future__ import annotations
+
+import serial
+
+from hil.core.errors import BenchError
+from hil.core.printable import printable
+
+
+class SerialLine:
+    """One port, opened by pyserial, used from one thread: `BusLoop.serve` hands out what comes.
+
+    Args:
+        name: of the device, for messages.
+        url: what pyserial opens: "/dev/ttyUSB0", "COM3", "rfc2217://…".
+        baud_rate: bit/s.
+
+    Raises:
+        BenchError: the port cannot be opened.
+    """
+
+    def __init__(self, name: str, url: str, baud_rate: int = 115_200) -> None:
+        self.name = name
+        self._url = url
+        try:
+            self._port = serial.serial_for_url(url, baudrate=baud_rate, timeout=0, write_timeout=0)
+        except (serial.SerialException, ValueError, OSError) as error:
+            raise self._failed("cannot be opened", error) from error
+
+    def send(self, data: bytes) -> None:
+        """Write bytes.
+
+        Raises:
+            BenchError: the port does not take them (unplugged, queue full).
+        """
+        try:
+            written = self._port.write(data)
+        except (serial.SerialException, OSError) as error:
+            raise self._failed("sending failed", error) from error
+        if written != len(data):
+            raise self._failed("sending failed", f"{written} of {len(data)} bytes were taken")
+
+    def drain(self) -> bytes:
+        """Every byte that came since the last call.
+
+        Raises:
+            BenchError: the port is gone.
+        """
+        try:
+            return bytes(self._port.read(max(1, self._port.in_waiting)))
+        except (serial.SerialException, OSError, TypeError) as error:  # TypeError: closed meanwhile
+            raise self._failed("receiving failed", error) from error
+
+    def close(self) -> None:
+        """Let go of the port."""
+        self._port.close()
+
+    def _failed(self, what: str, error: object) -> BenchError:
+        return BenchError(
+            f"{what}: {printable(str(error), 200)}",
+            where=f"device '{self.name}' ({printable(self._url, 80)})",
+            fix="check its table in the bench file, the adapter and its cable",
+        )

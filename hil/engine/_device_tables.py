@@ -1,0 +1,89 @@
+"""The tables of a bench file that describe devices: each is checked by the kind of device that it names."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import ValidationError
+
+from drivers import OWN_KINDS, DeviceTable, LoadTable
+from hil.core.errors import BadInputError
+from hil.core.printable import printable
+from test_plans.registry import Registry
+
+#: Kinds of device by name; those of other packages are entry points of `hil.devices`.
+KINDS: Registry[DeviceTable] = Registry("kind of device", "hil.devices", DeviceTable, OWN_KINDS)
+
+_DEFAULTS = {"rmcu": "rmcu-can", "dyno": "rcs-canopen"}
+
+
+def device_tables(data: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """The device tables of a bench file's contents, checked, and what is wrong with them.
+
+    A table with a mistake stays as it is.
+    """
+    mistakes: list[str] = []
+    found: dict[str, Any] = {}
+    for key, default in _DEFAULTS.items():
+        if isinstance(data.get(key), dict):
+            found[key] = _checked(key, data[key], default, mistakes)
+    if isinstance(found.get("dyno"), DeviceTable) and not isinstance(found["dyno"], LoadTable):
+        mistakes.append(f"dyno.kind = '{found['dyno'].kind}': does not turn wheels; give it under [devices]")
+    if isinstance(data.get("devices"), dict):
+        found["devices"] = {
+            name: _checked(f"devices.{printable(name, 60)}", table, "", mistakes)
+            for name, table in data["devices"].items()
+        }
+    return found, mistakes
+
+
+def told(error: ValidationError, key: str = "", known: list[str] | None = None) -> list[str]:
+    """Each of pydantic's errors: key, value, and what would be right.
+
+    Args:
+        key: of the table that was checked.
+        known: mistakes that were told; what is told of the same table again is left out.
+    """
+    tables = {mistake.partition(": ")[0].partition(" = ")[0] for mistake in known or ()}
+    found = []
+    for mistake in error.errors():
+        place = (key, *mistake["loc"]) if key else mistake["loc"]
+        name = printable(".".join(str(part) for part in place if part != "[key]"), 120)
+        if not any(table == name or table.startswith(f"{name}.") for table in tables):
+            found.append(_in_words(name, dict(mistake)))
+    return found
+
+
+def _in_words(name: str, mistake: dict[str, Any]) -> str:
+    if mistake["type"] == "missing":
+        return f"{name}: is missing"
+    if mistake["type"] == "extra_forbidden":
+        return f"{name}: unknown key"
+    value = mistake["input"]
+    shown = "a table" if isinstance(value, dict) else printable(repr(value), 60)
+    said = str(mistake["msg"]).removeprefix("Value error, ")
+    return f"{name} = {shown}: {said[:1].lower()}{said[1:]}"
+
+
+def _checked(key: str, table: Any, default: str, mistakes: list[str]) -> Any:
+    """The table as its kind has it; itself if something is wrong with it, which is added to `mistakes`."""
+    if not isinstance(table, dict):
+        return table  # refused with the whole file
+    kind = table.get("kind", default)
+    if not isinstance(kind, str) or not kind:
+        mistakes.append(f"{key}.kind: is missing; known: {', '.join(KINDS.names())}")
+        return table
+    try:
+        found = KINDS.find(kind)
+    except BadInputError as error:
+        mistakes.append(f"{key}.kind = '{printable(kind, 60)}': {error.where}: {error.what}; {error.fix}")
+        return table
+    if found is None:
+        known = printable(KINDS.suggestion(kind), 300)
+        mistakes.append(f"{key}.kind = '{printable(kind, 60)}': no installed package has it; {known}")
+        return table
+    try:
+        return found.model_validate({**table, "kind": kind})
+    except ValidationError as error:
+        mistakes += told(error, key)
+        return table

@@ -1,0 +1,119 @@
+"""What stands in a bench file, table by table; what devices say of themselves is theirs (`drivers`)."""
+
+from __future__ import annotations
+
+import datetime
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, SerializeAsAny, model_validator
+
+from drivers import DeviceTable, File, LoadTable, Name
+
+
+def _date(value: object) -> object:
+    """A date as TOML has it, also in quotes; no number, which would count as seconds since 1970."""
+    if isinstance(value, str) and len(value) == len("2027-06-30"):
+        return datetime.date.fromisoformat(value)
+    if not isinstance(value, datetime.date) or isinstance(value, datetime.datetime):
+        raise ValueError("is no date; write the last valid day as 2027-06-30")
+    return value
+
+
+Day = Annotated[datetime.date, BeforeValidator(_date)]
+Bound = Annotated[float, Field(ge=-1e6, le=1e6)]
+Limit = Annotated[float, Field(gt=0, le=1e6, description="beyond 1e6 it would limit nothing")]
+Deviation = Annotated[float, Field(ge=0, le=1e4)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True)
+
+
+class Bus(_Table):
+    """One CAN bus, opened by python-can."""
+
+    interface: str = Field(min_length=1)
+    channel: str = Field(min_length=1)
+    bit_rate: int = Field(ge=10_000, le=1_000_000, description="bit/s")
+    options: dict[str, Any] = Field({}, description="further arguments for can.Bus")
+
+
+class Vehicle(_Table):
+    """The dynos' vehicle model; what is left out keeps the controller's value."""
+
+    wheel_radius_m: float = Field(0.33, ge=0.01, le=10.0)
+    slip: float = Field(0.0, ge=0, lt=1)
+    inertia_kg_m2: float | None = Field(None, gt=0, le=1e6)
+    rolling_nm: float | None = Field(None, ge=0, le=1e6)
+    aero_nms2_rad2: float | None = Field(None, ge=0, le=1e6)
+
+
+class ChannelLimit(_Table):
+    """Where a channel may be, in its unit; one end may be open."""
+
+    below: Bound | None = None
+    above: Bound | None = None
+    persistence_s: float | None = Field(None, ge=0, le=10, description="default: that of [limits]")
+
+    @model_validator(mode="after")
+    def _has_an_end(self) -> Self:
+        if self.below is None and self.above is None:
+            raise ValueError("limits nothing; give 'below', 'above' or both")
+        if self.below is not None and self.above is not None and not self.below < self.above:
+            raise ValueError("nothing is between 'below' and 'above'; a value trips beneath 'below'")
+        return self
+
+
+class Limits(_Table):
+    """What the bench never exceeds; magnitudes. They lie below every plan."""
+
+    motor_torque_nm: Limit
+    driving_torque_nm: Limit
+    shaft_torque_nm: Limit
+    motor_speed_rad_s: Limit
+    wheel_speed_rad_s: Limit
+    vehicle_speed_m_s: Limit
+    persistence_s: float = Field(0.005, ge=0, le=10, description="a limit trips when exceeded for longer")
+    channels: dict[str, ChannelLimit] = Field({}, description="limits of further channels, of any device")
+
+
+class NoiseTable(_Table):
+    """Standard deviations of the simulated sensors."""
+
+    motor_speed_rad_s: Deviation = 0.02
+    wheel_speed_rad_s: Deviation = 0.002
+    shaft_torque_nm: Deviation = 0.5
+
+
+class Simulation(_Table):
+    """A simulated bench in place of hardware."""
+
+    model: File
+    seed: int = Field(1, ge=0, le=2**63 - 1)
+    noise: NoiseTable = NoiseTable()
+
+
+class BenchFile(_Table):
+    """One bench file; paths are absolute once it is loaded."""
+
+    name: Name
+    title: str = ""
+    operator: str = ""
+    buses: dict[Name, Bus]
+    rmcu: SerializeAsAny[DeviceTable]
+    dyno: SerializeAsAny[LoadTable]
+    devices: dict[Name, SerializeAsAny[DeviceTable]] = {}
+    limits: Limits
+    vehicle: Vehicle = Vehicle()
+    dut: dict[str, str] = {}
+    calibration: dict[str, Day] = Field({}, description="sensor: valid until")
+    simulation: Simulation | None = None
+    text: str = ""
+    source: File = Path()
+
+    @property
+    def device_tables(self) -> dict[str, DeviceTable]:
+        """The tables of all devices by their keys, in the order in which they come up."""
+        further = {f"devices.{name}": table for name, table in self.devices.items()}
+        return {"rmcu": self.rmcu, "dyno": self.dyno, **further}
