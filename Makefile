@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup test test-slow hunt bad-inputs blind lint bench figures lock clean
+.PHONY: run setup test test-slow hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -47,6 +47,10 @@ bad-inputs: setup
 # The whole blind diagnosis set: hundreds of cases, results in docs/reference/blind-results.md.
 blind: setup
 	$(BIN)/python -m tests.blind
+
+# Small faults put into the code, one at a time: what do the tests notice? docs/reference/mutants.md.
+mutants: setup
+	$(BIN)/python -m tests.mutants
 
 bench: setup
 	$(BIN)/python -m benchmarks

@@ -1,0 +1,106 @@
+"""Which tests run a line, and how long they take: one run of the tests under coverage."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from coverage import CoverageData
+
+QUICK = "not slow and not hunt"
+
+
+@dataclass(frozen=True)
+class Coverage:
+    """`by_line[file][line]`: tests that run it; `by_file[file]`: tests that run anything of it."""
+
+    by_line: dict[str, dict[int, set[str]]]
+    by_file: dict[str, set[str]]
+    seconds: dict[str, float]
+
+    def tests_for(self, file: str, line: int) -> list[str]:
+        """Quickest first; for a line that only importing runs, those that run any line of the file."""
+        tests = self.by_line.get(file, {}).get(line) or self.by_file.get(file, set())
+        return sorted(tests, key=lambda test: (self.seconds[test], test))
+
+
+class Times:
+    """A pytest plugin: seconds of each test that passed, as JSON."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._seconds: dict[str, float] = {}
+        self._failed: set[str] = set()
+
+    def pytest_runtest_logreport(self, report: object) -> None:
+        name, seconds = report.nodeid, report.duration  # type: ignore[attr-defined]
+        self._seconds[name] = self._seconds.get(name, 0.0) + seconds
+        if report.outcome != "passed":  # type: ignore[attr-defined]
+            self._failed.add(name)
+
+    def pytest_sessionfinish(self) -> None:
+        passed = {name: s for name, s in self._seconds.items() if name not in self._failed}
+        self._path.write_text(json.dumps(passed), encoding="utf-8")
+
+
+def covered(root: Path, package: str, tests: Sequence[str]) -> Coverage:
+    """Run the quick ones of `tests` in `root` and read what they cover of `package`.
+
+    Raises:
+        RuntimeError: the tests could not be run.
+    """
+    data_file, times_file = root / ".mutants-coverage", root / ".mutants-times.json"
+    program = (
+        "import sys, pytest; from pathlib import Path; from tests.mutants.covering import Times; "
+        "sys.exit(pytest.main(sys.argv[2:], plugins=[Times(Path(sys.argv[1]))]))"
+    )
+    arguments = [
+        str(times_file),
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-m",
+        QUICK,
+        f"--cov={package.replace('.', '/')}",
+    ]
+    arguments += ["--cov-context=test", "--cov-report=", "--cov-config=/dev/null", *tests]
+    done = subprocess.run(
+        [sys.executable, "-c", program, *arguments],
+        cwd=root,
+        env=_environment(data_file),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if done.returncode not in (0, 1) or not times_file.is_file():
+        raise RuntimeError(
+            f"the tests of {package} cannot be run:\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        )
+    seconds: dict[str, float] = json.loads(times_file.read_text("utf-8"))
+    return _read(data_file, root, seconds)
+
+
+def _environment(data_file: Path) -> dict[str, str]:
+    return os.environ | {"COVERAGE_FILE": str(data_file)}
+
+
+def _read(data_file: Path, root: Path, seconds: dict[str, float]) -> Coverage:
+    data = CoverageData(str(data_file))
+    data.read()
+    by_line: dict[str, dict[int, set[str]]] = {}
+    by_file: dict[str, set[str]] = {}
+    for name in data.measured_files():
+        file = Path(name).relative_to(root).as_posix()
+        lines = by_line[file] = {}
+        by_file[file] = set()
+        for line, contexts in data.contexts_by_lineno(name).items():
+            tests = {context.rpartition("|")[0] for context in contexts} & seconds.keys()
+            if tests:
+                lines[line] = tests
+                by_file[file] |= tests
+    return Coverage(by_line, by_file, seconds)

@@ -1,0 +1,91 @@
+"""Which faults are drawn, how they are told from the code as it was, and the score's interval."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.mutants.covering import Coverage
+from tests.mutants.mutating import drawn
+from tests.mutants.page import Outcome, Tried, as_markdown, wilson
+
+SOURCE = '''
+from numba import njit
+
+
+class Limits:
+    largest: float | int = 3
+
+
+def clipped(value: float | None, *, low: int = 1) -> float | None:
+    """Docstring 7."""
+    if value is None or value < low:
+        return low
+    return value + 0.5
+
+
+@njit(cache=True)
+def fast(value):
+    return value * 2
+'''
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Path:
+    (tmp_path / "code.py").write_text(SOURCE)
+    return tmp_path
+
+
+def test_every_place_is_drawn_once_before_any_a_second_time(root: Path) -> None:
+    mutants, total = drawn([root / "code.py"], root, 1000, 1)
+    places = [(m.line, m.column) for m in mutants]
+    first = places[: len(set(places))]
+    assert len(first) == len(set(first))
+    assert len(mutants) <= total
+    assert mutants == drawn([root / "code.py"], root, 1000, 1)[0]
+    assert mutants != drawn([root / "code.py"], root, 1000, 2)[0]
+
+
+def test_annotations_and_compiled_functions_are_left_alone_and_all_else_is_changed(root: Path) -> None:
+    mutants, _ = drawn([root / "code.py"], root, 1000, 1)
+    changed = {m.code(SOURCE) for m in mutants}
+    assert len(changed) == len(mutants)
+    assert SOURCE not in changed
+    for code in changed:
+        assert "float | int" in code
+        assert "float | None" in code
+        assert "value * 2" in code
+    assert any("low: int = 2" in code for code in changed)
+    assert any("largest: float | int = 4" in code for code in changed)
+    assert any("and value < low" in code for code in changed)
+
+
+def test_the_quickest_tests_of_a_line_come_first_and_a_line_of_imports_has_its_files_tests() -> None:
+    coverage = Coverage({"code.py": {5: {"slow", "quick"}}}, {"code.py": {"slow", "quick", "other"}}, {
+        "slow": 2.0, "quick": 0.1, "other": 1.0,
+    })  # fmt: skip
+    assert coverage.tests_for("code.py", 5) == ["quick", "slow"]
+    assert coverage.tests_for("code.py", 1) == ["quick", "other", "slow"]
+    assert coverage.tests_for("elsewhere.py", 1) == []
+
+
+def test_the_interval_is_wilsons() -> None:
+    # Wilson's interval solves |share - p| = z sqrt(p (1 - p) / n)
+    for successes, trials in ((0, 10), (7, 10), (285, 300), (300, 300)):
+        share = successes / trials
+        for end in wilson(successes, trials):
+            assert abs(share - end) == pytest.approx(1.96 * (end * (1 - end) / trials) ** 0.5, abs=1e-7)
+
+
+def test_the_page_shows_what_was_not_noticed() -> None:
+    outcomes = [
+        Outcome("a.py", 3, "AddNot", "if x | y:", "if not x | y:", "", 4),
+        Outcome("a.py", 9, "NumberReplacer", "x = 1", "x = 2", "not run", 0),
+        Outcome("a.py", 5, "NumberReplacer", "y = 1", "y = 2", "failed", 1),
+    ]
+    page = as_markdown([Tried("hil.core", 1, 50, 20, 1.5, outcomes)])
+    assert "| hil.core | 3 | 50 | 1 | 33.3 |" in page
+    assert "| a.py:3 | `if x \\| y:` | `if not x \\| y:` | passed |" in page
+    assert "| a.py:9 | `x = 1` | `x = 2` | not run |" in page
+    assert "y = 2" not in page
