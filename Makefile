@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup test test-slow hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
+.PHONY: run setup test test-slow hunt bad-inputs blind mutants coverage lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -51,6 +51,11 @@ blind: setup
 # Small faults put into the code, one at a time: what do the tests notice? docs/reference/mutants.md.
 mutants: setup
 	$(BIN)/python -m tests.mutants
+
+# Which share of each package the quick tests run.
+coverage: setup
+	$(BIN)/python -m pytest -n 2 -m "not slow and not hunt" --cov --cov-report=
+	$(BIN)/python -m tests.coverage_by_package
 
 bench: setup
 	$(BIN)/python -m benchmarks
