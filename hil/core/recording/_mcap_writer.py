@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-from mcap.writer import CompressionType, Writer
 
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock, joined
 from hil.core.recording import _schema
 from hil.core.recording._mcap_damage import CHANNELS_TABLE
+from hil.core.recording._mcap_file import McapFile
 
 CHANNELS_TOPIC = "/channels"
 EVENTS_TOPIC = "/events"
@@ -69,34 +69,24 @@ class RecordingWriter:
         self, path: Path, channel_names: list[str], buses: list[str], *, chunk_bytes: int = _CHUNK_BYTES
     ) -> None:
         self.path = path
-        self._sequence = 0
         self._samples = 0
         self._hash = hashlib.sha256()
         self._waiting: dict[str, list[FrameBlock]] = {bus: [] for bus in buses}
         try:
             self._file = _WholeWrites(path)
-            self._writer = Writer(
-                self._file,  # type: ignore[arg-type]
-                chunk_size=chunk_bytes,
-                compression=CompressionType.ZSTD,
-                enable_crcs=True,
-                enable_data_crcs=True,
-            )
-            self._writer.start(profile="", library="eaxle-hil")
+            self._writer = McapFile(self._file, library="eaxle-hil", chunk_bytes=chunk_bytes)
             self._register(channel_names, buses)
         except OSError as error:
             raise self._failed(error) from error
 
     def _register(self, channel_names: list[str], buses: list[str]) -> None:
         writer = self._writer
-        channels = writer.register_schema(
-            _schema.CHANNELS_TYPE, "protobuf", _schema.channels_schema(channel_names)
-        )
-        frames = writer.register_schema(_schema.FRAMES_TYPE, "protobuf", _schema.frames_schema())
-        events = writer.register_schema("hil.Event", "jsonschema", json.dumps(_EVENT_SCHEMA).encode())
-        self._channels = writer.register_channel(CHANNELS_TOPIC, "protobuf", channels)
-        self._events = writer.register_channel(EVENTS_TOPIC, "json", events)
-        self._frames = {bus: writer.register_channel(FRAMES_TOPIC + bus, "protobuf", frames) for bus in buses}
+        channels = writer.schema(_schema.CHANNELS_TYPE, "protobuf", _schema.channels_schema(channel_names))
+        frames = writer.schema(_schema.FRAMES_TYPE, "protobuf", _schema.frames_schema())
+        events = writer.schema("hil.Event", "jsonschema", json.dumps(_EVENT_SCHEMA).encode())
+        self._channels = writer.channel(CHANNELS_TOPIC, "protobuf", channels)
+        self._events = writer.channel(EVENTS_TOPIC, "json", events)
+        self._frames = {bus: writer.channel(FRAMES_TOPIC + bus, "protobuf", frames) for bus in buses}
 
     def add_frames(self, bus: str, block: FrameBlock) -> None:
         """Add the frames of one bus, as they came; they become messages of about 50 ms."""
@@ -116,23 +106,20 @@ class RecordingWriter:
 
     def add_rows(self, rows: npt.NDArray[np.float64]) -> None:
         """Add decoded samples (samples x channels; the first column is `time_s`)."""
+        if not len(rows):
+            return
+        self._writer.slow = self._channels  # frames come at once, samples when all of their frames are there
         for start in range(0, len(rows), _ROWS_AT_ONCE):
             self._add_block(rows[start : start + _ROWS_AT_ONCE])
 
     def _add_block(self, rows: npt.NDArray[np.float64]) -> None:
         encoded = _schema.encode_rows(rows)
-        size = encoded.shape[1]
-        raw = encoded.tobytes()
-        stamps = np.rint(rows[:, 0] * 1e9).astype(np.int64).tolist()
-        add, channel, sequence = self._writer.add_message, self._channels, self._sequence
+        self._samples += len(rows)
+        self._hash.update(encoded.data)
         try:
-            for index, stamp in enumerate(stamps):
-                add(channel, stamp, raw[index * size : (index + 1) * size], stamp, sequence + index + 1)
+            self._writer.add(self._channels, np.rint(rows[:, 0] * 1e9).astype(np.int64), encoded)
         except OSError as error:
             raise self._failed(error) from error
-        self._sequence += len(stamps)
-        self._samples += len(stamps)
-        self._hash.update(raw)
 
     def add_event(self, time_s: float, kind: str, text: str) -> None:
         """Add one event of the run."""
@@ -142,14 +129,14 @@ class RecordingWriter:
     def attach(self, name: str, content: bytes, media_type: str = "text/plain") -> None:
         """Store a file with the data."""
         try:
-            self._writer.add_attachment(0, 0, name, media_type, content)
+            self._writer.attach(name, media_type, content)
         except OSError as error:
             raise self._failed(error) from error
 
     def describe(self, name: str, table: Mapping[str, str]) -> None:
         """Store a named table of text."""
         try:
-            self._writer.add_metadata(name, dict(table))
+            self._writer.describe(name, dict(table))
         except OSError as error:
             raise self._failed(error) from error
 
@@ -166,10 +153,9 @@ class RecordingWriter:
             self._file.close()
 
     def _add(self, channel: int, time_s: float, message: bytes) -> None:
-        stamp = round(time_s * 1e9)
-        self._sequence += 1
+        stamps = np.array([round(time_s * 1e9)], np.int64)
         try:
-            self._writer.add_message(channel, stamp, message, stamp, self._sequence)
+            self._writer.add(channel, stamps, np.frombuffer(message, np.uint8).reshape(1, -1))
         except OSError as error:
             raise self._failed(error) from error
 

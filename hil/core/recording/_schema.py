@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -78,9 +78,10 @@ def encode_rows(rows: npt.NDArray[np.float64]) -> npt.NDArray[np.uint8]:
     count, width = rows.shape
     layout = _row_layout(width)
     encoded = np.empty((count, layout.size), np.uint8)
-    encoded[:, layout.tag_places] = layout.tags
-    raw = np.ascontiguousarray(rows, "<f8").view(np.uint8).reshape(count, width * 8)
-    encoded[:, layout.value_places] = raw
+    encoded[:] = layout.template
+    values = encoded.view(layout.fields)[:, 0]
+    for column, name in enumerate(layout.fields.names or ()):
+        values[name] = rows[:, column]
     return encoded
 
 
@@ -142,6 +143,26 @@ class _RowLayout:
     tags: npt.NDArray[np.uint8]
     tag_places: npt.NDArray[np.intp]
     value_places: npt.NDArray[np.intp]
+
+    @cached_property
+    def template(self) -> npt.NDArray[np.uint8]:
+        """A message whose values are zero."""
+        template = np.zeros(self.size, np.uint8)
+        template[self.tag_places] = self.tags
+        return template
+
+    @cached_property
+    def fields(self) -> np.dtype[np.void]:
+        """The values alone, as the columns of a table."""
+        starts = self.value_places[::8].tolist()
+        return np.dtype(
+            {
+                "names": [str(start) for start in starts],
+                "formats": ["<f8"] * len(starts),
+                "offsets": starts,
+                "itemsize": self.size,
+            }
+        )
 
 
 @lru_cache(maxsize=16)

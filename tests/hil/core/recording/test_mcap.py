@@ -8,6 +8,8 @@ from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 from hypothesis import given
 from hypothesis import strategies as st
 from mcap.reader import make_reader
+from mcap.records import Message
+from mcap.stream_reader import StreamReader
 
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import FRAME
@@ -77,6 +79,57 @@ def test_other_readers_understand_the_schemas_in_the_file(tmp_path):
             assert list(decoded.data)[:10] == frames(10)["data"].tolist()
             assert decoded.length[:10] == b"\x08" * 10
     assert set(classes) == {"hil.Channels", "hil.CanFrames"}
+
+
+def write_late(path, **options):
+    """A run's way: frames at once, samples half a second later, an event in between."""
+    writer = RecordingWriter(path, NAMES, ["rmcu", "dyno"], **options)
+    for start_s in range(20):
+        for part in range(20):
+            block = frames(50)
+            block["time_s"] += start_s + 0.05 * part
+            for bus in ("rmcu", "dyno"):
+                writer.add_frames(bus, block)
+        rows = np.zeros((1000, len(NAMES)))
+        rows[:, 0] = start_s + np.arange(1000) * 1e-3
+        writer.add_event(start_s + 0.4321, "note", "in between")
+        writer.add_rows(rows)
+    writer.close()
+
+
+def test_messages_lie_in_order_of_time_and_the_librarys_reader_finds_each(tmp_path):
+    write_late(tmp_path / "r.mcap")
+    with (tmp_path / "r.mcap").open("rb") as file:
+        lying = [r for r in StreamReader(file, validate_crcs=True).records if isinstance(r, Message)]
+        file.seek(0)
+        reader = make_reader(file, validate_crcs=True)
+        found = [message for _, _, message in reader.iter_messages()]
+        one = [
+            m
+            for _, _, m in reader.iter_messages(
+                topics="/events", starting_at=int(4e9), ending_before=int(6e9)
+            )
+        ]
+        statistics = reader.get_summary().statistics
+    times = [message.log_time for message in lying]
+    assert times == sorted(times)
+    assert found == lying
+    assert [m.log_time for m in one] == [4_432_100_000, 5_432_100_000]
+    assert statistics.message_count == len(lying) == sum(statistics.channel_message_counts.values())
+    assert (statistics.message_start_time, statistics.message_end_time) == (times[0], times[-1])
+    assert statistics.chunk_count > 10
+
+
+def test_frames_do_not_wait_for_samples_for_ever(tmp_path):
+    writer = RecordingWriter(tmp_path / "r.mcap", NAMES, ["rmcu"], chunk_bytes=10_000)
+    writer.add_rows(np.zeros((1, len(NAMES))))
+    for part in range(200):
+        block = frames(50)
+        block["time_s"] += 0.05 * part
+        writer.add_frames("rmcu", block)
+    left_by_a_crash = (tmp_path / "r.mcap").stat().st_size
+    writer.close()
+    assert left_by_a_crash > 10_000
 
 
 @pytest.mark.parametrize("share", [0.3, 0.6, 0.9, 0.999])
