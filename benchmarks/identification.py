@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 import control
 import numpy as np
@@ -79,7 +80,7 @@ def _responses() -> list[tuple[str, float, float, str]]:
 
     def scipy_csd() -> str:
         torque = recording["motor_torque_ref_nm"]
-        options = {"fs": 1 / step, "nperseg": 80_000}
+        options: dict[str, Any] = {"fs": 1 / step, "nperseg": 80_000}
         frequency, auto = signal.welch(torque, **options)
         cross = [signal.csd(torque, recording[name], **options)[1] for name in OUTPUTS]
         hold = np.exp(1j * np.pi * step * frequency)

@@ -7,6 +7,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import control
@@ -109,8 +110,8 @@ def main() -> None:
             vector = _slots.pack(model)
             out_c, out = _kernel.empty_output(SAMPLES), _kernel.empty_output(SAMPLES)
             _kernel.run(torque, DT, vector, np.zeros(5), STEP, out)  # compiles
-            c_ms = best_of(lambda v=vector, o=out_c: run_c(torque, v, o))
-            ms = best_of(lambda v=vector, o=out: _kernel.run(torque, DT, v, np.zeros(5), STEP, o))
+            c_ms = best_of(partial(run_c, torque, vector, out_c))
+            ms = best_of(partial(_kernel.run, torque, DT, vector, np.zeros(5), STEP, out))
             difference = np.max(np.abs(out[:, 0] - out_c[:, 0]))
             print(f"{title + ', C -O3':42}{c_ms:9.2f}{1.0:8.2f}")
             print(f"{title + ', kernel':42}{ms:9.2f}{ms / c_ms:8.2f}{difference:28.2e}")

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from hil.engine import Bench, BenchFile, load_bench, open_bench
+from hil.engine import BenchFile, load_bench, open_bench
 from test_plans import Plan, plan_from_text
 
-SIM = load_bench("sim")
+#: Any: its tables are those of the kinds that the file names.
+SIM: Any = load_bench("sim")
 
 
 def sim_bench(name: str = "test", **changes: Any) -> BenchFile:
@@ -20,7 +21,7 @@ def sim_bench(name: str = "test", **changes: Any) -> BenchFile:
 
 
 @contextlib.contextmanager
-def running(name: str = "test", **changes: Any) -> Iterator[Bench]:
+def running(name: str = "test", **changes: Any) -> Iterator[Any]:
     """An open simulated bench with its dynos started."""
     with open_bench(sim_bench(name, **changes)) as bench:
         bench.loop.run_for(0.2)

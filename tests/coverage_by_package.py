@@ -24,20 +24,19 @@ def main() -> int:
     coverage.load()
     counts: dict[str, list[int]] = defaultdict(lambda: [0, 0])
     for file in coverage.get_data().measured_files():
-        _, statements, _, missing, _ = coverage.analysis2(file)
+        _, lines, _, missing, _ = coverage.analysis2(file)
         name = package_of(Path(file).relative_to(Path.cwd()).as_posix())
-        counts[name][0] += len(statements)
-        counts[name][1] += len(statements) - len(missing)
-    counts = {name: count for name, count in counts.items() if count[0]}
+        counts[name][0] += len(lines)
+        counts[name][1] += len(lines) - len(missing)
+    counts = defaultdict(list, {name: count for name, count in counts.items() if count[0]})
     if not counts:
         print("nothing was measured: make coverage", file=sys.stderr)
         return 1
-    counts["all"] = [sum(column) for column in zip(*counts.values(), strict=True)]
+    counts["all"] = [sum(count[0] for count in counts.values()), sum(count[1] for count in counts.values())]
+    rows = sorted((covered / statements, statements, name) for name, (statements, covered) in counts.items())
     print(f"{'package':24} {'statements':>10} {'covered':>8}")
-    for name, (statements, covered) in sorted(
-        counts.items(), key=lambda item: item[1][1] / max(item[1][0], 1)
-    ):
-        print(f"{name:24} {statements:10} {100 * covered / max(statements, 1):7.1f}%")
+    for share, statements, name in rows:
+        print(f"{name:24} {statements:10} {100 * share:7.1f}%")
     return 0
 
 

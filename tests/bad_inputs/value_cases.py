@@ -39,7 +39,7 @@ def value_cases() -> Iterator[Case]:
                 )
     for command, file, old, new, in_range in _FILES:
         for value in (*_NEVER[:1], *_PERHAPS):
-            allowed = (DONE, FAILED, REFUSED) if value in in_range else (REFUSED,)
+            ends: tuple[int, ...] = (DONE, FAILED, REFUSED) if value in in_range else (REFUSED,)
             shown = value if file.endswith(".yaml") or value != "many" else '"many"'
             if file.endswith(".yaml") and value in ("nan", "inf"):
                 shown = f".{value}"
@@ -47,8 +47,8 @@ def value_cases() -> Iterator[Case]:
             change = functools.partial(_replace, file, old, new.format(shown))
             # A limit that no run can keep is a limit: it trips.
             if value in in_range and command == "run":
-                allowed = (*allowed, 3)
-            yield Case(command, VALUES, tried, usual(command), allowed, change)
+                ends = (*ends, 3)
+            yield Case(command, VALUES, tried, usual(command), ends, change)
 
 
 def _replace(name: str, old: str, new: str, folder: Path) -> None:

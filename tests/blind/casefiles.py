@@ -85,7 +85,10 @@ def _measure(
         shown.append(reading)
         errors.append(reading - clean)
         path = directory / f"{experiment.name}.csv"
-        columns = {TIME: np.arange(len(request)) * SAMPLE_S, INPUT: request}
+        columns: dict[str, Array] = {
+            TIME: np.arange(len(request), dtype=np.float64) * SAMPLE_S,
+            INPUT: request,
+        }
         columns |= {name: reading[:, i] for i, name in enumerate(OUTPUTS)}
         _write_csv(columns, path)
         paths.append(path)

@@ -33,7 +33,7 @@ def _experiment(name: str, torque_nm: Array, wheel_speed: float = 0.0) -> Experi
 
 
 def _time(duration_s: float) -> Array:
-    return np.arange(round(duration_s / SAMPLE_S)) * SAMPLE_S
+    return np.arange(round(duration_s / SAMPLE_S), dtype=np.float64) * SAMPLE_S
 
 
 def _faded(signal: Array, fade_s: float = 0.25) -> Array:
@@ -66,7 +66,7 @@ def steps(rng: np.random.Generator, largest_nm: float, duration_s: float) -> Arr
         sign = -sign if rng.uniform() < 0.75 else sign
         at = end
     torque[-300:] = 0.0
-    return torque - np.mean(torque) * (torque != 0.0)
+    return np.asarray(torque - np.mean(torque) * (torque != 0.0))
 
 
 def multisine(rng: np.random.Generator, rms_nm: float, duration_s: float) -> Array:

@@ -49,7 +49,7 @@ def turn_of(torque_nm: float, stiffness_nm_rad: float, exponent: float) -> float
     After a reversal the share 1 - F/T_c that is missing starts at 2 and falls with d(share)/d(angle)
     = -(stiffness/T_c) share**n; its integral is 2 turn for an exponential.
     """
-    return torque_nm / stiffness_nm_rad * 2.0 ** (1.0 - exponent) / (2.0 - exponent)
+    return torque_nm / stiffness_nm_rad * math.pow(2.0, 1.0 - exponent) / (2.0 - exponent)
 
 
 def _turning_friction(rng: np.random.Generator, setting: Setting) -> Family:

@@ -150,4 +150,4 @@ def largest_share(residual: Array) -> float:
 
 def likeness(first: Array, second: Array) -> float:
     """|cos| of two residuals: near 1, no fit can tell the effects apart."""
-    return float(abs(first @ second) / max(np.linalg.norm(first) * np.linalg.norm(second), 1e-12))
+    return float(abs(first @ second) / max(float(np.linalg.norm(first) * np.linalg.norm(second)), 1e-12))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -75,7 +76,7 @@ def found() -> Diagnosis:
 
 
 def test_the_page_says_what_was_found_and_links_to_every_section(found: Diagnosis) -> None:
-    page = html.fromstring(diagnosis_html(found, "axle <i>.toml"))
+    page: Any = html.fromstring(diagnosis_html(found, "axle <i>.toml"))
     text = " ".join(page.text_content().split())
     for said in (
         "axle <i>.toml",

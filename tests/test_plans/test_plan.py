@@ -10,7 +10,7 @@ from tests.test_plans.writing import STEP, plan_of
 def test_a_plan_cannot_be_changed() -> None:
     plan = plan_of({"wait": {"duration_s": 1}})
     with pytest.raises(ValidationError):
-        plan.name = "other"
+        plan.name = "other"  # type: ignore[misc]
 
 
 def test_estimate_adds_up_ramps_steps_and_end_steps() -> None:

@@ -44,7 +44,8 @@ def simulate(torque: np.ndarray) -> dict[str, np.ndarray]:
     for name, numerator in NUMERATORS.items():
         # Partial fractions: a high-order polynomial in z loses digits, second-order parts do not.
         residues, poles, _ = signal.residue(numerator, DENOMINATOR)
-        outputs[name] = sum(_mode(r, p, delayed) for r, p in zip(residues, poles, strict=True))
+        modes = [_mode(r, p, delayed) for r, p in zip(residues, poles, strict=True)]
+        outputs[name] = np.sum(modes, axis=0)
     return outputs
 
 

@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,8 +14,8 @@ from hil.core.errors import BadInputError
 NAMES = ("summary.json", "a.txt")
 
 
-def claim(out: Path | None, **options: object) -> object:
-    return results_in(out, NAMES, summary="summary.json", **options)  # type: ignore[arg-type]
+def claim(out: Path | None, **options: Any) -> Any:
+    return results_in(out, NAMES, summary="summary.json", **options)
 
 
 def test_default_folders_are_numbered_and_never_the_same(
@@ -31,7 +32,7 @@ def test_default_folders_are_numbered_and_never_the_same(
 
 
 def test_a_folder_that_stays_empty_is_removed_with_the_parents_made_for_it(tmp_path: Path) -> None:
-    with pytest.raises(BadInputError, match="no good"), claim(tmp_path / "new" / "deep"):  # type: ignore[attr-defined]
+    with pytest.raises(BadInputError, match="no good"), claim(tmp_path / "new" / "deep"):
         raise BadInputError("no good")
     assert list(tmp_path.iterdir()) == []
 
@@ -48,7 +49,7 @@ def test_results_are_refused_without_overwrite_and_replaced_whole_with_it(tmp_pa
     with (
         pytest.raises(BadInputError, match=r"holds results already: summary\.json") as caught,
         claim(tmp_path),
-    ):  # type: ignore[attr-defined]
+    ):
         raise AssertionError("was let in")
     assert "--overwrite" in str(caught.value)
     with results_in(tmp_path, NAMES, summary="summary.json", overwrite=True) as place:

@@ -1,6 +1,7 @@
 import math
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from hil.core.model import EffectUse, load_model, model_from_dict, model_to_toml
 BENCHES = Path(__file__).parents[3] / "benches"
 
 
-def two_inertia() -> dict:
+def two_inertia() -> dict[str, Any]:
     return {
         "kind": "two_inertia",
         "parameters": {

@@ -1,6 +1,7 @@
 import re
 import shutil
 import tomllib
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -13,7 +14,7 @@ from tests.benches_for_tests import SIM
 
 @pytest.mark.parametrize("name", ["sim", "rear_axle_socketcan"])
 def test_shipped_benches_load_with_files_that_exist(name):
-    bench = load_bench(name)
+    bench: Any = load_bench(name)
     assert bench.rmcu.dbc.is_file()
     assert bench.dyno.eds.is_file()
 
@@ -143,7 +144,8 @@ def test_one_bus_for_all_is_fine_where_identifiers_differ(tmp_path):
         shutil.copy(SIM.source.parent / name, tmp_path)
     path = tmp_path / "bench.toml"
     path.write_text(re.sub(r"\[buses.dyno\][^[]*", "", text))
-    assert load_bench(path).dyno.bus == "rmcu"
+    bench: Any = load_bench(path)
+    assert bench.dyno.bus == "rmcu"
 
 
 @pytest.mark.parametrize("name", ["", "x" * 5000, "a\nb", "sim.txt", ".", "/"])

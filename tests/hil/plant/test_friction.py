@@ -53,7 +53,11 @@ CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 
 
 def dry(model: Model, torque: float, stribeck: float = 0.0, offset: float = 0.0) -> Model:
-    values = {"torque_nm": torque, "stribeck_torque_nm": stribeck, "offset_nm": offset}
+    values: dict[str, float | str] = {
+        "torque_nm": torque,
+        "stribeck_torque_nm": stribeck,
+        "offset_nm": offset,
+    }
     return model.with_effects(*model.effects, EffectUse("coulomb_friction", values))
 
 

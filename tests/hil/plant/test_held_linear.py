@@ -28,7 +28,7 @@ THREE = Model(
 
 
 def mount(stiffness: float, damping: float) -> EffectUse:
-    values = {
+    values: dict[str, float | str] = {
         "housing_inertia_kg_m2": 2.0,
         "mount_stiffness_nm_rad": stiffness,
         "mount_damping_nms_rad": damping,

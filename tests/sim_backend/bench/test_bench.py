@@ -1,5 +1,7 @@
 """The simulated bench on its wire: load, determinism, timing, the dynos' own safety."""
 
+from typing import Any
+
 import can
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from tests.benches_for_tests import SIM, running, sim_bench
 
 def test_every_bus_stays_below_70_percent_load():
     with running("load") as bench:
-        seen = {wire.name: [] for wire in bench.loop.wires}
+        seen: dict[str, list[Any]] = {wire.name: [] for wire in bench.loop.wires}
         bench.loop.on_block(lambda bus, block: seen[bus].append(block.copy()))
         bench.dyno.enable(10.0)
         payloads = bench.rmcu.requests("motor_torque", np.zeros(1000))
@@ -157,7 +159,7 @@ def test_the_speed_loop_holds_what_it_is_told():
 
 
 def test_attached_benches_are_forgotten():
-    world = object()
+    world: Any = object()
     attach("gone", world)
     detach("gone")
     with pytest.raises(KeyError):

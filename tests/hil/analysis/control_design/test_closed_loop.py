@@ -87,7 +87,7 @@ def test_a_simulated_loop_grows_as_its_poles_say(late_s: float) -> None:
     plant = TransferFunction((60.0,), (1.0, 8.0, 4000.0), late_s)
     parts = blocks(3.0, None)
     fine = 10
-    held = signal.cont2discrete((list(plant.numerator), list(plant.denominator)), STEP / fine)
+    held = signal.cont2discrete((np.array(plant.numerator), np.array(plant.denominator)), STEP / fine)
     top, bottom = np.ravel(held[0]), np.ravel(held[1])
     pi_top, pi_bottom = signal.bilinear(parts[0].numerator, parts[0].denominator, 1 / STEP)
     count, late = 3000, round(late_s / STEP * fine)

@@ -15,7 +15,7 @@ from hil.core.model import Model, TransferFunction
 def test_against_scipy(angle: float, centre: float) -> None:
     part = lead_function(lead(angle, centre))
     found = tustin(part, 0.001)
-    b, a, _ = signal.cont2discrete((part.numerator, part.denominator), 0.001, "bilinear")
+    b, a, _ = signal.cont2discrete((np.array(part.numerator), np.array(part.denominator)), 0.001, "bilinear")
     np.testing.assert_allclose(found.b, b.ravel(), rtol=1e-9)
     np.testing.assert_allclose(found.a, a, rtol=1e-9)
 

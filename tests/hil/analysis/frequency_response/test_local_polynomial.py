@@ -21,7 +21,7 @@ from tests.hil.analysis import paper_plant
 
 def normalised_errors(frf: FrequencyResponse) -> np.ndarray:
     truth = np.array([paper_plant.response(name, frf.frequency_hz) for name in frf.outputs])
-    return np.abs(frf.response - truth) / frf.standard_deviation
+    return np.asarray(np.abs(frf.response - truth) / frf.standard_deviation)
 
 
 def test_stated_uncertainty_is_the_real_one(paper_frf: FrequencyResponse) -> None:
@@ -104,7 +104,7 @@ def test_hold_is_not_counted_as_dead_time() -> None:
     speed = np.concatenate([[0.0], np.cumsum(torque)[:-1]]) * 0.001
     recording = Recording(
         {
-            "time_s": np.arange(40_000) * 0.001,
+            "time_s": np.arange(40_000, dtype=np.float64) * 0.001,
             "motor_torque_ref_nm": torque,
             "motor_speed_rad_s": speed,
         },

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -38,7 +40,7 @@ def experiment(
     return Experiment("multisine", STEP, torque, speed[None, :], OUTPUTS[:1], hold_s=STEP, kind="multisine")
 
 
-def bla(**options: float) -> FrequencyResponse:
+def bla(**options: Any) -> FrequencyResponse:
     experiments = [experiment(seed, **options) for seed in range(4)]
     return best_linear_approximation(experiments, round(PERIOD_S / STEP), 0.25, 25)
 

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy import signal
@@ -53,7 +55,12 @@ def test_agrees_with_scipy() -> None:
     one = experiment(0, 0.2)
     frf = averaged_spectra([one], 0.5, 10, window_s=8.0)
     count = 4000
-    options = {"fs": 1 / STEP, "nperseg": count, "noverlap": count // 2, "detrend": "constant"}
+    options: dict[str, Any] = {
+        "fs": 1 / STEP,
+        "nperseg": count,
+        "noverlap": count // 2,
+        "detrend": "constant",
+    }
     rate = np.diff(one.outputs[0])
     frequency, cross = signal.csd(one.input[1:], rate, **options)
     _, auto = signal.welch(one.input[1:], **options)

@@ -69,7 +69,7 @@ def test_structure_is_exact(one: Modes) -> None:
 @given(modes())
 @settings(max_examples=30, deadline=None)
 def test_derivatives_are_right(one: Modes) -> None:
-    s = 2j * np.pi * FREQUENCY
+    s = np.asarray(2j * np.pi * FREQUENCY, dtype=np.complex128)
     for number, (place, derivative) in enumerate(basis_derivatives(one.structure, one.poles, s)):
         step = 1e-6 * one.poles[number]
         upper, lower = one.poles.copy(), one.poles.copy()

@@ -50,7 +50,7 @@ def with_backlash(half_gap_rad: float) -> Recording:
         EffectUse("backlash", {"half_gap_rad": half_gap_rad})
     )
     channels = simulate(model, MULTISINE, STEP)
-    time = np.arange(len(MULTISINE)) * STEP
+    time = np.arange(len(MULTISINE), dtype=np.float64) * STEP
     rng = np.random.default_rng(0)
     noisy = {n: channels[n] + 0.01 * np.std(channels[n]) * rng.standard_normal(len(time)) for n in OUTPUTS}
     return Recording({"time_s": time, INPUT: MULTISINE, **noisy}, Path("backlash.csv"))

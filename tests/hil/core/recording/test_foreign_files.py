@@ -3,6 +3,7 @@
 import os
 import threading
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -96,7 +97,7 @@ def test_parquet_with_a_damaged_page_is_refused(tmp_path):
     assert "broken" in refusal(tmp_path / "r.parquet")
 
 
-def mdf(tmp_path: Path, *groups: dict[str, tuple]) -> Path:
+def mdf(tmp_path: Path, *groups: dict[str, tuple[Any, ...]]) -> Path:
     with MDF(version="4.10") as file:
         for group in groups:
             signals = [

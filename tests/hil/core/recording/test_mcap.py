@@ -1,6 +1,7 @@
 import json
 import resource
 import signal
+from typing import Any
 
 import numpy as np
 import pytest
@@ -61,7 +62,7 @@ def test_other_readers_understand_the_schemas_in_the_file(tmp_path):
     rows = write(tmp_path / "r.mcap", samples=20)
     with (tmp_path / "r.mcap").open("rb") as file:
         messages = list(make_reader(file).iter_messages(topics=["/channels", "/can/rmcu", "/events"]))
-    classes = {}
+    classes: dict[str, Any] = {}
     for schema, channel, message in messages:
         if channel.message_encoding == "json":
             assert json.loads(message.data)["kind"] == "arm"

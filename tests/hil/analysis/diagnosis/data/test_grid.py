@@ -32,8 +32,10 @@ def test_only_a_grid_that_matters_is_told() -> None:
 
 
 def test_rounding_coarser_than_the_noise_does_not_average_out() -> None:
-    fine, coarse = ({"channel": OUTPUTS[1], "step": step} for step in (0.5, 4.0))
+    fine, coarse = (
+        EffectUse("sensor_quantization", {"channel": OUTPUTS[1], "step": step}) for step in (0.5, 4.0)
+    )
     noise = np.ones(3)
-    assert coarse_noise(noise, [EffectUse("sensor_quantization", fine)]) == pytest.approx(noise)
-    weighed = coarse_noise(noise, [EffectUse("sensor_quantization", coarse)])
+    assert coarse_noise(noise, [fine]) == pytest.approx(noise)
+    weighed = coarse_noise(noise, [coarse])
     assert weighed == pytest.approx([1.0, 2.0 * 4.0 / np.sqrt(12.0), 1.0])

@@ -1,5 +1,7 @@
 """Normal equations with initial values eliminated are those of all numbers together."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -12,10 +14,10 @@ def test_eliminated_starts_give_the_same_step() -> None:
     errors = rng.normal(size=(2, 50))
     normals = [normal_equations(*one) for one in zip(shared, initial, errors, strict=True)]
     matrix, gradient = reduced(normals)
-    step = np.linalg.solve(matrix, gradient)
+    step: Any = np.linalg.solve(matrix, gradient)
     whole = np.zeros((100, 10))
     whole[:, :4] = shared.reshape(100, 4)
     whole[:50, 4:7], whole[50:, 7:] = initial
-    together = np.linalg.lstsq(whole, errors.ravel())[0]
+    together: Any = np.linalg.lstsq(whole, errors.ravel())[0]
     assert step == pytest.approx(together[:4])
     assert start_step(normals[1], step) == pytest.approx(together[7:])

@@ -90,7 +90,7 @@ def test_dead_time_as_an_effect_leaps_to_any_sample_near():
     leapt = [
         hypothesis.model(t).effects[0].values["extra_delay_s"] for t in by_samples.leaps(theta, -wide, wide)
     ]
-    assert sorted(int((delay + 0.00805) * 1e3) - 18 for delay in leapt) == [-4, -3, -2, -1, 1, 2, 3, 4]
+    assert sorted(int((float(delay) + 0.00805) * 1e3) - 18 for delay in leapt) == [-4, -3, -2, -1, 1, 2, 3, 4]
 
 
 def test_models_with_springs_have_no_such_steps():
