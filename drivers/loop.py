@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from drivers.wire import Wire
 from hil.core.clock import Clock
-from hil.core.errors import BenchError, InterruptError
+from hil.core.errors import InterruptError
 from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 
 TICK_S = 0.001
@@ -50,7 +51,7 @@ class BusLoop:
         self._callbacks: dict[str, dict[int, FrameCallback]] = {wire.name: {} for wire in wires}
         self._wanted = {wire.name: np.zeros(_STANDARD_IDS, bool) for wire in wires}
         self._block_callbacks: list[BlockCallback] = []
-        self._served: list[tuple[Port, Callable[[bytes, float], None]]] = []
+        self._served: list[Callable[[], None]] = []
         self._drained: list[Callable[[], None]] = []
 
     def every(self, period_s: float, duty: Callable[[], None]) -> None:
@@ -68,7 +69,13 @@ class BusLoop:
 
     def serve(self, port: Port, take: Callable[[bytes, float], None]) -> None:
         """Call `take(data, time_s)` with what comes on `port`, in whatever pieces it comes."""
-        self._served.append((port, take))
+
+        def look() -> None:
+            data = port.drain()
+            if data:
+                take(data, self.clock.now_s())
+
+        self._served.append(look)
 
     def on_drained(self, callback: Callable[[], None]) -> None:
         """Call `callback()` each time that every wire and port has been looked at."""
@@ -102,32 +109,19 @@ class BusLoop:
     def drain(self) -> None:
         """Take what has come on every bus and port and hand it out.
 
+        Whatever fails, the others are looked at all the same; then the first failure is raised.
+
         Raises:
-            BenchError: a bus or a port failed; the others have been looked at all the same.
+            BenchError: a bus or a port failed.
         """
-        failures: list[BenchError] = []
-        for wire in self.wires:
-            try:
-                block = wire.drain()
-            except BenchError as error:
-                failures.append(error)
-                continue
-            if len(block):
-                for callback in self._block_callbacks:
-                    callback(wire.name, block)
-                self._dispatch(wire.name, block)
-        for port, take in self._served:
-            try:
-                data = port.drain()
-            except BenchError as error:
-                failures.append(error)
-                continue
-            if data:
-                take(data, self.clock.now_s())
-        for drained in self._drained:
-            drained()
-        if failures:
-            raise failures[0]
+        _each([*(partial(self._drain, wire) for wire in self.wires), *self._served, *self._drained])
+
+    def _drain(self, wire: Wire) -> None:
+        block = wire.drain()
+        if len(block):
+            for callback in self._block_callbacks:
+                callback(wire.name, block)
+            self._dispatch(wire.name, block)
 
     def _wait_for_tick(self) -> None:
         if self.stop_requested and not self.shielded:
@@ -143,8 +137,7 @@ class BusLoop:
                 0,
             )  # do not chase lost time: devices time out by themselves
         self._ticks += 1
-        for duty in self._duties:
-            duty.run_if_due(now_s)
+        _each([partial(duty.run_if_due, now_s) for duty in self._duties])
 
     def _dispatch(self, name: str, block: FrameBlock) -> None:
         ids = block["id"]
@@ -158,6 +151,18 @@ class BusLoop:
             if callback is not None:
                 data = int(frame["data"]).to_bytes(8, "little")[: int(frame["length"])]
                 callback(int(frame["id"]), data, float(frame["time_s"]))
+
+
+def _each(works: Iterable[Callable[[], None]]) -> None:
+    """Do all of it, also after one has failed; then raise the first failure."""
+    failure: Exception | None = None
+    for work in works:
+        try:
+            work()
+        except Exception as error:
+            failure = failure or error
+    if failure is not None:
+        raise failure
 
 
 class _Duty:

@@ -91,7 +91,8 @@ def run_plan(request: RunRequest) -> RunOutcome:
 class _Run:
     def __init__(self, request: RunRequest, bench: Bench) -> None:
         self._request, self._bench = request, bench
-        self._names = " and ".join(device.name for device in bench.devices)
+        *others, last = [device.name for device in bench.devices]
+        self._names = f"{', '.join(others)} and {last}"
         self._error: HilError | None = None
         self._unsafe: list[str] = []
         self._armed = False

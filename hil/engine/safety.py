@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 
 from drivers import TICK_S, Device
@@ -70,8 +71,10 @@ def reach_safe_state(bench: Bench, fault: Fault = lambda error: None) -> list[st
             if not isinstance(error, HilError) and not told:
                 told = True
                 fault(error)
-            # A dead bus must not keep the others from being served; time still has to pass.
+            # Neither a dead bus nor a faulty device may keep the others from being served.
             bench.loop.clock.sleep_until(bench.loop.clock.now_s() + TICK_S)
+            with contextlib.suppress(Exception):
+                bench.loop.drain()
         tick += 1
         passed_s = bench.loop.clock.now_s() - start_s
         waiting = [d for d in waiting if not d.is_safe() and passed_s < d.deadline_s]

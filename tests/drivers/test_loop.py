@@ -1,0 +1,87 @@
+"""The loop serves whatever gives bytes, and one that fails keeps nobody else from being served."""
+
+from __future__ import annotations
+
+import os
+import pty
+import select
+
+import pytest
+
+from drivers import BusLoop, SerialLine
+from hil.core.errors import BenchError
+
+
+class CountingClock:
+    """Time that passes only while somebody waits for it."""
+
+    def __init__(self) -> None:
+        self.time_s = 0.0
+
+    def now_s(self) -> float:
+        return self.time_s
+
+    def sleep_until(self, time_s: float) -> None:
+        self.time_s = max(self.time_s, time_s)
+
+
+class Broken:
+    def drain(self) -> bytes:
+        raise BenchError("is unplugged")
+
+
+class Given:
+    def __init__(self, *pieces: bytes) -> None:
+        self.pieces = list(pieces)
+
+    def drain(self) -> bytes:
+        return self.pieces.pop(0) if self.pieces else b""
+
+
+def test_bytes_are_handed_out_with_their_time() -> None:
+    loop, taken = BusLoop(CountingClock(), []), []
+    loop.serve(Given(b"", b"one", b"two"), lambda data, time_s: taken.append((data, round(time_s, 6))))
+    loop.run_for(0.05)
+    assert taken == [(b"one", 0.02), (b"two", 0.03)]
+
+
+def test_a_port_that_fails_is_told_after_the_others_were_served() -> None:
+    loop, taken, drained = BusLoop(CountingClock(), []), [], []
+    loop.serve(Broken(), lambda data, time_s: None)
+    loop.serve(Given(b"one"), lambda data, time_s: taken.append(data))
+    loop.on_drained(lambda: drained.append(True))
+    with pytest.raises(BenchError, match="unplugged"):
+        loop.drain()
+    assert (taken, drained) == ([b"one"], [True])
+
+
+def test_a_duty_that_fails_keeps_no_heartbeat_from_going() -> None:
+    loop, beats = BusLoop(CountingClock(), []), []
+
+    def fails() -> None:
+        raise BenchError("bus off")
+
+    loop.every(0.01, fails)
+    loop.every(0.01, lambda: beats.append(True))
+    with pytest.raises(BenchError, match="bus off"):
+        loop.run_for(0.05)
+    assert beats == [True]
+
+
+def test_a_serial_line_sends_receives_and_says_when_it_is_gone() -> None:
+    there, terminal = pty.openpty()
+    line = SerialLine("panel", os.ttyname(terminal))
+    assert line.drain() == b""
+    os.write(there, b"\x00\xffhello\r\n\x11\x13")
+    select.select([terminal], [], [], 1.0)
+    assert line.drain() == b"\x00\xffhello\r\n\x11\x13"
+    line.send(b"\x02OFF\r\x03")
+    assert select.select([there], [], [], 1.0)[0]
+    assert os.read(there, 100) == b"\x02OFF\r\x03"
+    os.close(terminal)
+    os.close(there)
+    with pytest.raises(BenchError, match=r"device 'panel' \(/dev/.*\): sending failed"):
+        line.send(b"x")
+    with pytest.raises(BenchError, match=r"device 'panel' \(/dev/.*\): receiving failed"):
+        line.drain()
+    line.close()

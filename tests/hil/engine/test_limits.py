@@ -1,0 +1,79 @@
+"""Limits of channels of any source, and silence of any stream."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from drivers import Samples, Stream
+from hil.core.errors import BenchError
+from hil.engine.bench_tables import ChannelLimit
+from hil.engine.limits import LimitWatch
+from tests.benches_for_tests import SIM
+
+SLOW = Stream("reading", "device 'oil'", ("oil_temperature_k",), ("K",), 0.1, silence_s=0.5)
+FAST = Stream("status", "bus 'rmcu'", ("motor_speed_rad_s", "oil_flow_m3_s"), ("rad/s", "m3/s"), 1e-3)
+
+
+def watch(**limits: ChannelLimit) -> LimitWatch:
+    made = LimitWatch([FAST, SLOW], SIM.limits.model_copy(update={"channels": limits}))
+    made.active = True
+    return made
+
+
+def temperatures(*values: float) -> Samples:
+    return Samples(SLOW, 0.1 * np.arange(len(values)), np.array(values)[:, None])
+
+
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ((300.0, 370.0, 371.0), "oil_temperature_k reached 371 K, the limit is 363 K"),
+        ((300.0, 250.0, 249.0), "oil_temperature_k reached 249 K, the limit is 263 K"),
+        ((300.0, np.nan, np.nan), "oil_temperature_k reached inf K, the limit is 363 K"),
+    ],
+)
+def test_both_ends_of_a_range_trip(values: tuple[float, ...], said: str) -> None:
+    with pytest.raises(BenchError, match=said):
+        watch(oil_temperature_k=ChannelLimit(below=263.0, above=363.0)).take(temperatures(*values), 0.0)
+
+
+@pytest.mark.parametrize("limit", [ChannelLimit(above=363.0), ChannelLimit(below=263.0)])
+def test_an_open_end_limits_nothing_but_a_value_that_is_not_known(limit: ChannelLimit) -> None:
+    inside = -1e5 if limit.below is None else 1e5
+    watched = watch(oil_temperature_k=limit)
+    watched.take(temperatures(*[inside] * 20), 0.0)
+    assert watched.largest["oil_temperature_k"] == 1e5
+    with pytest.raises(BenchError, match="limit tripped"):
+        watched.take(temperatures(*[np.nan] * 20), 0.0)
+
+
+def test_one_odd_sample_never_trips_and_the_persistence_counts_in_the_streams_own_samples() -> None:
+    odd = [300.0, 370.0] * 20
+    watch(oil_temperature_k=ChannelLimit(above=363.0)).take(temperatures(*odd), 0.0)
+    patient = watch(oil_temperature_k=ChannelLimit(above=363.0, persistence_s=0.5))
+    patient.take(temperatures(*[370.0] * 5), 0.0)
+    with pytest.raises(BenchError, match="limit tripped"):
+        patient.take(temperatures(370.0), 0.0)
+
+
+def test_a_channel_may_have_a_limit_beside_that_of_the_axle() -> None:
+    watched = watch(motor_speed_rad_s=ChannelLimit(below=-1.0))
+    backwards = np.column_stack([np.full(20, -2.0), np.zeros(20)])
+    with pytest.raises(BenchError, match="motor_speed_rad_s reached -2 rad/s, the limit is -1 rad/s"):
+        watched.take(Samples(FAST, 1e-3 * np.arange(20), backwards), 0.0)
+
+
+def test_each_stream_has_its_own_silence() -> None:
+    watched = watch()
+    fast = Samples(FAST, np.zeros(1), np.zeros((1, 2)))
+    watched.take(fast, 1.0)
+    watched.take(temperatures(300.0), 1.0)
+    watched.look_for_silence(1.09)
+    with pytest.raises(BenchError, match=r"bus 'rmcu': status has stopped coming"):
+        watched.look_for_silence(1.2)
+    watched.take(fast, 1.49)
+    watched.look_for_silence(1.499)
+    watched.take(fast, 1.58)
+    with pytest.raises(BenchError, match=r"device 'oil': reading has stopped coming"):
+        watched.look_for_silence(1.6)
