@@ -149,7 +149,8 @@ def test_its_trouble_ends_the_run(
 def test_a_mistake_in_its_code_leaves_a_traceback_and_everybody_else_safe(
     where: str, oil_unit: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    right, broken = getattr(oil_unit.OilUnit, where), []
+    right: Any = getattr(oil_unit.OilUnit, where)
+    broken: list[bool] = []
 
     def wrong(unit: Any, *arguments: Any) -> Any:
         if broken:

@@ -22,7 +22,7 @@ def watch(**limits: ChannelLimit) -> LimitWatch:
 
 
 def temperatures(*values: float) -> Samples:
-    return Samples(SLOW, 0.1 * np.arange(len(values)), np.array(values)[:, None])
+    return Samples(SLOW, np.arange(len(values), dtype=np.float64), np.array(values)[:, None])
 
 
 @pytest.mark.parametrize(
@@ -61,7 +61,7 @@ def test_a_channel_may_have_a_limit_beside_that_of_the_axle() -> None:
     watched = watch(motor_speed_rad_s=ChannelLimit(below=-1.0))
     backwards = np.column_stack([np.full(20, -2.0), np.zeros(20)])
     with pytest.raises(BenchError, match="motor_speed_rad_s reached -2 rad/s, the limit is -1 rad/s"):
-        watched.take(Samples(FAST, 1e-3 * np.arange(20), backwards), 0.0)
+        watched.take(Samples(FAST, np.arange(20, dtype=np.float64), backwards), 0.0)
 
 
 def test_each_stream_has_its_own_silence() -> None:
