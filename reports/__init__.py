@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 
 from hil.core.files import replacing, write_atomically
@@ -13,6 +14,8 @@ from reports.junit import junit_text, write_junit
 from reports.pdf import pdf_bytes, write_pdf
 from reports.sections import sections
 from reports.svg_figure import svg_figure
+
+logger = logging.getLogger(__name__)
 
 HTML, PDF, JUNIT = "report.html", "report.pdf", "junit.xml"
 
@@ -49,6 +52,7 @@ def write_documents(recording: Recording, result: RunResult | None, out: Path) -
     with replacing(out / HTML) as html, replacing(out / PDF) as pdf:
         html.write_text(page, encoding="utf-8")
         pdf.write_bytes(paper)
+    logger.info("wrote %s and %s in %s", HTML, PDF, out)
     return {"html": out / HTML, "pdf": out / PDF}
 
 

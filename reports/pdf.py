@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import datetime
 import json
+import logging
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
@@ -21,6 +22,8 @@ from reports.content import Content, content
 from reports.figure import Figure
 from reports.labels import pieces
 from reports.svg_figure import svg_figure
+
+logger = logging.getLogger(__name__)
 
 _MOST_EVENTS = 200
 
@@ -43,9 +46,11 @@ def pdf_bytes(report: Content) -> bytes:
         return _compiled(data, report.started_at, system_fonts=False)
     import typst
 
+    logger.info("the report has characters that its own fonts lack: system fonts are tried")
     try:  # a script that the own fonts lack: the system may have it
         return _compiled(data, report.started_at, system_fonts=True)
-    except (typst.TypstError, UnicodeError):  # PDF/A refuses a character without a glyph
+    except (typst.TypstError, UnicodeError) as error:  # PDF/A refuses a character without a glyph
+        logger.info("characters are spelled out: %s", error)
         return _compiled(_spelled_out(data, known), report.started_at, system_fonts=False)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,8 @@ from test_plans.plan import Plan, PlanKeys, estimate_duration_s
 from test_plans.registry import did_you_mean
 from test_plans.steps import STEPS, FileSearch, Step
 from test_plans.yaml_document import Document, KeyPath, read_yaml
+
+logger = logging.getLogger(__name__)
 
 LIBRARY = Path(__file__).parent / "library"
 LONGEST_PLAN_S = 24 * 3600.0
@@ -35,7 +38,9 @@ def load_plan(name_or_path: str | Path) -> Plan:
         BadInputError: no such plan, or what is wrong with it: file, line, key, and what to do.
     """
     path = _path_of(name_or_path)
-    return plan_from_text(read_text(path), str(path), path.parent)
+    plan = plan_from_text(read_text(path), str(path), path.parent)
+    logger.info("plan %s: %d steps, %d criteria", path, len(plan.steps), len(plan.criteria))
+    return plan
 
 
 def plan_from_text(text: str, where: str, base_dir: Path, *, files_required: bool = True) -> Plan:

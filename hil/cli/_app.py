@@ -5,19 +5,23 @@ from __future__ import annotations
 import difflib
 import functools
 import importlib
-import os
+import inspect
+import logging
 import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, get_type_hints
 
 import typer
 
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
+from hil.cli._log import LOG
 from hil.cli._streams import complain, tolerate_outputs
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.files import of_the_system
+
+logger = logging.getLogger(__name__)
 
 # name: one line for `hil --help`. The module hil.cli.commands.NAME is imported when the command is used.
 _COMMANDS = {
@@ -79,11 +83,33 @@ def _refuse_empty_out(arguments: list[str]) -> None:
             raise BadInputError("--out is empty", fix="name a place; '.' is this folder")
 
 
-def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
-    @functools.wraps(command)
-    def call(*args: Any, **kwargs: Any) -> None:
-        raise SystemExit(command(*args, **kwargs))
+_VERBOSE = Annotated[bool, typer.Option("--verbose", help="tell on standard error what is being done")]
+_LOG = Annotated[Path | None, typer.Option("--log", metavar="FILE", help="file for what is done, in detail")]
 
+
+def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
+    """The command with the options that all have."""
+
+    @functools.wraps(command)
+    def call(*, verbose: bool, log: Path | None, **options: Any) -> None:
+        LOG.send(log, verbose=verbose)
+        raise SystemExit(command(**options))
+
+    common = {"verbose": (False, _VERBOSE), "log": (None, _LOG)}
+    kinds = {
+        **get_type_hints(command, include_extras=True),
+        **{name: kind for name, (_, kind) in common.items()},
+    }
+    own = [
+        parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY, annotation=kinds[name])
+        for name, parameter in inspect.signature(command).parameters.items()
+    ]
+    ours = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)
+        for name, (default, kind) in common.items()
+    ]
+    call.__signature__ = inspect.Signature([*own, *ours])  # type: ignore[attr-defined]
+    call.__annotations__ = kinds
     return call
 
 
@@ -98,6 +124,18 @@ def _help() -> str:
 
 def guarded(arguments: list[str]) -> int:
     """The exit code of a command line; every error is told in one message, none as a traceback."""
+    LOG.begin(arguments)
+    try:
+        code = _carried_out(arguments)
+        logger.info("exit code %d", code)
+        if LOG.faulty:
+            complain("note", f"what happened is in {LOG.kept() or 'no log: it cannot be written'}")
+        return code
+    finally:
+        LOG.end()
+
+
+def _carried_out(arguments: list[str]) -> int:
     try:
         return _dispatch(arguments)
     except SystemExit as stop:
@@ -123,17 +161,17 @@ def _interrupted() -> int:
 
 
 def _told(error: HilError) -> int:
+    logger.debug("ended by", exc_info=error)
     complain("error", str(error))
     return error.exit_code
 
 
 def _fault_of_ours(error: Exception) -> BenchError:
-    """A mistake in the program: where it was, for whoever mends it; all of it if HIL_TRACEBACK is set."""
-    if os.environ.get("HIL_TRACEBACK"):
-        traceback.print_exception(error)
+    """A mistake in the program: where it was; its traceback is in the log, for whoever mends it."""
+    logger.error("internal error", exc_info=error)
     at = traceback.extract_tb(error.__traceback__)[-1]
     return BenchError(
         f"internal error: {type(error).__name__}: {error}",
         where=f"{Path(at.filename).name}:{at.lineno}",
-        fix="please report it with the command and its input; HIL_TRACEBACK=1 shows more",
+        fix="please report it with the log, the command and its input",
     )

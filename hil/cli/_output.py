@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import math
 import sys
 from collections.abc import Iterable, Iterator, Mapping
@@ -13,11 +14,14 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from hil.cli._log import LOG
 from hil.cli._streams import complain
 from hil.core.result import CriterionResult, CriterionVerdict
 
 if TYPE_CHECKING:
     from hil.core.recording import Recording
+
+logger = logging.getLogger(__name__)
 
 _STYLE: dict[CriterionVerdict, str] = {
     "pass": "green",
@@ -54,6 +58,7 @@ def console() -> Console:
 
 def warn(text: str) -> None:
     """What a person must know though the command goes on; on standard error."""
+    logger.warning(text)
     complain("warning", text)
 
 
@@ -66,10 +71,22 @@ def warn_of_damage(recordings: Iterable[Recording]) -> None:
 
 @contextlib.contextmanager
 def progress(description: str) -> Iterator[Show]:
-    """A line on a terminal, nothing in a pipe."""
-    if not sys.stderr.isatty():
-        yield lambda text, share=None: None
+    """A line on a terminal, nothing in a pipe; with --verbose the log tells it."""
+    told: list[str] = []
+
+    def log(text: str, share: float | None = None) -> None:
+        del share
+        if told != [text]:
+            told[:] = [text]
+            logger.info("%s: %s", description, text)
+
+    if LOG.verbose or not sys.stderr.isatty():
+        yield log
         return
+    yield from _bar(description, log)
+
+
+def _bar(description: str, log: Show) -> Iterator[Show]:
     bar = Progress(
         SpinnerColumn(),
         TextColumn("{task.description}", markup=False),
@@ -83,6 +100,7 @@ def progress(description: str) -> Iterator[Show]:
         task = bar.add_task(description, total=None, now="")
 
         def show(text: str, share: float | None = None) -> None:
+            log(text, share)
             bar.update(task, total=None if share is None else 1.0, completed=share or 0.0, now=text)
 
         yield show

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -11,6 +12,8 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, refuse_special, replacing
+
+logger = logging.getLogger(__name__)
 
 try:
     import fcntl
@@ -84,6 +87,7 @@ def results_in(
                 raise BadInputError(
                     f"holds results already: {there[0].name}", where=str(folder), fix=_OVERWRITE
                 )
+            logger.info("results go to %s", folder)
             yield Place(folder, tuple(there))
     finally:
         for path in reversed(made):

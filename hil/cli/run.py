@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -20,6 +21,7 @@ from hil.engine import RECORDING, RunOutcome, RunRequest, StopRequest, load_benc
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import load_plan
 
+logger = logging.getLogger(__name__)
 T = TypeVar("T")
 RESULT = "result.json"
 NAMES = (RECORDING, RESULT, JUNIT, HTML, PDF)
@@ -129,6 +131,7 @@ class _Conclusion:
         except HilError as error:
             self._outcome.error = self._outcome.error or error
         except Exception as error:  # a mistake in a report must not cost the run its result
+            logger.exception("the reports")
             failure = BenchError(f"{type(error).__name__}: {error}", where="reports", fix="please report it")
             self._outcome.error = self._outcome.error or failure
         return None

@@ -8,6 +8,7 @@ project files that it imports, directly or not, are what they were, under the na
 from __future__ import annotations
 
 import hashlib
+import logging
 import re
 from collections.abc import Callable, Iterator
 from functools import cache
@@ -17,6 +18,8 @@ from typing import Any, TypeVar
 from numba import njit
 from numba.core.caching import FunctionCache
 from numba.core.runtime.nrt import rtsys
+
+logger = logging.getLogger(__name__)
 
 _F = TypeVar("_F", bound=Callable[..., object])
 # No 'nnan' or 'ninf': limits that are off are infinite, and a diverged simulation must show as NaN.
@@ -55,6 +58,7 @@ class _Cache(FunctionCache):  # type: ignore[misc]
     def __init__(self, function: Callable[..., object]) -> None:
         super().__init__(function)
         self._source = function.__module__, Path(function.__code__.co_filename)
+        self._function = function.__qualname__
         self._stamped = False
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -66,7 +70,10 @@ class _Cache(FunctionCache):  # type: ignore[misc]
         rtsys.initialize(target_context)
         self._stamp()
         with self._guard_against_spurious_io_errors():
-            return self._load_overload(sig, target_context)
+            found = self._load_overload(sig, target_context)
+            if found is None:
+                logger.info("compiling %s.%s: the first time takes a while", self._source[0], self._function)
+            return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Put a function into the cache."""

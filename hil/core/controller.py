@@ -6,6 +6,7 @@ without their dead time, from which the RMCU builds the filters (17) and (18).
 
 from __future__ import annotations
 
+import logging
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,6 +16,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.toml_file import load_toml, parse_toml
+
+logger = logging.getLogger(__name__)
 
 LARGEST_ORDER = 7
 Coefficients = tuple[float, ...]
@@ -115,7 +118,9 @@ def load_controller(path: Path) -> Controller:
     Raises:
         BadInputError: names the key that is unknown, missing or out of range.
     """
-    return _checked(load_toml(path), str(path))
+    controller = _checked(load_toml(path), str(path))
+    logger.debug("controller %s", path)
+    return controller
 
 
 def controller_from_toml(text: str, where: str) -> Controller:

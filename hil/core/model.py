@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import logging
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,6 +17,8 @@ from hil.core.effects import EFFECTS, finite_number, shown
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.toml_file import load_toml
+
+logger = logging.getLogger(__name__)
 
 # name: (unit, may be zero)
 _PARAMETER = {
@@ -118,7 +121,10 @@ def load_model(path: Path) -> Model:
     Raises:
         BadInputError: not readable, not TOML, or a key that is unknown, missing or not physical.
     """
-    return model_from_dict(load_toml(path), str(path))
+    model = model_from_dict(load_toml(path), str(path))
+    effects = ", ".join(use.id for use in model.effects) or "none"
+    logger.debug("model %s: %s, effects: %s", path, model.kind, effects)
+    return model
 
 
 def model_from_dict(data: Mapping[str, Any], where: str) -> Model:

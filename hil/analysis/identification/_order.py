@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -12,6 +13,8 @@ from scipy import stats
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.core.errors import BadInputError
+
+logger = logging.getLogger(__name__)
 
 Array = npt.NDArray[np.float64]
 
@@ -95,6 +98,7 @@ def choose_order(
         i for i, c in enumerate(candidates) if best >= _WORTHWHILE * c.held_out or c.excess <= _NEGLIGIBLE
     )
     progress("pole at the origin")
+    logger.info("order %d of %s", candidates[chosen].order, ", ".join(str(c.order) for c in candidates))
     free = evaluate(frf, candidates[chosen].order, integrator=False)
     taken = candidates[chosen]
     candidates.append(free)

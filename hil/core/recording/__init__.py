@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import logging
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,8 @@ from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_writer import RecordingWriter
 from hil.core.recording._run import RUN, SEGMENT, run_of
 from hil.core.recording._table import Event, Recording, checked
+
+logger = logging.getLogger(__name__)
 
 
 def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = False) -> Recording:
@@ -30,7 +33,11 @@ def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = 
         raise BadInputError(
             f"recordings end in {', '.join(READ)}", where=str(path), fix="rename or convert the file"
         )
-    return checked(reader(path), least_samples=least_samples, allow_missing=allow_missing)
+    recording = checked(reader(path), least_samples=least_samples, allow_missing=allow_missing)
+    logger.info("read %s: %d samples, %d channels", path, len(recording.time_s), len(recording.channels))
+    for sentence in (*recording.damage, *recording.notes):
+        logger.debug("%s: %s", path, sentence)
+    return recording
 
 
 def driven_by_torque(recording: Recording) -> list[Recording]:
@@ -73,6 +80,7 @@ def write_recording(recording: Recording, path: Path) -> None:
     if writer is None:
         raise BadInputError(f"an export ends in {', '.join(WRITTEN)}", where=str(path))
     writer(recording, path)
+    logger.info("wrote %s: %d samples, %d channels", path, len(recording.time_s), len(recording.channels))
 
 
 __all__ = [
