@@ -111,3 +111,21 @@ def test_the_spectrum_is_that_of_scipy(samples: int) -> None:
     found = periodogram(values, 0.004)
     assert found[0] == pytest.approx(frequency)
     assert found[1] == pytest.approx(density, abs=1e-9 * density.max())
+
+
+def test_a_band_of_two_lines_is_wide_enough_and_a_narrower_one_is_not() -> None:
+    speed = sine(time_axis(), 1.0, 10.0)
+    recording = recording_of(time_axis(), motor_speed_rad_s=speed)
+    # 16 s: lines 0.0625 Hz apart; three lines hold a Hann-windowed sine, 2.4 of them nearly so
+    wide = BandEnergyMotorSpeed(from_hz=9.925, to_hz=10.075)
+    assert wide.compute(recording, STEP) == pytest.approx(0.5 * (2 / 3 + 2 / 6 * 0.7), rel=1e-3)
+    with pytest.raises(NoValueError, match=r"narrower than two spectral lines of 0\.0625 Hz"):
+        BandEnergyMotorSpeed(from_hz=9.94, to_hz=10.06).compute(recording, STEP)
+
+
+def test_the_band_may_reach_half_the_rate_and_no_further() -> None:
+    time = time_axis(sample_time_s=0.01)
+    recording = recording_of(time, motor_speed_rad_s=sine(time, 1.0, 12.0))
+    assert BandEnergyMotorSpeed(to_hz=50.0).compute(recording, STEP) == pytest.approx(0.5, rel=2e-3)
+    with pytest.raises(NoValueError, match=r"^100 samples a second do not reach 50\.1 Hz$"):
+        BandEnergyMotorSpeed(to_hz=50.1).compute(recording, STEP)

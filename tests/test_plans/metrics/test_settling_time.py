@@ -1,11 +1,15 @@
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import signal
 
+from test_plans import Array
+from test_plans.conductor import PlannedSegment
 from test_plans.metrics import DidNotSettleError, NoValueError, SettlingShaftTorque, SettlingTime
 from test_plans.metrics._low_pass import low_passed
 from tests.test_plans.signals import STEP, recording_of, second_order_step, time_axis
@@ -89,3 +93,82 @@ def test_the_low_pass_is_that_of_scipy(samples: int, corner_hz: float) -> None:
     sections = signal.butter(2, corner_hz, fs=1000, output="sos")
     expected = signal.sosfiltfilt(sections, values, padlen=padding)
     assert low_passed(values, corner_hz, 0.001) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+def ramp(length_s: float) -> Array:
+    """From 0 to 326 N m within `length_s` after the step: the filter leaves a straight line alone."""
+    return 326 * np.clip((time_axis() - STEP.step_s) / length_s, 0.0, 1.0)
+
+
+def settled(torque: Array, **options: float | None) -> float:
+    given: dict[str, Any] = {"channel": "shaft_torque_nm"} | options
+    metric = SettlingTime(**given)
+    return metric.compute(recording_of(time_axis(), shaft_torque_nm=torque), STEP)
+
+
+@pytest.mark.parametrize(("band_percent", "expected"), [(5.004, 9.5), (5.006, 9.5), (5.014, 9.499)])
+def test_the_first_sample_within_the_band_counts(band_percent: float, expected: float) -> None:
+    # leaves the band at 10 s less its half width: 9.4996, 9.4994 and 9.4986 s
+    assert settled(ramp(10.0), band_percent=band_percent) == pytest.approx(expected, abs=1e-6)
+
+
+def test_what_was_settled_before_the_window_begins_is_settled_at_its_begin() -> None:
+    assert settled(ramp(3.0), from_s=5.0) == 5.0
+    # outside at the window's first sample, inside at its second
+    assert settled(ramp(10.0), from_s=9.499, band_percent=5.004) == pytest.approx(9.5, abs=1e-6)
+
+
+def test_what_does_not_settle_says_until_when_it_moved() -> None:
+    torque, after = ramp(1.7), time_axis() - STEP.step_s
+    final = np.mean(torque[(after > 1.5) & (after <= 3.0)])
+    last = after[np.flatnonzero(np.abs(torque - final) > 0.05 * 326)[-1]]
+    assert 1.5 < last < 1.7
+    said = f"until {last:.4g} s after the step, the window ends at 3 s"
+    with pytest.raises(DidNotSettleError, match=said):
+        settled(torque, to_s=3.0, mean_s=1.5)
+
+
+def test_the_mean_needs_less_than_the_whole_window() -> None:
+    for to_s, refused in ((2.0, True), (1.5, True), (2.001, False)):
+        if refused:
+            with pytest.raises(NoValueError, match=f"is {to_s:g} s long, the mean alone takes 2 s"):
+                settled(np.full(len(time_axis()), 326.0), to_s=to_s)
+        else:
+            assert settled(np.full(len(time_axis()), 326.0), to_s=to_s) == 0.0
+
+
+def test_the_filter_needs_more_than_two_samples_a_period() -> None:
+    for rate_hz, refused in ((120, False), (100, True)):
+        time = time_axis(sample_time_s=1 / rate_hz)
+        recording = recording_of(time, shaft_torque_nm=np.full(len(time), 326.0))
+        if refused:
+            with pytest.raises(NoValueError, match=f"the recording has {rate_hz:g}$"):
+                SettlingShaftTorque().compute(recording, STEP)
+        else:
+            assert SettlingShaftTorque().compute(recording, STEP) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("end_s", "options", "said"),
+    [
+        (5.0, {}, ""),
+        (2.9, {}, "the window is 1.9 s long, the mean alone takes 2 s"),
+        (3.0, {}, "the window is 2 s long, the mean alone takes 2 s"),
+        (9.0, {"from_s": 7.0}, "the window is 1 s long, the mean alone takes 2 s"),
+        (9.0, {"to_s": 1.5}, "the window is 1.5 s long, the mean alone takes 2 s"),
+        (9.0, {"to_s": 8.5}, "the window reaches to 8.5 s after the step, the segment to 8 s"),
+        (9.0, {"to_s": 8.0}, ""),
+    ],
+)
+def test_a_plan_hears_before_the_run_that_the_window_is_too_short(
+    end_s: float, options: dict[str, float], said: str
+) -> None:
+    planned = PlannedSegment("up", "step", 1.0, 0.0, 326.0, end_s=end_s)
+    given: dict[str, Any] = {"channel": "shaft_torque_nm"} | options
+    metric = SettlingTime(**given)
+    assert metric.objection(planned) == said
+
+
+def test_a_step_is_one_that_changes_the_torque_by_value() -> None:
+    same = PlannedSegment("hold", "hold", 1.0, 326.0, float("326"), end_s=20.0)
+    assert "has no step" in SettlingShaftTorque().objection(same)

@@ -8,6 +8,7 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans import Array
 from test_plans.metrics import NoValueError, Peak
+from test_plans.metrics._window import cut, evenly
 from tests.test_plans.signals import STEP, recording_of, time_axis
 
 
@@ -71,3 +72,66 @@ def test_a_channel_that_was_not_recorded() -> None:
 def test_windows_run_forward() -> None:
     with pytest.raises(ValueError, match="not after from_s"):
         Peak(channel="shaft_torque_nm", from_s=5.0, to_s=5.0)
+
+
+@pytest.mark.parametrize(("late_samples", "covered"), [(0.0, True), (0.7, True), (1.4, True), (1.6, False)])
+def test_the_window_may_begin_a_sample_and_a_half_before_the_recording(
+    late_samples: float, covered: bool
+) -> None:
+    time = STEP.step_s + 0.001 * (late_samples + np.arange(20_001))
+    if covered:
+        assert Peak(channel="shaft_torque_nm", to_s=19.0).compute(torque(time), STEP) == 1.0
+    else:
+        assert "does not cover" in refusal(torque(time), to_s=19.0)
+
+
+@pytest.mark.parametrize(("early_samples", "covered"), [(0.0, True), (1.4, True), (1.6, False)])
+def test_the_window_may_end_a_sample_and_a_half_after_the_recording(
+    early_samples: float, covered: bool
+) -> None:
+    time = STEP.end_s + 0.001 * (np.arange(-20_000, 1) - early_samples)
+    segment = STEP.model_copy(update={"step_s": 4.0})
+    if covered:
+        assert Peak(channel="shaft_torque_nm").compute(torque(time), segment) == 1.0
+    else:
+        assert "does not cover" in refusal(torque(time), segment)
+
+
+@pytest.mark.parametrize(("beyond_samples", "long_enough"), [(1.4, True), (1.6, False), (2.4, False)])
+def test_the_segment_may_end_a_sample_and_a_half_before_the_window(
+    beyond_samples: float, long_enough: bool
+) -> None:
+    to_s = 20.0 + 0.001 * beyond_samples
+    if long_enough:
+        assert Peak(channel="shaft_torque_nm", to_s=to_s).compute(torque(time_axis()), STEP) == 1.0
+    else:
+        assert "the segment ends 20 s after the step" in refusal(torque(time_axis()), to_s=to_s)
+
+
+def test_two_samples_are_a_window_and_a_recording() -> None:
+    two = Peak(channel="shaft_torque_nm", from_s=1.0, to_s=1.0012)
+    time, _ = two.samples(torque(time_axis()), STEP)
+    assert list(time) == pytest.approx([4.0, 4.001])
+    whole = Segment(id="s", start_s=0.0, step_s=0.0, end_s=0.0012, reference_before=0, reference_after=1)
+    assert Peak(channel="shaft_torque_nm").compute(torque(np.array([0.0, 0.001])), whole) == 1.0
+
+
+def test_the_sample_at_the_end_belongs_to_the_window_or_to_what_follows() -> None:
+    for with_end, last in ((True, 23.0), (False, 22.999)):
+        time, _ = cut(torque(time_axis()), STEP, "shaft_torque_nm", 3.0, 23.0, with_end=with_end)
+        assert time[-1] == pytest.approx(last)
+        assert time[0] == pytest.approx(3.0)
+
+
+def test_uneven_samples_are_laid_on_an_even_grid() -> None:
+    time = np.array([2.0, 2.1, 2.5, 2.9, 3.0])
+    spacing, values = evenly(time, 10.0 * time - 5.0)
+    assert spacing == pytest.approx(0.25)
+    assert values == pytest.approx([15.0, 17.5, 20.0, 22.5, 25.0])
+
+
+def test_the_window_is_told_in_words() -> None:
+    whole = Peak(channel="shaft_torque_nm")
+    part = Peak(channel="shaft_torque_nm", from_s=1.0, to_s=2.5)
+    assert whole.window == "from the step until the end of the segment"
+    assert part.window == "from 1 s after the step until 2.5 s after the step"
