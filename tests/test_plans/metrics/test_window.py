@@ -78,7 +78,7 @@ def test_windows_run_forward() -> None:
 def test_the_window_may_begin_a_sample_and_a_half_before_the_recording(
     late_samples: float, covered: bool
 ) -> None:
-    time = STEP.step_s + 0.001 * (late_samples + np.arange(20_001))
+    time = np.asarray(STEP.step_s + 0.001 * (late_samples + np.arange(20_001)), dtype=np.float64)
     if covered:
         assert Peak(channel="shaft_torque_nm", to_s=19.0).compute(torque(time), STEP) == 1.0
     else:
@@ -89,7 +89,7 @@ def test_the_window_may_begin_a_sample_and_a_half_before_the_recording(
 def test_the_window_may_end_a_sample_and_a_half_after_the_recording(
     early_samples: float, covered: bool
 ) -> None:
-    time = STEP.end_s + 0.001 * (np.arange(-20_000, 1) - early_samples)
+    time = np.asarray(STEP.end_s + 0.001 * (np.arange(-20_000, 1) - early_samples), dtype=np.float64)
     segment = STEP.model_copy(update={"step_s": 4.0})
     if covered:
         assert Peak(channel="shaft_torque_nm").compute(torque(time), segment) == 1.0
