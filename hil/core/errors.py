@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 
 class HilError(Exception):
@@ -19,9 +19,19 @@ class HilError(Exception):
         self.fix = fix
         super().__init__(what)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pass between processes as it is, whatever arguments a subclass is made with."""
+        return _as_it_was, (type(self), self.args, self.__dict__)
+
     def __str__(self) -> str:
         text = f"{self.where}: {self.what}" if self.where else self.what
         return f"{text}\n  {self.fix}" if self.fix else text
+
+
+def _as_it_was(kind: type[HilError], arguments: tuple[object, ...], state: dict[str, Any]) -> HilError:
+    error = kind.__new__(kind, *arguments)
+    error.__dict__.update(state)
+    return error
 
 
 class BadInputError(HilError):

@@ -3,7 +3,8 @@
 from hil.engine.bench import Bench, open_bench
 from hil.engine.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench_tables import BenchFile
-from hil.engine.run import RECORDING, RunOutcome, RunRequest, run_plan
+from hil.engine.border import RECORDING, RunOutcome, RunRequest
+from hil.engine.run import run_plan
 from hil.engine.stopping import STOP_SIGNALS, StopRequest
 
 __all__ = [

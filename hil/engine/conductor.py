@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 
@@ -17,10 +18,12 @@ from hil.core.files import write_atomically
 from hil.core.recording import SEGMENT
 from hil.core.result import RunResult, Segment
 from hil.engine.bench import Bench
+from hil.engine.border import Analyse, analysed_here
 from hil.engine.preflight import Rehearsal
 from hil.engine.recorder import Recorder
 from test_plans import Array, PlannedSegment, Quantity, Work
 
+T = TypeVar("T")
 _SPEED_TOLERANCE_RAD_S = 0.5
 _SPEED_GRACE_S = 5.0
 RELEASE_S = 0.2  # torque is taken away over this time after a stretch of samples
@@ -31,8 +34,16 @@ class BenchConductor:
 
     sample_time_s = TICK_S
 
-    def __init__(self, bench: Bench, recorder: Recorder, out: Path, ask: Callable[[str], str]) -> None:
-        self._bench, self._recorder, self._out, self._ask = bench, recorder, out, ask
+    def __init__(
+        self,
+        bench: Bench,
+        recorder: Recorder,
+        out: Path,
+        ask: Callable[[str], str],
+        analyse: Analyse = analysed_here,
+    ) -> None:
+        self._bench, self._recorder, self._out = bench, recorder, out
+        self._ask, self._analyse = ask, analyse
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
         self._speed_m_s = 0.0
@@ -119,10 +130,10 @@ class BenchConductor:
         self._bench.loop.run_for(duration_s)
 
     def prompt(self, text: str) -> None:
-        """Ask the operator; the loop stands still meanwhile, so the RMCU is off and the dynos hold."""
+        """Ask the operator, with the RMCU off; the dynos hold."""
         self._switch_off()
         self._event("prompt", text)
-        self._event("prompt", self._ask(text))
+        self._event("prompt", self._meanwhile(lambda: self._ask(text)))
 
     def ramp_down(self, duration_s: float) -> None:
         """Torque off, then the dynos bring the wheels to standstill."""
@@ -135,7 +146,7 @@ class BenchConductor:
         self._switch_off()
         recording = self._recorder.so_far()
         recording.attachments["run.json"] = self._result_so_far().model_dump_json().encode()
-        files = self._computed(lambda: work(recording, self._out))
+        files = self._meanwhile(lambda: self._analyse(work, recording, self._out))
         for file, content in files.items():
             write_atomically(self._out / file, content)
             self.made[file] = content
@@ -153,14 +164,25 @@ class BenchConductor:
             reason="the run is still going on",
         )
 
-    def _computed(self, work: Callable[[], Mapping[str, bytes]]) -> Mapping[str, bytes]:
+    def _meanwhile(self, work: Callable[[], T]) -> T:
+        """What `work` gives; the loop goes on meanwhile, or the dynos would miss the host's heartbeat.
+
+        An interrupt does not wait for it.
+        """
         if self._bench.simulated:
             return work()  # virtual time stands still
-        with ThreadPoolExecutor(1) as pool:
-            running = pool.submit(work)
-            while not running.done():
-                self._bench.loop.step()
-            return running.result()
+        answer: Future[T] = Future()
+
+        def do() -> None:
+            try:
+                answer.set_result(work())
+            except BaseException as error:  # raised where it is waited for
+                answer.set_exception(error)
+
+        threading.Thread(target=do, daemon=True).start()
+        while not answer.done():
+            self._bench.loop.step()
+        return answer.result()
 
     def _begin(self, planned: PlannedSegment, clock_s: float, samples: int) -> None:
         start_s = self._recorder.recording_time(clock_s)

@@ -6,65 +6,26 @@ import contextlib
 import datetime
 import time
 import traceback
-from collections.abc import Callable
-from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 
 from drivers import TICK_S
 from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
 from hil.core.files import make_directory
-from hil.core.model import Model, model_to_toml
+from hil.core.model import model_to_toml
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, RunResult, SafeState, verdict_of
 from hil.engine.bench import Bench, open_bench
-from hil.engine.bench_tables import BenchFile
+from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.conductor import BenchConductor
 from hil.engine.limits import LimitWatch
 from hil.engine.preflight import preflight
 from hil.engine.provenance import hashes, versions
 from hil.engine.recorder import Recorder
 from hil.engine.safety import reach_safe_state
-from hil.engine.stopping import StopRequest
-from test_plans import Plan, estimate_duration_s, judge
+from test_plans import estimate_duration_s, judge
 
-RECORDING = "recording.mcap"
 _PROGRESS_S = 0.5
 _LISTEN_S = 0.2
-
-Progress = Callable[[float, str], None]
-
-
-@dataclass
-class RunOutcome:
-    """How a run ended; `error` is what stopped it, if anything; `made` are files of its analysis steps."""
-
-    result: RunResult
-    recording: Path
-    error: HilError | None
-    largest: dict[str, float]
-    made: tuple[str, ...] = ()
-
-
-@dataclass
-class RunRequest:
-    """A run to be carried out.
-
-    `ask` shows an operator prompt and returns when it is confirmed; None means that nobody can be asked.
-    `confirmed_by` names who confirmed every prompt beforehand. `replaces` are files of an earlier run in
-    the same place: they are removed once nothing about plan and bench can keep this run from beginning.
-    """
-
-    plan: Plan
-    bench: BenchFile
-    out: Path
-    model: Model | None = None
-    operator: str = ""
-    ask: Callable[[str], None] | None = None
-    confirmed_by: str = ""
-    progress: Progress = lambda share, text: None
-    replaces: tuple[Path, ...] = ()
-    stop: StopRequest = field(default_factory=StopRequest)
 
 
 def run_plan(request: RunRequest) -> RunOutcome:
@@ -104,7 +65,7 @@ class _Run:
         self._recorder = Recorder(request.out / RECORDING, bench.streams, buses, TICK_S)
         self._watch = LimitWatch(bench.streams, request.bench.limits)
         self._store_inputs()
-        self._conductor = BenchConductor(bench, self._recorder, request.out, self._prompt)
+        self._conductor = BenchConductor(bench, self._recorder, request.out, self._prompt, request.analyse)
         bench.loop.on_block(self._recorder.take_frames)
         bench.loop.on_drained(self._take_samples)
         started = time.perf_counter()

@@ -11,7 +11,7 @@ import time
 import can
 import numpy as np
 
-from hil.core.errors import BenchError
+from hil.core.errors import BenchError, InterruptError
 from hil.core.model import load_model
 from hil.core.recording import read_recording
 from hil.engine import RunRequest, run_plan
@@ -116,3 +116,27 @@ def test_a_bench_that_loses_power_ends_the_run_and_is_not_called_safe(tmp_path):
         outcome = run_plan(request)
     assert isinstance(outcome.error, BenchError)
     assert (outcome.result.verdict, outcome.result.safe_state) == ("error", "not_confirmed")
+
+
+def test_heartbeats_go_on_while_the_operator_is_asked(tmp_path):
+    steps = "[{hold_speed: {speed_km_h: 2, duration_s: 0.1}}, {operator_prompt: {text: look}}]"
+    with bench_in_real_time("asked") as (bench, _, _):
+        request = RunRequest(plan(steps), bench, tmp_path, ask=lambda text: time.sleep(0.5))
+        outcome = run_plan(request)
+    assert (outcome.error, outcome.result.safe_state) == (None, "confirmed")
+
+
+def test_an_interrupt_does_not_wait_for_an_answer_of_the_operator(tmp_path):
+    never = threading.Event()
+    with bench_in_real_time("unanswered") as (bench, _, _):
+        request = RunRequest(plan("[{operator_prompt: {text: look}}]"), bench, tmp_path)
+
+        def ask(text):
+            request.stop.ask()
+            never.wait(20)
+
+        request.ask = ask
+        outcome = run_plan(request)
+    never.set()
+    assert isinstance(outcome.error, InterruptError)
+    assert outcome.result.safe_state == "confirmed"

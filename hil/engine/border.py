@@ -1,0 +1,71 @@
+"""What passes between who asks for a run and who holds the hardware: data, and calls that carry data.
+
+On one side stand engine, drivers and recorder, on the other command, analysis and reports. Today both live in
+one process; nothing here keeps them there (docs/decisions/0011).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from hil.core.errors import HilError
+from hil.core.model import Model
+from hil.core.recording import Recording
+from hil.core.result import RunResult
+from hil.engine.bench_tables import BenchFile
+from hil.engine.stopping import StopRequest
+from test_plans import Plan, Work
+
+RECORDING = "recording.mcap"
+
+Progress = Callable[[float, str], None]
+Analyse = Callable[[Work, Recording, Path], Mapping[str, bytes]]
+
+
+def analysed_here(work: Work, recording: Recording, directory: Path) -> Mapping[str, bytes]:
+    """Do the analysis where it is asked for."""
+    return work(recording, directory)
+
+
+@dataclass
+class RunOutcome:
+    """How a run ended: data.
+
+    `error` is what stopped it, if anything; `made` are files of its analysis steps.
+    """
+
+    result: RunResult
+    recording: Path
+    error: HilError | None
+    largest: dict[str, float]
+    made: tuple[str, ...] = ()
+
+
+@dataclass
+class RunRequest:
+    """A run to be carried out.
+
+    Data: `plan`, `bench`, `out`, `model`, `operator`, `confirmed_by` (who confirmed every prompt beforehand)
+    and `replaces`: files of an earlier run in the same place, which are removed once nothing about plan and
+    bench can keep this run from beginning.
+
+    Calls to who asked for the run, with data and for data: `ask` shows an operator prompt and returns when it
+    is confirmed (None: nobody can be asked); `progress` is told the share that is done and what is going on;
+    `analyse` does the analysis of a step of the plan, while the bench is kept alive.
+
+    The one call the other way is `stop`.
+    """
+
+    plan: Plan
+    bench: BenchFile
+    out: Path
+    model: Model | None = None
+    operator: str = ""
+    ask: Callable[[str], None] | None = None
+    confirmed_by: str = ""
+    progress: Progress = lambda share, text: None
+    analyse: Analyse = analysed_here
+    replaces: tuple[Path, ...] = ()
+    stop: StopRequest = field(default_factory=StopRequest)
