@@ -1,0 +1,78 @@
+"""From samples and events of a bench to a recording."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from drivers import Samples, Stream
+from hil.core.recording import read_recording
+from hil.engine.recorder import Recorder
+
+CHANNELS = ("motor_torque_ref_nm", "motor_speed_rad_s")
+BASE = Stream("frame 0x110", "bus 'rmcu'", CHANNELS, ("N m", "rad/s"), 0.001)
+SLOW = Stream("readings", "device 'oil'", ("oil_temperature_k",), ("K",), 0.1)
+
+
+def samples(stream: Stream, *times_s: float, value: float = 1.0) -> Samples:
+    return Samples(stream, np.array(times_s), np.full((len(times_s), len(stream.channels)), value))
+
+
+@pytest.fixture
+def recorder(tmp_path: Path) -> Iterator[Recorder]:
+    one = Recorder(tmp_path / "r.mcap", [BASE, SLOW], ["rmcu"], 0.001)
+    yield one
+    one.writer.close()
+
+
+def test_nothing_is_kept_before_it_begins_and_times_count_from_the_first_sample(recorder: Recorder) -> None:
+    recorder.take(samples(BASE, 4.9))
+    assert recorder.start_s is None
+    assert recorder.recording_time(5.0) == 0.0
+    recorder.begin()
+    recorder.take(samples(SLOW, 4.95))  # not the time base
+    assert recorder.start_s is None
+    recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(400))))
+    assert recorder.start_s == 5.0
+    assert recorder.recording_time(5.2504) == 0.25
+    assert recorder.recording_time(4.0) == 0.0  # before the recording
+
+
+def test_rows_are_written_every_half_second_and_the_rest_at_the_end(
+    tmp_path: Path,
+) -> None:
+    recorder = Recorder(tmp_path / "r.mcap", [BASE, SLOW], ["rmcu"], 0.001)
+    recorder.begin()
+    recorder.take(samples(SLOW, 5.0, 5.1, 5.2, 5.3, 5.4, 5.5, 5.6, 5.7, value=330.0))
+    for first in range(0, 700, 10):
+        recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(first, first + 10)), value=2.0))
+    recorder.event(5.25, "arm", "armed")
+    whole = recorder.finish_rows()
+    assert len(whole.time_s) == 700
+    assert whole.time_s[0] == 0.0
+    assert np.all(whole["motor_speed_rad_s"] == 2.0)
+    assert [(e.time_s, e.kind, e.text) for e in whole.events] == [(0.25, "arm", "armed")]
+    recorder.writer.close()
+    read = read_recording(tmp_path / "r.mcap")
+    assert np.array_equal(read.time_s, whole.time_s)
+    assert np.array_equal(read["oil_temperature_k"], whole["oil_temperature_k"], equal_nan=True)
+
+
+def test_a_recording_without_samples_has_its_channels(recorder: Recorder) -> None:
+    empty = recorder.finish_rows()
+    assert list(empty.channels) == ["time_s", *CHANNELS, "oil_temperature_k"]
+    assert len(empty.time_s) == 0
+
+
+def test_what_comes_too_late_for_its_row_is_counted(recorder: Recorder) -> None:
+    recorder.begin()
+    recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(2000))))
+    assert len(recorder.so_far().time_s) > 1000
+    recorder.take(samples(SLOW, 5.01))
+    whole = recorder.finish_rows()
+    assert [e.kind for e in whole.events] == ["late"]
+    assert whole.events[0].text == "1 samples came too late for their row and were left out"
+    assert whole.events[0].time_s == pytest.approx(1.999, abs=1e-6)
