@@ -71,7 +71,8 @@ def _checked(key: str, table: Any, default: str, mistakes: list[str]) -> Any:
         return table  # refused with the whole file
     kind = table.get("kind", default)
     if not isinstance(kind, str) or not kind:
-        mistakes.append(f"{key}.kind: is missing; known: {', '.join(KINDS.names())}")
+        wrong = f" = {printable(repr(kind), 60)}: names no kind" if "kind" in table else ": is missing"
+        mistakes.append(f"{key}.kind{wrong}; known: {', '.join(KINDS.names())}")
         return table
     try:
         found = KINDS.find(kind)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -29,6 +30,8 @@ from hil.core.printable import printable
 from hil.engine._simulable import simulated
 from hil.engine.bench_tables import BenchFile
 from sim_backend.can_interface import attach, detach
+
+_LOG = logging.getLogger(__name__)
 
 
 @dataclass
@@ -112,7 +115,7 @@ def _with_devices(file: BenchFile, connections: Connections, model: Model | None
     for key, table in file.device_tables.items():
         name = key.removeprefix("devices.")
         device = devices[key] = table.open(name, connections)
-        opened.callback(device.close)
+        opened.callback(_close, device)
     rmcu, dyno = devices.pop("rmcu"), devices.pop("dyno")
     if not isinstance(rmcu, MotorControl):
         raise _wrong_place(file, "rmcu", "makes no motor torque")
@@ -120,6 +123,14 @@ def _with_devices(file: BenchFile, connections: Connections, model: Model | None
         raise _wrong_place(file, "dyno", "does not turn wheels")
     further = {key.removeprefix("devices."): device for key, device in devices.items()}
     return Bench(file, connections.loop, rmcu, dyno, model, further)
+
+
+def _close(device: Device) -> None:
+    """Let go of a device; what goes wrong in that must not cost a run its outcome."""
+    try:
+        device.close()
+    except Exception:
+        _LOG.exception("%s cannot be closed", device.name)
 
 
 def _wrong_place(file: BenchFile, key: str, what: str) -> BadInputError:

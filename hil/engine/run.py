@@ -77,8 +77,7 @@ class _Run:
         except HilError as error:
             self._fail(error)
         except Exception as error:  # a fault of ours must leave a safe bench and say what it was
-            self._note_fault(error)
-            self._fail(BenchError(f"internal error: {type(error).__name__}: {error}", fix="please report it"))
+            self._fail_by(error)
         finally:
             # Also when the interpreter itself is going down: nobody may be left with torque on.
             bench.loop.shielded = True
@@ -151,6 +150,10 @@ class _Run:
         """A fault of ours, or of a device's code: where it happened stands in the recording."""
         self._try_event("traceback", "".join(traceback.format_exception(error)))
 
+    def _fail_by(self, error: Exception) -> None:
+        self._note_fault(error)
+        self._fail(BenchError(f"internal error: {type(error).__name__}: {error}", fix="please report it"))
+
     def _show_progress(self) -> None:
         passed_s = self._bench.loop.clock.now_s() - self._begin_s
         segments = self._conductor.segments
@@ -179,9 +182,7 @@ class _Run:
             )
         bench_time_s = loop.clock.now_s() - self._begin_s
         recording = self._recording()
-        criteria: tuple[CriterionResult, ...] = ()
-        if recording is not None:
-            criteria = judge(request.plan, recording, self._conductor.segments)
+        criteria = self._judged(recording) if recording is not None else ()
         result = RunResult(
             verdict=verdict_of(criteria, stopped=self._error is not None),
             plan=request.plan.name,
@@ -199,6 +200,15 @@ class _Run:
             self._error = self._error or error
         largest = dict(self._watch.largest)
         return RunOutcome(result, request.out / RECORDING, self._error, largest, tuple(self._conductor.made))
+
+    def _judged(self, recording: Recording) -> tuple[CriterionResult, ...]:
+        try:
+            return judge(self._request.plan, recording, self._conductor.segments)
+        except HilError as error:
+            self._fail(error)
+        except Exception as error:  # the recording is to be closed with what was measured
+            self._fail_by(error)
+        return ()
 
     def _recording(self) -> Recording | None:
         try:

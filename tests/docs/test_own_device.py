@@ -171,6 +171,17 @@ def test_a_mistake_in_its_code_leaves_a_traceback_and_everybody_else_safe(
         assert re.fullmatch(expected, said)
 
 
+def test_a_device_that_cannot_be_closed_costs_no_run_its_outcome(
+    oil_unit: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def wrong(unit: Any) -> None:
+        raise ZeroDivisionError("in a device")
+
+    monkeypatch.setattr(oil_unit.OilUnit, "close", wrong)
+    outcome = run(tmp_path)
+    assert (outcome.error, outcome.result.safe_state) == (None, "confirmed")
+
+
 def test_a_port_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(BenchError, match=r"device 'oil' \(.*none\): cannot be opened"):
         SerialLine("oil", str(tmp_path / "none"))

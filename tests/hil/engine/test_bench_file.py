@@ -164,3 +164,29 @@ def test_whatever_stands_in_a_table_it_is_a_bench_or_bad_input(table, value):
         bench_from_dict(data, "", SIM.source)
     except BadInputError as error:
         assert table in str(error)
+
+
+def test_kinds_may_be_named_and_are_what_is_meant_without(tmp_path):
+    for name in ("rmcu.dbc", "rcs_dyno.eds", "three_inertia.toml"):
+        shutil.copy(SIM.source.parent / name, tmp_path)
+    named = SIM.text.replace("[rmcu]\n", '[rmcu]\nkind = "rmcu-can"\n')
+    named = named.replace("[dyno]\n", '[dyno]\nkind = "rcs-canopen"\n')
+    benches = []
+    for text in (named, SIM.text):
+        (tmp_path / "bench.toml").write_text(text)
+        benches.append(load_bench(tmp_path / "bench.toml"))
+    assert benches[0].device_tables == benches[1].device_tables
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("[rmcu]\n", '[rmcu]\nkind = "rmcu-cam"\n', "rmcu.kind = 'rmcu-cam': no installed package has it"),
+        ("[rmcu]\n", '[rmcu]\nkind = "rmcu-cam"\n', "did you mean 'rmcu-can'?"),
+        ("[rmcu]\n", "[rmcu]\nkind = 3\n", "rmcu.kind = 3: names no kind; known: rmcu-can, rcs-canopen"),
+        ("[dyno]\n", '[dyno]\nkind = "rmcu-can"\n', "dyno.eds: unknown key"),
+        ('dbc = "rmcu.dbc"', "", "rmcu.dbc: is missing"),
+    ],
+)
+def test_a_kind_that_does_not_fit_is_told(old, new, said, tmp_path):
+    assert said in refused(SIM.text.replace(old, new, 1), tmp_path)

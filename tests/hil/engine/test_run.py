@@ -189,6 +189,22 @@ def test_an_internal_error_leaves_a_safe_bench_too(tmp_path):
     outcome = run(tmp_path, hook=hook)
     assert "ZeroDivisionError" in str(outcome.error)
     assert outcome.result.safe_state == "confirmed"
+    (traceback,) = [e.text for e in read_recording(outcome.recording).events if e.kind == "traceback"]
+    assert "test_run.py" in traceback
+    assert "in a progress display" in traceback
+
+
+def test_a_fault_while_criteria_are_judged_leaves_a_whole_recording_with_its_traceback(tmp_path, monkeypatch):
+    def fails(*arguments):
+        raise ZeroDivisionError("in a metric")
+
+    monkeypatch.setattr("hil.engine.run.judge", fails)
+    outcome = run(tmp_path, STEP, PEAK)
+    assert "internal error: ZeroDivisionError: in a metric" in str(outcome.error)
+    assert (outcome.result.verdict, outcome.result.safe_state) == ("error", "confirmed")
+    recording = read_recording(outcome.recording)
+    assert recording.damage == []
+    assert any("in fails" in event.text for event in recording.events if event.kind == "traceback")
 
 
 def test_idle_nodes_may_be_called_anything(tmp_path):
