@@ -1,6 +1,5 @@
 """A run: pre-flight, arm, carry out, safe state, record."""
 
-from hil.engine.bench import Bench, open_bench
 from hil.engine.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench_tables import BenchFile
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
@@ -11,12 +10,10 @@ __all__ = [
     "DEFAULT_BENCH",
     "RECORDING",
     "STOP_SIGNALS",
-    "Bench",
     "BenchFile",
     "RunOutcome",
     "RunRequest",
     "StopRequest",
     "load_bench",
-    "open_bench",
     "run_plan",
 ]
