@@ -11,6 +11,7 @@ from scipy import linalg, signal
 
 from hil.core.errors import BadInputError
 from hil.core.model import TransferFunction
+from hil.plant.controller.filters import discretised
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -95,8 +96,7 @@ def _advanced(a: Array, b: Array, duration_s: float) -> tuple[Array, Array]:
 
 
 def _by_tustin(block: TransferFunction, step: float) -> _StateSpace:
-    top, bottom = signal.bilinear(block.numerator, block.denominator, 1 / step)
-    a, b, c, d = signal.tf2ss(top, bottom)
+    a, b, c, d = signal.tf2ss(*discretised(block.numerator, block.denominator, step))
     return _StateSpace(a, b, c, float(d[0, 0]))
 
 
