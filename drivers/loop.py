@@ -48,6 +48,7 @@ class BusLoop:
         self._anchor_s, self._since_anchor = clock.now_s(), 0  # a sum of ticks would drift
         self._ticks = 0
         self._duties: list[_Duty] = []
+        self._next_duty_s = np.inf
         self._callbacks: dict[str, dict[int, FrameCallback]] = {wire.name: {} for wire in wires}
         self._wanted = {wire.name: np.zeros(_STANDARD_IDS, bool) for wire in wires}
         self._block_callbacks: list[BlockCallback] = []
@@ -57,6 +58,7 @@ class BusLoop:
     def every(self, period_s: float, duty: Callable[[], None]) -> None:
         """Call `duty` every `period_s` of the clock, from now on."""
         self._duties.append(_Duty(period_s, self.clock.now_s(), duty))
+        self._next_duty_s = -np.inf
 
     def on_frame(self, wire: Wire, frame_id: int, callback: FrameCallback) -> None:
         """Call `callback(id, data, time_s)` for each received frame with this identifier."""
@@ -137,12 +139,21 @@ class BusLoop:
                 0,
             )  # do not chase lost time: devices time out by themselves
         self._ticks += 1
-        _each([partial(duty.run_if_due, now_s) for duty in self._duties])
+        if now_s >= self._next_duty_s:
+            self._do_duties(now_s)
+
+    def _do_duties(self, now_s: float) -> None:
+        self._next_duty_s = np.inf
+        try:
+            _each([partial(duty.run_if_due, now_s) for duty in self._duties])
+        finally:
+            nearest_s = min((duty.due_s for duty in self._duties), default=np.inf) - 0.5 * TICK_S
+            self._next_duty_s = min(self._next_duty_s, nearest_s)
 
     def _dispatch(self, name: str, block: FrameBlock) -> None:
         ids = block["id"]
         mask = self._wanted[name][ids % _STANDARD_IDS]
-        if not mask.any():
+        if not np.count_nonzero(mask):
             return
         for frame in block[mask]:
             if frame["flags"] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
@@ -167,9 +178,9 @@ def _each(works: Iterable[Callable[[], None]]) -> None:
 
 class _Duty:
     def __init__(self, period_s: float, now_s: float, run: Callable[[], None]) -> None:
-        self._period_s, self._due_s, self._run = period_s, now_s, run
+        self._period_s, self.due_s, self._run = period_s, now_s, run
 
     def run_if_due(self, now_s: float) -> None:
-        if now_s >= self._due_s - 0.5 * TICK_S:
-            self._due_s = max(self._due_s + self._period_s, now_s)
+        if now_s >= self.due_s - 0.5 * TICK_S:
+            self.due_s = max(self.due_s + self._period_s, now_s)
             self._run()

@@ -16,7 +16,7 @@ class Wire:
     """One bus, used from one thread, without a receive thread that could die unseen.
 
     A bus that has a `recv_block` of its own (see `hil.core.frames`) is drained with it, any other message
-    by message; the result is the same.
+    by message; a bus that has `send_frame(id, data)` is given no message object. The result is the same.
     """
 
     def __init__(self, name: str, bus: can.BusABC, clock: Clock, *, epoch_offset_s: float = 0.0) -> None:
@@ -26,6 +26,7 @@ class Wire:
         self._epoch_offset_s = epoch_offset_s  # message time stamps minus clock time
         self._sent: list[tuple[float, int, int, int, int]] = []
         self._take: Any = getattr(bus, "recv_block", None)
+        self._put: Any = getattr(bus, "send_frame", self._put_message)
 
     def send(self, frame_id: int, data: bytes) -> None:
         """Put one standard data frame on the bus.
@@ -34,7 +35,7 @@ class Wire:
             BenchError: the bus does not take it (unplugged, down, bus-off, queue full).
         """
         try:
-            self._bus.send(can.Message(arbitration_id=frame_id, data=data, is_extended_id=False, check=False))
+            self._put(frame_id, data)
         except (can.CanError, OSError) as error:
             raise self._failed("sending", error) from error
         self._sent.append(
@@ -59,6 +60,9 @@ class Wire:
     def close(self) -> None:
         """Leave the bus."""
         self._bus.shutdown()
+
+    def _put_message(self, frame_id: int, data: bytes) -> None:
+        self._bus.send(can.Message(arbitration_id=frame_id, data=data, is_extended_id=False, check=False))
 
     def _take_one_by_one(self) -> FrameBlock:
         frames = []

@@ -31,8 +31,8 @@ def attached(name: str) -> SimulatedBench:
 class SimulatedBus(can.BusABC):
     """One bus of a simulated bench. Waiting for a frame makes the bench's virtual time pass.
 
-    Beside python-can's interface it has `recv_block`, which gives all waiting frames at once; message by
-    message gives the same frames.
+    Beside python-can's interface it has `recv_block`, which gives all waiting frames, and `send_frame`,
+    which needs no message object; message by message gives the same frames.
     """
 
     def __init__(self, channel: str, **kwargs: Any) -> None:
@@ -54,6 +54,10 @@ class SimulatedBus(can.BusABC):
         """Put a frame on the bus."""
         del timeout
         self._bench.put(self._bus, msg.arbitration_id, bytes(msg.data))
+
+    def send_frame(self, frame_id: int, data: bytes) -> None:
+        """Put a standard data frame on the bus."""
+        self._bench.put(self._bus, frame_id, data)
 
     def recv_block(self) -> FrameBlock:
         """All frames that arrived until now."""

@@ -27,9 +27,8 @@ _ARRAY = np.array(_TABLE, np.uint8)
 def crc8(frame_id: int, payload: int) -> int:
     """Checksum of one payload (byte 0 lowest); its byte 7 is not read."""
     crc = _TABLE[_START ^ (frame_id & 0xFF)]
-    for _ in range(7):
-        crc = _TABLE[crc ^ (payload & 0xFF)]
-        payload >>= 8
+    for byte in payload.to_bytes(8, "little")[:7]:
+        crc = _TABLE[crc ^ byte]
     return crc ^ _FINAL
 
 

@@ -25,19 +25,18 @@ def joined(blocks: list[FrameBlock]) -> FrameBlock:
     """The blocks one after the other. As plain bytes: numpy compares structured types field by field."""
     if len(blocks) == 1:
         return blocks[0]
-    raw = np.dtype(f"V{FRAME.itemsize}")
-    return np.concatenate([np.ascontiguousarray(block).view(raw) for block in blocks]).view(FRAME)
+    return np.frombuffer(bytearray().join([block.tobytes() for block in blocks]), FRAME)
 
 
 def standard(block: FrameBlock) -> FrameBlock:
     """The data frames with an 11-bit identifier: an extended one of the same number is another message."""
     other = block["flags"] & (EXTENDED | ERROR_FRAME)
-    return block[other == 0] if other.any() else block
+    return block[other == 0] if np.count_nonzero(other) else block
 
 
 def newest(block: FrameBlock, frame_id: int) -> tuple[float, int] | None:
     """Time and payload of the last received frame with this identifier; None if the block has none."""
-    ids = block["id"]
+    ids = block["id"].tolist()
     for index in range(len(ids) - 1, -1, -1):
         if ids[index] == frame_id and not block["flags"][index] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
             return float(block["time_s"][index]), int(block["data"][index])

@@ -27,6 +27,9 @@ class CyclicTraffic:
         self._layouts = [layout for layout, _ in shown]
         self._crc = [column for column, layout in enumerate(self._layouts) if layout.id in crc]
         self._ends_s = np.cumsum([frame_time_s(layout.length, bit_rate) for layout in self._layouts])
+        self._still = np.zeros(len(shown), FRAME)  # what is the same in every sample
+        self._still["id"] = [layout.id for layout in self._layouts]
+        self._still["length"] = [layout.length for layout in self._layouts]
         places, numbers = [], []
         self._others: list[tuple[int, int, Signal]] = []  # signals that the compiled loop does not know
         for message, (layout, columns) in enumerate(shown):
@@ -48,10 +51,9 @@ class CyclicTraffic:
 
     def block(self, rows: npt.NDArray[np.float64], start_s: npt.NDArray[np.float64]) -> FrameBlock:
         """Frames of the samples that began at `start_s`, in order of time."""
-        block = np.zeros((len(rows), len(self._layouts)), FRAME)
+        block = np.empty((len(rows), len(self._layouts)), FRAME)
+        block[:] = self._still
         block["time_s"] = start_s[:, None] + self._ends_s
-        block["id"] = [layout.id for layout in self._layouts]
-        block["length"] = [layout.length for layout in self._layouts]
         payloads = np.zeros((len(rows), len(self._layouts)), np.uint64)
         _fill(rows, self._places, self._numbers, payloads)
         for message, column, signal in self._others:

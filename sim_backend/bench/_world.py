@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from itertools import pairwise
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SimulationSettings
+from sim_backend.bench._ticks import advance
 from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s, single
 from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
@@ -26,6 +28,7 @@ RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
 TICK_S = 0.001
 _NOISE_BLOCK = 1000
 _LARGEST_BATCH = 4096
+_NODES_EVERY = 10  # samples between looks at heartbeats: no more are computed at once
 _SYNC = FrameLayout("SYNC", 0x80, 0, {})
 _SENSED = (  # channel, and each side's share of it
     ("motor_speed_rad_s", 1.0),
@@ -50,7 +53,7 @@ class SimulatedBench:
     """A bench whose time passes only while somebody waits for it. It is also the `Clock` of its users.
 
     Frames that hosts send are delivered at the next sample; everything that the nodes send is kept until
-    `take` is called for its bus.
+    `take` is called for its bus. What passes unseen is computed when somebody looks, several samples at once.
     """
 
     def __init__(self, settings: SimulationSettings) -> None:
@@ -63,10 +66,17 @@ class SimulatedBench:
         self._parameters = _slots.pack(settings.model)
         self._random = np.random.default_rng(settings.seed)
         self.faults: set[Fault] = set()
-        self._samples = 0
+        self._samples = 0  # computed so far
+        self._due = 0  # samples whose time has come
         self._now_s = 0.0
         self._pending: dict[str, list[FrameBlock]] = {RMCU_BUS: [], DYNO_BUS: []}
-        self._inbox: list[tuple[str, int, bytes]] = []
+        self._inbox: deque[tuple[int, str, int, bytes]] = deque()  # each with the sample that it comes before
+        self._breaks: deque[int] = deque()  # samples before which more comes than a torque request
+        self._asked = (
+            np.zeros(_NODES_EVERY, np.int64),
+            np.zeros(_NODES_EVERY),
+            np.zeros(_NODES_EVERY, np.int64),
+        )
         self._rows = np.zeros((_LARGEST_BATCH, T.COLUMNS))
         self._first_row = 0
         self._make_state()
@@ -79,20 +89,42 @@ class SimulatedBench:
         return self._now_s
 
     def sleep_until(self, time_s: float) -> None:
-        """Compute until virtual time is `time_s`."""
+        """Let virtual time be `time_s`."""
         last = int((time_s + 1e-9) / TICK_S)
-        while self._samples < last:
-            self._tick()
+        if last > self._due:
+            self._due = last
+            self._now_s = max(self._now_s, last * TICK_S)
+            if (
+                last - self._samples > _LARGEST_BATCH or self._samples == 0
+            ):  # what is slow the first time is over
+                self._compute()
         self._now_s = max(self._now_s, time_s)
+
+    # --- the devices ---
+
+    @property
+    def rmcu(self) -> RmcuNode:
+        """The RMCU as it is now."""
+        self._compute()
+        return self._rmcu
+
+    @property
+    def dynos(self) -> list[DynoNode]:
+        """The dynamometers' nodes as they are now: rear left, rear right, then idle ones."""
+        self._compute()
+        return self._dynos
 
     # --- the wire ---
 
     def put(self, bus: str, frame_id: int, data: bytes) -> None:
         """A host's frame: it reaches the nodes at the next sample."""
-        self._inbox.append((bus, frame_id, data))
+        self._inbox.append((self._due, bus, frame_id, data))
+        if frame_id != self._request_id or bus != RMCU_BUS:
+            self._breaks.append(self._due)
 
     def take(self, bus: str) -> FrameBlock:
         """All frames that have appeared on `bus` until now and were not taken yet, in order of time."""
+        self._compute()
         self._emit()
         blocks = self._pending[bus]
         if not blocks:
@@ -128,10 +160,11 @@ class SimulatedBench:
     def _make_nodes(self) -> None:
         s = self.settings
         dbc = read_dbc(s.dbc, NEEDED, s.names)
-        self.rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data))
+        self._rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data))
         self._vehicle = dbc.layouts["RCS_Vehicle"]
+        self._request_id = dbc.layouts["RMCU_Request"].id
         rows = {s.rear_left: self._drives[0], s.rear_right: self._drives[1]}
-        self.dynos = [
+        self._dynos = [
             DynoNode(
                 node,
                 s.eds,
@@ -142,13 +175,13 @@ class SimulatedBench:
         ]
         p = self._parameters
         vehicle = (p[_slots.VEHICLE_INERTIA], p[_slots.ROLLING], p[_slots.AERO], 0.0, s.wheel_radius_m, 0.0)
-        for node in self.dynos:
+        for node in self._dynos:
             for subindex, value in enumerate(vehicle, 1):
                 node.preset(0x2000, subindex, value)
         self._rmcu_traffic = self._traffic_of_rmcu()
         self._dyno_traffic = self._traffic_of_dynos()
         self._refuse_slow_buses()
-        m = self.rmcu.memory
+        m = self._rmcu.memory
         m.gains[memory.SAMPLE_TIME] = TICK_S
         m.gains[memory.TORQUE_LIMIT] = LARGEST_TORQUE_NM  # until a controller sets its own
         self._firmware = (m.numerators, m.denominators, m.filter_states, m.gains, m.states)
@@ -170,24 +203,42 @@ class SimulatedBench:
 
     # --- one sample ---
 
-    def _tick(self) -> None:
-        k = self._samples
-        time_s = k * TICK_S
-        if self._inbox:
-            self._deliver(time_s)
-        rmcu = self.rmcu
-        rmcu.vehicle_speed_is_fresh(time_s)
-        rmcu.supervise(time_s)
-        if k % 10 == 0:
-            for node in self.dynos:
-                node.pass_time(time_s)
-            self._status[0] = self.dynos[0].power.statusword
-            self._status[1] = self.dynos[1].power.statusword
-        if k % _NOISE_BLOCK == 0:
+    def _compute(self) -> None:
+        """Catch up with the time."""
+        while self._samples < self._due:
+            first = self._samples
+            self._deliver(first)
+            end = min(
+                self._due, first - first % _NODES_EVERY + _NODES_EVERY, self._first_row + _LARGEST_BATCH
+            )
+            if self._breaks:
+                end = min(end, self._breaks[0])
+            self._advance(first, end)
+            self._samples = end
+            if end - self._first_row == _LARGEST_BATCH:
+                self._emit()
+
+    def _advance(self, first: int, end: int) -> None:
+        """Samples `first` to before `end`; between them nothing but torque requests may come."""
+        modes, requests, codes = (values[: end - first] for values in self._asked)
+        rmcu = self._rmcu
+        for k in range(first, end):
+            if k > first:
+                self._deliver(k)
+            time_s = k * TICK_S
+            rmcu.vehicle_speed_is_fresh(time_s)
+            rmcu.supervise(time_s)
+            modes[k - first], requests[k - first], codes[k - first] = rmcu.mode, rmcu.request, rmcu.code
+        if first % _NODES_EVERY == 0:
+            for node in self._dynos:
+                node.pass_time(first * TICK_S)
+            self._status[0] = self._dynos[0].power.statusword
+            self._status[1] = self._dynos[1].power.statusword
+        if first % _NOISE_BLOCK == 0:
             drawn = self._random.standard_normal((_NOISE_BLOCK, T.SENSORS))
             self._noise[:, : T.SENSORS] = drawn * self._noise_scale
-        T.tick(
-            k,
+        advance(
+            first,
             self._x,
             self._parameters,
             self._scalars,
@@ -196,48 +247,51 @@ class SimulatedBench:
             self._drives,
             self._sensors,
             self._past,
-            self._noise[k % _NOISE_BLOCK],
-            rmcu.mode,
-            rmcu.request,
-            rmcu.code,
+            self._noise[first % _NOISE_BLOCK :],
+            modes,
+            requests,
+            codes,
             self._status,
-            self._rows[k - self._first_row],
+            self._rows[first - self._first_row :],
         )
-        self._samples = k + 1
-        self._now_s = self._samples * TICK_S
-        if self._samples - self._first_row == _LARGEST_BATCH:
-            self._emit()
 
-    def _deliver(self, time_s: float) -> None:
-        inbox, self._inbox = self._inbox, []
-        for bus, frame_id, data in inbox:
+    def _deliver(self, sample: int) -> None:
+        """What hosts sent before `sample`."""
+        inbox, time_s = self._inbox, sample * TICK_S
+        while inbox and inbox[0][0] <= sample:
+            _, bus, frame_id, data = inbox.popleft()
             if self._is_deaf(bus):
                 continue
             if bus == RMCU_BUS:
-                self.rmcu.receive(frame_id, int.from_bytes(data, "little"), time_s)
+                self._rmcu.receive(frame_id, int.from_bytes(data, "little"), time_s)
             else:
                 self._emit()  # what the nodes send may change from here on
-                for node in self.dynos:
+                for node in self._dynos:
                     node.receive(frame_id, data, time_s)
                 self._take_vehicle_model()
                 self._dyno_traffic = self._traffic_of_dynos()
+        while self._breaks and self._breaks[0] <= sample:
+            self._breaks.popleft()
 
     def _is_deaf(self, bus: str) -> bool:
+        if not self.faults:
+            return False
         deaf = (Fault.RMCU_SILENT, Fault.RMCU_DEAF) if bus == RMCU_BUS else (Fault.DYNO_DEAF,)
         return any(fault in self.faults for fault in deaf)
 
     def fail(self, fault: Fault) -> None:
         """Break a device, from now on."""
+        self._compute()
         self._emit()
         self.faults.add(fault)
         if fault is Fault.RMCU_SILENT:
-            self.rmcu.mode, self.rmcu.request = 0, 0.0
+            self._rmcu.mode, self._rmcu.request = 0, 0.0
         if fault is Fault.DYNO_SILENT:
-            self.dynos[0].switch_off()
+            self._dynos[0].switch_off()
         self._rmcu_traffic, self._dyno_traffic = self._traffic_of_rmcu(), self._traffic_of_dynos()
 
     def _take_vehicle_model(self) -> None:
-        left = self.dynos[0]
+        left = self._dynos[0]
         inertia, rolling, aero, slip, radius, initial = (left.number(0x2000, i) for i in range(1, 7))
         p = self._parameters
         p[_slots.VEHICLE_INERTIA], p[_slots.ROLLING], p[_slots.AERO] = inertia, rolling, aero
@@ -267,11 +321,11 @@ class SimulatedBench:
         shown: list[Shown] = [
             (self._vehicle, {"VehicleSpeed": T.VEHICLE_SPEED, "Counter": T.COUNTER, "Valid": T.ALWAYS_ONE}),
             (
-                self.rmcu.status,
+                self._rmcu.status,
                 {"MotorSpeed": T.MOTOR_SPEED, "MotorTorqueRef": T.TORQUE_REF, "MotorTorque": T.TORQUE},
             ),
             (
-                self.rmcu.control,
+                self._rmcu.control,
                 {
                     "DrivingTorqueRef": T.DRIVING_REF,
                     "DrivingTorqueEst": T.DRIVING_EST,
@@ -285,17 +339,17 @@ class SimulatedBench:
         ]
         if Fault.RMCU_SILENT in self.faults:
             shown = shown[:1]
-        return CyclicTraffic(shown, self.settings.rmcu_bit_rate, (self._vehicle.id, self.rmcu.control.id))
+        return CyclicTraffic(shown, self.settings.rmcu_bit_rate, (self._vehicle.id, self._rmcu.control.id))
 
     def _traffic_of_dynos(self) -> CyclicTraffic | None:
         """What NMT and the SYNC producer let the dynos send now."""
-        if not any(node.sync_period_s for node in self.dynos):
+        if not any(node.sync_period_s for node in self._dynos):
             return None
-        return self._traffic_with(self.dynos[0].operational, self.dynos[1].operational)
+        return self._traffic_with(self._dynos[0].operational, self._dynos[1].operational)
 
     def _traffic_with(self, *operational: bool) -> CyclicTraffic:
         shown: list[Shown] = [(_SYNC, {})]
-        for side, node in enumerate(self.dynos[:2]):
+        for side, node in enumerate(self._dynos[:2]):
             if operational[side]:
                 values = {"Wheel speed": T.WHEEL_LEFT + side, "Shaft torque": T.SHAFT_LEFT + side}
                 status = {

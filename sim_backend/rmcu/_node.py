@@ -57,6 +57,8 @@ class RmcuNode:
         self.request = 0.0
         self._send = send
         self._request = dbc.layouts["RMCU_Request"]
+        signals = self._request.signals
+        self._read = signals["Crc"], signals["Counter"], signals["Mode"], signals["TorqueRequest"]
         self._write = dbc.layouts["RMCU_ParameterWrite"]
         self._reply = dbc.layouts["RMCU_ParameterReply"]
         self.status = dbc.layouts["RMCU_Status"]
@@ -97,19 +99,19 @@ class RmcuNode:
         return self.mode | self._fault << 4 | int(self._valid) << 8
 
     def _take_request(self, payload: int, time_s: float) -> None:
-        signals = self._request.signals
-        if signals["Crc"].raw(payload) != crc8(self._request.id, payload):
+        crc, count, mode, request = self._read
+        if crc.raw(payload) != crc8(self._request.id, payload):
             self._fault = _CRC if self._fault == _NONE else self._fault
             return
-        counter = signals["Counter"].raw(payload)
+        counter = count.raw(payload)
         expected = None if self._counter is None else (self._counter + 1) % _COUNTER_VALUES
         self._counter = counter
         if expected is not None and counter != expected:
             self._fault = _COUNTER if self._fault == _NONE else self._fault
             return
         self._last_request_s = time_s
-        self._change_mode(signals["Mode"].raw(payload), time_s)
-        self.request = signals["TorqueRequest"].value(payload) if self.mode in (1, 2) else 0.0
+        self._change_mode(mode.raw(payload), time_s)
+        self.request = request.value(payload) if self.mode in (1, 2) else 0.0
 
     def _change_mode(self, wanted: int, time_s: float) -> None:
         if wanted == M.OFF:

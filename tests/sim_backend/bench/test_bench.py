@@ -6,12 +6,48 @@ import can
 import numpy as np
 import pytest
 
-from drivers import TICK_S, Wire
+from drivers import TICK_S, Wire, read_rmcu
+from hil.core.checksum import crc8_many
 from hil.core.errors import BadInputError
-from hil.core.model import Model
+from hil.core.model import Model, load_model
 from sim_backend.bench import Fault, SimulatedBench, SimulationSettings, frame_time_s
 from sim_backend.can_interface import SimulatedBus, attach, attached, detach
 from tests.benches_for_tests import SIM, running, sim_bench
+
+
+def frames_of(looks, duration=120):
+    """All frames of a bench of its own while a host asks for torque, starts nodes and falls silent.
+
+    `looks(k)`: whether somebody looks at the bench after sample k.
+    """
+    world = SimulatedBench(SimulationSettings(load_model(SIM.simulation.model), SIM.rmcu.dbc, SIM.dyno.eds))
+    rmcu = read_rmcu(SIM.rmcu.dbc).layouts["RMCU_Request"]
+    payloads = rmcu.encode(Counter=np.arange(40) % 16, Mode=1, TorqueRequest=np.linspace(0, 20, 40))
+    payloads |= rmcu.signals["Crc"].encode(crc8_many(rmcu.id, payloads))
+    payloads[30] ^= np.uint64(1 << 20)  # damaged on the way
+    seen: dict[str, list[Any]] = {"rmcu": [], "dyno": []}
+    for k in range(duration):
+        if k < len(payloads):
+            world.put("rmcu", rmcu.id, int(payloads[k]).to_bytes(8, "little")[: rmcu.length])
+        if k == 7:
+            world.put("dyno", 0x000, bytes([1, 0]))  # NMT: start all nodes
+        if k == 25:
+            world.put("rmcu", read_rmcu(SIM.rmcu.dbc).layouts["RMCU_ParameterWrite"].id, bytes(8))
+        if k == 100:
+            world.fail(Fault.DYNO_SILENT)
+        world.sleep_until((k + 1) * 0.001)
+        if looks(k):
+            for bus, frames in seen.items():
+                frames.append(world.take(bus))
+    mode = world.rmcu.mode
+    return mode, {bus: np.concatenate([*frames, world.take(bus)]).tobytes() for bus, frames in seen.items()}
+
+
+def test_what_nobody_looks_at_comes_to_pass_all_the_same():
+    always = frames_of(lambda k: True)
+    assert always[0] == 3  # requests stopped
+    assert frames_of(lambda k: k % 10 == 4) == always
+    assert frames_of(lambda k: False) == always
 
 
 def test_every_bus_stays_below_70_percent_load():

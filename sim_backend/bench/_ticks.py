@@ -1,0 +1,34 @@
+"""Some samples of the bench in one call: what the RMCU was asked may change with each."""
+
+from __future__ import annotations
+
+from hil.core.compiled import compiled
+from hil.plant.closed_loop.tick import tick
+
+
+@compiled
+def advance(  # type: ignore[no-untyped-def]
+    first, x, vector, w, torques, fir, drives, sensors, past, noise, modes, requests, codes, status, rows
+):
+    """Carry out `tick` for sample `first` and those that follow it, one for each of `modes`.
+
+    `noise` and `rows` have a row, `requests` and `codes` an entry for each sample.
+    """
+    for i in range(modes.shape[0]):
+        tick(
+            first + i,
+            x,
+            vector,
+            w,
+            torques,
+            fir,
+            drives,
+            sensors,
+            past,
+            noise[i],
+            modes[i],
+            requests[i],
+            codes[i],
+            status,
+            rows[i],
+        )
