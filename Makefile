@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup test test-slow hunt bad-inputs blind mutants coverage lint bench figures lock clean
+.PHONY: run setup test test-slow hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -56,6 +56,10 @@ mutants: setup
 coverage: setup
 	$(BIN)/python -m pytest -n 2 -m "not slow and not hunt" --cov --cov-report=
 	$(BIN)/python -m tests.coverage_by_package
+
+# What the next release's CHANGELOG.md will say, from the fragments in changelog.d.
+changelog: setup
+	$(BIN)/towncrier build --draft --version next
 
 bench: setup
 	$(BIN)/python -m benchmarks

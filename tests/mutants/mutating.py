@@ -63,7 +63,7 @@ class _Compiles:
     def __call__(self, mutant: Mutant) -> bool:
         try:
             compile(mutant.code((self._root / mutant.file).read_text("utf-8")), mutant.file, "exec")
-        except SyntaxError:
+        except (SyntaxError, AttributeError):  # an operator of cosmic-ray's meets code it does not know
             return False
         return True
 

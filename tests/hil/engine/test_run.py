@@ -5,7 +5,8 @@ import pytest
 
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.recording import read_frames, read_recording
-from hil.engine import RunRequest, run_plan
+from hil.engine.border import RunRequest
+from hil.engine.run import run_plan
 from sim_backend.bench import Fault, SimulatedBench
 from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM, plan, sim_bench

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis import Diagnosis, diagnose
+from hil.analysis.diagnosis import Diagnosis
+from hil.analysis.diagnosis._diagnose import diagnose
 from hil.core.effects import EFFECTS
 from hil.core.model import Model, model_from_dict, model_to_toml
 from hil.core.recording import Recording
