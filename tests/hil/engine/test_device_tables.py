@@ -34,7 +34,7 @@ def test_kinds_have_defaults_and_can_be_named() -> None:
 @pytest.mark.parametrize(
     ("key", "change", "said"),
     [
-        ("rmcu", {"kind": 7}, "rmcu.kind: is missing; known: "),
+        ("rmcu", {"kind": 7}, "rmcu.kind = 7: names no kind; known: "),
         ("rmcu", {"kind": ""}, "rmcu.kind: is missing; known: "),
         ("rmcu", {"kind": "rmcu-cam"}, "rmcu.kind = 'rmcu-cam': no installed package has it; did you mean"),
         ("dyno", {"kind": "rmcu-can", "eds": None}, "dyno"),
