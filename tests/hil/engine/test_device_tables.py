@@ -35,7 +35,7 @@ def test_kinds_have_defaults_and_can_be_named() -> None:
     ("key", "change", "said"),
     [
         ("rmcu", {"kind": 7}, "rmcu.kind = 7: names no kind; known: "),
-        ("rmcu", {"kind": ""}, "rmcu.kind: is missing; known: "),
+        ("rmcu", {"kind": ""}, "rmcu.kind = '': names no kind; known: "),
         ("rmcu", {"kind": "rmcu-cam"}, "rmcu.kind = 'rmcu-cam': no installed package has it; did you mean"),
         ("dyno", {"kind": "rmcu-can", "eds": None}, "dyno"),
         ("rmcu", {"colour": 1}, "rmcu.colour: unknown key"),
