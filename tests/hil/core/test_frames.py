@@ -51,3 +51,11 @@ def test_what_the_host_sent_is_not_the_newest_answer() -> None:
     assert newest(block((0.0, 0, 8, 1), (0.001, SENT_BY_HOST, 8, 2)), 0x110) == (0.0, 1)
     whole = block((0.0, SENT_BY_HOST, 8, 1))
     assert standard(whole) is whole
+
+
+def test_the_newest_frame_is_the_last_that_was_received() -> None:
+    frames = block((0.1, 0, 8, 1), (0.2, 0, 8, 2), (0.3, SENT_BY_HOST, 8, 3), (0.4, EXTENDED, 8, 4))
+    assert newest(frames, 0x110) == (0.2, 2)
+    assert newest(frames[:1], 0x110) == (0.1, 1)
+    assert newest(frames, 0x111) is None
+    assert newest(frames[2:], 0x110) is None

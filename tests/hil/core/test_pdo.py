@@ -2,8 +2,10 @@
 
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
+from canopen.objectdictionary import ObjectDictionary, ODRecord, ODVariable
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -93,3 +95,34 @@ def test_a_damaged_eds_is_read_or_refused_but_never_more(data):
         pass
     finally:
         path.unlink()
+
+
+def test_every_type_of_cia_301_has_its_bits_and_its_sign() -> None:
+    # CiA 301, table 44: name, code, bits
+    signed = [(0x02, 8), (0x03, 16), (0x10, 24), (0x04, 32), (0x12, 40), (0x13, 48), (0x14, 56), (0x15, 64)]
+    unsigned = [(0x05, 8), (0x06, 16), (0x16, 24), (0x07, 32), (0x18, 40), (0x19, 48), (0x1A, 56), (0x1B, 64)]
+    for kinds, minus, point in (
+        (signed, True, False),
+        (unsigned, False, False),
+        ([(8, 32), (0x11, 64)], False, True),
+    ):
+        for code, bits in kinds:
+            signal = one_signal(code, bits)
+            assert (signal.length, signal.signed, signal.is_float) == (bits, minus, point)
+            with pytest.raises(BadInputError, match=f"which has {bits}"):
+                one_signal(code, bits - 1)
+
+
+def one_signal(code: int, bits: int) -> Any:
+    dictionary = ObjectDictionary()
+    value = ODVariable("Value", 0x2000)
+    value.data_type = code
+    dictionary.add_object(value)
+    mapping = ODRecord("Mapping", 0x1A00)
+    for subindex, default in ((0, 1), (1, 0x2000 << 16 | bits)):
+        entry = ODVariable("Entry", 0x1A00, subindex)
+        entry.default = default
+        mapping.add_member(entry)
+    dictionary.add_object(mapping)
+    (signal,) = layout_of_pdo(dictionary, 0x1A00, 0x180).signals.values()
+    return signal

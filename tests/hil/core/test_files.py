@@ -1,0 +1,77 @@
+"""Files are read and written whole, or the message says which and why."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import stat
+from pathlib import Path
+
+import pytest
+
+from hil.core.errors import BadInputError, BenchError
+from hil.core.files import (
+    make_directory,
+    of_the_system,
+    read_text,
+    refuse_special,
+    replacing,
+    write_atomically,
+)
+
+
+def test_a_file_is_whole_or_not_there(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "a.txt"
+    write_atomically(path, "ω_m")
+    assert read_text(path) == "ω_m"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o644
+    with contextlib.suppress(RuntimeError), replacing(path) as temporary:
+        temporary.write_text("half")
+        raise RuntimeError
+    assert read_text(path) == "ω_m"
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_failure_is_told_in_the_systems_words_alone(tmp_path: Path) -> None:
+    with pytest.raises(BadInputError) as caught:
+        read_text(tmp_path / "none.toml")
+    assert caught.value.what == "No such file or directory"
+    assert caught.value.where == str(tmp_path / "none.toml")
+    assert of_the_system(OSError("odd")).what == "odd"
+    assert of_the_system(OSError(errno.EACCES, "Permission denied", "x")).what == "Permission denied"
+    (tmp_path / "latin").write_bytes(b"\xe9")
+    with pytest.raises(BadInputError, match="not a UTF-8 text file"):
+        read_text(tmp_path / "latin")
+
+
+@pytest.mark.parametrize(
+    ("number", "kind"),
+    [
+        (errno.ENOSPC, BenchError),
+        (errno.EDQUOT, BenchError),
+        (errno.EFBIG, BenchError),
+        (errno.EIO, BenchError),
+        (errno.EACCES, BadInputError),
+        (errno.ENOENT, BadInputError),
+    ],
+)
+def test_a_full_or_broken_disk_is_the_benchs_fault(
+    tmp_path: Path, number: int, kind: type[Exception]
+) -> None:
+    with pytest.raises(kind, match="cannot be written: why"), replacing(tmp_path / "a"):
+        raise OSError(number, "why")
+    assert type(of_the_system(OSError(number, "why"))) is kind
+
+
+def test_what_is_no_regular_file_is_not_replaced(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "nothing")
+    for path, said in (
+        (tmp_path, "is a directory"),
+        (Path("/dev/null"), "is not a regular file"),
+        (tmp_path / "link", "is a link to nothing"),
+    ):
+        with pytest.raises(BadInputError, match=said):
+            refuse_special(path)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(BadInputError, match="cannot be made a directory: "):
+        make_directory(tmp_path / "file" / "below")
