@@ -31,9 +31,7 @@ def criterion(
         (None, {"upper": 400.0}, None),
     ],
 )
-def test_the_margin_is_the_nearest_limits(
-    value: float | None, limits: dict[str, float], margin: float
-) -> None:
+def test_the_margin_is_the_nearest_limits(value: float | None, limits: dict[str, Any], margin: float) -> None:
     assert criterion(value, **limits).margin == (None if margin is None else pytest.approx(margin))
 
 
