@@ -16,18 +16,21 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from numba import njit
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.runtime.nrt import rtsys
 
 logger = logging.getLogger(__name__)
+#: What compiled functions depend on beside the sources here: a digest of other packages' laws, '' for none.
+_outside = ""
 
 _F = TypeVar("_F", bound=Callable[..., object])
 # No 'nnan' or 'ninf': limits that are off are infinite, and a diverged simulation must show as NaN.
-_FAST = {"contract", "arcp", "reassoc", "nsz"}
+FAST = {"contract", "arcp", "reassoc", "nsz"}
 _IMPORT = re.compile(
     r"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(?:\(([^)]*)\)|([^\n(]*))|import[ \t]+([^\n]*))",
     re.MULTILINE,
 )
+_FINDS_SIBLINGS = "pkgutil.iter_modules("  # a registry imports every module beside it
 _COMMENT = re.compile(r"#[^\n]*")
 
 
@@ -46,8 +49,14 @@ def compiled_parallel(function: _F) -> Any:
     return _cached(function, parallel=True)
 
 
+def depends_on(digest: str) -> None:
+    """Keep functions compiled with another package's laws, told by a digest, apart from those without."""
+    global _outside
+    _outside = digest
+
+
 def _cached(function: _F, **options: Any) -> Any:
-    dispatcher = njit(error_model="numpy", fastmath=_FAST, **options)(function)
+    dispatcher = njit(error_model="numpy", fastmath=FAST, **options)(function)
     dispatcher._cache = _Cache(function)
     return dispatcher
 
@@ -83,7 +92,11 @@ class _Cache(FunctionCache):  # type: ignore[misc]
     def _stamp(self) -> None:
         """Late: most processes use few of the functions that they import."""
         if not self._stamped:
-            self._cache_file._source_stamp = source_stamp(*self._source)
+            stamp = source_stamp(*self._source)
+            if _outside:
+                name = f"{self._impl.filename_base}-{_outside}"
+                self._cache_file = IndexDataCacheFile(self._cache_path, name, stamp)
+            self._cache_file._source_stamp = stamp
             self._stamped = True
 
 
@@ -113,6 +126,9 @@ def _imports(module: str, file: Path) -> tuple[tuple[str, Path], ...]:
     """Modules of the same project that a file imports, with their files."""
     project = file.parents[module.count(".")]
     found = []
+    if _FINDS_SIBLINGS in _content(file):
+        package = module.rpartition(".")[0]
+        found += [(f"{package}.{path.stem}", path) for path in sorted(file.parent.glob("*.py"))]
     for choices in _named(_content(file)):
         files = ((name, _file_of(name, project)) for name in choices)
         found += [(name, path) for name, path in files if path is not None][:1]

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
+from hil.core.chain import WHEEL_RADIUS_M
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, finite_number, shown
 from hil.core.errors import BadInputError
@@ -92,6 +93,7 @@ class Model:
     effects: tuple[EffectUse, ...] = ()
     transfer_functions: dict[str, TransferFunction] = field(default_factory=dict)
     meta: dict[str, Any] = field(default_factory=dict)
+    wheel_radius_m: float = WHEEL_RADIUS_M
 
     def with_parameters(self, **changes: float) -> Model:
         """The same model with other parameter values."""

@@ -1,33 +1,13 @@
-"""Dry friction on the rotor, for every kernel: Coulomb's law with a Stribeck peak, and true standstill.
+"""Dry friction on the rotor, for every kernel: true standstill, whatever law says how large it may be.
 
-While the rotor turns, friction is `level(speed)` against the motion. At standstill it is whatever holds the
-rotor, up to `level(0)`, the break-away torque: nothing creeps below it.
+While the rotor turns, friction is its level against the motion. At standstill it is whatever holds the
+rotor, up to the level there, the break-away torque: nothing creeps below it.
 Source: B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083-1138.
 """
 
 from __future__ import annotations
 
-import math
-
 from hil.core.compiled import compiled
-from hil.plant import _slots as P
-
-_STRIBECK_WIDTH_RAD_S = 2.0
-
-
-@compiled
-def has_friction(p):  # type: ignore[no-untyped-def]
-    """Whether the rotor of a packed model can stick."""
-    return p[P.COULOMB] != 0.0 or p[P.STRIBECK] != 0.0
-
-
-@compiled
-def friction_level(speed, p):  # type: ignore[no-untyped-def]
-    """Largest friction torque in N m of a packed model at a speed of rotor against housing in rad/s."""
-    if p[P.STRIBECK] == 0.0:
-        return p[P.COULOMB]
-    ratio = speed / _STRIBECK_WIDTH_RAD_S
-    return p[P.COULOMB] + p[P.STRIBECK] * math.exp(-ratio * ratio)
 
 
 @compiled

@@ -1,8 +1,8 @@
 """The linear part of a driveline over one held step, as matrices: what makes many replays affordable.
 
 Without nonlinear forces a held input moves the state exactly by a matrix product. Nonlinear forces are
-split off as three inputs that vary linearly over a step (exponential time differencing, order two):
-x' = A·x + B·[torque, extra shaft torque, extra rotor loss, load on the vehicle].
+split off as inputs that vary linearly over a step (exponential time differencing, order two):
+x' = A·x + B·[torque, the inputs behind it in `_linear`].
 Source: S. M. Cox, P. C. Matthews, J. Comput. Phys. 176 (2002) 430-455.
 """
 
@@ -67,7 +67,7 @@ def step_matrices(p: Array, dt: float, substeps: int) -> tuple[Array, Array, Arr
 
     Returns:
         transition (8 x 8, transposed), torque columns (substeps x 2 x 8: effect of the older and the newer
-        torque in each substep, the switch laid exactly), held forces (3 x 8), rising forces (3 x 8).
+        torque in each substep, the switch laid exactly), held forces (5 x 8), rising forces (5 x 8).
     """
     a, b = system(p)
     h = dt / substeps

@@ -13,10 +13,9 @@ from numba.np.unsafe.ndarray import to_fixed_tuple
 
 from hil.core.compiled import compiled, inlined
 from hil.plant import _equations as E
+from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant._backlash import moved_seat
-from hil.plant._friction import has_friction
 from hil.plant._tuples import plus, put
 
 # Columns of the kernel's output
@@ -31,7 +30,8 @@ OUTPUT_COLUMNS = 6
     START_WHEEL_ANGLE,
 ) = range(5)
 _PARAMETERS = len(P.SLOTS)
-_STATES = X.ALL_STATES
+_MOVING = X.MOVING
+_MEMORIES = len(X.NO_MEMORY)
 
 
 @inlined
@@ -45,120 +45,126 @@ def as_tuple(vector):  # type: ignore[no-untyped-def]
 
 @inlined
 def as_state(array):  # type: ignore[no-untyped-def]
-    """The state that an array holds, by value."""
-    return to_fixed_tuple(array, _STATES)
-
-
-@inlined
-def _step(x, p, torque, coupled, load, h, direction):  # type: ignore[no-untyped-def]
-    """One Runge-Kutta step of `h` seconds; dry friction keeps its direction over it."""
-    k1 = E.derivative(x, p, torque, coupled, load, direction)
-    k2 = E.derivative(plus(x, 0.5 * h, k1), p, torque, coupled, load, direction)
-    k3 = E.derivative(plus(x, 0.5 * h, k2), p, torque, coupled, load, direction)
-    k4 = E.derivative(plus(x, h, k3), p, torque, coupled, load, direction)
-    y = plus(plus(plus(plus(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
-    if p[P.HALF_GAP] > 0.0 and p[P.KIND] != P.RIGID:
-        seat = moved_seat(x[X.SEAT], x[X.TWIST], y[X.TWIST], h, p)
-        y = put(y, X.SEAT, seat)
-    return y
+    """The moving state and the memories that an array holds, by value."""
+    return to_fixed_tuple(array[:_MOVING], _MOVING), to_fixed_tuple(array[_MOVING:], _MEMORIES)
 
 
 @compiled
-def _steps(x, p, torque, coupled, load, duration, count):  # type: ignore[no-untyped-def]
+def _after(x, memories, y, p, h):  # type: ignore[no-untyped-def]
+    """What effects remember `h` seconds after `x`, once the state is `y`."""
+    chain = L.chain_of(p)
+    before, after = E.motion(x, chain, memories, p), E.motion(y, chain, memories, p)
+    return L.remembered(before, after, chain, memories, p, h)
+
+
+@inlined
+def _step(x, memories, p, acting, torque, coupled, load, h, direction):  # type: ignore[no-untyped-def]
+    """One Runge-Kutta step of `h` seconds; dry friction keeps its direction over it."""
+    kept = memories
+    k1 = E.derivative(x, kept, p, acting, torque, coupled, load, direction)
+    y = plus(x, 0.5 * h, k1)
+    if acting.memory:
+        kept = _after(x, memories, y, p, 0.5 * h)
+    k2 = E.derivative(y, kept, p, acting, torque, coupled, load, direction)
+    k3 = E.derivative(plus(x, 0.5 * h, k2), kept, p, acting, torque, coupled, load, direction)
+    y = plus(x, h, k3)
+    if acting.memory:
+        kept = _after(x, memories, y, p, h)
+    k4 = E.derivative(y, kept, p, acting, torque, coupled, load, direction)
+    y = plus(plus(plus(plus(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
+    return y, kept
+
+
+@compiled
+def _steps(x, memories, p, torque, coupled, load, duration, count):  # type: ignore[no-untyped-def]
     """`count` steps over `duration` seconds with constant inputs.
 
     A step in which dry friction stops the rotor is cut there: it then sticks or turns the other way.
     """
+    acting = L.acting_of(p)
     whole = duration / count
     h, done, cut = whole, 0, False
     while done < count:
         before = E.relative_speed(x)
-        y = _step(x, p, torque, coupled, load, h, before)
+        y, kept = _step(x, memories, p, acting, torque, coupled, load, h, before)
         after = E.relative_speed(y)
         if cut:
-            x = put(y, X.ROTOR_SPEED, y[X.HOUSING_SPEED])
+            x, memories = put(y, X.ROTOR_SPEED, y[X.HOUSING_SPEED]), kept
             h, cut = whole - h, False
-        elif before * after < 0.0 and has_friction(p):
+        elif before * after < 0.0 and acting.dry:
             h, cut = h * before / (before - after), True
         else:
-            x = y
+            x, memories = y, kept
             h, done = whole, done + 1
-    return x
-
-
-@inlined
-def shaped(torque, p):  # type: ignore[no-untyped-def]
-    """Dead band, then saturation: the parts of the torque path without memory."""
-    band = p[P.DEADBAND]
-    if band > 0.0:
-        torque = math.copysign(max(0.0, abs(torque) - band), torque)
-    return min(max(torque, -p[P.SATURATION]), p[P.SATURATION])
+    return x, memories
 
 
 @compiled
-def _hold(x, p, slewed, wanted, coupled, load, duration, longest_step):  # type: ignore[no-untyped-def]
+def _hold(x, memories, p, slewed, wanted, coupled, load, duration, longest_step):  # type: ignore[no-untyped-def]
     """Advance with the wanted torque held; the slew limit, if any, moves once a step."""
     count = max(1, math.ceil(duration / longest_step - 1e-9))
-    if p[P.RATE_LIMIT] == math.inf or slewed == wanted:
-        return _steps(x, p, wanted, coupled, load, duration, count), wanted
+    limit = L.steepest(p)
+    if limit == math.inf or slewed == wanted:
+        x, memories = _steps(x, memories, p, wanted, coupled, load, duration, count)
+        return x, memories, wanted
     h = duration / count
     for _ in range(count):
-        reach = p[P.RATE_LIMIT] * h
+        reach = limit * h
         moved = slewed + min(max(wanted - slewed, -reach), reach)
-        x = _steps(x, p, 0.5 * (slewed + moved), coupled, load, h, 1)
+        x, memories = _steps(x, memories, p, 0.5 * (slewed + moved), coupled, load, h, 1)
         slewed = moved
-    return x, slewed
+    return x, memories, slewed
 
 
 @compiled
-def sample(x, p, slewed, old, new, late, dt, coupled, load, longest_step):  # type: ignore[no-untyped-def]
+def sample(x, memories, p, slewed, old, new, late, dt, coupled, load, longest_step):  # type: ignore[no-untyped-def]
     """One controller sample: `old` torque acts for `late` seconds, then `new` until `dt`."""
     if late > 0.0:
-        x, slewed = _hold(x, p, slewed, shaped(old, p), coupled, load, late, longest_step)
+        wanted = L.shaped(old, p)
+        x, memories, slewed = _hold(x, memories, p, slewed, wanted, coupled, load, late, longest_step)
     if late < dt:
-        x, slewed = _hold(x, p, slewed, shaped(new, p), coupled, load, dt - late, longest_step)
-    return x, slewed
+        wanted = L.shaped(new, p)
+        x, memories, slewed = _hold(x, memories, p, slewed, wanted, coupled, load, dt - late, longest_step)
+    return x, memories, slewed
 
 
 @compiled
-def outputs(x, p, slewed, coupled, load, row):  # type: ignore[no-untyped-def]
+def outputs(x, memories, p, slewed, coupled, load, row):  # type: ignore[no-untyped-def]
     """Fill `row` with the measurable quantities of a state."""
-    acting = x[X.LAGGED] if p[P.LAG] > 0.0 else slewed
+    chain, acting = L.chain_of(p), L.acting_of(p)
+    m = E.motion(x, chain, memories, p)
+    torque = x[X.LAGGED] if chain.torque_lag > 0.0 else slewed
+    outside = L.vehicle_load(m, chain, memories, p) if coupled else load
     row[OUT_MOTOR_SPEED] = E.relative_speed(x)
     row[OUT_WHEEL_SPEED] = x[X.WHEEL_SPEED]
-    if p[P.KIND] == P.RIGID:
-        outside = E.running_resistance(x[X.WHEEL_SPEED], p) if coupled else load
-        wheel = E.rigid_acceleration(x, p, acting, outside, E.relative_speed(x)) / p[P.GEAR_RATIO]
-        row[OUT_SHAFT_TORQUE] = p[P.VEHICLE_INERTIA] * wheel + outside
+    if chain.kind == P.RIGID:
+        rotor = E.rigid_acceleration(x, m, chain, memories, p, acting, torque, outside, E.relative_speed(x))
+        row[OUT_SHAFT_TORQUE] = chain.vehicle_inertia * rotor / chain.gear_ratio + outside
     else:
-        row[OUT_SHAFT_TORQUE] = E.shaft_torque(x, p)
-    row[OUT_MOTOR_TORQUE] = acting
+        row[OUT_SHAFT_TORQUE] = E.shaft_torque(m, chain, memories, p, acting)
+    row[OUT_MOTOR_TORQUE] = torque
     row[OUT_VEHICLE_SPEED] = x[X.VEHICLE_SPEED]
-    if coupled and p[P.KIND] == P.THREE_INERTIA:
-        row[OUT_LOAD] = E.tyre_torque(x, p)
-    elif coupled:
-        row[OUT_LOAD] = E.running_resistance(x[X.WHEEL_SPEED], p)
-    else:
-        row[OUT_LOAD] = load
+    row[OUT_LOAD] = outside
+    if coupled and chain.kind == P.THREE_INERTIA:
+        row[OUT_LOAD] = E.tyre_torque(x, m, chain, memories, p, acting)
 
 
 @compiled
 def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel_angle):  # type: ignore[no-untyped-def]
-    """State that shows the given speeds (rad/s) and torques (N m), the road coupling at rest."""
-    twist, seat = 0.0, 0.0
-    if p[P.KIND] != P.RIGID:
-        twist = shaft_torque / p[P.SHAFT_STIFFNESS]
-        seat = math.copysign(p[P.HALF_GAP], twist) if twist != 0.0 else 0.0
-        twist += seat
+    """State and memories that show the given speeds (rad/s) and torques (N m), the road coupling at rest."""
+    chain = L.chain_of(p)
+    memories, twist = L.begun(shaft_torque, chain, p)
+    if chain.kind != P.RIGID:
+        twist += shaft_torque / chain.shaft_stiffness
     tyre = 0.0
-    if p[P.KIND] == P.THREE_INERTIA:
-        tyre = shaft_torque / p[P.TYRE_STIFFNESS]
-    if p[P.KIND] == P.RIGID:
-        wheel_speed = motor_speed / p[P.GEAR_RATIO]
+    if chain.kind == P.THREE_INERTIA:
+        tyre = shaft_torque / chain.tyre_stiffness
+    if chain.kind == P.RIGID:
+        wheel_speed = motor_speed / chain.gear_ratio
     x = put(put(X.AT_REST, X.ROTOR_SPEED, motor_speed), X.TWIST, twist)
     x = put(put(x, X.WHEEL_SPEED, wheel_speed), X.TYRE_TWIST, tyre)
     x = put(put(x, X.VEHICLE_SPEED, wheel_speed), X.WHEEL_ANGLE, wheel_angle)
-    return put(put(x, X.LAGGED, motor_torque), X.SEAT, seat)
+    return put(x, X.LAGGED, motor_torque), memories
 
 
 @compiled
@@ -173,8 +179,8 @@ def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untype
     if late < 1e-9 * dt:
         late = 0.0
     before = start[START_MOTOR_TORQUE]
-    slewed = shaped(before, p)
-    x = initial_state(
+    slewed = L.shaped(before, p)
+    x, memories = initial_state(
         p,
         start[START_MOTOR_SPEED],
         start[START_WHEEL_SPEED],
@@ -183,10 +189,10 @@ def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untype
         start[START_WHEEL_ANGLE],
     )
     for k in range(torque.shape[0]):
-        outputs(x, p, slewed, True, 0.0, out[k])
+        outputs(x, memories, p, slewed, True, 0.0, out[k])
         new = torque[k - whole] if k >= whole else before
         old = torque[k - whole - 1] if k > whole else before
-        x, slewed = sample(x, p, slewed, old, new, late, dt, True, 0.0, longest_step)
+        x, memories, slewed = sample(x, memories, p, slewed, old, new, late, dt, True, 0.0, longest_step)
 
 
 def empty_output(samples: int) -> np.ndarray:

@@ -27,6 +27,8 @@ TORQUE = _input("motor_torque_nm", "N m", "on the rotor, before the actuator's l
 SHAFT = _input("extra_shaft_torque_nm", "N m", "beside stiffness and damping of the shafts, wheel side")
 LOSS = _input("rotor_loss_nm", "N m", "against positive motion of rotor against housing")
 LOAD = _input("vehicle_load_nm", "N m", "against positive motion of the vehicle")
+TYRE = _input("extra_tyre_torque_nm", "N m", "beside stiffness and damping of the tyre, wheel side")
+TYRE_RATE = _input("extra_tyre_rate_rad_s", "rad/s", "of the tyre's twist beside wheel less vehicle speed")
 
 OUTPUTS = Table()
 _output = OUTPUTS.place
@@ -99,7 +101,7 @@ def linear_system_of(slots: Array) -> LinearSystem:
 
 
 def system(p: Array) -> tuple[Array, Array]:
-    """A (8 x 8) and B (8 x 4) of the linear part of a packed model, SI units."""
+    """A (8 x 8) and B (8 x 6) of the linear part of a packed model, SI units."""
     a, b = np.zeros((X.LINEAR_STATES, X.LINEAR_STATES)), np.zeros((X.LINEAR_STATES, len(INPUTS)))
     if p[P.KIND] == P.RIGID:
         _rigid(p, a, b)
@@ -118,7 +120,7 @@ def _rigid(p: Array, a: Array, b: Array) -> None:
     inertia = p[P.MOTOR_INERTIA] + p[P.VEHICLE_INERTIA] / n**2
     for state, share in ((X.ROTOR_SPEED, 1.0), (X.WHEEL_SPEED, 1.0 / n), (X.VEHICLE_SPEED, 1.0 / n)):
         a[state, X.ROTOR_SPEED] = -share * p[P.DRAG] / inertia
-        b[state] = np.array([share, 0.0, -share, -share / n]) / inertia
+        b[state, :TYRE] = np.array([share, 0.0, -share, -share / n]) / inertia
 
 
 def _chain(p: Array, a: Array, b: Array) -> None:
@@ -128,25 +130,28 @@ def _chain(p: Array, a: Array, b: Array) -> None:
     loss[X.ROTOR_SPEED], loss[X.HOUSING_SPEED] = p[P.DRAG], -p[P.DRAG]
     a[X.TWIST] = _twist_rate(p)
     a[X.ROTOR_SPEED] = (-loss - shaft / n) / p[P.MOTOR_INERTIA]
-    b[X.ROTOR_SPEED] = np.array([1.0, -1.0 / n, -1.0, 0.0]) / p[P.MOTOR_INERTIA]
+    b[X.ROTOR_SPEED, :TYRE] = np.array([1.0, -1.0 / n, -1.0, 0.0]) / p[P.MOTOR_INERTIA]
     if p[P.HOUSING_INERTIA] > 0.0:
         a[X.HOUSING_ANGLE, X.HOUSING_SPEED] = 1.0
         a[X.HOUSING_SPEED] = (loss - (1.0 - 1.0 / n) * shaft) / p[P.HOUSING_INERTIA]
         a[X.HOUSING_SPEED, X.HOUSING_ANGLE] -= p[P.MOUNT_STIFFNESS] / p[P.HOUSING_INERTIA]
         a[X.HOUSING_SPEED, X.HOUSING_SPEED] -= p[P.MOUNT_DAMPING] / p[P.HOUSING_INERTIA]
-        b[X.HOUSING_SPEED] = np.array([-1.0, 1.0 / n - 1.0, 1.0, 0.0]) / p[P.HOUSING_INERTIA]
+        b[X.HOUSING_SPEED, :TYRE] = np.array([-1.0, 1.0 / n - 1.0, 1.0, 0.0]) / p[P.HOUSING_INERTIA]
     if p[P.KIND] == P.TWO_INERTIA:
         a[X.WHEEL_SPEED] = a[X.VEHICLE_SPEED] = shaft / p[P.VEHICLE_INERTIA]
-        b[X.WHEEL_SPEED] = b[X.VEHICLE_SPEED] = np.array([0.0, 1.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
+        b[X.WHEEL_SPEED, SHAFT] = b[X.VEHICLE_SPEED, SHAFT] = 1.0 / p[P.VEHICLE_INERTIA]
+        b[X.WHEEL_SPEED, LOAD] = b[X.VEHICLE_SPEED, LOAD] = -1.0 / p[P.VEHICLE_INERTIA]
         return
     road = np.zeros(X.LINEAR_STATES)
     road[X.TYRE_TWIST] = p[P.TYRE_STIFFNESS]
     road[X.WHEEL_SPEED], road[X.VEHICLE_SPEED] = p[P.TYRE_DAMPING], -p[P.TYRE_DAMPING]
     a[X.WHEEL_SPEED] = (shaft - road) / p[P.WHEEL_INERTIA]
-    b[X.WHEEL_SPEED] = np.array([0.0, 1.0, 0.0, 0.0]) / p[P.WHEEL_INERTIA]
+    b[X.WHEEL_SPEED, SHAFT], b[X.WHEEL_SPEED, TYRE] = 1.0 / p[P.WHEEL_INERTIA], -1.0 / p[P.WHEEL_INERTIA]
+    b[X.TYRE_TWIST, TYRE_RATE] = 1.0
     a[X.TYRE_TWIST, X.WHEEL_SPEED], a[X.TYRE_TWIST, X.VEHICLE_SPEED] = 1.0, -1.0
     a[X.VEHICLE_SPEED] = road / p[P.VEHICLE_INERTIA]
-    b[X.VEHICLE_SPEED] = np.array([0.0, 0.0, 0.0, -1.0]) / p[P.VEHICLE_INERTIA]
+    b[X.VEHICLE_SPEED, LOAD] = -1.0 / p[P.VEHICLE_INERTIA]
+    b[X.VEHICLE_SPEED, TYRE] = 1.0 / p[P.VEHICLE_INERTIA]
 
 
 def _twist_rate(p: Array) -> Array:

@@ -12,12 +12,14 @@ import numpy as np
 import numpy.typing as npt
 from numba import prange
 
+from hil.core.chain import Chain
 from hil.core.compiled import compiled, compiled_parallel, inlined
-from hil.plant import _held_forces as F
+from hil.plant import _forces as F
+from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._equations import relative_speed
-from hil.plant._friction import friction_level, has_friction, mean_friction
+from hil.plant._friction import mean_friction
 from hil.plant._held_linear import step_matrices
 from hil.plant._kernel import as_tuple
 from hil.plant._sensors import COLUMNS, GAIN, record
@@ -27,8 +29,6 @@ Array = npt.NDArray[np.float64]
 
 CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 SPEED, WHEEL, SHAFT = range(3)  # of the channels, and of a start
-
-_SEATED_NM = 2.0  # a first shaft torque that surely is in contact
 
 
 def ideal_sensors(sets: int) -> Array:
@@ -61,14 +61,14 @@ def simulate_many(
         sets x (n // block) x 3, in the order of `CHANNELS`. A diverged set shows as NaN or huge numbers.
     """
     sets = len(parameters)
-    substeps = np.array([_substeps(p) for p in parameters])
+    substeps, varies = _parts(parameters, dt)
     most = int(substeps.max())
     transition = np.zeros((sets, X.LINEAR_STATES, X.LINEAR_STATES))
     torque = np.zeros((sets, 2 * most, X.LINEAR_STATES))
-    held, rising = np.zeros((sets, 3, X.LINEAR_STATES)), np.zeros((sets, 3, X.LINEAR_STATES))
+    held, rising = (np.zeros((sets, F.COUNT, X.LINEAR_STATES)) for _ in range(2))
     for index, p in enumerate(parameters):
         used = int(substeps[index])
-        matrices = _matrices(p[P.LINEAR].tobytes(), dt, used)
+        matrices = _matrices(p[: P.CHAIN].tobytes(), dt, used)
         transition[index], held[index], rising[index] = matrices[0], matrices[2], matrices[3]
         torque[index, : 2 * used] = matrices[1].reshape(-1, X.LINEAR_STATES)
     out = np.empty((sets, len(torque_nm) // block, len(CHANNELS)))
@@ -80,6 +80,7 @@ def simulate_many(
         np.ascontiguousarray(sensors, dtype=float),
         block,
         substeps,
+        varies,
         (transition, torque, held, rising),
         np.zeros((0, 2)) if angles is None else np.ascontiguousarray(angles, dtype=float),
         out,
@@ -87,30 +88,42 @@ def simulate_many(
     return out
 
 
-_ABRUPT = [P.HALF_GAP, P.HYSTERESIS_STIFFNESS]
-
-
 @lru_cache(maxsize=512)
 def _matrices(linear: bytes, dt: float, substeps: int) -> tuple[Array, Array, Array, Array]:
     p = np.zeros(len(P.SLOTS))
-    p[P.LINEAR] = np.frombuffer(linear)
+    p[: P.CHAIN] = np.frombuffer(linear)
     return step_matrices(p, dt, substeps)
 
 
-def _substeps(p: Array) -> int:
-    return 2 if np.any(p[_ABRUPT] != 0.0) else 1
+def _parts(parameters: Array, dt: float) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+    """In how many parts each model's samples are cut, and whether any of its forces depends on the motion."""
+    steps = np.ones(len(parameters), np.int64)
+    varies = np.zeros(len(parameters), bool)
+    for effect in P.ACTING:
+        law, first = effect.law, P.FIRST[effect.id]
+        own = parameters[:, first : first + len(effect.parameters)]
+        acts = np.any(
+            parameters[:, [P.place(effect.id, name) for name in effect.acting()]] != effect.off, axis=1
+        )
+        if not acts.any() or (law.shape is not None or law.slope is not None):
+            continue
+        steady = law.steady(tuple(own.T)) if law.steady is not None else False
+        varies |= acts & ~np.asarray(steady)
+        if law.steps is not None:
+            for index in np.flatnonzero(acts):
+                p = parameters[index]
+                cut = law.steps(Chain(*p[: P.CHAIN]), tuple(own[index]), dt)
+                steps[index] = max(steps[index], cut)
+    return steps, varies
 
 
 @compiled
 def _acting(torque, dt, p, out, ends):  # type: ignore[no-untyped-def]
-    """Dead band, saturation, slew limit: the torque over each sample and at its end, before the delay."""
-    band, limit, reach = p[P.DEADBAND], p[P.SATURATION], p[P.RATE_LIMIT] * dt
+    """The torque path but for its delay and lag: the torque over each sample and at its end."""
+    reach = L.steepest(p) * dt
     slewed = 0.0
     for k in range(torque.shape[0]):
-        wanted = torque[k]
-        if band > 0.0:
-            wanted = math.copysign(max(0.0, abs(wanted) - band), wanted)
-        wanted = min(max(wanted, -limit), limit)
+        wanted = L.shaped(torque[k], p)
         if k == 0:
             slewed = wanted
         gap = wanted - slewed
@@ -127,33 +140,29 @@ def _acting(torque, dt, p, out, ends):  # type: ignore[no-untyped-def]
 @compiled
 def _shown(acting, ends, dt, whole, p, out):  # type: ignore[no-untyped-def]
     """The delayed torque at each sample's instant: what a rigid axle's shaft torque shows of it."""
-    reach = (1.0 + whole - p[P.TORQUE_DELAY] / dt) * p[P.RATE_LIMIT] * dt
+    limit = L.steepest(p)
+    reach = (1.0 + whole - p[P.TORQUE_DELAY] / dt) * limit * dt
     for k in range(acting.shape[0]):
         now = max(k - whole - 1, 0)
         out[k] = acting[now]
-        if p[P.RATE_LIMIT] < math.inf:
+        if limit < math.inf:
             before = ends[max(now - 1, 0)]
             gap = ends[now] - before
             out[k] = before + math.copysign(min(abs(gap), reach), gap)
 
 
-@inlined
-def _first_seat(p, start):  # type: ignore[no-untyped-def]
-    """A small torque may lie anywhere in the gap: let it come smoothly to one side."""
-    return p[P.HALF_GAP] * min(max(start[SHAFT] / _SEATED_NM, -1.0), 1.0)
-
-
 @compiled
 def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
+    """State and memories that show a start."""
+    memories, twist = L.begun(start[SHAFT], L.chain_of(p), p)
     x = put(put(X.LINEAR_AT_REST, X.LAGGED, acting), X.ROTOR_SPEED, start[SPEED])
     if p[P.KIND] == P.RIGID:
         wheel = start[SPEED] / p[P.GEAR_RATIO]
-        return put(put(x, X.WHEEL_SPEED, wheel), X.VEHICLE_SPEED, wheel)
-    twist = start[SHAFT] / p[P.SHAFT_STIFFNESS]
-    twist += _first_seat(p, start)
+        return put(put(x, X.WHEEL_SPEED, wheel), X.VEHICLE_SPEED, wheel), memories
+    twist += start[SHAFT] / p[P.SHAFT_STIFFNESS]
     tyre = start[SHAFT] / p[P.TYRE_STIFFNESS] if p[P.KIND] == P.THREE_INERTIA else 0.0
     x = put(put(x, X.TWIST, twist), X.TYRE_TWIST, tyre)
-    return put(put(x, X.WHEEL_SPEED, start[WHEEL]), X.VEHICLE_SPEED, start[WHEEL])
+    return put(put(x, X.WHEEL_SPEED, start[WHEEL]), X.VEHICLE_SPEED, start[WHEEL]), memories
 
 
 @inlined
@@ -172,75 +181,87 @@ def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type
         old = acting[max(k - whole - 1, 0)]
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
-        fine[k, SHAFT] = F.shaft_torque(x, (0.0, 0.0, 0.0), p, shown[k])
+        fine[k, SHAFT] = F.shaft_torque(x, F.NONE, p, shown[k], False)
         for sub in range(substeps):
             x = _moved(x, sub, old, new, column, transition)
 
 
+@inlined
+def _pushed(y, f, held, moves_tyre):  # type: ignore[no-untyped-def]
+    """State with the effect of forces, by the rows of `held` (or `rising`)."""
+    y = plus_row(plus_row(y, f[F.SHAFT], held, F.SHAFT), f[F.LOSS], held, F.LOSS)
+    y = plus_row(y, f[F.LOAD], held, F.LOAD)
+    if moves_tyre:
+        y = plus_row(plus_row(y, f[F.TYRE], held, F.TYRE), f[F.TYRE_RATE], held, F.TYRE_RATE)
+    return y
+
+
 @compiled
-def _run_forced(drive, whole, p, x, seat, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+def _run_forced(drive, whole, p, first, varies, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
     acting, shown = drive
-    varies, dry, turns = F.varies(p), has_friction(p), F.turns(p)
-    varies = varies or p[P.STRIBECK] != 0.0  # with the speed
+    x, memories = first
+    chain = L.chain_of(p)
+    dry, turns, moves_tyre = L.may_stick(p), L.turns(p), L.moves_tyre(p)
     gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
-    memory, friction = (0.0, seat), 0.0
-    at = (0.0, p[P.GEAR_RATIO] * x[X.TWIST])
-    if angles.shape[0] > 0:
-        at = (angles[0, F.WHEEL], angles[0, F.ROTOR])
-    f = F.forces(x, memory, at, p)
+    friction = 0.0
+    at = F.first_angles(angles, x, p)
+    m = L.motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+    f = F.forces(m, chain, memories, p)
     for k in range(acting.shape[0]):
         new = acting[max(k - whole, 0)]
         old = acting[max(k - whole - 1, 0)]
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
-        fine[k, SHAFT] = F.shaft_torque(x, f, p, shown[k])
+        fine[k, SHAFT] = F.shaft_torque(x, f, p, shown[k], dry)
         for sub in range(substeps):
-            y = _moved(x, sub, old, new, column, transition)
-            y = plus_row(y, f[F.SHAFT], held, F.SHAFT)
-            y = plus_row(plus_row(y, f[F.LOSS], held, F.LOSS), f[F.LOAD], held, F.LOAD)
+            y = _pushed(_moved(x, sub, old, new, column, transition), f, held, moves_tyre)
             before = relative_speed(x)
             if dry:
-                level = friction_level(before, p)
+                level = F.level(before, chain, memories, p)
                 friction = mean_friction(before, relative_speed(y), gain, level)
                 y = plus_row(y, friction, held, F.LOSS)
             if varies:
                 part = (sub + 1.0) / substeps
                 later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
-                g = F.forces(y, F.remembered(memory, x, y, h, p), later, p)
+                n = L.motion_of(y, chain, memories, later[F.WHEEL], later[F.ROTOR], p)
+                kept = L.remembered(m, n, chain, memories, p, h)
+                n = L.motion_of(y, chain, kept, later[F.WHEEL], later[F.ROTOR], p)
                 middle = 0.5 * (before + relative_speed(y))
-                y = plus_row(y, g[F.SHAFT] - f[F.SHAFT], rising, F.SHAFT)
-                y = plus_row(y, g[F.LOSS] - f[F.LOSS], rising, F.LOSS)
-                y = plus_row(y, g[F.LOAD] - f[F.LOAD], rising, F.LOAD)
+                y = _pushed(y, F.change(F.forces(n, chain, kept, p), f), rising, moves_tyre)
                 if dry:
-                    level = friction_level(middle, p)
+                    level = F.level(middle, chain, memories, p)
                     free = relative_speed(y) + gain * friction
                     y = plus_row(y, mean_friction(before, free, gain, level) - friction, held, F.LOSS)
                 if turns:
                     at = F.angles_at(angles, k, part, x, y, at, h, p)
-                memory = F.remembered(memory, x, y, h, p)
-                f = F.forces(y, memory, at, p)
+                n = L.motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+                memories = L.remembered(m, n, chain, memories, p, h)
+                m = L.motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+                f = F.forces(m, chain, memories, p)
             x = y
 
 
 @compiled
-def _run(torque, dt, vector, start, substeps, transition, column, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+def _run(torque, dt, vector, start, substeps, varies, transition, column, held, rising, angles, fine):  # type: ignore[no-untyped-def]
     """One model over the whole recording into `fine` (n x 3)."""
     p = as_tuple(vector)
     acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(torque.shape[0])
     _acting(torque, dt, p, acting, ends)
-    x = _first_state(p, start, acting[0])
+    first = _first_state(p, start, acting[0])
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     _shown(acting, ends, dt, whole, p, shown)
     drive = (acting, shown)
-    if F.varies(p) or has_friction(p) or p[P.FRICTION_OFFSET] != 0.0:
-        h, seat = dt / substeps, _first_seat(p, start)
-        _run_forced(drive, whole, p, x, seat, h, substeps, column, transition, held, rising, angles, fine)
+    if varies or L.pushes(p):
+        h = dt / substeps
+        _run_forced(
+            drive, whole, p, first, varies, h, substeps, column, transition, held, rising, angles, fine
+        )
     else:
-        _run_linear(drive, whole, p, x, substeps, column, transition, fine)
+        _run_linear(drive, whole, p, first[0], substeps, column, transition, fine)
 
 
 @compiled_parallel
-def _run_all(torque, dt, parameters, starts, sensors, block, substeps, matrices, angles, out):  # type: ignore[no-untyped-def]
+def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, matrices, angles, out):  # type: ignore[no-untyped-def]
     transition, column, held, rising = matrices
     for s in prange(parameters.shape[0]):
         fine = np.empty((torque.shape[0], 3))
@@ -250,6 +271,7 @@ def _run_all(torque, dt, parameters, starts, sensors, block, substeps, matrices,
             parameters[s],
             starts[s],
             substeps[s],
+            varies[s],
             transition[s],
             column[s],
             held[s],

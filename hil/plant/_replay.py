@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.channels import INPUT, TIME, WHEEL_ANGLE
+from hil.core.effects import EFFECTS, Stage
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import _kernel, _slots
@@ -142,7 +143,7 @@ def _functions(
     model: Model, torque: Array, dt: float, start: Start, longest_step_s: float
 ) -> dict[str, Array]:
     acting = torque
-    path = tuple(use for use in model.effects if use.id.startswith(("dead_time", "actuator", "torque_")))
+    path = tuple(use for use in model.effects if EFFECTS[use.id].stage is Stage.TORQUE_PATH)
     if path:
         acting = _torque_path(path, torque, dt, longest_step_s)
     begin = {

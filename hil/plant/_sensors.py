@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.compiled import compiled, inlined
+from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.plant._table import Table
@@ -26,13 +27,6 @@ OFFSET = _column("offset", "channel's", "added after the gain")
 DELAY = _column("delay_s", "s", "how late the channel is")
 STEP = _column("step", "channel's", "distance between readings; 0: not rounded")
 COLUMNS = len(SENSOR)
-
-_EFFECTS = {
-    "sensor_gain": (GAIN, "gain"),
-    "sensor_offset": (OFFSET, "offset"),
-    "channel_skew": (DELAY, "delay_s"),
-    "sensor_quantization": (STEP, "step"),
-}
 
 
 @inlined
@@ -81,10 +75,11 @@ def sensor_of(model: Model, channel: str) -> Array:
     row = np.zeros(COLUMNS)
     row[GAIN] = 1.0
     for use in model.effects:
-        if use.id not in _EFFECTS or use.values.get("channel") != channel:
+        effect = EFFECTS[use.id]
+        if effect.law.reads is None or use.values.get("channel") != channel:
             continue
-        column, parameter = _EFFECTS[use.id]
-        value = float(use.values[parameter])
+        column = SENSOR.names.index(effect.law.reads)
+        value = float(use.values[effect.parameters[0].name])
         if column == GAIN:
             row[GAIN] *= value
         elif column == STEP and row[STEP] > 0.0:

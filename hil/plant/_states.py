@@ -1,10 +1,12 @@
 """The driveline's states, for every kernel. Wheel-side quantities are sums or means of both sides.
 
 The linear ones stand first: they alone are the state of the linear system and of the kernel of many models.
+Behind the wheel's angle stand what effects remember.
 """
 
 from __future__ import annotations
 
+from hil.plant._slots import ACTING
 from hil.plant._table import Table
 
 STATES = Table()
@@ -21,9 +23,15 @@ HOUSING_SPEED = _state("housing_speed", "rad/s", "of the housing on its bushes")
 LINEAR_STATES = len(STATES)
 
 WHEEL_ANGLE = _state("wheel_angle", "rad", "that wheel orders follow")
-SLIP = _state("slip", "rad", "twist of the hysteretic path")
-SEAT = _state("seat", "rad", "where the shafts stand in the gap")
+MOVING = len(STATES)  # what moves by rates
+
+#: Where among the memories that of each effect stands, for those that have one.
+MEMORY = {effect.id: at for at, effect in enumerate(e for e in ACTING if e.memory is not None)}
+for _effect in ACTING:
+    if _effect.memory is not None:
+        _state(f"{_effect.id}", _effect.memory.unit, _effect.memory.meaning)
 ALL_STATES = len(STATES)
 
-AT_REST = (0.0,) * ALL_STATES
+AT_REST = (0.0,) * MOVING
 LINEAR_AT_REST = (0.0,) * LINEAR_STATES
+NO_MEMORY = (0.0,) * max(1, ALL_STATES - MOVING)

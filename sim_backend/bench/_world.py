@@ -13,8 +13,8 @@ from hil.core.dbc import Names, read_dbc
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block, joined
 from hil.core.signals import FrameLayout
-from hil.plant import _slots, _states, bench_sensor
 from hil.plant.closed_loop import drive as drive
+from hil.plant.closed_loop import state_at_rest
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
@@ -30,13 +30,6 @@ _NOISE_BLOCK = 1000
 _LARGEST_BATCH = 4096
 _NODES_EVERY = 10  # samples between looks at heartbeats: no more are computed at once
 _SYNC = FrameLayout("SYNC", 0x80, 0, {})
-_SENSED = (  # channel, and each side's share of it
-    ("motor_speed_rad_s", 1.0),
-    ("wheel_speed_rad_s", 1.0),
-    ("wheel_speed_rad_s", 1.0),
-    ("shaft_torque_nm", 0.5),
-    ("shaft_torque_nm", 0.5),
-)
 
 
 def check_device_files(dbc: Path, eds: Path, names: Names | None = None) -> None:
@@ -63,7 +56,6 @@ class SimulatedBench:
                 fix="give a rigid, two_inertia or three_inertia model",
             )
         self.settings = settings
-        self._parameters = _slots.pack(settings.model)
         self._random = np.random.default_rng(settings.seed)
         self.faults: set[Fault] = set()
         self._samples = 0  # computed so far
@@ -138,24 +130,15 @@ class SimulatedBench:
     # --- construction ---
 
     def _make_state(self) -> None:
-        p = self._parameters
-        self._x = np.zeros(_states.ALL_STATES)
-        self._scalars = np.zeros(T.SCALARS)
-        self._scalars[T.RADIUS] = self.settings.wheel_radius_m
-        three = p[_slots.KIND] == _slots.THREE_INERTIA
-        self._scalars[T.DRIVE_INERTIA] = p[_slots.WHEEL_INERTIA if three else _slots.VEHICLE_INERTIA]
-        self._torques = np.zeros(T.HISTORY)
-        self._drives = np.zeros((2, drive.COLUMNS))
-        self._past = np.zeros((T.SENSORS, T.HISTORY))
+        self._plant = state_at_rest(self.settings.model, self.settings.wheel_radius_m)
+        self._drives = self._plant.drives
         self._status = np.zeros(2)
-        self._sensors = np.array(
-            [bench_sensor(self.settings.model, channel, share) for channel, share in _SENSED]
-        )
         noise = self.settings.noise
         self._noise_scale = np.array(
             [noise.motor_speed_rad_s, *[noise.wheel_speed_rad_s] * 2, *[noise.shaft_torque_nm] * 2]
         )
-        self._noise = np.zeros((_NOISE_BLOCK, T.SENSORS + 6))
+        # behind the noise is the tick's scratch room
+        self._noise = np.tile(self._plant.noise, (_NOISE_BLOCK, 1))
 
     def _make_nodes(self) -> None:
         s = self.settings
@@ -173,8 +156,7 @@ class SimulatedBench:
             )
             for node in (s.rear_left, s.rear_right, *s.idle)
         ]
-        p = self._parameters
-        vehicle = (p[_slots.VEHICLE_INERTIA], p[_slots.ROLLING], p[_slots.AERO], 0.0, s.wheel_radius_m, 0.0)
+        vehicle = (*self._plant.vehicle, 0.0, s.wheel_radius_m, 0.0)
         for node in self._dynos:
             for subindex, value in enumerate(vehicle, 1):
                 node.preset(0x2000, subindex, value)
@@ -239,14 +221,14 @@ class SimulatedBench:
             self._noise[:, : T.SENSORS] = drawn * self._noise_scale
         advance(
             first,
-            self._x,
-            self._parameters,
-            self._scalars,
-            self._torques,
+            self._plant.x,
+            self._plant.vector,
+            self._plant.scalars,
+            self._plant.torques,
             self._firmware,
             self._drives,
-            self._sensors,
-            self._past,
+            self._plant.sensors,
+            self._plant.past,
             self._noise[first % _NOISE_BLOCK :],
             modes,
             requests,
@@ -293,10 +275,14 @@ class SimulatedBench:
     def _take_vehicle_model(self) -> None:
         left = self._dynos[0]
         inertia, rolling, aero, slip, radius, initial = (left.number(0x2000, i) for i in range(1, 7))
-        p = self._parameters
-        p[_slots.VEHICLE_INERTIA], p[_slots.ROLLING], p[_slots.AERO] = inertia, rolling, aero
-        w = self._scalars
-        w[T.SLIP], w[T.RADIUS], w[T.INITIAL_SPEED] = slip, radius, initial
+        self._plant.set_vehicle(
+            inertia_kg_m2=inertia,
+            rolling_nm=rolling,
+            aero_nms2_rad2=aero,
+            slip=slip,
+            wheel_radius_m=radius,
+            initial_speed_m_s=initial,
+        )
 
     def _event(self, bus: str, frame_id: int, data: bytes) -> None:
         rate = self.settings.rmcu_bit_rate if bus == RMCU_BUS else self.settings.dyno_bit_rate

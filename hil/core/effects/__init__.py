@@ -1,52 +1,48 @@
-"""The registry of physical effects: one file an effect, one object a file."""
+"""The registry of physical effects: one file an effect, found by itself; also those of other packages.
 
-from hil.core.effects import (
-    actuator_lag,
-    backlash,
-    channel_skew,
-    coulomb_friction,
-    dead_time,
-    motor_order_ripple,
-    mount_mode,
-    parameter_mismatch,
-    running_resistance,
-    sensor_gain,
-    sensor_offset,
-    sensor_quantization,
-    shaft_cubic_stiffness,
-    shaft_hysteresis,
-    torque_deadband,
-    torque_rate_limit,
-    torque_saturation,
-    tyre_compliance,
-    viscous_drag,
-    wheel_order_disturbance,
+To add one, write a file beside these (or in a package of your own with an entry point `hil.effects`):
+docs/how-to/own-effect.md.
+"""
+
+from hil.core.effects._effect import SENSED, Effect, Memory, Parameter, Stage, finite_number, shown
+from hil.core.effects._law import Law, Motion
+from hil.core.effects._probe import (
+    STRETCH,
+    Direction,
+    Probe,
+    Probes,
+    Scene,
+    fixed,
+    reading,
+    ripple,
+    scaled,
+    sized,
 )
-from hil.core.effects._effect import SENSED, Effect, Parameter, Stage, finite_number, shown
+from hil.core.effects._registry import found
 
-_MODULES = (
-    dead_time,
-    actuator_lag,
-    torque_saturation,
-    torque_rate_limit,
-    torque_deadband,
-    backlash,
-    shaft_cubic_stiffness,
-    shaft_hysteresis,
-    coulomb_friction,
-    viscous_drag,
-    mount_mode,
-    tyre_compliance,
-    wheel_order_disturbance,
-    motor_order_ripple,
-    running_resistance,
-    sensor_gain,
-    sensor_offset,
-    channel_skew,
-    sensor_quantization,
-    parameter_mismatch,
-)
+#: Every effect by id, in the order in which they act; a digest of other packages' effects, '' for none.
+EFFECTS, STRANGERS = found()
 
-EFFECTS: dict[str, Effect] = {module.EFFECT.id: module.EFFECT for module in _MODULES}
-
-__all__ = ["EFFECTS", "SENSED", "Effect", "Parameter", "Stage", "finite_number", "shown"]
+__all__ = [
+    "EFFECTS",
+    "SENSED",
+    "STRANGERS",
+    "STRETCH",
+    "Direction",
+    "Effect",
+    "Law",
+    "Memory",
+    "Motion",
+    "Parameter",
+    "Probe",
+    "Probes",
+    "Scene",
+    "Stage",
+    "finite_number",
+    "fixed",
+    "reading",
+    "ripple",
+    "scaled",
+    "shown",
+    "sized",
+]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 
 from hil.core.channels import OUTPUTS
+from hil.core.effects._law import Law
+from hil.core.effects._probe import Probes
 from hil.core.errors import BadInputError
 
 #: What a model gives, and so what a sensor effect can bend.
@@ -50,7 +52,17 @@ class Stage(Enum):
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number of an effect: unit in SI, and the open interval in which it makes sense."""
+    """One number of an effect: unit in SI, the interval in which it makes sense, and how a fit moves it.
+
+    Args:
+        optional: may be left out, and then is `default`.
+        typical: size of a small change; None: it is moved by its logarithm, and is never zero.
+        step: of a finite difference, times the usual one.
+        within: how far a fit may go, where that is not from `lower` to `upper`.
+        fitted: whether a fit may move it.
+        opens: an optional number is tried from these values once its effect is found.
+        rough: errors are rough in it, since contact comes and goes.
+    """
 
     name: str
     unit: str
@@ -59,14 +71,42 @@ class Parameter:
     meaning: str
     optional: bool = False
     default: float = 0.0
+    typical: float | None = None
+    step: float = 1.0
+    within: tuple[float, float] | None = None
+    fitted: bool = True
+    opens: tuple[float, ...] = ()
+    rough: bool = False
+
+
+@dataclass(frozen=True)
+class Memory:
+    """The number that an effect keeps from step to step."""
+
+    unit: str
+    meaning: str
 
 
 @dataclass(frozen=True)
 class Effect:
-    """One physical effect (docs/reference/effects.md).
+    """One physical effect: all that anything in the house knows about it (docs/how-to/own-effect.md).
 
-    `text_parameters` are parameters whose value is a name (a channel, a model parameter).
-    `needs` lists the model kinds that the effect can be added to.
+    Args:
+        id: its name in model files and diagnoses.
+        title: the same for people.
+        stage: where it enters.
+        summary: what it is; signature: what it looks like in data; shown_by: which experiment shows it.
+        source: where its law is from.
+        parameters: its numbers; with all of those that `sizes` names (the first one when left out) at
+            `off`, it does nothing.
+        text_parameters: parameters whose value is a name (a channel, a model parameter).
+        needs: the model kinds that it can be added to.
+        law: how it acts; memory: what it keeps from step to step.
+        probes: the sizes that a diagnosis tries first.
+        kin: effects that look like it, tried along with it.
+        abrupt: errors have false minima in its size: fits are repeated from other sizes.
+        many_laws: formulas for it differ, so that one of them never closes a gap to the noise.
+        derived: numbers that users know beside the fitted ones: of its values, name (with its unit): number.
     """
 
     id: str
@@ -78,6 +118,31 @@ class Effect:
     parameters: tuple[Parameter, ...]
     text_parameters: tuple[str, ...] = ()
     needs: tuple[str, ...] = ("rigid", "two_inertia", "three_inertia")
+    law: Law = field(default_factory=Law)
+    sizes: tuple[str, ...] = ()
+    off: float = 0.0
+    memory: Memory | None = None
+    probes: Probes | None = None
+    kin: tuple[str, ...] = ()
+    abrupt: bool = False
+    many_laws: bool = False
+    derived: Callable[[Mapping[str, float]], Mapping[str, float]] | None = None
+    source: str = ""
+
+    def parameter(self, name: str) -> Parameter:
+        """The parameter of that name.
+
+        Raises:
+            KeyError: there is none.
+        """
+        for parameter in self.parameters:
+            if parameter.name == name:
+                return parameter
+        raise KeyError(name)
+
+    def acting(self) -> tuple[str, ...]:
+        """Names of the numbers that are all at `off` where the effect does nothing."""
+        return self.sizes or (self.parameters[0].name,)
 
     def check(self, values: Mapping[str, object], where: str) -> dict[str, float | str]:
         """Return `values` complete with defaults.

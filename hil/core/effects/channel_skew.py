@@ -1,6 +1,22 @@
 """A channel is recorded late."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+
 from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._law import Law
+from hil.core.effects._probe import Probe, Scene, reading
+
+_LATE_S = (0.008, 0.04)
+
+
+def _probes(scene: Scene) -> Iterator[Probe]:
+    for channel in scene.channels:
+        yield reading(channel, "delay_s", 0.0, 1e-3, -20.0, 60.0)
+        for delay in _LATE_S:  # so late that the error is no longer like the channel's slope
+            yield reading(channel, "delay_s", 0.0, delay, 0.0, 2.0)
+
 
 EFFECT = Effect(
     id="channel_skew",
@@ -9,7 +25,10 @@ EFFECT = Effect(
     summary="A channel is recorded late.",
     signature="Phase lag in proportion to frequency on one channel only.",
     shown_by="A chirp up to 30 Hz.",
-    parameters=(Parameter("delay_s", "s", -0.5, 0.5, "how late the channel is"),),
+    parameters=(Parameter("delay_s", "s", -0.5, 0.5, "how late the channel is", typical=1e-3),),
     text_parameters=("channel",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    law=Law(reads="delay_s"),
+    probes=_probes,
+    kin=("dead_time", "actuator_lag"),
 )

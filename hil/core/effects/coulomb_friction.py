@@ -1,17 +1,106 @@
-"""Dry friction on the rotor side, with an optional Stribeck peak and asymmetry."""
+"""Dry friction on the rotor: Coulomb's law with a Stribeck peak, true standstill, and turning over an angle.
 
-from hil.core.effects._effect import Effect, Parameter, Stage
+While the rotor turns, friction is `torque + stribeck·exp(-(ω/2 rad/s)²)` against the motion. At standstill it
+is whatever holds the rotor, up to the break-away torque `torque + stribeck`: nothing creeps below it
+(B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083-1138).
+
+With an angle `turn_rad` friction does not turn around at once but as bristles bend:
+dF/dθ = (T_c/θ_t)·(1 - sgn(ω)·F/T_c). Over a step without reversal that is an exponential in the angle turned
+(P. R. Dahl, A Solid Friction Model, 1968).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from hil.core.chain import Chain
+from hil.core.effects._effect import Effect, Memory, Parameter, Stage
+from hil.core.effects._law import Law, Motion, Values
+from hil.core.effects._probe import Direction, Probe, Scene
+from hil.core.effects._probe import Values as Named
+
+_STRIBECK_WIDTH_RAD_S = 2.0
+_STIFFEST = 0.5  # largest phase in rad that bristles may swing through in a step
+_MOST_STEPS = 8
+
+
+def _level(speed: float, values: Values) -> float:
+    """Largest friction in N m at a speed of rotor against housing."""
+    if values[1] == 0.0:
+        return values[0]
+    ratio = speed / _STRIBECK_WIDTH_RAD_S
+    return values[0] + values[1] * math.exp(-ratio * ratio)
+
+
+def _dry(motion: Motion, chain: Chain, memory: float, values: Values) -> float:
+    return _level(motion.rotor_speed, values) if values[3] == 0.0 else 0.0
+
+
+def _loss(motion: Motion, chain: Chain, bent: float, values: Values) -> float:
+    if values[3] == 0.0:
+        return values[2]
+    return values[2] + _level(motion.rotor_speed, values) * bent
+
+
+def _remember(before: Motion, after: Motion, chain: Chain, bent: float, values: Values, h: float) -> float:
+    """Friction as a share of its level, after the angle that the rotor turns in `h` seconds."""
+    if values[3] == 0.0:
+        return 0.0
+    turned = 0.5 * h * (before.rotor_speed + after.rotor_speed)
+    way = math.copysign(1.0, turned)
+    return way + (bent - way) * math.exp(-abs(turned) / values[3])
+
+
+def _steps(chain: Chain, values: Values, dt: float) -> int:
+    """Bristles are a spring on the rotor: a step must follow their swinging."""
+    if values[3] == 0.0:
+        return 1
+    swing = dt * math.sqrt((values[0] + values[1]) / (values[3] * chain.motor_inertia))
+    return min(max(1, math.ceil(swing / _STIFFEST)), _MOST_STEPS)
+
+
+def _steady(values: Values) -> bool:
+    return (values[1] == 0.0) & (values[3] == 0.0)
+
+
+def _probes(scene: Scene) -> Iterator[Probe]:
+    rest: Named = {"stribeck_torque_nm": 0.0, "offset_nm": 0.0, "turn_rad": 0.0}
+    for share in (0.005, 0.03, 0.1, 0.2):
+        unit = share * scene.torque_nm
+        yield Probe(
+            (Direction({"torque_nm": unit, **rest}, 0.3, 2.0),),
+            lambda a, unit=unit: {"torque_nm": float(a[0]) * unit, **rest},  # type: ignore[misc]
+        )
+
+
+def _derived(values: Mapping[str, float]) -> dict[str, float]:
+    return {
+        "breakaway_forwards_nm": values["torque_nm"] + values["stribeck_torque_nm"] + values["offset_nm"],
+        "breakaway_backwards_nm": values["torque_nm"] + values["stribeck_torque_nm"] - values["offset_nm"],
+    }
+
 
 EFFECT = Effect(
     id="coulomb_friction",
     title="Coulomb friction",
     stage=Stage.ROTOR,
-    summary="Dry friction on the rotor side, with an optional Stribeck peak and asymmetry.",
+    summary="Dry friction on the rotor side, with an optional Stribeck peak, asymmetry and angle of turning.",
     signature="A constant torque against the motion; at standstill small torques move nothing.",
     shown_by="Speed reversals: an axle that always turns one way hides it.",
+    source="Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994); P. R. Dahl (1968)",
     parameters=(
-        Parameter("torque_nm", "N m", 0.0, 1e4, "friction torque"),
-        Parameter("stribeck_torque_nm", "N m", 0.0, 1e4, "added near standstill", optional=True, default=0.0),
+        Parameter("torque_nm", "N m", 0.0, 1e4, "friction torque", typical=0.1),
+        Parameter(
+            "stribeck_torque_nm",
+            "N m",
+            0.0,
+            1e4,
+            "added near standstill",
+            optional=True,
+            typical=0.1,
+            opens=(0.0,),
+        ),
         Parameter(
             "offset_nm",
             "N m",
@@ -19,7 +108,25 @@ EFFECT = Effect(
             1e4,
             "asymmetry: friction that is the same in both directions of turning",
             optional=True,
-            default=0.0,
+            typical=0.1,
+            opens=(0.0,),
+        ),
+        Parameter(
+            "turn_rad",
+            "rad",
+            0.0,
+            10.0,
+            "rotor angle over which friction turns around; 0: at once",
+            optional=True,
+            within=(1e-4, 10.0),
+            opens=(3e-3, 0.03, 0.3),
         ),
     ),
+    law=Law(dry=_dry, loss=_loss, remember=_remember, steps=_steps, steady=_steady),
+    sizes=("torque_nm", "stribeck_torque_nm", "offset_nm"),
+    memory=Memory("1", "friction over its level, while it turns around"),
+    probes=_probes,
+    kin=("running_resistance",),
+    many_laws=True,
+    derived=_derived,
 )

@@ -1,6 +1,18 @@
 """A channel reads the truth plus an offset."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+
 from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._law import Law
+from hil.core.effects._probe import Probe, Scene, reading
+
+
+def _probes(scene: Scene) -> Iterator[Probe]:
+    for channel in scene.channels:
+        yield reading(channel, "offset", 0.0, 1.0, -60.0, 180.0)
+
 
 EFFECT = Effect(
     id="sensor_offset",
@@ -9,7 +21,9 @@ EFFECT = Effect(
     summary="A channel reads the truth plus an offset.",
     signature="One channel off by a constant.",
     shown_by="Any test, best with a stretch at standstill.",
-    parameters=(Parameter("offset", "channel's", -1e6, 1e6, "added to the truth"),),
+    parameters=(Parameter("offset", "channel's", -1e6, 1e6, "added to the truth", typical=0.1),),
     text_parameters=("channel",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    law=Law(reads="offset"),
+    probes=_probes,
 )

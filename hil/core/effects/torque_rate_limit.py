@@ -1,6 +1,23 @@
 """The acting torque's slope is clipped."""
 
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
 from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._law import Law, Values
+from hil.core.effects._probe import Probe, Scene, fixed
+
+
+def _slope(values: Values) -> float:
+    return values[0]
+
+
+def _probes(scene: Scene) -> Iterator[Probe]:
+    for step in range(11):
+        yield fixed(limit_nm_s=300.0 ** (0.1 * step) * scene.torque_nm)
+
 
 EFFECT = Effect(
     id="torque_rate_limit",
@@ -13,4 +30,8 @@ EFFECT = Effect(
         Parameter("limit_nm_s", "N m/s", 1e-6, 1e9, "largest magnitude of the acting torque's slope"),
     ),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    law=Law(slope=_slope),
+    off=math.inf,
+    probes=_probes,
+    abrupt=True,
 )

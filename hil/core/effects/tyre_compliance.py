@@ -1,6 +1,40 @@
 """The wheel is joined to the vehicle by a compliant tyre/road coupling: a third inertia."""
 
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from hil.core.chain import THREE_INERTIA
 from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._law import Law
+from hil.core.effects._probe import Probe, Scene, fixed
+
+_LEAST_INERTIA = 1e-6
+
+
+def _coupled(chain: dict[str, float], values: Mapping[str, Any]) -> None:
+    # The two-inertia model counts the wheels with the vehicle: what becomes wheel is taken from there.
+    chain["kind"] = THREE_INERTIA
+    for name in ("wheel_inertia", "tyre_stiffness", "tyre_damping"):
+        chain[name] = values[name]
+    chain["vehicle_inertia"] = max(chain["vehicle_inertia"] - values["wheel_inertia"], _LEAST_INERTIA)
+
+
+def _probes(scene: Scene) -> Iterator[Probe]:
+    vehicle = scene.parameters["vehicle_inertia"]
+    for share in (0.007, 0.014, 0.03, 0.06):
+        for frequency in (2.0, 4.0, 8.0, 16.0):
+            for damping in (0.15, 0.6, 1.5):
+                wheel = share * vehicle
+                omega = 2 * math.pi * frequency
+                yield fixed(
+                    wheel_inertia=wheel,
+                    tyre_stiffness=wheel * omega**2,
+                    tyre_damping=2 * damping * omega * wheel,
+                )
+
 
 EFFECT = Effect(
     id="tyre_compliance",
@@ -18,4 +52,6 @@ EFFECT = Effect(
         Parameter("tyre_damping", "N m s/rad", 0.0, 1e7, "tyre/road damping"),
     ),
     needs=("two_inertia",),
+    law=Law(chain=_coupled),
+    probes=_probes,
 )

@@ -16,6 +16,8 @@ from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
 
 Array = npt.NDArray[np.float64]
+_ROLLING = P.place("running_resistance", "rolling_nm")
+_AERO = P.place("running_resistance", "aero_nms2_rad2")
 
 # What each sensor of a tick measures, and its share of it: each side's shaft has half of the torque.
 _SENSED = (
@@ -39,6 +41,34 @@ class State:
     sensors: Array
     past: Array
     noise: Array
+
+    @property
+    def vehicle(self) -> tuple[float, float, float]:
+        """Inertia (kg m²), rolling (N m) and aerodynamic resistance (N m s²/rad²) of the vehicle model."""
+        p = self.vector
+        return float(p[P.VEHICLE_INERTIA]), float(p[_ROLLING]), float(p[_AERO])
+
+    def set_vehicle(
+        self,
+        *,
+        inertia_kg_m2: float | None = None,
+        rolling_nm: float | None = None,
+        aero_nms2_rad2: float | None = None,
+        slip: float | None = None,
+        wheel_radius_m: float | None = None,
+        initial_speed_m_s: float | None = None,
+    ) -> None:
+        """Change what the drives' vehicle model is told; None leaves a value as it is."""
+        for array, index, value in (
+            (self.vector, P.VEHICLE_INERTIA, inertia_kg_m2),
+            (self.vector, _ROLLING, rolling_nm),
+            (self.vector, _AERO, aero_nms2_rad2),
+            (self.scalars, T.SLIP, slip),
+            (self.scalars, T.RADIUS, wheel_radius_m),
+            (self.scalars, T.INITIAL_SPEED, initial_speed_m_s),
+        ):
+            if value is not None:
+                array[index] = value
 
 
 def state_at_rest(model: Model, wheel_radius_m: float) -> State:

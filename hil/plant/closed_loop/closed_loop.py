@@ -9,7 +9,6 @@ import numpy.typing as npt
 
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model
-from hil.plant import _slots as P
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
 from hil.plant.closed_loop._state import state_at_rest
@@ -87,23 +86,19 @@ class ClosedLoop:
         initial_speed_m_s: float | None = None,
     ) -> None:
         """Change what the drives' vehicle model is told; None leaves a value as it is."""
-        vector, w = self._state.vector, self._state.scalars
-        for array, index, value in (
-            (vector, P.VEHICLE_INERTIA, inertia_kg_m2),
-            (vector, P.ROLLING, rolling_nm),
-            (vector, P.AERO, aero_nms2_rad2),
-            (w, T.SLIP, slip),
-            (w, T.RADIUS, wheel_radius_m),
-            (w, T.INITIAL_SPEED, initial_speed_m_s),
-        ):
-            if value is not None:
-                array[index] = value
+        self._state.set_vehicle(
+            inertia_kg_m2=inertia_kg_m2,
+            rolling_nm=rolling_nm,
+            aero_nms2_rad2=aero_nms2_rad2,
+            slip=slip,
+            wheel_radius_m=wheel_radius_m,
+            initial_speed_m_s=initial_speed_m_s,
+        )
 
     @property
     def vehicle(self) -> tuple[float, float, float]:
         """Inertia (kg m²), rolling (N m) and aerodynamic resistance (N m s²/rad²) of the vehicle model."""
-        vector = self._state.vector
-        return float(vector[P.VEHICLE_INERTIA]), float(vector[P.ROLLING]), float(vector[P.AERO])
+        return self._state.vehicle
 
     def set_ramp(self, acceleration_rad_s2: float) -> None:
         """How fast the drives change speed, rad/s²."""

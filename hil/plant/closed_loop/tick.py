@@ -86,14 +86,14 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
     b, a, z, gains, states = fir
     dt = gains[M.SAMPLE_TIME]
     coupled = _couple(x, drives, w)
-    state = K.as_state(x)
+    state, memories = K.as_state(x)
     loads = 0.0
     for side in range(2):
         drive_load = D.load(drives[side], x[X.WHEEL_SPEED], 0.5 * w[DRIVE_INERTIA], dt)
         row[LOAD_LEFT + side] = drive_load
         loads += drive_load
     truth = noise[SENSORS:]  # scratch room behind the noise
-    K.outputs(state, p, w[SLEWED], coupled, loads, truth)
+    K.outputs(state, memories, p, w[SLEWED], coupled, loads, truth)
     if coupled:
         row[LOAD_LEFT] = row[LOAD_RIGHT] = 0.5 * truth[K.OUT_LOAD]
     row[MOTOR_SPEED] = _sense(truth[K.OUT_MOTOR_SPEED], noise[0], sensors[0], past[0], k, dt)
@@ -129,6 +129,10 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
         late = 0.0
     new = torques[(k - whole) % HISTORY]
     old = torques[(k - whole - 1) % HISTORY]
-    state, w[SLEWED] = K.sample(state, p, w[SLEWED], old, new, late, dt, coupled, loads, 1e-4)
-    for i in range(X.ALL_STATES):
+    state, memories, w[SLEWED] = K.sample(
+        state, memories, p, w[SLEWED], old, new, late, dt, coupled, loads, 1e-4
+    )
+    for i in range(X.MOVING):
         x[i] = state[i]
+    for i in range(X.MOVING, X.ALL_STATES):
+        x[i] = memories[i - X.MOVING]

@@ -1,0 +1,93 @@
+"""Where a diagnosis looks first: an effect near a few sizes, in the scene that recordings set."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, Protocol
+
+Values = dict[str, float | str]
+
+#: How far a response may be stretched to stand for a neighbouring size.
+STRETCH = (0.5, 1.6)
+
+
+@dataclass(frozen=True)
+class Direction:
+    """The plant with an effect of some size, and how many of these may be added linearly."""
+
+    values: Values
+    lower: float = 1.0
+    upper: float = 1.0
+
+
+@dataclass(frozen=True)
+class Probe:
+    """An effect near one size: its response is Σ αᵢ·directionᵢ; `start` makes values from the αs."""
+
+    directions: tuple[Direction, ...]
+    start: Callable[[Sequence[float]], Values]
+
+
+class Scene(Protocol):
+    """What the sizes of probes are taken from."""
+
+    @property
+    def torque_nm(self) -> float:
+        """Largest requested torque, rotor side."""
+
+    @property
+    def shaft_torque_nm(self) -> float:
+        """Largest shaft torque, by the model where it was not measured."""
+
+    @property
+    def parameters(self) -> Mapping[str, float]:
+        """Of the base model, corrected."""
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Those that were measured."""
+
+    def orders(self, side: Literal["wheel", "rotor"]) -> list[float]:
+        """Orders of turning that stand out in what the model leaves unexplained, strongest first."""
+
+
+Probes = Callable[[Scene], Iterator[Probe]]
+
+
+def scaled(name: str, unit: float, lower: float, upper: float, **others: float | str) -> Probe:
+    """An effect that is linear in `name`, around zero."""
+    direction = Direction({**others, name: unit}, lower, upper)
+    return Probe((direction,), lambda a: {**others, name: float(a[0]) * unit})
+
+
+def fixed(**values: Any) -> Probe:
+    """An effect of one size; neighbouring sizes look alike, whatever their numbers are."""
+    return Probe((Direction(dict(values), *STRETCH),), lambda _: dict(values))
+
+
+def sized(name: str, size: float, lower: float = STRETCH[0], **others: float | str) -> Probe:
+    """An effect whose response goes about with its one number near `size`."""
+    return scaled(name, size, lower, STRETCH[1], **others)
+
+
+def ripple(order: float, unit: float) -> Probe:
+    """A torque of `unit` N m that follows an angle, of any phase."""
+    sine: Values = {"order": order, "amplitude_nm": unit, "phase_rad": 0.0}
+    cosine: Values = {"order": order, "amplitude_nm": unit, "phase_rad": 0.5 * math.pi}
+
+    def start(a: Sequence[float]) -> Values:
+        amplitude = max(math.hypot(a[0], a[1]), 1e-3) * unit
+        return {"order": order, "amplitude_nm": amplitude, "phase_rad": math.atan2(a[1], a[0])}
+
+    return Probe((Direction(sine, -1e4, 1e4), Direction(cosine, -1e4, 1e4)), start)
+
+
+def reading(channel: str, name: str, rest: float, unit: float, lower: float, upper: float) -> Probe:
+    """A sensor effect of one channel, linear around a true reading, which is at `rest`."""
+
+    def start(a: Sequence[float]) -> Values:
+        return {"channel": channel, name: rest + unit * float(a[0])}
+
+    return Probe((Direction({"channel": channel, name: rest + unit}, lower, upper),), start)
