@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -58,6 +58,7 @@ _KINDS: dict[str, tuple[str, ...]] = {
     "transfer_function": (),
 }
 _LARGEST_DELAY_S = 1.0
+_RADII_M = (0.01, 10.0)  # of a wheel
 _SIZES = (1e-12, 1e12)  # of a parameter in SI units: beyond, a unit is wrong and arithmetic overflows
 
 
@@ -112,6 +113,13 @@ def parameter_names(kind: str) -> tuple[str, ...]:
     return _KINDS[kind]
 
 
+def kind_of(kind: str, uses: Iterable[EffectUse]) -> str:
+    """The kind that a model of `kind` is with effects added."""
+    for use in uses:
+        kind = EFFECTS[use.id].makes or kind
+    return kind
+
+
 def parameter_unit(name: str) -> str:
     """Unit of a model parameter, for people."""
     return _PARAMETER[name][0]
@@ -131,7 +139,9 @@ def load_model(path: Path) -> Model:
 
 def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
     """Check the contents of a model file; `where` names it in messages."""
-    _no_others(data, ("kind", "parameters", "effects", "transfer_functions", "meta"), "", where)
+    _no_others(
+        data, ("kind", "parameters", "wheel_radius_m", "effects", "transfer_functions", "meta"), "", where
+    )
     kind = data.get("kind")
     if not isinstance(kind, str) or kind not in _KINDS:
         raise BadInputError(f"kind is {shown(kind)}", where=where, fix=f"kind is one of: {', '.join(_KINDS)}")
@@ -141,7 +151,7 @@ def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
         raise BadInputError("[meta] is not a table", where=where)
     parameters = _parameters(data.get("parameters", {}), kind, where)
     effects = _effects(data.get("effects", []), kind, where)
-    return Model(kind, parameters, effects, functions, meta)
+    return Model(kind, parameters, effects, functions, meta, _wheel_radius(data, where))
 
 
 def save_model(model: Model, path: Path) -> None:
@@ -152,6 +162,8 @@ def save_model(model: Model, path: Path) -> None:
 def model_to_toml(model: Model) -> str:
     """The text of a model file."""
     data: dict[str, Any] = {"kind": model.kind}
+    if model.wheel_radius_m != WHEEL_RADIUS_M:
+        data["wheel_radius_m"] = model.wheel_radius_m
     if model.parameters:
         data["parameters"] = dict(model.parameters)
     if model.transfer_functions:
@@ -172,6 +184,16 @@ def _no_others(table: Mapping[str, Any], known: tuple[str, ...], prefix: str, wh
             raise BadInputError(
                 f"unknown key '{prefix}{key}'", where=where, fix=f"known here: {', '.join(known) or 'none'}"
             )
+
+
+def _wheel_radius(data: Mapping[str, Any], where: str) -> float:
+    radius = _finite(data.get("wheel_radius_m", WHEEL_RADIUS_M), "wheel_radius_m", "m", where)
+    if not _RADII_M[0] <= radius <= _RADII_M[1]:
+        low, high = _RADII_M
+        raise BadInputError(
+            f"wheel_radius_m = {radius:g} m", where=where, fix=f"give metres, from {low:g} to {high:g}"
+        )
+    return radius
 
 
 def _parameters(table: Any, kind: str, where: str) -> dict[str, float]:
@@ -233,7 +255,7 @@ def _effects(entries: Any, kind: str, where: str) -> tuple[EffectUse, ...]:
             raise BadInputError(
                 f"unknown effect id {shown(entry.get('id'))}", where=place, fix=f"known: {', '.join(EFFECTS)}"
             )
-        if kind not in effect.needs:
+        if kind_of(kind, uses) not in effect.needs:
             raise BadInputError(
                 f"'{effect.id}' cannot be added to a '{kind}' model",
                 where=place,

@@ -6,7 +6,8 @@ from hil.plant._replay import LONGEST_STEP_S, Start, replay, simulate, start_of
 from hil.plant._sensors import DELAY as SENSOR_DELAY
 from hil.plant._sensors import GAIN as SENSOR_GAIN
 from hil.plant._sensors import OFFSET as SENSOR_OFFSET
-from hil.plant._sensors import bench_sensor
+from hil.plant._sensors import STEP as SENSOR_STEP
+from hil.plant._sensors import bench_sensor, sensor_of
 from hil.plant._slots import pack
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "SENSOR_DELAY",
     "SENSOR_GAIN",
     "SENSOR_OFFSET",
+    "SENSOR_STEP",
     "LinearSystem",
     "Start",
     "bench_sensor",
@@ -22,6 +24,7 @@ __all__ = [
     "linear_system_of",
     "pack",
     "replay",
+    "sensor_of",
     "simulate",
     "simulate_many",
     "start_of",

@@ -12,22 +12,17 @@ from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._friction import friction_torque
+from hil.plant._motion import chain_of, motion_of, relative_speed
 from hil.plant._tuples import put
 
 _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel while the dyno leads
 
 
 @inlined
-def relative_speed(x):  # type: ignore[no-untyped-def]
-    """Rotor against housing in rad/s: what the motor's sensor sees and what friction acts on."""
-    return x[X.ROTOR_SPEED] - x[X.HOUSING_SPEED]
-
-
-@inlined
 def motion(x, chain, memories, p):  # type: ignore[no-untyped-def]
     """What laws are told of a state with its own angles."""
     rotor_angle = chain.gear_ratio * (x[X.TWIST] + x[X.WHEEL_ANGLE] - x[X.HOUSING_ANGLE])
-    return L.motion_of(x, chain, memories, x[X.WHEEL_ANGLE], rotor_angle, p)
+    return motion_of(x, chain, memories, x[X.WHEEL_ANGLE], rotor_angle, p)
 
 
 @compiled
@@ -67,9 +62,10 @@ def tyre_torque(x, m, chain, memories, p, acting):  # type: ignore[no-untyped-de
 def derivative(x, memories, p, acting, torque, coupled, load, direction):  # type: ignore[no-untyped-def]
     """dx/dt; `torque` acts on the rotor (before the lag), `load` on the wheel unless coupled.
 
-    `acting` is that of `acting_of`. Dry friction acts against `direction`, which a whole step shares: the sign of the speed, 0 at standstill.
+    `acting` is that of `acting_of`. Dry friction acts against `direction`, which a whole step shares: the
+    sign of the speed, 0 at standstill.
     """
-    chain = L.chain_of(p)
+    chain = chain_of(p)
     m = motion(x, chain, memories, p)
     lagged = 0.0
     if chain.torque_lag > 0.0:

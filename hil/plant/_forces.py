@@ -7,6 +7,7 @@ from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._friction import friction_torque
+from hil.plant._motion import chain_of, relative_speed, turning
 
 # Of the forces: the inputs of `_linear` behind the torque
 SHAFT, LOSS, LOAD, TYRE, TYRE_RATE = range(5)
@@ -37,8 +38,7 @@ def change(new, old):  # type: ignore[no-untyped-def]
 @inlined
 def level(speed, chain, memories, p):  # type: ignore[no-untyped-def]
     """Largest dry friction in N m at a speed of rotor against housing in rad/s."""
-    at_speed = L.turning(speed)
-    return L.dry_friction(at_speed, chain, memories, p)
+    return L.dry_friction(turning(speed), chain, memories, p)
 
 
 @inlined
@@ -66,9 +66,9 @@ def angles_at(angles, k, part, old, x, at, h, p):  # type: ignore[no-untyped-def
 @inlined
 def shaft_torque(x, f, p, acting, dry):  # type: ignore[no-untyped-def]
     """Torque in N m that a state and its forces show on the wheel side; `acting` before the lag."""
-    chain = L.chain_of(p)
+    chain = chain_of(p)
     n = chain.gear_ratio
-    speed = x[X.ROTOR_SPEED] - x[X.HOUSING_SPEED]
+    speed = relative_speed(x)
     if chain.kind != P.RIGID:
         rate = x[X.HOUSING_SPEED] + speed / n - x[X.WHEEL_SPEED]
         return chain.shaft_stiffness * x[X.TWIST] + chain.shaft_damping * rate + f[SHAFT]

@@ -16,6 +16,7 @@ from hil.plant import _equations as E
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
+from hil.plant._motion import acting_of, chain_of, relative_speed
 from hil.plant._tuples import plus, put
 
 # Columns of the kernel's output
@@ -52,7 +53,7 @@ def as_state(array):  # type: ignore[no-untyped-def]
 @compiled
 def _after(x, memories, y, p, h):  # type: ignore[no-untyped-def]
     """What effects remember `h` seconds after `x`, once the state is `y`."""
-    chain = L.chain_of(p)
+    chain = chain_of(p)
     before, after = E.motion(x, chain, memories, p), E.motion(y, chain, memories, p)
     return L.remembered(before, after, chain, memories, p, h)
 
@@ -81,13 +82,13 @@ def _steps(x, memories, p, torque, coupled, load, duration, count):  # type: ign
 
     A step in which dry friction stops the rotor is cut there: it then sticks or turns the other way.
     """
-    acting = L.acting_of(p)
+    acting = acting_of(p)
     whole = duration / count
     h, done, cut = whole, 0, False
     while done < count:
-        before = E.relative_speed(x)
+        before = relative_speed(x)
         y, kept = _step(x, memories, p, acting, torque, coupled, load, h, before)
-        after = E.relative_speed(y)
+        after = relative_speed(y)
         if cut:
             x, memories = put(y, X.ROTOR_SPEED, y[X.HOUSING_SPEED]), kept
             h, cut = whole - h, False
@@ -131,14 +132,14 @@ def sample(x, memories, p, slewed, old, new, late, dt, coupled, load, longest_st
 @compiled
 def outputs(x, memories, p, slewed, coupled, load, row):  # type: ignore[no-untyped-def]
     """Fill `row` with the measurable quantities of a state."""
-    chain, acting = L.chain_of(p), L.acting_of(p)
+    chain, acting = chain_of(p), acting_of(p)
     m = E.motion(x, chain, memories, p)
     torque = x[X.LAGGED] if chain.torque_lag > 0.0 else slewed
     outside = L.vehicle_load(m, chain, memories, p) if coupled else load
-    row[OUT_MOTOR_SPEED] = E.relative_speed(x)
+    row[OUT_MOTOR_SPEED] = relative_speed(x)
     row[OUT_WHEEL_SPEED] = x[X.WHEEL_SPEED]
     if chain.kind == P.RIGID:
-        rotor = E.rigid_acceleration(x, m, chain, memories, p, acting, torque, outside, E.relative_speed(x))
+        rotor = E.rigid_acceleration(x, m, chain, memories, p, acting, torque, outside, relative_speed(x))
         row[OUT_SHAFT_TORQUE] = chain.vehicle_inertia * rotor / chain.gear_ratio + outside
     else:
         row[OUT_SHAFT_TORQUE] = E.shaft_torque(m, chain, memories, p, acting)
@@ -152,7 +153,7 @@ def outputs(x, memories, p, slewed, coupled, load, row):  # type: ignore[no-unty
 @compiled
 def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel_angle):  # type: ignore[no-untyped-def]
     """State and memories that show the given speeds (rad/s) and torques (N m), the road coupling at rest."""
-    chain = L.chain_of(p)
+    chain = chain_of(p)
     memories, twist = L.begun(shaft_torque, chain, p)
     if chain.kind != P.RIGID:
         twist += shaft_torque / chain.shaft_stiffness

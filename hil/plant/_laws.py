@@ -1,7 +1,18 @@
 """The laws of all effects, put together to the functions that both integrators call.
 
-Each law is compiled from its plain Python with its own numbers cut out of the parameter vector. A law whose
-effect a model does not have costs a comparison, which the compiler moves out of loops.
+Each law is compiled from its plain Python, with its own numbers cut out of the parameter vector. A law whose
+effect a model does not have costs a comparison. What is put together here is made when a kernel is compiled
+that calls it, not when a compiled one is loaded:
+
+    shaft_force, rotor_loss, dry_friction, vehicle_load, tyre_force, tyre_rate
+        one force of all effects together: (motion, chain, memories, p)
+    moves_shaft, slows_rotor, may_stick, loads, moves_tyre, remembers, turns, pushes
+        whether any effect that has such a law does anything: (p)
+    shaped: the torque that a request becomes: (torque, p)
+    steepest: the steepest slope of the acting torque in N m/s: (p)
+    stretched: what is left of a twist for the shafts: (twist, chain, memories, p)
+    remembered: the memories after a step of h seconds: (before, after, chain, memories, p, h)
+    begun: memories at a start with a shaft torque, and their twist in series: (torque, chain, p)
 """
 
 from __future__ import annotations
@@ -14,14 +25,27 @@ from typing import Any, NamedTuple
 
 from numba import njit
 
-from hil.core.chain import Chain
-from hil.core.compiled import FAST, inlined
-from hil.core.effects import Effect, Motion
+from hil.core.compiled import FAST, depends_on
+from hil.core.effects import STRANGERS, Effect
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._tuples import put
 
-_CHAIN = P.CHAIN
+depends_on(STRANGERS)
+
+_NO_LIMIT = float("inf")
+_EMPTY = X.NO_MEMORY
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MAKERS:
+        raise AttributeError(name)
+    return _made(name)
+
+
+@cache
+def _made(name: str) -> Any:
+    return _MAKERS[name]()
 
 
 def _compile(function: Callable[..., Any]) -> Any:
@@ -56,6 +80,17 @@ class _Place(NamedTuple):
     acts: Any  # compiled: whether the effect does anything, of the parameter vector
 
 
+@cache
+def _place(id_: str) -> _Place:
+    effect = next(one for one in P.ACTING if one.id == id_)
+    first = P.FIRST[id_]
+    acts = None
+    for name in effect.acting():
+        one = _differs(P.place(id_, name), effect.off)
+        acts = one if acts is None else _either(acts, one)
+    return _Place(first, first + len(effect.parameters), X.MEMORY.get(id_, -1), acts)
+
+
 def _differs(slot: int, off: float) -> Any:
     def acts(p):  # type: ignore[no-untyped-def]
         return p[slot] != off
@@ -70,21 +105,23 @@ def _either(one: Any, other: Any) -> Any:
     return _compile(acts)
 
 
-def _place(effect: Effect) -> _Place:
-    first = P.FIRST[effect.id]
-    acts = None
-    for name in effect.acting():
-        one = _differs(P.place(effect.id, name), effect.off)
-        acts = one if acts is None else _either(acts, one)
-    return _Place(first, first + len(effect.parameters), X.MEMORY.get(effect.id, -1), acts)
+def _having(name: str) -> list[Effect]:
+    return [effect for effect in P.ACTING if getattr(effect.law, name) is not None]
 
 
-PLACES = {effect.id: _place(effect) for effect in P.ACTING}
+def _any_of(*names: str) -> Any:
+    def acts(p):  # type: ignore[no-untyped-def]
+        return False
+
+    result = _compile(acts)
+    for name in names:
+        for effect in _having(name):
+            result = _either(result, _place(effect.id).acts)
+    return result
 
 
 def _force(effect: Effect, law: Any) -> Any:
-    """One force of one effect: (motion, chain, memories, p)."""
-    first, last, memory, acts = PLACES[effect.id]
+    first, last, memory, acts = _place(effect.id)
     law = _law(law)
     if memory < 0:
 
@@ -98,20 +135,6 @@ def _force(effect: Effect, law: Any) -> Any:
     return _compile(force)
 
 
-def _sum_of(name: str) -> Any:
-    """One force of all effects together: (motion, chain, memories, p)."""
-
-    def total(motion, chain, memories, p):  # type: ignore[no-untyped-def]
-        return 0.0
-
-    result = _compile(total)
-    for effect in P.ACTING:
-        law = getattr(effect.law, name)
-        if law is not None:
-            result = _plus(result, _force(effect, law))
-    return result
-
-
 def _plus(one: Any, other: Any) -> Any:
     def total(motion, chain, memories, p):  # type: ignore[no-untyped-def]
         return one(motion, chain, memories, p) + other(motion, chain, memories, p)
@@ -119,54 +142,20 @@ def _plus(one: Any, other: Any) -> Any:
     return _compile(total)
 
 
-shaft_force, rotor_loss, dry_friction = _sum_of("shaft"), _sum_of("loss"), _sum_of("dry")
-vehicle_load, tyre_force, tyre_rate = _sum_of("load"), _sum_of("tyre"), _sum_of("tyre_rate")
+def _sum_of(name: str) -> Any:
+    def nothing(motion, chain, memories, p):  # type: ignore[no-untyped-def]
+        return 0.0
 
-
-def _acting(*names: str) -> Any:
-    """Whether any effect that has one of these laws does anything: (p)."""
-
-    def acts(p):  # type: ignore[no-untyped-def]
-        return False
-
-    result = _compile(acts)
-    for effect in P.ACTING:
-        if any(getattr(effect.law, name) is not None for name in names):
-            result = _either(result, PLACES[effect.id].acts)
+    forces = [_force(effect, getattr(effect.law, name)) for effect in _having(name)]
+    result = forces[0] if forces else _compile(nothing)
+    for force in forces[1:]:
+        result = _plus(result, force)
     return result
 
 
-turns = _compile(lambda p: False)
-for _effect in P.ACTING:
-    if _effect.law.follows is not None:
-        turns = _either(turns, PLACES[_effect.id].acts)
-moves_tyre = _acting("tyre", "tyre_rate")
-may_stick = _acting("dry")
-pushes = _acting("shaft", "loss", "dry", "load", "tyre", "tyre_rate")
-_moves_shaft, _slows_rotor, _loads = _acting("shaft"), _acting("loss"), _acting("load")
-_remembers = _acting("remember")
-
-
-class Acting(NamedTuple):
-    """Where any effect does anything: asked once, before a loop."""
-
-    shaft: bool
-    loss: bool
-    load: bool
-    tyre: bool
-    dry: bool
-    memory: bool
-
-
-@inlined
-def acting_of(p):  # type: ignore[no-untyped-def]
-    """Where any effect of a packed model does anything."""
-    return Acting(_moves_shaft(p), _slows_rotor(p), _loads(p), moves_tyre(p), may_stick(p), _remembers(p))
-
-
 def _shaped(before: Any, effect: Effect) -> Any:
-    first, last, _, acts = PLACES[effect.id]
-    law = _law(effect.law.shape)
+    first, last, _, acts = _place(effect.id)
+    law = _law(effect.law.shape)  # type: ignore[arg-type]
 
     def shape(torque, p):  # type: ignore[no-untyped-def]
         torque = before(torque, p)
@@ -175,15 +164,9 @@ def _shaped(before: Any, effect: Effect) -> Any:
     return _compile(shape)
 
 
-shaped = _compile(lambda torque, p: torque)
-for _effect in P.ACTING:
-    if _effect.law.shape is not None:
-        shaped = _shaped(shaped, _effect)
-
-
 def _gentler(before: Any, effect: Effect) -> Any:
-    first, last, _, acts = PLACES[effect.id]
-    law = _law(effect.law.slope)
+    first, last, _, acts = _place(effect.id)
+    law = _law(effect.law.slope)  # type: ignore[arg-type]
 
     def slope(p):  # type: ignore[no-untyped-def]
         return min(before(p), law(p[first:last])) if acts(p) else before(p)
@@ -191,16 +174,9 @@ def _gentler(before: Any, effect: Effect) -> Any:
     return _compile(slope)
 
 
-_NO_LIMIT = float("inf")
-steepest = _compile(lambda p: _NO_LIMIT)
-for _effect in P.ACTING:
-    if _effect.law.slope is not None:
-        steepest = _gentler(steepest, _effect)
-
-
 def _stretched(before: Any, effect: Effect) -> Any:
-    first, last, memory, acts = PLACES[effect.id]
-    law = _law(effect.law.stretch)
+    first, last, memory, acts = _place(effect.id)
+    law = _law(effect.law.stretch)  # type: ignore[arg-type]
 
     def stretch(twist, chain, memories, p):  # type: ignore[no-untyped-def]
         twist = before(twist, chain, memories, p)
@@ -209,15 +185,9 @@ def _stretched(before: Any, effect: Effect) -> Any:
     return _compile(stretch)
 
 
-stretched = _compile(lambda twist, chain, memories, p: twist)
-for _effect in P.ACTING:
-    if _effect.law.stretch is not None:
-        stretched = _stretched(stretched, _effect)
-
-
-def _with_memory(others: Any, effect: Effect) -> Any:
-    first, last, memory, acts = PLACES[effect.id]
-    law = _law(effect.law.remember)
+def _remembered(others: Any, effect: Effect) -> Any:
+    first, last, memory, acts = _place(effect.id)
+    law = _law(effect.law.remember)  # type: ignore[arg-type]
 
     def remember(before, after, chain, memories, p, h):  # type: ignore[no-untyped-def]
         new = others(before, after, chain, memories, p, h)
@@ -228,15 +198,9 @@ def _with_memory(others: Any, effect: Effect) -> Any:
     return _compile(remember)
 
 
-remembered = _compile(lambda before, after, chain, memories, p, h: memories)
-for _effect in P.ACTING:
-    if _effect.law.remember is not None:
-        remembered = _with_memory(remembered, _effect)
-
-
-def _beginning(others: Any, effect: Effect) -> Any:
-    first, last, memory, acts = PLACES[effect.id]
-    law = _law(effect.law.begin)
+def _begun(others: Any, effect: Effect) -> Any:
+    first, last, memory, acts = _place(effect.id)
+    law = _law(effect.law.begin)  # type: ignore[arg-type]
     in_series = effect.law.stretch is not None
 
     def begin(torque, chain, p):  # type: ignore[no-untyped-def]
@@ -251,41 +215,34 @@ def _beginning(others: Any, effect: Effect) -> Any:
     return _compile(begin)
 
 
-_EMPTY = X.NO_MEMORY
-#: Memories at a start with a shaft torque, and their twist in series with the shafts: (torque, chain, p).
-begun = _compile(lambda torque, chain, p: (_EMPTY, 0.0))
-for _effect in P.ACTING:
-    if _effect.law.begin is not None:
-        begun = _beginning(begun, _effect)
+def _in_turn(name: str, with_one_more: Callable[[Any, Effect], Any], first: Callable[..., Any]) -> Any:
+    """All laws of one name, each around the ones before it."""
+    result = _compile(first)
+    for effect in _having(name):
+        result = with_one_more(result, effect)
+    return result
 
 
-@inlined
-def chain_of(p):  # type: ignore[no-untyped-def]
-    """The linear numbers of a packed model by their names."""
-    return Chain(
-        p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11], p[12], p[13], p[14], p[15]
-    )
-
-
-@inlined
-def turning(speed):  # type: ignore[no-untyped-def]
-    """What a law of dry friction is told: the rotor turns against the housing, all else is at rest."""
-    return Motion(speed, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-
-@inlined
-def motion_of(x, chain, memories, wheel_angle, rotor_angle, p):  # type: ignore[no-untyped-def]
-    """What laws are told of a state."""
-    wheel = x[X.WHEEL_SPEED]
-    rotor = x[X.ROTOR_SPEED] - x[X.HOUSING_SPEED]
-    return Motion(
-        rotor,
-        wheel,
-        x[X.VEHICLE_SPEED] if chain.kind == P.THREE_INERTIA else wheel,
-        x[X.TWIST],
-        x[X.HOUSING_SPEED] + rotor / chain.gear_ratio - wheel,
-        stretched(x[X.TWIST], chain, memories, p),
-        x[X.TYRE_TWIST],
-        rotor_angle,
-        wheel_angle,
-    )
+_MAKERS: dict[str, Callable[[], Any]] = {
+    "shaft_force": lambda: _sum_of("shaft"),
+    "rotor_loss": lambda: _sum_of("loss"),
+    "dry_friction": lambda: _sum_of("dry"),
+    "vehicle_load": lambda: _sum_of("load"),
+    "tyre_force": lambda: _sum_of("tyre"),
+    "tyre_rate": lambda: _sum_of("tyre_rate"),
+    "moves_shaft": lambda: _any_of("shaft"),
+    "slows_rotor": lambda: _any_of("loss"),
+    "may_stick": lambda: _any_of("dry"),
+    "loads": lambda: _any_of("load"),
+    "moves_tyre": lambda: _any_of("tyre", "tyre_rate"),
+    "remembers": lambda: _any_of("remember"),
+    "turns": lambda: _any_of("follows"),
+    "pushes": lambda: _any_of("shaft", "loss", "dry", "load", "tyre", "tyre_rate"),
+    "shaped": lambda: _in_turn("shape", _shaped, lambda torque, p: torque),
+    "steepest": lambda: _in_turn("slope", _gentler, lambda p: _NO_LIMIT),
+    "stretched": lambda: _in_turn("stretch", _stretched, lambda twist, chain, memories, p: twist),
+    "remembered": lambda: _in_turn(
+        "remember", _remembered, lambda before, after, chain, memories, p, h: memories
+    ),
+    "begun": lambda: _in_turn("begin", _begun, lambda torque, chain, p: (_EMPTY, 0.0)),
+}

@@ -18,10 +18,10 @@ from hil.plant import _forces as F
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant._equations import relative_speed
 from hil.plant._friction import mean_friction
 from hil.plant._held_linear import step_matrices
 from hil.plant._kernel import as_tuple
+from hil.plant._motion import chain_of, motion_of, relative_speed
 from hil.plant._sensors import COLUMNS, GAIN, record
 from hil.plant._tuples import plus_product, plus_row, put
 
@@ -154,7 +154,7 @@ def _shown(acting, ends, dt, whole, p, out):  # type: ignore[no-untyped-def]
 @compiled
 def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
     """State and memories that show a start."""
-    memories, twist = L.begun(start[SHAFT], L.chain_of(p), p)
+    memories, twist = L.begun(start[SHAFT], chain_of(p), p)
     x = put(put(X.LINEAR_AT_REST, X.LAGGED, acting), X.ROTOR_SPEED, start[SPEED])
     if p[P.KIND] == P.RIGID:
         wheel = start[SPEED] / p[P.GEAR_RATIO]
@@ -200,12 +200,12 @@ def _pushed(y, f, held, moves_tyre):  # type: ignore[no-untyped-def]
 def _run_forced(drive, whole, p, first, varies, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
     acting, shown = drive
     x, memories = first
-    chain = L.chain_of(p)
+    chain = chain_of(p)
     dry, turns, moves_tyre = L.may_stick(p), L.turns(p), L.moves_tyre(p)
     gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
     friction = 0.0
     at = F.first_angles(angles, x, p)
-    m = L.motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+    m = motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
     f = F.forces(m, chain, memories, p)
     for k in range(acting.shape[0]):
         new = acting[max(k - whole, 0)]
@@ -223,9 +223,9 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, column, transition,
             if varies:
                 part = (sub + 1.0) / substeps
                 later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
-                n = L.motion_of(y, chain, memories, later[F.WHEEL], later[F.ROTOR], p)
+                n = motion_of(y, chain, memories, later[F.WHEEL], later[F.ROTOR], p)
                 kept = L.remembered(m, n, chain, memories, p, h)
-                n = L.motion_of(y, chain, kept, later[F.WHEEL], later[F.ROTOR], p)
+                n = motion_of(y, chain, kept, later[F.WHEEL], later[F.ROTOR], p)
                 middle = 0.5 * (before + relative_speed(y))
                 y = _pushed(y, F.change(F.forces(n, chain, kept, p), f), rising, moves_tyre)
                 if dry:
@@ -234,9 +234,9 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, column, transition,
                     y = plus_row(y, mean_friction(before, free, gain, level) - friction, held, F.LOSS)
                 if turns:
                     at = F.angles_at(angles, k, part, x, y, at, h, p)
-                n = L.motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+                n = motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
                 memories = L.remembered(m, n, chain, memories, p, h)
-                m = L.motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+                m = motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
                 f = F.forces(m, chain, memories, p)
             x = y
 

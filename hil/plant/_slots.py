@@ -85,7 +85,7 @@ def pack(model: Model) -> npt.NDArray[np.float64]:
     chain = Chain()._asdict() | {"kind": KINDS[model.kind], "wheel_radius_m": model.wheel_radius_m}
     chain.update(model.parameters)
     seen: set[str] = set()
-    corrections = []
+    corrections, acting = [], []
     for use in model.effects:
         effect = EFFECTS[use.id]
         if effect.law.reads is not None:
@@ -98,13 +98,21 @@ def pack(model: Model) -> npt.NDArray[np.float64]:
         seen.add(use.id)
         _change(chain, use)
         if use.id in FIRST:
-            first = FIRST[use.id]
-            values = [use.values.get(p.name, p.default) for p in effect.parameters]
-            vector[first : first + len(values)] = np.asarray(values, dtype=float)
+            acting.append(use)
     for use in corrections:
         _change(chain, use)
-    vector[:CHAIN] = [chain[name] for name in Chain._fields]
+    numbers = Chain(**chain)
+    vector[:CHAIN] = numbers
+    for use in acting:
+        first, values = FIRST[use.id], _values(use, numbers)
+        vector[first : first + len(values)] = values
     return vector
+
+
+def _values(use: EffectUse, chain: Chain) -> tuple[float, ...]:
+    effect = EFFECTS[use.id]
+    values = tuple(float(use.values.get(p.name, p.default)) for p in effect.parameters)
+    return values if effect.law.prepare is None else effect.law.prepare(chain, values)
 
 
 def _change(chain: dict[str, float], use: EffectUse) -> None:

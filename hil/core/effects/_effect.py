@@ -101,6 +101,7 @@ class Effect:
             `off`, it does nothing.
         text_parameters: parameters whose value is a name (a channel, a model parameter).
         needs: the model kinds that it can be added to.
+        makes: the model kind that a model is with it, where that is another.
         law: how it acts; memory: what it keeps from step to step.
         probes: the sizes that a diagnosis tries first.
         kin: effects that look like it, tried along with it.
@@ -118,6 +119,7 @@ class Effect:
     parameters: tuple[Parameter, ...]
     text_parameters: tuple[str, ...] = ()
     needs: tuple[str, ...] = ("rigid", "two_inertia", "three_inertia")
+    makes: str | None = None
     law: Law = field(default_factory=Law)
     sizes: tuple[str, ...] = ()
     off: float = 0.0

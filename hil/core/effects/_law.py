@@ -44,6 +44,7 @@ class Law:
 
     Args:
         chain: changes the linear numbers (a dict of `Chain`'s fields) by the effect's values.
+        prepare: the values that the other functions are given, of the chain and the effect's own values.
         shape: the torque that a request becomes, without memory: (torque, values).
         slope: the steepest slope of the acting torque in N m/s: (values).
         stretch: what is left of a twist for the shafts: (twist, chain, memory, values).
@@ -62,6 +63,7 @@ class Law:
     """
 
     chain: Callable[[dict[str, float], Mapping[str, Any]], None] | None = None
+    prepare: Callable[[Chain, Values], Values] | None = None
     shape: Callable[[float, Values], float] | None = None
     slope: Callable[[Values], float] | None = None
     stretch: Callable[[float, Chain, float, Values], float] | None = None

@@ -5,8 +5,9 @@ carry k·e + (c + d)·de/dt of one sign; once that would pull, contact is lost a
 the time constant c / k until the seat has moved to an end again. A vanishing gap leaves the shaft itself,
 which a vanishing dead zone of the twist does not (Nordin, Galic and Gutman, Int. J. Adaptive Control and
 Signal Processing 11, 1997). Flanks that lose energy in a blow have a damping d of their own while they
-touch; a coefficient of restitution e stands for the d that takes e times the speed of approach back out
-of a blow of rotor and wheel on the shafts: d = 2·ζ·√(k·m), ζ = -ln e / √(π² + ln² e), m the reduced inertia.
+touch; a coefficient of restitution e stands for the d with which rotor and wheel, meeting on the shafts'
+stiffness k with a reduced inertia m, part at e times the speed at which they met:
+e = exp(-2·ζ/√(1 - ζ²)·atan(√(1 - ζ²)/ζ)), d = 2·ζ·√(k·m), for flanks that let go once they would pull.
 """
 
 from __future__ import annotations
@@ -20,20 +21,36 @@ from hil.core.effects._law import Law, Motion, Values
 from hil.core.effects._probe import Probe, Scene, sized
 
 _SEATED_NM = 2.0  # a first shaft torque that surely is in contact
-_LEAST_RESTITUTION = 1e-6
+_HALVINGS = 60
+_CRITICAL = 1e-6
 
 
-def flank_damping(chain: Chain, values: Values) -> float:
-    """Damping in N m s/rad, wheel side, that acts beside the shafts' own while the flanks touch."""
-    _, contact_damping, restitution = values
-    if restitution >= 1.0:
-        return contact_damping
+def parting_share(ratio: float) -> float:
+    """Speed of parting over speed of meeting, of a spring that cannot pull with a damping ratio `ratio`."""
+    root = math.sqrt(abs(1.0 - ratio * ratio))
+    if root < _CRITICAL:
+        return math.exp(-2.0)
+    turned = math.atan2(root, ratio) if ratio < 1.0 else math.atanh(root / ratio)
+    return math.exp(-2.0 * ratio / root * turned)
+
+
+def damping_of(restitution: float, chain: Chain) -> float:
+    """Damping in N m s/rad, wheel side, of flanks of a coefficient of restitution above 0."""
     rotor = chain.motor_inertia * chain.gear_ratio * chain.gear_ratio
     wheel = chain.vehicle_inertia if chain.kind == TWO_INERTIA else chain.wheel_inertia
     reduced = rotor * wheel / (rotor + wheel)
-    kept = math.log(max(restitution, _LEAST_RESTITUTION))
-    ratio = -kept / math.sqrt(math.pi * math.pi + kept * kept)
-    return contact_damping + 2.0 * ratio * math.sqrt(chain.shaft_stiffness * reduced)
+    low, high = 1e-9, 1e3
+    for _ in range(_HALVINGS):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if parting_share(middle) > restitution else (low, middle)
+    return 2.0 * low * math.sqrt(chain.shaft_stiffness * reduced)
+
+
+def _prepare(chain: Chain, values: Values) -> Values:
+    half_gap, contact_damping, restitution = values
+    if restitution < 1.0:
+        contact_damping += damping_of(restitution, chain)
+    return half_gap, contact_damping, 1.0
 
 
 def _shaft(motion: Motion, chain: Chain, seat: float, values: Values) -> float:
@@ -42,7 +59,7 @@ def _shaft(motion: Motion, chain: Chain, seat: float, values: Values) -> float:
     linear = chain.shaft_stiffness * motion.twist + chain.shaft_damping * motion.twist_rate
     if -half_gap < seat < half_gap:
         return -linear
-    damping = chain.shaft_damping + flank_damping(chain, values)
+    damping = chain.shaft_damping + values[1]
     torque = chain.shaft_stiffness * (motion.twist - seat) + damping * motion.twist_rate
     return (max(0.0, torque) if seat > 0.0 else min(0.0, torque)) - linear
 
@@ -99,7 +116,7 @@ EFFECT = Effect(
         Parameter(
             "restitution",
             "1",
-            0.0,
+            1e-3,
             1.0,
             "share of the speed of approach that a blow gives back: another way to give a damping",
             optional=True,
@@ -108,7 +125,7 @@ EFFECT = Effect(
         ),
     ),
     needs=("two_inertia", "three_inertia"),
-    law=Law(shaft=_shaft, stretch=_stretch, remember=_remember, begin=_begin, steps=_steps),
+    law=Law(prepare=_prepare, shaft=_shaft, stretch=_stretch, remember=_remember, begin=_begin, steps=_steps),
     memory=Memory("rad", "where the shafts stand in the gap"),
     probes=_probes,
     abrupt=True,

@@ -52,6 +52,7 @@ EFFECT = Effect(
         Parameter("tyre_damping", "N m s/rad", 0.0, 1e7, "tyre/road damping"),
     ),
     needs=("two_inertia",),
+    makes="three_inertia",
     law=Law(chain=_coupled),
     probes=_probes,
 )

@@ -91,7 +91,7 @@ def test_the_stepping_kernel_answers_a_sine_like_the_linear_system(model, period
 def test_names_say_what_the_matrices_hold():
     system = linear_system(THREE)
     shape = (len(system.states), len(system.inputs), len(system.outputs))
-    assert shape == (8, 4, 3)
+    assert shape == (8, 6, 3)
     assert (system.a.shape, system.b.shape) == ((8, 8), (8, 4))
     assert (system.c.shape, system.d.shape) == ((3, 8), (3, 4))
     rotor, twist = system.states.index("rotor_speed"), system.states.index("twist")

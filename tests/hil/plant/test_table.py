@@ -35,4 +35,4 @@ def test_every_parameter_of_a_chain_has_a_slot(kind):
 
 def test_the_linear_states_stand_first():
     assert STATES.names[:LINEAR_STATES][-1] == "housing_speed"
-    assert len(STATES) == 11
+    assert len(STATES) == 9 + sum(effect.memory is not None for effect in EFFECTS.values())

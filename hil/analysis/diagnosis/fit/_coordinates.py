@@ -8,39 +8,13 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.fit._thresholds import (
-    COARSE_STEP,
-    FINE_STEP,
-    MISMATCH_REACH,
-    PRIOR,
-    REACH,
-    STEP,
-    UPPER,
-)
+from hil.analysis.diagnosis.fit._thresholds import MISMATCH_REACH, PRIOR, REACH, STEP
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, parameter_names
-from hil.plant import SENSOR_DELAY, SENSOR_GAIN, SENSOR_OFFSET, ideal_sensors, pack
+from hil.plant import SENSOR_STEP, pack, sensor_of
 
 Array = npt.NDArray[np.float64]
-
-_SENSORS = {"sensor_gain": SENSOR_GAIN, "sensor_offset": SENSOR_OFFSET, "channel_skew": SENSOR_DELAY}
-#: Effect parameters that may be zero or negative: moved on a linear scale, with this typical size.
-_LINEAR = {
-    "extra_delay_s": 1e-3,
-    "coefficient_nm_rad3": 1e4,
-    "torque_nm": 0.1,
-    "stribeck_torque_nm": 0.1,
-    "offset_nm": 0.1,
-    "coefficient_nms_rad": 1e-3,
-    "phase_rad": 0.1,
-    "order": 0.01,
-    "rolling_nm": 1.0,
-    "aero_nms2_rad2": 1e-3,
-    "gain": 0.01,
-    "offset": 0.1,
-    "delay_s": 1e-3,
-}
 
 
 @dataclass(frozen=True)
@@ -97,21 +71,17 @@ class Hypothesis:
         return tuple(found)
 
     def _of_term(self, index: int, term: EffectUse) -> list[Coordinate]:
-        if term.id in ("parameter_mismatch", "sensor_quantization"):
-            return []
         found = []
         for parameter in EFFECTS[term.id].parameters:
-            if parameter.optional and parameter.name not in self.open:
+            if not parameter.fitted or (parameter.optional and parameter.name not in self.open):
                 continue
-            lower, upper = parameter.lower, min(parameter.upper, UPPER.get(parameter.name, np.inf))
-            if parameter.name in _LINEAR:
-                step = FINE_STEP.get(parameter.name, STEP) * _LINEAR[parameter.name]
-                if parameter.name == "phase_rad":
-                    lower, upper = -50.0, 50.0
+            lower, upper = parameter.within or (parameter.lower, parameter.upper)
+            step = STEP * parameter.step
+            if parameter.typical is not None:
+                step *= parameter.typical
                 found.append(Coordinate(parameter.name, index, "linear", lower, upper, step, np.inf))
             else:
                 low, high = np.log(max(lower, 1e-12)), np.log(max(upper, 1e-12))
-                step = COARSE_STEP.get(parameter.name, STEP)
                 found.append(Coordinate(parameter.name, index, "log", low, high, step, np.inf))
         return found
 
@@ -162,17 +132,7 @@ def key_of(term: EffectUse) -> tuple[str, str]:
 
 
 def sensors_of(model: Model) -> Array:
-    """Gain, offset and delay of each channel (3 x 3) from a model's sensor effects."""
-    sensors = np.asarray(ideal_sensors(1)[0])
-    for use in model.effects:
-        column = _SENSORS.get(use.id)
-        channel = str(use.values.get("channel", ""))
-        if column is None or channel not in OUTPUTS:
-            continue
-        value = float(use.values[EFFECTS[use.id].parameters[0].name])
-        row = OUTPUTS.index(channel)
-        if column == SENSOR_GAIN:
-            sensors[row, SENSOR_GAIN] *= value
-        else:
-            sensors[row, column] += value
+    """Gain, offset and delay of each channel (3 x 4) from a model's sensor effects; not its rounding."""
+    sensors = np.stack([sensor_of(model, channel) for channel in OUTPUTS])
+    sensors[:, SENSOR_STEP] = 0.0
     return sensors

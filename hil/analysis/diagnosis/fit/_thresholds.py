@@ -23,27 +23,6 @@ MISMATCH_REACH: Annotated[
 STEP: Annotated[
     float, Means("natural logarithm, or typical sizes", "finite difference of a coordinate", "hidden")
 ] = 1e-3
-UPPER: Annotated[
-    dict[str, float],
-    Means(
-        "the parameter's",
-        "beyond it an effect is no longer itself: a path that slips at 6 degrees is a spring",
-        "hidden",
-    ),
-] = {"slip_rad": 0.1, "time_constant_s": 0.3}
-COARSE_STEP: Annotated[
-    dict[str, float],
-    Means(
-        "natural logarithm",
-        "finite difference where contact comes and goes: the error is rough in the gap",
-        "hidden",
-    ),
-] = {"half_gap_rad": 0.03}
-FINE_STEP: Annotated[
-    dict[str, float],
-    Means("typical steps", "finite difference of an order, which turns into phase", "hidden"),
-] = {"order": 1e-3}
-
 MOST_ROUNDS: Annotated[int, Means("rounds", "of a fit at most", "hidden")] = 14
 WORTH_A_LEAP: Annotated[
     float,

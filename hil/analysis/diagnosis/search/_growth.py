@@ -35,22 +35,10 @@ from hil.analysis.diagnosis.search._thresholds import (
     WORTH_POLISH,
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
+from hil.core.effects import EFFECTS, Parameter
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
-
-_ABRUPT = ("backlash", "torque_deadband", "torque_rate_limit", "torque_saturation")
-_RELATIVES = {
-    "dead_time": ("actuator_lag", "channel_skew"),
-    "actuator_lag": ("dead_time", "channel_skew"),
-    "channel_skew": ("dead_time", "actuator_lag"),
-    "coulomb_friction": ("running_resistance",),
-    "running_resistance": ("coulomb_friction", "viscous_drag"),
-    "viscous_drag": ("running_resistance",),
-    "mount_mode": ("shaft_cubic_stiffness",),
-    "shaft_cubic_stiffness": ("shaft_hysteresis",),
-    "shaft_hysteresis": ("coulomb_friction",),
-}
 
 
 @dataclass
@@ -128,7 +116,7 @@ def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
 
 def _chosen(scores: list[Score]) -> list[Score]:
     top = [s for s in scores[:RACE] if s.gain > max(LEAST_EVIDENCE, PROMISING * scores[0].gain)]
-    wanted = {name for s in top[:2] for name in _RELATIVES.get(s.key[0], ())}
+    wanted = {name for s in top[:2] for name in EFFECTS[s.key[0]].kin}
     have = {s.key[0] for s in top}
     return top + [
         s for s in scores if s.key[0] in wanted - have and s.gain > RELATIVE_PROMISES * scores[0].gain
@@ -165,32 +153,51 @@ def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
 
 
 def _refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
-    """Optional parameters of dry friction, where they pay."""
+    """Optional numbers of the effects, where they pay."""
     for term in best.hypothesis.terms:
-        if term.id == "coulomb_friction":
-            for name in ("stribeck_torque_nm", "offset_nm"):
-                opened = Hypothesis(
-                    best.hypothesis.base, best.hypothesis.terms, (*best.hypothesis.open, name)
-                )
-                tried = fit(problem, opened, best.starts, carried(best, opened))
-                if evidence.left(tried) < OPTIONAL_LEAVES * evidence.left(best) and (
-                    evidence.between(best, tried) > LEAST_EVIDENCE
-                ):
-                    best = tried
+        for parameter in EFFECTS[term.id].parameters:
+            if not parameter.opens or parameter.name in best.hypothesis.open:
+                continue
+            tried = _opened(problem, best, term.id, parameter)
+            if evidence.left(tried) < OPTIONAL_LEAVES * evidence.left(best) and (
+                evidence.between(best, tried) > LEAST_EVIDENCE
+            ):
+                best = tried
     return best
+
+
+def _opened(problem: Problem, best: Fit, id_: str, parameter: Parameter) -> Fit:
+    """`best` with one optional number more, from the most promising of its first values."""
+    hypothesis = Hypothesis(
+        best.hypothesis.base, best.hypothesis.terms, (*best.hypothesis.open, parameter.name)
+    )
+    theta = carried(best, hypothesis)
+    own = next(
+        i
+        for i, c in enumerate(hypothesis.coordinates())
+        if c.name == parameter.name and c.term >= 0 and hypothesis.terms[c.term].id == id_
+    )
+    tried = []
+    for value in parameter.opens:
+        other = theta.copy()
+        other[own] = value if parameter.typical is not None else np.log(value)
+        tried.append(other)
+    return fit(problem, hypothesis, best.starts, cheapest(problem, hypothesis, tried, best.starts))
 
 
 def _polished(evidence: Evidence, best: Fit) -> Fit:
     """From other sizes of the newest effect: abrupt effects have false minima.
 
-    Once no gap is left, only a little wider and narrower where play is: the place in the gap at the start
-    makes up for some of its width.
+    Once no gap is left, only a little wider and narrower where errors are rough in a number: the place in a
+    gap at the start makes up for some of its width.
     """
-    if best.hypothesis.ids[-1] not in _ABRUPT or evidence.share(best) < WORTH_POLISH:
+    effect = EFFECTS[best.hypothesis.ids[-1]]
+    if not effect.abrupt or evidence.share(best) < WORTH_POLISH:
         return best
     coordinates = best.hypothesis.coordinates()
     if evidence.settled(best):
-        for index in [i for i, c in enumerate(coordinates) if c.name == "half_gap_rad"]:
+        rough = {p.name for p in effect.parameters if p.rough}
+        for index in [i for i, c in enumerate(coordinates) if c.name in rough]:
             best = _from_sizes(evidence, best, best.theta, index, WIDTHS)
         return best
     own = next(i for i, c in enumerate(coordinates) if c.term == len(best.hypothesis.terms) - 1)

@@ -25,7 +25,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     ORDER_GRID,
     SPEED_BINS,
 )
-from hil.plant import pack, system
+from hil.plant import LinearSystem, linear_system
 
 Array = npt.NDArray[np.float64]
 Spectrum = npt.NDArray[np.complex128]
@@ -45,7 +45,7 @@ def order_lines(
 ) -> list[OrderLine]:
     """The strongest orders of the wheel's or the rotor's turning in the errors of `fit`, strongest first."""
     angles, images, powers, speeds = [], [], [], []
-    slots = pack(fit.hypothesis.model(fit.theta))
+    system = linear_system(fit.hypothesis.model(fit.theta))
     for index, trace in enumerate(problem.traces):
         error = fit.errors[index].channels
         dt = trace.dt * trace.block
@@ -53,7 +53,7 @@ def order_lines(
         angle = blocks(turned[:, None], trace.block)[:, 0]
         speed = np.gradient(angle, dt)
         image, frequency, power = _adjoint(
-            slots, error * problem.weights[index], problem.weights[index], dt, side
+            system, error * problem.weights[index], problem.weights[index], dt, side
         )
         angles.append(angle)
         images.append(image)
@@ -71,12 +71,14 @@ def order_lines(
     return _peaks(score, orders, side, most, 2 * np.pi / reach)
 
 
-def _adjoint(slots: Array, error: Array, weights: Array, dt: float, side: str) -> tuple[Array, Array, Array]:
+def _adjoint(
+    system: LinearSystem, error: Array, weights: Array, dt: float, side: str
+) -> tuple[Array, Array, Array]:
     """The error seen from the ripple's input, and the weighted power of the response over frequency."""
     size = len(error)
     frequency = np.asarray(np.fft.rfftfreq(size, dt), dtype=float)
     inside = (frequency >= FROM_HZ) & (frequency <= 60.0)
-    responses = _responses(slots, frequency[inside], side)
+    responses = _responses(system, frequency[inside], side)
     spectrum = np.fft.rfft(error, axis=0)
     image = np.zeros(len(frequency), complex)
     image[inside] = np.sum(np.conj(responses) * spectrum[inside], axis=1)
@@ -85,28 +87,11 @@ def _adjoint(slots: Array, error: Array, weights: Array, dt: float, side: str) -
     return np.fft.irfft(image, size), frequency, power
 
 
-def _responses(slots: Array, frequency: Array, side: str) -> Array:
+def _responses(system: LinearSystem, frequency: Array, side: str) -> Spectrum:
     """Motor speed, wheel speed and shaft torque per N m of ripple: frequencies x 3."""
-    from hil.plant import _slots as P
-
-    a, b = system(slots)
-    column = b[:, 1] if side == "wheel" else -b[:, 2]
-    twist_rate = np.zeros(len(a))
-    twist_rate[0], twist_rate[7], twist_rate[2] = 1 / slots[P.GEAR_RATIO], 1 - 1 / slots[P.GEAR_RATIO], -1.0
-    c = np.zeros((3, len(a)))
-    c[0, 0], c[0, 7], c[1, 2] = 1.0, -1.0, 1.0
-    c[2] = slots[P.SHAFT_DAMPING] * twist_rate
-    c[2, 1] += slots[P.SHAFT_STIFFNESS]
-    s = 2j * np.pi * frequency
-    states = np.linalg.solve(
-        s[:, None, None] * np.eye(len(a)) - a, np.broadcast_to(column[:, None], (len(s), len(a), 1))
-    )
-    found = (c @ states)[:, :, 0]
-    if slots[P.KIND] == P.RIGID:
-        found[:, 2] = slots[P.VEHICLE_INERTIA] * s * found[:, 1]
-    elif side == "wheel":
-        found[:, 2] += 1.0
-    return np.asarray(found)
+    if side == "wheel":
+        return np.asarray(system.response(frequency, "extra_shaft_torque_nm").T)
+    return np.asarray(-system.response(frequency, "rotor_loss_nm").T)
 
 
 def _over_angle(angles: list[Array], images: list[Array], largest: float) -> tuple[Spectrum, Array]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.search._thresholds import DOUBT, FAR, PRICE
+from hil.core.effects import EFFECTS, Stage
 
-_SENSOR_FAULTS = ("sensor_gain", "sensor_offset", "channel_skew")
+_SENSOR_FAULTS = tuple(e.id for e in EFFECTS.values() if e.stage is Stage.SENSOR)
 
 
 def price(one: Fit) -> float:

@@ -13,8 +13,7 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._least_squares import box_step
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._probe import Probe
-from hil.analysis.diagnosis.search._probes import mismatches, probes
+from hil.analysis.diagnosis.search._probes import Candidate, mismatches, probes
 from hil.analysis.diagnosis.search._thresholds import PROBE_DIVERGED, SCORED_MISMATCH
 from hil.core.model import EffectUse
 
@@ -58,7 +57,7 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
         low = np.concatenate([lower, [d.lower for d in probe.directions]])
         high = np.concatenate([upper, [d.upper for d in probe.directions]])
         gain, amounts = _gain(matrix, gradient, low, high, columns)
-        _keep(best, Score(probe.use(amounts[base:]), gain - rest))
+        _keep(best, Score(probe.use(amounts[base:].tolist()), gain - rest))
     for use, index in mismatch_columns(fit.hypothesis):
         low, high = lower.copy(), upper.copy()
         low[index], high[index] = -SCORED_MISMATCH, SCORED_MISMATCH
@@ -77,7 +76,9 @@ def _keep(best: dict[tuple[str, str], Score], score: Score) -> None:
         best[score.key] = score
 
 
-def probe_columns(candidates: Sequence[Probe], base: int) -> Iterator[tuple[Probe, npt.NDArray[np.int_]]]:
+def probe_columns(
+    candidates: Sequence[Candidate], base: int
+) -> Iterator[tuple[Candidate, npt.NDArray[np.int_]]]:
     """Every probe with the columns of `products` that it may use: the `base` first, and its directions."""
     at = base
     for probe in candidates:
@@ -102,7 +103,7 @@ def _gain(
 
 
 def products(
-    problem: Problem, fit: Fit, candidates: list[Probe], errors: Mapping[int, Array]
+    problem: Problem, fit: Fit, candidates: list[Candidate], errors: Mapping[int, Array]
 ) -> tuple[Array, Array]:
     """Products of all derivatives and probe responses with each other and with errors, starts projected out.
 
@@ -114,7 +115,7 @@ def products(
     packed = [fit.hypothesis.packed(fit.theta)]
     for probe in candidates:
         for direction in probe.directions:
-            added = fit.hypothesis.with_term(EffectUse(probe.id, direction.values))
+            added = fit.hypothesis.with_term(probe.along(direction))
             packed.append(added.packed(carried(fit, added)))
     slots = np.stack([p for p, _ in packed])
     sensors = np.stack([s for _, s in packed])

@@ -126,14 +126,6 @@ LEAST_ANGLE_RAD: Annotated[float, Means("rad", "an axle that turns less shows no
 SPEED_BINS: Annotated[int, Means("bins", "of speed, in what an order is expected to bring", "orders")] = 200
 ORDER_GRID: Annotated[int, Means("orders", "at which that is computed", "orders")] = 600
 
-STRETCH: Annotated[
-    tuple[float, float],
-    Means("factor", "how far a response may be stretched to stand for a neighbouring size", "hidden"),
-] = (0.5, 1.6)
-LATE_S: Annotated[
-    tuple[float, ...], Means("s", "a channel so late has an error that is no longer like its slope", "hidden")
-] = (0.008, 0.04)
-
 ROUNDING_MARGIN: Annotated[
     float, Means("factor", "rounding may leave so much more than its simulation says", "quantization")
 ] = 2.0

@@ -28,13 +28,18 @@ from hil.analysis.diagnosis.search._thresholds import (
     START_RAD,
     WINDOW_S,
 )
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 from hil.plant import pack, simulate_many
 
 Array = npt.NDArray[np.float64]
 
 #: Ripples, and the column of the angles (wheel, rotor) and of the channels that each follows.
-RIPPLES = {"wheel_order_disturbance": (0, 1), "motor_order_ripple": (1, 0)}
+RIPPLES = {
+    effect.id: (0, 1) if effect.law.follows == "wheel" else (1, 0)
+    for effect in EFFECTS.values()
+    if effect.law.follows is not None
+}
 _GRID = 2.0 * np.pi / PHASES
 
 

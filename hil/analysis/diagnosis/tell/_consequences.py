@@ -42,22 +42,3 @@ def _band_energy(values: Array) -> float:
     frequency, density = signal.periodogram(signal.detrend(values), 1 / _DT, "hann")
     inside = (frequency >= BAND_HZ[0]) & (frequency <= BAND_HZ[1])
     return float(np.sum(density[inside]) * (frequency[1] - frequency[0]))
-
-
-def loop_area(model: Model) -> float | None:
-    """Energy in J that the shaft's hysteretic path loses in one cycle of four slip twists, if there is one.
-
-    Parameters of a hysteresis are not unique between its formulas; the area of its loop is.
-    """
-    for use in model.effects:
-        if use.id == "shaft_hysteresis":
-            slip, stiffness = float(use.values["slip_rad"]), float(use.values["stiffness_nm_rad"])
-            twist = 4 * slip * np.sin(np.linspace(0, 4 * np.pi, 8001))
-            z, force = 0.0, np.zeros(len(twist))
-            for k in range(1, len(twist)):
-                step = twist[k] - twist[k - 1]
-                ratio = z / slip
-                z += step if ratio * step <= 0 else step * (1 - ratio * ratio)
-                force[k] = stiffness * z
-            return float(np.abs(np.trapezoid(force[4000:], twist[4000:])))
-    return None

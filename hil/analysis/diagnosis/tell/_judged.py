@@ -18,7 +18,7 @@ from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
 from hil.analysis.diagnosis.search._tracking import track
 from hil.analysis.diagnosis.tell._confidence import alternatives_of, confidence_of, drop_of
-from hil.analysis.diagnosis.tell._consequences import consequences, loop_area
+from hil.analysis.diagnosis.tell._consequences import consequences
 from hil.analysis.diagnosis.tell._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
 from hil.analysis.diagnosis.tell._words import Where, signature, where
 from hil.core.model import EffectUse, Model
@@ -79,7 +79,6 @@ class Judged:
             notes=tuple(notes),
             seconds=seconds,
             by_chance=self.by_chance,
-            loop_area_j=loop_area(model),
             consequences=consequences(base.hypothesis.base, model),
         )
 

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap
 from hil.analysis.diagnosis.tell._words import Where
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
@@ -90,7 +91,6 @@ class Diagnosis:
     notes: tuple[str, ...]
     seconds: float = 0.0
     by_chance: float | None = None
-    loop_area_j: float | None = None
     consequences: dict[str, dict[str, float]] = field(default_factory=dict)
 
     def as_json(self) -> dict[str, Any]:
@@ -131,7 +131,6 @@ class Diagnosis:
                 else {}
             ),
             "consequences": self.consequences,
-            **({"loop_area_j": self.loop_area_j} if self.loop_area_j is not None else {}),
             "notes": list(self.notes),
             "model": "model.toml",
         }
@@ -142,6 +141,7 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
         "id": effect.use.id,
         "parameters": dict(effect.use.values),
         "standard_error": effect.standard_error,
+        "derived": derived_of(effect.use),
         "confidence": round(effect.confidence, 3),
         "where": {
             "channels": list(effect.where.channels),
@@ -149,6 +149,13 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
             "condition": effect.where.condition,
         },
     }
+
+
+def derived_of(use: EffectUse) -> dict[str, float]:
+    """Numbers of an effect that users know beside the fitted ones, by names that end in their units."""
+    derived = EFFECTS[use.id].derived
+    numbers = {name: value for name, value in use.values.items() if not isinstance(value, str)}
+    return dict(derived(numbers)) if derived is not None else {}
 
 
 def _gaps(before: dict[str, ChannelGap], after: dict[str, ChannelGap]) -> dict[str, dict[str, float]]:

@@ -9,8 +9,9 @@ import numpy as np
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._result import Verdict
 from hil.analysis.diagnosis.tell._thresholds import MORE, NOISELESS, SHUT, SHUT_BY_LAW, SHUT_NOISELESS
+from hil.core.effects import EFFECTS
 
-_BY_LAW = ("backlash", "coulomb_friction", "shaft_hysteresis")
+_BY_LAW = tuple(effect.id for effect in EFFECTS.values() if effect.many_laws)
 
 
 def verdict_of(found: Found, rounded: bool) -> Verdict:

@@ -4,8 +4,8 @@ import numpy as np
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.search._probe import Scene
 from hil.analysis.diagnosis.search._probes import mismatches, probes
+from hil.analysis.diagnosis.search._scene import Recorded
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
@@ -18,7 +18,7 @@ def test_every_probe_is_an_effect_that_may_be_added() -> None:
     problem = one_problem()
     one = fit(problem, Hypothesis(MODEL, (GAIN,)), rounds=0)
     for probe in probes(problem, one):
-        use = probe.use(np.ones(len(probe.directions)))
+        use = probe.use([1.0] * len(probe.directions))
         assert MODEL.kind in EFFECTS[use.id].needs
         assert (use.id, use.values.get("channel", "")) != ("sensor_gain", OUTPUTS[2])
         packed, _ = one.hypothesis.with_term(use).packed(one.hypothesis.with_term(use).start())
@@ -32,7 +32,14 @@ def test_every_parameter_may_be_wrong_but_dead_time() -> None:
 
 def test_a_scene_knows_the_largest_torques() -> None:
     problem = one_problem()
-    scene = Scene(problem, fit(problem, Hypothesis(MODEL), rounds=0))
-    assert scene.torque == np.max(np.abs(problem.traces[0].torque))
-    assert scene.shaft_torque == np.max(np.abs(problem.traces[0].measured[:, 2]))
-    assert scene.model.parameters["gear_ratio"] > 1.0
+    scene = Recorded(problem, fit(problem, Hypothesis(MODEL), rounds=0))
+    assert scene.torque_nm == np.max(np.abs(problem.traces[0].torque))
+    assert scene.shaft_torque_nm == np.max(np.abs(problem.traces[0].measured[:, 2]))
+    assert scene.parameters["gear_ratio"] > 1.0
+    assert scene.channels == OUTPUTS
+
+
+def test_values_that_a_probe_leaves_out_are_the_defaults() -> None:
+    problem = one_problem()
+    found = [p for p in probes(problem, fit(problem, Hypothesis(MODEL), rounds=0)) if p.id == "backlash"]
+    assert {p.use([1.0]).values["contact_damping_nms_rad"] for p in found} == {0.0}

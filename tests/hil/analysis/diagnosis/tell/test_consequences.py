@@ -2,7 +2,8 @@
 
 import pytest
 
-from hil.analysis.diagnosis.tell._consequences import consequences, loop_area
+from hil.analysis.diagnosis.tell._consequences import consequences
+from hil.analysis.diagnosis.tell._result import derived_of
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL
 
@@ -22,9 +23,7 @@ def test_less_damping_overshoots_more() -> None:
 
 def test_a_loop_loses_energy_by_its_stiffness() -> None:
     twice = EffectUse("shaft_hysteresis", {**LOOP.values, "stiffness_nm_rad": 2000.0})
-    one, two = (loop_area(MODEL.with_effects(use)) for use in (LOOP, twice))
-    assert one is not None
+    one, two = (derived_of(use)["loop_area_j"] for use in (LOOP, twice))
     assert two == pytest.approx(2.0 * one)
     # at most: a path that slips at once, over four slip twists and back
     assert one < 1000.0 * 0.01 * 4 * 4 * 0.01
-    assert loop_area(MODEL) is None

@@ -1,0 +1,106 @@
+"""Laws as plain functions, against closed forms."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
+
+from hil.core.chain import THREE_INERTIA, TWO_INERTIA, Chain
+from hil.core.effects import EFFECTS, Motion
+from hil.core.effects.backlash import damping_of
+
+CHAIN = Chain(
+    kind=THREE_INERTIA,
+    motor_inertia=0.02,
+    gear_ratio=8.0,
+    shaft_stiffness=6000.0,
+    shaft_damping=20.0,
+    wheel_inertia=4.0,
+    tyre_stiffness=5000.0,
+    tyre_damping=300.0,
+    vehicle_inertia=300.0,
+)
+STILL = Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+BACKLASH, COULOMB, LAG = (EFFECTS[id_].law for id_ in ("backlash", "coulomb_friction", "dyno_lag"))
+small = st.floats(-0.1, 0.1)
+
+
+@given(twist=small, rate=st.floats(-5, 5), seat=st.sampled_from([-0.02, 0.02]), damping=st.floats(0, 100))
+def test_flanks_in_contact_push_and_never_pull(twist, rate, seat, damping):
+    motion = STILL._replace(twist=twist, twist_rate=rate)
+    linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
+    torque = linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, damping, 1.0))
+    assert torque * seat >= -1e-9
+    free = CHAIN.shaft_stiffness * (twist - seat) + (CHAIN.shaft_damping + damping) * rate
+    assert torque == pytest.approx(max(0.0, free) if seat > 0 else min(0.0, free), abs=1e-9)
+
+
+@given(twist=small, rate=st.floats(-5, 5), seat=st.floats(-0.0199, 0.0199))
+def test_within_the_gap_nothing_is_carried(twist, rate, seat):
+    motion = STILL._replace(twist=twist, twist_rate=rate)
+    linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
+    assert linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, 10.0, 1.0)) == pytest.approx(0.0, abs=1e-9)
+    assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0)) == 0.0
+
+
+@pytest.mark.parametrize("restitution", [0.05, 0.2, 0.5, 0.9])
+def test_a_blow_gives_back_the_share_of_speed_that_restitution_says(restitution):
+    """A mass on a damped spring that lets go once it would pull, by an integrator of others."""
+    damping = damping_of(restitution, CHAIN)
+    rotor = CHAIN.motor_inertia * CHAIN.gear_ratio**2
+    mass = rotor * CHAIN.wheel_inertia / (rotor + CHAIN.wheel_inertia)
+
+    def force(t, x):
+        return CHAIN.shaft_stiffness * x[0] + damping * x[1]
+
+    force.terminal, force.direction = True, -1
+    blow = solve_ivp(
+        lambda t, x: [x[1], -force(t, x) / mass], (0, 1), [0.0, 1.0], events=force, rtol=1e-9, atol=1e-12
+    )
+    assert -blow.y[1, -1] == pytest.approx(restitution, rel=1e-5)
+
+
+def test_an_elastic_blow_has_no_damping_of_its_own():
+    assert BACKLASH.prepare(CHAIN, (0.02, 7.0, 1.0)) == (0.02, 7.0, 1.0)
+    two = CHAIN._replace(kind=TWO_INERTIA)
+    assert BACKLASH.prepare(two, (0.02, 7.0, 0.5))[1] > BACKLASH.prepare(CHAIN, (0.02, 7.0, 0.5))[1] > 7.0
+
+
+@given(angle=st.floats(1e-4, 1.0), turn=st.floats(1e-3, 1.0))
+def test_friction_turns_around_over_its_angle(angle, turn):
+    """Dahl's closed form after a reversal: F = T_c·(1 - 2·exp(-θ/θ_t))."""
+    values = (2.0, 0.0, 0.0, turn)
+    h = 1e-3
+    moving = STILL._replace(rotor_speed=angle / h)
+    bent = COULOMB.remember(moving, moving, CHAIN, -1.0, values, h)
+    assert COULOMB.loss(moving, CHAIN, bent, values) == pytest.approx(2.0 * (1 - 2 * math.exp(-angle / turn)))
+    assert COULOMB.dry(moving, CHAIN, bent, values) == 0.0
+
+
+def test_friction_that_turns_at_once_sticks_and_keeps_nothing():
+    values = (2.0, 0.5, 0.3, 0.0)
+    assert COULOMB.dry(STILL, CHAIN, 0.0, values) == 2.5
+    assert COULOMB.loss(STILL, CHAIN, 0.7, values) == 0.3
+    assert COULOMB.remember(STILL, STILL, CHAIN, 0.7, values, 1e-3) == 0.0
+
+
+@given(st.floats(1e-3, 1.0), st.floats(-50, 50))
+def test_a_late_dynamometer_follows_a_ramp_by_its_time_constant(tau, slope):
+    behind, h = 0.0, 1e-3
+    for k in range(3000):
+        before, after = (STILL._replace(vehicle_speed=slope * h * (k + i)) for i in (0, 1))
+        behind = LAG.remember(before, after, CHAIN, behind, (tau,), h)
+    assert behind == pytest.approx(slope * tau * (1 - math.exp(-3.0 / tau)), abs=1e-9)
+
+
+def test_a_slipping_tyre_is_a_spring_at_rest_and_relaxes_by_the_way_it_rolls():
+    slip = EFFECTS["tyre_slip"].law
+    chain = CHAIN._asdict()
+    slip.chain(chain, {"slip_stiffness_nm": 8000.0, "relaxation_length_m": 0.4})
+    assert chain["tyre_stiffness"] == pytest.approx(8000.0 * 0.33 / 0.4)
+    twisted = STILL._replace(tyre_twist=0.1)
+    assert slip.tyre_rate(twisted, CHAIN, 0.0, (8000.0, 0.4)) == 0.0
+    rolling = twisted._replace(vehicle_speed=-10.0)
+    assert slip.tyre_rate(rolling, CHAIN, 0.0, (8000.0, 0.4)) == pytest.approx(-10.0 * 0.33 / 0.4 * 0.1)

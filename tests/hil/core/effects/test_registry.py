@@ -1,0 +1,123 @@
+"""The registry: every effect says all that others read of it, and says it consistently."""
+
+import inspect
+from pathlib import Path
+
+import pytest
+
+import hil.core.effects as package
+from hil.core.effects import EFFECTS, SENSED, Effect, Law, Parameter, Stage
+from hil.core.model import model_from_dict
+
+CONTRACT = {
+    "dead_time": ("extra_delay_s",),
+    "actuator_lag": ("time_constant_s",),
+    "torque_saturation": ("limit_nm",),
+    "torque_rate_limit": ("limit_nm_s",),
+    "torque_deadband": ("half_width_nm",),
+    "backlash": ("half_gap_rad", "contact_damping_nms_rad", "restitution"),
+    "shaft_cubic_stiffness": ("coefficient_nm_rad3",),
+    "shaft_hysteresis": ("stiffness_nm_rad", "slip_rad"),
+    "coulomb_friction": ("torque_nm", "stribeck_torque_nm", "offset_nm", "turn_rad"),
+    "viscous_drag": ("coefficient_nms_rad",),
+    "mount_mode": ("housing_inertia_kg_m2", "mount_stiffness_nm_rad", "mount_damping_nms_rad"),
+    "tyre_compliance": ("wheel_inertia", "tyre_stiffness", "tyre_damping"),
+    "wheel_order_disturbance": ("order", "amplitude_nm", "phase_rad"),
+    "motor_order_ripple": ("order", "amplitude_nm", "phase_rad"),
+    "tyre_slip": ("slip_stiffness_nm", "relaxation_length_m"),
+    "dyno_lag": ("time_constant_s",),
+    "running_resistance": ("rolling_nm", "aero_nms2_rad2"),
+    "sensor_gain": ("gain",),
+    "sensor_offset": ("offset",),
+    "channel_skew": ("delay_s",),
+    "sensor_quantization": ("step",),
+    "parameter_mismatch": ("value",),
+}
+every = pytest.mark.parametrize("effect", EFFECTS.values(), ids=list(EFFECTS))
+
+
+def test_the_names_are_those_that_others_rely_on():
+    assert {id_: tuple(p.name for p in effect.parameters) for id_, effect in EFFECTS.items()} == CONTRACT
+
+
+def test_every_file_of_the_package_is_one_effect():
+    files = {path.stem for path in Path(package.__file__).parent.glob("[a-z]*.py")}
+    assert files == set(EFFECTS)
+
+
+def test_they_stand_in_the_order_in_which_they_act():
+    stages = [list(Stage).index(effect.stage) for effect in EFFECTS.values()]
+    assert stages == sorted(stages)
+
+
+@every
+def test_kin_are_effects(effect: Effect):
+    assert set(effect.kin) <= set(EFFECTS) - {effect.id}
+
+
+@every
+def test_what_turns_it_off_is_one_of_its_numbers(effect: Effect):
+    for name in effect.acting():
+        assert effect.parameter(name).name == name
+    with pytest.raises(KeyError):
+        effect.parameter("no such number")
+
+
+@every
+def test_it_acts_somewhere_and_what_it_remembers_has_a_place(effect: Effect):
+    law = effect.law
+    assert law.compiled or law.chain is not None or law.reads is not None
+    assert (law.remember is not None) == (effect.memory is not None)
+    if law.begin is not None or law.stretch is not None:
+        assert effect.memory is not None
+
+
+@every
+def test_optional_numbers_have_defaults_within_their_bounds(effect: Effect):
+    for parameter in effect.parameters:
+        if parameter.optional:
+            assert parameter.lower <= parameter.default <= parameter.upper
+        for value in parameter.opens:
+            low, high = parameter.within or (parameter.lower, parameter.upper)
+            assert parameter.optional
+            assert parameter.fitted
+            assert low <= value <= high
+
+
+@every
+def test_a_law_has_no_statement_that_cannot_be_compiled(effect: Effect):
+    for function in vars(effect.law).values():
+        if inspect.isfunction(function) and effect.law.compiled:
+            assert "del " not in inspect.getsource(function)
+
+
+def test_a_law_that_does_nothing_is_not_compiled():
+    assert not Law().compiled
+    assert Law(shaft=lambda m, c, z, v: 0.0).compiled
+
+
+def test_a_number_is_moved_by_its_logarithm_unless_it_has_a_typical_size():
+    assert Parameter("x", "", 0.0, 1.0, "").typical is None
+
+
+def test_every_sensor_effect_is_about_a_channel():
+    for effect in EFFECTS.values():
+        assert (effect.law.reads is not None) == (effect.text_parameters == ("channel",))
+    assert "shaft_torque_nm" in SENSED
+
+
+def test_an_effect_on_top_of_a_third_inertia_needs_that_inertia_first():
+    chain = {
+        "motor_inertia": 0.02,
+        "gear_ratio": 8.0,
+        "shaft_stiffness": 6000.0,
+        "shaft_damping": 20.0,
+        "vehicle_inertia": 300.0,
+        "torque_delay": 0.008,
+    }
+    tyre = {"id": "tyre_compliance", "wheel_inertia": 4.0, "tyre_stiffness": 5e3, "tyre_damping": 300.0}
+    slip = {"id": "tyre_slip", "slip_stiffness_nm": 8e3, "relaxation_length_m": 0.4}
+    model = model_from_dict({"kind": "two_inertia", "parameters": chain, "effects": [tyre, slip]}, "here")
+    assert [use.id for use in model.effects] == ["tyre_compliance", "tyre_slip"]
+    with pytest.raises(package._effect.BadInputError, match="tyre_slip"):
+        model_from_dict({"kind": "two_inertia", "parameters": chain, "effects": [slip]}, "here")

@@ -1,0 +1,164 @@
+"""Every effect in both integrators: against each other, newer ones also against a reference integration."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from hil.core.effects import EFFECTS
+from hil.core.model import EffectUse, Model
+from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
+from hil.plant._slots import place
+
+DT = 1e-3
+THREE = Model(
+    "three_inertia",
+    {
+        "motor_inertia": 0.02,
+        "gear_ratio": 8.148,
+        "shaft_stiffness": 6089.0,
+        "shaft_damping": 19.75,
+        "wheel_inertia": 4.355,
+        "tyre_stiffness": 5717.0,
+        "tyre_damping": 351.0,
+        "vehicle_inertia": 303.0,
+        "torque_delay": 0.0,
+    },
+)
+START = Start(8.148 * 5.0, 5.0, 0.0)
+CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
+USES = {
+    "tyre_slip": {"slip_stiffness_nm": 6000.0, "relaxation_length_m": 0.35},
+    "dyno_lag": {"time_constant_s": 0.05},
+    "coulomb_friction": {"torque_nm": 2.0, "turn_rad": 0.3},
+    "backlash": {"half_gap_rad": 0.004, "contact_damping_nms_rad": 15.0},
+    "shaft_hysteresis": {"stiffness_nm_rad": 900.0, "slip_rad": 0.01},
+    "shaft_cubic_stiffness": {"coefficient_nm_rad3": 4e5},
+    "running_resistance": {"rolling_nm": 30.0, "aero_nms2_rad2": 0.1},
+    "wheel_order_disturbance": {"order": 3.0, "amplitude_nm": 4.0, "phase_rad": 0.3},
+    "motor_order_ripple": {"order": 2.0, "amplitude_nm": 0.4, "phase_rad": 0.3},
+}
+
+
+def torque(seconds: float = 4.0) -> np.ndarray:
+    t = np.arange(0.0, seconds, DT)
+    return 20.0 * np.sin(2 * np.pi * (0.5 * t + 1.2 * t**2))
+
+
+def with_effect(id_: str, **changes: float) -> Model:
+    values = EFFECTS[id_].check({**USES[id_], **changes}, "here")
+    return THREE.with_effects(EffectUse(id_, values))
+
+
+def stepped(model: Model) -> np.ndarray:
+    out = simulate(model, torque(), DT, START)
+    return np.column_stack([out[name] for name in CHANNELS])
+
+
+def many(model: Model) -> np.ndarray:
+    start = [[START.motor_speed_rad_s, START.wheel_speed_rad_s, START.shaft_torque_nm]]
+    return simulate_many(pack(model)[None], torque(), DT, np.array(start), ideal_sensors(1))[0]
+
+
+@pytest.mark.parametrize("id_", USES)
+def test_both_integrators_see_the_same_effect(id_):
+    """Formulas are shared; only their steps differ (0.1 and 1 ms)."""
+    a, b = stepped(with_effect(id_)), many(with_effect(id_))
+    plain = stepped(THREE)
+    between = np.sqrt(np.mean((a - b) ** 2, axis=0))
+    effect = np.sqrt(np.mean((a - plain) ** 2, axis=0))
+    assert np.all(effect > 0.0)
+    assert np.all(between < 0.02 * effect + 1e-6 * np.std(plain, axis=0))
+
+
+def reference(slope, states: int) -> np.ndarray:
+    """Outputs of the chain with further states, by an integrator of others, the torque held."""
+    u = torque()
+    x = np.zeros(states)
+    x[0], x[2], x[4] = START.motor_speed_rad_s, START.wheel_speed_rad_s, START.wheel_speed_rad_s
+    p = THREE.parameters
+    rows = []
+    for k in range(len(u)):
+        twist_rate = x[0] / p["gear_ratio"] - x[2]
+        rows.append([x[0], x[2], p["shaft_stiffness"] * x[1] + p["shaft_damping"] * twist_rate])
+        answer = solve_ivp(
+            slope, (0.0, DT), x, method="DOP853", rtol=1e-9, atol=1e-9, args=(u[k],), t_eval=[DT]
+        )
+        x = answer.y[:, -1]
+    return np.array(rows)
+
+
+def chain(x: np.ndarray, torque_nm: float, loss: float, road: float, tyre: float) -> list[float]:
+    p = THREE.parameters
+    n = p["gear_ratio"]
+    shaft = p["shaft_stiffness"] * x[1] + p["shaft_damping"] * (x[0] / n - x[2])
+    return [
+        (torque_nm - loss - shaft / n) / p["motor_inertia"],
+        x[0] / n - x[2],
+        (shaft - road) / p["wheel_inertia"],
+        tyre,
+        road / p["vehicle_inertia"],
+    ]
+
+
+def slipping(t, x, torque_nm):
+    """The contract's form: T is the state, dT/dt = (r/σ)·(C·(ω_l - ω_v) - |ω_v|·T)."""
+    c, length, r = 6000.0, 0.35, 0.33
+    road = x[3] + THREE.parameters["tyre_damping"] * (x[2] - x[4])
+    return chain(x, torque_nm, 0.0, road, r / length * (c * (x[2] - x[4]) - abs(x[4]) * x[3]))
+
+
+def late(t, x, torque_nm):
+    """The contract's form: τ·ω_d' = ω_v - ω_d; the tyre meets ω_d in place of ω_v."""
+    p = THREE.parameters
+    behind = x[2] - (x[5] + START.wheel_speed_rad_s)
+    road = p["tyre_stiffness"] * x[3] + p["tyre_damping"] * behind
+    return [*chain(x, torque_nm, 0.0, road, behind), (x[4] - (x[5] + START.wheel_speed_rad_s)) / 0.05]
+
+
+def turning(t, x, torque_nm):
+    """The contract's form: dF/dθ = (T_c/θ_t)·(1 - sgn(ω)·F/T_c)."""
+    p = THREE.parameters
+    road = p["tyre_stiffness"] * x[3] + p["tyre_damping"] * (x[2] - x[4])
+    rate = x[0] * 2.0 / 0.3 * (1.0 - math.copysign(1.0, x[0]) * x[5] / 2.0)
+    return [*chain(x, torque_nm, x[5], road, x[2] - x[4]), rate]
+
+
+@pytest.mark.parametrize(
+    ("id_", "slope", "states"),
+    [("tyre_slip", slipping, 5), ("dyno_lag", late, 6), ("coulomb_friction", turning, 6)],
+)
+@pytest.mark.parametrize("kernel", [stepped, many])
+def test_an_effect_is_what_its_equation_says(id_, slope, states, kernel):
+    exact, got = reference(slope, states), kernel(with_effect(id_))
+    worst = np.max(np.abs(got - exact), axis=0) / np.std(exact, axis=0)
+    assert np.all(worst < (1e-4 if kernel is stepped else 2e-3))
+
+
+def test_an_effect_at_rest_is_none():
+    nothing = THREE.with_effects(EffectUse("dyno_lag", {"time_constant_s": 0.0}))
+    np.testing.assert_array_equal(stepped(nothing), stepped(THREE))
+    np.testing.assert_array_equal(many(nothing), many(THREE))
+
+
+@pytest.mark.parametrize("kernel", [0, 1])
+def test_a_rotor_thrown_at_a_flank_comes_back_as_restitution_says(kernel):
+    """From the middle of the gap towards a vehicle that does not move; the shafts have no damping."""
+    p = THREE.parameters | {"shaft_damping": 0.0, "vehicle_inertia": 1e9}
+    kept = {name: p[name] for name in p if "wheel" not in name and "tyre" not in name}
+    values = {"half_gap_rad": 0.02, "contact_damping_nms_rad": 0.0, "restitution": 0.6}
+    model = Model("two_inertia", kept).with_effects(EffectUse("backlash", values))
+    if kernel == 0:
+        speed = simulate(model, np.zeros(60), DT, Start(20.0, 0.0, 0.0))["motor_speed_rad_s"]
+    else:
+        start = np.array([[20.0, 0.0, 0.0]])
+        speed = simulate_many(pack(model)[None], np.zeros(60), DT, start, ideal_sensors(1))[0, :, 0]
+    back = speed[np.argmin(speed) : np.argmin(speed) + 5]
+    assert np.mean(back) == pytest.approx(-0.6 * 20.0, rel=0.01 if kernel == 0 else 0.08)
+
+
+def test_the_kernels_have_a_place_for_every_number():
+    assert place("backlash", "restitution") == place("backlash", "half_gap_rad") + 2
+    with pytest.raises(ValueError, match="not in tuple"):
+        place("sensor_gain", "gain")
