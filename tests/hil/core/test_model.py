@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, load_model, model_from_dict, model_to_toml, parameter_names, save_model
 
@@ -96,16 +95,24 @@ def test_an_effect_that_the_kind_cannot_have_is_refused():
 def test_optional_parameters_of_an_effect_get_their_defaults():
     data = two_inertia() | {"effects": [{"id": "coulomb_friction", "torque_nm": 1.5}]}
     assert model_from_dict(data, "m.toml").effects == (
-        EffectUse("coulomb_friction", {"torque_nm": 1.5, "stribeck_torque_nm": 0.0, "offset_nm": 0.0}),
+        EffectUse(
+            "coulomb_friction",
+            {"torque_nm": 1.5, "stribeck_torque_nm": 0.0, "offset_nm": 0.0, "turn_rad": 0.0},
+        ),
     )
 
 
-def test_the_registry_has_the_names_and_units_of_the_reference():
-    text = (Path(__file__).parents[3] / "docs/reference/effects.md").read_text()
-    for effect in EFFECTS.values():
-        assert f"`{effect.id}`" in text
-        for parameter in effect.parameters:
-            assert f"`{parameter.name}`" in text
+@pytest.mark.parametrize("given_m", [0.0, -0.3, 33.0, float("nan"), "0.33", True])
+def test_a_wheel_radius_that_no_wheel_has_is_refused(given_m):
+    with pytest.raises(BadInputError, match="wheel_radius_m"):
+        model_from_dict(two_inertia() | {"wheel_radius_m": given_m}, "m.toml")
+
+
+def test_a_wheel_radius_is_kept(tmp_path):
+    model = model_from_dict(two_inertia() | {"wheel_radius_m": 0.3}, "m.toml")
+    save_model(model, tmp_path / "m.toml")
+    assert load_model(tmp_path / "m.toml").wheel_radius_m == 0.3
+    assert model_from_dict(two_inertia(), "m.toml").wheel_radius_m == 0.33
 
 
 json_values = st.recursive(

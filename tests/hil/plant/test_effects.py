@@ -147,7 +147,7 @@ def test_a_rotor_thrown_at_a_flank_comes_back_as_restitution_says(kernel):
     """From the middle of the gap towards a vehicle that does not move; the shafts have no damping."""
     p = THREE.parameters | {"shaft_damping": 0.0, "vehicle_inertia": 1e9}
     kept = {name: p[name] for name in p if "wheel" not in name and "tyre" not in name}
-    values = {"half_gap_rad": 0.02, "contact_damping_nms_rad": 0.0, "restitution": 0.6}
+    values = EFFECTS["backlash"].check({"half_gap_rad": 0.02, "restitution": 0.6}, "here")
     model = Model("two_inertia", kept).with_effects(EffectUse("backlash", values))
     if kernel == 0:
         speed = simulate(model, np.zeros(60), DT, Start(20.0, 0.0, 0.0))["motor_speed_rad_s"]

@@ -92,8 +92,8 @@ def test_names_say_what_the_matrices_hold():
     system = linear_system(THREE)
     shape = (len(system.states), len(system.inputs), len(system.outputs))
     assert shape == (8, 6, 3)
-    assert (system.a.shape, system.b.shape) == ((8, 8), (8, 4))
-    assert (system.c.shape, system.d.shape) == ((3, 8), (3, 4))
+    assert (system.a.shape, system.b.shape) == ((8, 8), (8, 6))
+    assert (system.c.shape, system.d.shape) == ((3, 8), (3, 6))
     rotor, twist = system.states.index("rotor_speed"), system.states.index("twist")
     p = THREE.parameters
     assert system.a[twist, rotor] == 1.0 / p["gear_ratio"]

@@ -7,6 +7,8 @@ import pytest
 
 import hil.core.effects as package
 from hil.core.effects import EFFECTS, SENSED, Effect, Law, Parameter, Stage
+from hil.core.effects._page import page
+from hil.core.errors import BadInputError
 from hil.core.model import model_from_dict
 
 CONTRACT = {
@@ -43,6 +45,11 @@ def test_the_names_are_those_that_others_rely_on():
 def test_every_file_of_the_package_is_one_effect():
     files = {path.stem for path in Path(package.__file__).parent.glob("[a-z]*.py")}
     assert files == set(EFFECTS)
+
+
+def test_the_page_is_what_stands_in_the_files():
+    kept = Path(__file__).parents[4] / "docs/reference/effects.md"
+    assert kept.read_text(encoding="utf-8") == page()
 
 
 def test_they_stand_in_the_order_in_which_they_act():
@@ -119,5 +126,5 @@ def test_an_effect_on_top_of_a_third_inertia_needs_that_inertia_first():
     slip = {"id": "tyre_slip", "slip_stiffness_nm": 8e3, "relaxation_length_m": 0.4}
     model = model_from_dict({"kind": "two_inertia", "parameters": chain, "effects": [tyre, slip]}, "here")
     assert [use.id for use in model.effects] == ["tyre_compliance", "tyre_slip"]
-    with pytest.raises(package._effect.BadInputError, match="tyre_slip"):
+    with pytest.raises(BadInputError, match="tyre_slip"):
         model_from_dict({"kind": "two_inertia", "parameters": chain, "effects": [slip]}, "here")
