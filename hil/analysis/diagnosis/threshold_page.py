@@ -17,7 +17,7 @@ _HEAD = """# Thresholds of the diagnosis
 
 Made by `.venv/bin/python -m hil.analysis.diagnosis.threshold_page` from `_thresholds.py` of each room; a test
 compares. They are heuristics: what each decides, and which check shows if a changed one is still right.
-Sizes at which effects are tried stand with their probes (`search/_probes.py`).
+Sizes at which effects are tried, and how far fits move them, stand with the effects (`hil/core/effects`).
 
 | check | command |
 |---|---|

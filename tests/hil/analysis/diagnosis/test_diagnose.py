@@ -89,7 +89,14 @@ def test_the_result_is_a_model_file_and_plain_json() -> None:
         "model",
     }
     assert text["evidence"]["drops"][0] > 100.0 * text["evidence"]["by_chance_at_most"] > 0.0
-    assert set(text["effects"][0]) == {"id", "parameters", "standard_error", "confidence", "where"}
+    assert set(text["effects"][0]) == {
+        "id",
+        "parameters",
+        "standard_error",
+        "derived",
+        "confidence",
+        "where",
+    }
     again = model_from_dict(tomllib.loads(model_to_toml(found.model)), "test")
     assert again.effects[0].id == "torque_saturation"
     assert all(EFFECTS[use.id] for use in again.effects)
