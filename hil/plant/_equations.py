@@ -7,7 +7,7 @@ Wheel-side quantities are sums of both sides.
 
 from __future__ import annotations
 
-from hil.core.compiled import compiled, inlined
+from hil.core.compiled import inlined
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
@@ -25,7 +25,7 @@ def motion(x, chain, memories, p):  # type: ignore[no-untyped-def]
     return motion_of(x, chain, memories, x[X.WHEEL_ANGLE], rotor_angle, p)
 
 
-@compiled
+@inlined
 def rigid_acceleration(x, m, chain, memories, p, acting, torque, load, direction):  # type: ignore[no-untyped-def]
     """Rotor acceleration in rad/s² of the one-mass model, with a wheel-side load in N m."""
     n = chain.gear_ratio
@@ -39,7 +39,7 @@ def rigid_acceleration(x, m, chain, memories, p, acting, torque, load, direction
     return driving / inertia
 
 
-@compiled
+@inlined
 def shaft_torque(m, chain, memories, p, acting):  # type: ignore[no-untyped-def]
     """T_s in N m: stiffness, damping, and what effects add."""
     torque = chain.shaft_stiffness * m.twist + chain.shaft_damping * m.twist_rate
@@ -48,7 +48,7 @@ def shaft_torque(m, chain, memories, p, acting):  # type: ignore[no-untyped-def]
     return torque
 
 
-@compiled
+@inlined
 def tyre_torque(x, m, chain, memories, p, acting):  # type: ignore[no-untyped-def]
     """Torque that the tyre/road coupling takes from the wheel, in N m."""
     slip = x[X.WHEEL_SPEED] - x[X.VEHICLE_SPEED]
