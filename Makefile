@@ -30,7 +30,7 @@ lint: setup
 	$(BIN)/mypy
 
 test: lint
-	$(BIN)/python -m pytest -n 2 -m "not slow and not hunt"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow and not hunt"
 
 # What takes minutes: the fixed part of the blind diagnosis set, bad inputs, the wheel, long hunts for faults.
 test-slow: setup
@@ -54,7 +54,7 @@ mutants: setup
 
 # Which share of each package the quick tests run.
 coverage: setup
-	$(BIN)/python -m pytest -n 2 -m "not slow and not hunt" --cov --cov-report=
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow and not hunt" --cov --cov-report=
 	$(BIN)/python -m tests.coverage_by_package
 
 # What the next release's CHANGELOG.md will say, from the fragments in changelog.d.
