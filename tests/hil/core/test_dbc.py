@@ -5,10 +5,11 @@ import re
 from pathlib import Path
 
 import pytest
+from cantools.database.can import Signal as DbcSignal
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hil.core.dbc import Needed, read_dbc
+from hil.core.dbc import Needed, _bits, read_dbc
 from hil.core.errors import BadInputError
 
 BENCHES = Path(__file__).parents[3] / "benches"
@@ -104,3 +105,15 @@ def test_a_damaged_dbc_is_read_or_refused_but_never_more(data):
         pass
     finally:
         path.unlink()
+
+
+@pytest.mark.parametrize(("start", "length"), [(7, 16), (3, 12), (43, 20), (42, 20), (0, 2), (15, 1)])
+def test_a_big_endian_signals_bits_lie_as_motorola_counts_them(start, length):
+    signal = DbcSignal("S", start, length, byte_order="big_endian")
+    walked = [start]  # down to the byte's lowest bit, then on with the next byte's highest
+    while len(walked) < length:
+        walked.append(walked[-1] - 1 if walked[-1] % 8 else walked[-1] + 15)
+    assert _bits(signal) == walked
+    assert _bits(DbcSignal("S", start, length, byte_order="little_endian")) == list(
+        range(start, start + length)
+    )

@@ -143,3 +143,14 @@ def test_one_wrong_entry_in_a_good_file_is_bad_input(key, value):
     except BadInputError:
         return
     assert value in ([], data[key])
+
+
+def test_a_function_without_a_delay_has_none():
+    function = {"numerator": [1.0], "denominator": [2.0, 1.0]}
+    data = {"kind": "transfer_function", "transfer_functions": {"motor_speed_rad_s": function}}
+    assert model_from_dict(data, "here").transfer_functions["motor_speed_rad_s"].delay_s == 0.0
+    for part in ("numerator", "denominator"):
+        for wrong in ([], 3.0, None):
+            broken = {**data, "transfer_functions": {"motor_speed_rad_s": {**function, part: wrong}}}
+            with pytest.raises(BadInputError, match=f"{part} is missing: a list"):
+                model_from_dict(broken, "here")

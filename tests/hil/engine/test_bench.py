@@ -22,7 +22,7 @@ def test_a_bench_has_its_devices_in_the_order_in_which_they_come_up() -> None:
     with open_bench(sim_bench("order")) as bench:
         bench.further["valve"] = valve = Valve()
         assert bench.devices == [bench.rmcu, bench.dyno, valve]
-        assert bench.simulated
+        assert bench.simulated is True
         assert bench.streams[0].channels[0] in ("motor_torque_ref_nm", "motor_speed_rad_s")
         assert len(bench.streams) == sum(len(source.streams) for source in bench.sources)
         attached("order")

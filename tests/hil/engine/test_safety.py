@@ -105,3 +105,20 @@ def test_a_silent_device_has_its_own_deadline_and_the_reason_is_its_silence() ->
         assert complaint == f"{bench.rmcu.name} did not confirm its safe state within {within_s:g} s"
         assert bench.loop.clock.now_s() - start_s == pytest.approx(within_s, abs=0.002)
         assert bench.dyno.is_safe()
+
+
+@pytest.mark.parametrize(
+    ("error", "faults"), [(KeyError("duty"), 1), (BenchError("bus off", where="bus"), 0)]
+)
+def test_a_loop_that_fails_keeps_nobody_from_being_served(error: Exception, faults: int) -> None:
+    with running("safety-loop") as bench:
+        bench.dyno.enable(10.0)
+
+        def fail() -> None:
+            raise error
+
+        bench.loop.on_drained(fail)
+        seen: list[Exception] = []
+        assert reach_safe_state(bench, seen.append) == []
+        assert len(seen) == faults
+        assert bench.dyno.is_safe()
