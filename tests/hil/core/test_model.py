@@ -150,7 +150,7 @@ def test_a_function_without_a_delay_has_none():
     data = {"kind": "transfer_function", "transfer_functions": {"motor_speed_rad_s": function}}
     assert model_from_dict(data, "here").transfer_functions["motor_speed_rad_s"].delay_s == 0.0
     for part in ("numerator", "denominator"):
-        for wrong in ([], 3.0, None):
+        for wrong in (list[float](), 3.0, None):
             broken = {**data, "transfer_functions": {"motor_speed_rad_s": {**function, part: wrong}}}
             with pytest.raises(BadInputError, match=f"{part} is missing: a list"):
                 model_from_dict(broken, "here")
