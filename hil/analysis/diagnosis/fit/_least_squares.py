@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import lsq_linear
 
 from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
 from hil.analysis.diagnosis.fit._normal import reduced, start_step
@@ -14,39 +15,25 @@ from hil.analysis.diagnosis.fit._thresholds import MOST_REFUSALS, TRIALS
 
 Array = npt.NDArray[np.float64]
 
+_RANK, _EXACT = 1e-13, 1e-12  # what rounding leaves of zero
+
 
 def box_step(matrix: Array, gradient: Array, lower: Array, upper: Array) -> Array:
-    """Minimiser of ½xᵀMx - gᵀx within bounds, by an active set."""
-    size = len(gradient)
+    """Minimiser of ½xᵀMx - gᵀx within bounds, the smallest one where M is singular."""
     if not (np.isfinite(matrix).all() and np.isfinite(gradient).all()):
-        return np.zeros(size)
+        return np.zeros(len(gradient))
     scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    matrix, gradient = matrix * np.outer(scale, scale), gradient * scale
     lower, upper = lower / scale, upper / scale
-    reach = float(np.max(np.abs(gradient), initial=1e-300))
-    x = np.zeros(size)
-    free = np.ones(size, bool)
-    for _ in range(3 * size + 3):
-        x_free = np.linalg.lstsq(
-            matrix[np.ix_(free, free)], gradient[free] - matrix[np.ix_(free, ~free)] @ x[~free], rcond=1e-13
-        )[0]
-        trial = x.copy()
-        trial[free] = x_free
-        outside = free & ((trial < lower) | (trial > upper))
-        if outside.any():
-            over = np.where(trial < lower, lower - trial, trial - upper)
-            over = np.where(outside, over / np.maximum(upper - lower, 1e-30), -np.inf)
-            worst = int(np.argmax(over))
-            x[worst] = lower[worst] if trial[worst] < lower[worst] else upper[worst]
-            free[worst] = False
-            continue
-        x = trial
-        pull = gradient - matrix @ x
-        release = ~free & (((x <= lower) & (pull > 1e-9 * reach)) | ((x >= upper) & (pull < -1e-9 * reach)))
-        if not release.any():
-            break
-        free[int(np.argmax(np.where(release, np.abs(pull), -1.0)))] = True
-    return np.clip(x, lower, upper) * scale
+    # What a fit has are normal equations: a root of theirs stands for the rows that they came from.
+    values, vectors = np.linalg.eigh(matrix * np.outer(scale, scale))
+    kept = values > _RANK * max(float(values[-1]), 1e-300)
+    roots, vectors = np.sqrt(values[kept]), vectors[:, kept]
+    rows, right = roots[:, None] * vectors.T, (vectors.T @ (gradient * scale)) / roots
+    x = vectors @ (right / roots)
+    if np.any((x < lower) | (x > upper)):
+        above = np.maximum(upper, np.nextafter(lower, np.inf))  # a number that may not move
+        x = lsq_linear(rows, right, (lower, above), method="bvls", tol=_EXACT).x
+    return np.asarray(np.clip(x, lower, upper) * scale)
 
 
 @dataclass(frozen=True)
