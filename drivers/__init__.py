@@ -3,13 +3,14 @@
 from drivers.device import Device, MotorControl, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
 from drivers.frame_source import Binding, FrameSource
-from drivers.loop import TICK_S, BusLoop
+from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
 from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu
 from drivers.samples import SampleQueue, Samples, SampleSource, Stream
 from drivers.serial_line import SerialLine
 from drivers.table import Connections, DeviceTable, File, LoadTable, Name, VehicleParameters
 from drivers.wire import Wire
+from hil.core.conventions import TICK_S
 
 #: Kinds of device that come with the project; others come by entry point.
 OWN_KINDS: tuple[tuple[str, type[DeviceTable]], ...] = (("rmcu-can", RmcuTable), ("rcs-canopen", DynoTable))

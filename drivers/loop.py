@@ -10,10 +10,10 @@ import numpy as np
 
 from drivers.wire import Wire
 from hil.core.clock import Clock
+from hil.core.conventions import TICK_S
 from hil.core.errors import InterruptError
 from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 
-TICK_S = 0.001
 _DRAIN_EVERY = 10
 _STANDARD_IDS = 2048
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hil.core.conventions import COMFORT_BAND_HZ
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
 from reports import quantities, style
@@ -17,7 +18,6 @@ from reports.spectrum import DESCRIPTION, amplitude_spectrum
 from reports.stretch import cut, line
 
 SPECTRUM_WINDOW_S = (4.0, 20.0)
-BAND_HZ = (8.0, 20.0)
 _FIRST_SECONDS = 2.0
 _SPECTRUM_TO_HZ = 30.0
 _SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
@@ -158,7 +158,7 @@ class _Overlay:
             return None
         scale = max(float(t.y[t.x >= _SLOW_HZ].max(initial=0.0)) for t in traces)
         start, end = SPECTRUM_WINDOW_S
-        band = f"{BAND_HZ[0]:g}{quantities.DASH}{BAND_HZ[1]:g}{quantities.THIN}Hz"
+        band = f"{COMFORT_BAND_HZ[0]:g}{quantities.DASH}{COMFORT_BAND_HZ[1]:g}{quantities.THIN}Hz"
         return Figure(
             id=f"{self._id}-motor-speed-spectrum",
             title=Label("Spectrum of motor speed", label.symbol),
@@ -167,7 +167,7 @@ class _Overlay:
             y_label=Label("Amplitude of", label.symbol),
             y_unit=channel_unit(_MOTOR_SPEED),
             traces=tuple(traces),
-            bands=(Band(*BAND_HZ, band),),
+            bands=(Band(*COMFORT_BAND_HZ, band),),
             x_range=(0.0, _SPECTRUM_TO_HZ),
             y_range=(0.0, 1.2 * scale) if scale > 0 else None,
             caption=f"{DESCRIPTION}, Hann window, {start:g} to {end:g}{quantities.THIN}s "

@@ -19,9 +19,10 @@ from drivers.dyno._node import (
     DynoNode,
 )
 from drivers.frame_source import FrameSource
-from drivers.loop import TICK_S, BusLoop
+from drivers.loop import BusLoop
 from drivers.table import VehicleParameters
 from drivers.wire import Wire
+from hil.core.conventions import TICK_S
 from hil.core.errors import BenchError
 
 SPEED_MODE, VEHICLE_MODE = 3, -1

@@ -9,11 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.frame_source import Binding, FrameSource
-from drivers.loop import TICK_S, BusLoop
+from drivers.loop import BusLoop
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
 from hil.core.checksum import crc8_many
 from hil.core.controller import Controller
+from hil.core.conventions import TICK_S
 from hil.core.dbc import Dbc, Names, Needed, read_dbc
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import newest

@@ -7,12 +7,12 @@ from typing import get_args
 
 from hil.analysis.frequency_response import Experiment, Method, experiments_of
 from hil.analysis.identification import identify
-from hil.analysis.outputs.identification import output_files, summary_of, text_of
 from hil.analysis.plausible import refuse_same_data
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import refuse_missing, results_in
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
+from reports.outputs.identification import output_files, summary_of, text_of
 
 _LEAST_SAMPLES = 100
 

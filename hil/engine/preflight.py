@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from hil.core.controller import load_controller
+from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.engine.bench_tables import BenchFile
 from test_plans import Array, Plan, PlannedSegment, Quantity, Work, estimate_duration_s
@@ -57,7 +58,7 @@ def preflight(
 class Rehearsal:
     """A `Conductor` that only compares what is asked for with the bench's limits."""
 
-    sample_time_s = 0.001
+    sample_time_s = TICK_S
 
     def __init__(self, bench: BenchFile) -> None:
         self._bench = bench

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hil.core.conventions import TICK_S
 from hil.core.dbc import Names, read_dbc
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block, joined
@@ -25,7 +26,6 @@ from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
 
 RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
-TICK_S = 0.001
 _NOISE_BLOCK = 1000
 _LARGEST_BATCH = 4096
 _NODES_EVERY = 10  # samples between looks at heartbeats: no more are computed at once

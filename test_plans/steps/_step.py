@@ -7,11 +7,12 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from hil.core.conventions import TICK_S
 from test_plans.building import Strict
 from test_plans.conductor import Conductor, PlannedSegment
 from test_plans.pace import Outlook, Pace
 
-SAMPLE_TIME_S = 0.001
+SAMPLE_TIME_S = TICK_S
 LONGEST_S = 3600.0
 
 Seconds = Annotated[float, Field(ge=0, le=LONGEST_S)]

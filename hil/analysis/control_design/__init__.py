@@ -20,7 +20,6 @@ from hil.analysis.control_design._laws import (
     speed_filter,
 )
 from hil.analysis.control_design._loop import (
-    COMFORT_BAND_HZ,
     Margins,
     encirclements,
     feedback_response,
@@ -33,6 +32,7 @@ from hil.analysis.control_design._plant import DesignPlant, design_plant, resona
 from hil.analysis.control_design._spec import Design, DesignSpec, Loop, Robustness
 from hil.analysis.control_design._trade_off import TradeOff, trade_off
 from hil.analysis.control_design._uncertainty import PlantSet, possible_plants
+from hil.core.conventions import COMFORT_BAND_HZ
 
 __all__ = [
     "COMFORT_BAND_HZ",

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.conventions import COMFORT_BAND_HZ
 from hil.core.model import TransferFunction
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
 #: Band in which the paper judges riding comfort.
-COMFORT_BAND_HZ = (8.0, 20.0)
 
 
 def loop_grid(sample_time_s: float = 0.001, count: int = 3000) -> Array:

@@ -16,6 +16,7 @@ from hil.analysis.control_design._plant import DesignPlant
 from hil.analysis.control_design._trade_off import TradeOff
 from hil.analysis.control_design._uncertainty import PlantSet
 from hil.core.controller import Controller
+from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]
@@ -44,7 +45,7 @@ class DesignSpec:
     gear_ratio: float | None = None
     wheel_inertia_kg_m2: float | None = None
     torque_limit_nm: float = 150.0
-    sample_time_s: float = 0.001
+    sample_time_s: float = TICK_S
     speed_filter_time_s: float = 0.05
     feed_forward_time_s: float = 0.05
     observer_time_s: float = 1 / 125.6

@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline
 from hil.analysis.frequency_response._quality import UnfitDataError
 from hil.analysis.plausible import refuse_implausible
 from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording, run_of
 from hil.core.result import Segment
@@ -20,7 +21,6 @@ Array = npt.NDArray[np.float64]
 
 REFERENCE = "driving_torque_ref_nm"
 EXCITING_KINDS = ("chirp", "multisine")
-_RMCU_SAMPLE_TIME_S = 0.001
 _JITTER_IGNORED = 0.02  # of a sample: what rounding to 1 µs does at 1 kHz is far below
 _LARGEST_LOST_SHARE = 0.01
 
@@ -139,7 +139,7 @@ def _experiment(
         values[1 : 1 + len(outputs)],
         outputs,
         values[-1] if REFERENCE in names else None,
-        min(step, _RMCU_SAMPLE_TIME_S) if hold_s is None else hold_s,
+        min(step, TICK_S) if hold_s is None else hold_s,
         kind,
         tuple(recording.notes) + notes,
     )

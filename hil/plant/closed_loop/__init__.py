@@ -3,8 +3,9 @@
 `tick` is one millisecond, on the wire and in predictions; `ClosedLoop` carries out many at once.
 """
 
+from hil.core.conventions import TICK_S
 from hil.plant.closed_loop._state import State, state_at_rest
-from hil.plant.closed_loop.closed_loop import SIDES, TICK_S, ClosedLoop
+from hil.plant.closed_loop.closed_loop import SIDES, ClosedLoop
 from hil.plant.closed_loop.shown import Wire, rounded
 
 __all__ = ["SIDES", "TICK_S", "ClosedLoop", "State", "Wire", "rounded", "state_at_rest"]

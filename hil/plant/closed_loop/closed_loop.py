@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model
 from hil.plant.closed_loop import drive as D
@@ -19,7 +20,6 @@ from hil.plant.controller import memory as M
 from hil.plant.controller.parameters import INCOMPLETE, OUT_OF_RANGE
 
 Array = npt.NDArray[np.float64]
-TICK_S = 0.001
 SIDES = (0, 1)  # left, right
 _FIRST_ROWS = 1 << 14
 _REASONS = {OUT_OF_RANGE: "out_of_range", INCOMPLETE: "incomplete"}

@@ -14,10 +14,10 @@ from hil.analysis.control_design import DesignSpec, design
 from hil.analysis.diagnosis import diagnose
 from hil.analysis.frequency_response import experiments_of
 from hil.analysis.identification import identify
-from hil.analysis.outputs.control_design import output_files
 from hil.core.channels import OUTPUTS
 from hil.core.errors import HilError
 from hil.core.model import Model, TransferFunction, parameter_names
+from reports.outputs.control_design import output_files
 from tests.hil.analysis.degenerate import CHANGES, MODEL, SHAPES, recording
 
 pytestmark = pytest.mark.filterwarnings("ignore")

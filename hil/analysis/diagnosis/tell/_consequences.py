@@ -6,13 +6,12 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
-from hil.analysis.diagnosis.tell._thresholds import BAND_HZ, STEP_NM
+from hil.analysis.diagnosis.tell._thresholds import STEP_NM
+from hil.core.conventions import COMFORT_BAND_HZ, TICK_S
 from hil.core.model import Model
 from hil.plant import Start, simulate
 
 Array = npt.NDArray[np.float64]
-
-_DT = 1e-3
 
 
 def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
@@ -27,7 +26,7 @@ def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
     }
     for name, model in (("before", before), ("after", after)):
         start = Start(5.0 * model.parameters["gear_ratio"], 5.0, 0.0)
-        channels = simulate(model, torque, _DT, start)
+        channels = simulate(model, torque, TICK_S, start)
         shaft, motor = channels["shaft_torque_nm"], channels["motor_speed_rad_s"]
         steady = float(np.mean(shaft[-2000:])) - float(np.mean(shaft[500:1000]))
         peak = float(np.max(shaft[1000:])) - float(np.mean(shaft[500:1000]))
@@ -39,6 +38,6 @@ def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
 
 
 def _band_energy(values: Array) -> float:
-    frequency, density = signal.periodogram(signal.detrend(values), 1 / _DT, "hann")
-    inside = (frequency >= BAND_HZ[0]) & (frequency <= BAND_HZ[1])
+    frequency, density = signal.periodogram(signal.detrend(values), 1 / TICK_S, "hann")
+    inside = (frequency >= COMFORT_BAND_HZ[0]) & (frequency <= COMFORT_BAND_HZ[1])
     return float(np.sum(density[inside]) * (frequency[1] - frequency[0]))

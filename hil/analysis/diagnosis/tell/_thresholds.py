@@ -28,10 +28,6 @@ OPEN_CONFIDENCE: Annotated[
 ] = 0.05
 
 STEP_NM: Annotated[float, Means("N m", "the step whose overshoot is told", "consequences")] = 20.0
-BAND_HZ: Annotated[tuple[float, float], Means("Hz", "the band whose energy is told", "consequences")] = (
-    8.0,
-    20.0,
-)
 
 DURATION_S: Annotated[float, Means("s", "of a separating test", "separating")] = 20.0
 SETTLE_S: Annotated[float, Means("s", "a speed is held before it", "separating")] = 2.0

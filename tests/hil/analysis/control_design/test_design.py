@@ -15,10 +15,10 @@ from hil.analysis.control_design import (
     optimize,
 )
 from hil.analysis.identification import Identification
-from hil.analysis.outputs.control_design import summary_of, text_of
 from hil.core.controller import controller_from_toml, controller_to_toml
 from hil.core.errors import BadInputError
 from hil.core.model import Model
+from reports.outputs.control_design import summary_of, text_of
 from tests.hil.analysis.identification.chains import THREE, TWO
 
 

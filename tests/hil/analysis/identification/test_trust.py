@@ -15,12 +15,12 @@ from hil.analysis.control_design import DesignSpec, design
 from hil.analysis.frequency_response import UnfitDataError, experiments_of
 from hil.analysis.identification import Identification, identify, judge
 from hil.analysis.identification._order import evaluate
-from hil.analysis.outputs.identification import output_files, summary_of, text_of
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, load_model, model_from_dict
 from hil.core.recording import Recording
 from hil.plant import simulate
+from reports.outputs.identification import output_files, summary_of, text_of
 from test_plans import stimuli
 from tests.benches_for_tests import SIM
 from tests.hil.analysis import paper_plant

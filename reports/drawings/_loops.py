@@ -12,7 +12,7 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from hil.analysis.control_design import TradeOff
-from hil.analysis.figures import _style as style
+from reports.drawings import _canvas as style
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

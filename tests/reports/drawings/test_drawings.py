@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from hil.analysis import figures
 from hil.analysis.control_design import DesignSpec, design
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
+from reports import drawings as figures
 from tests.hil.analysis import paper_plant
 from tests.hil.analysis.conftest import GRID
 
@@ -66,7 +66,7 @@ def test_pictures_are_the_same_every_time(drawn: dict[str, Figure], name: str) -
 
 
 def test_symbols() -> None:
-    from hil.analysis.figures._style import symbol
+    from reports.drawings._canvas import symbol
 
     assert symbol("ω_m") == r"$\omega_{m}$"
     assert symbol("T_m*") == "$T_{m}^*$"

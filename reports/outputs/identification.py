@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from hil.analysis import figures
 from hil.analysis.control_design import resonance_hz
 from hil.analysis.frequency_response import Experiment, frf_to_csv
 from hil.analysis.identification import CHAINS, Identification
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
 from hil.core.model import model_to_toml
+from reports import drawings as figures
 
 
 def output_files(found: Identification) -> dict[str, bytes]:

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from hil.analysis import figures
 from hil.analysis.control_design import Design, measured_loop
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.core.controller import controller_to_toml
+from reports import drawings as figures
 
 
 def output_files(found: Design, measured: FrequencyResponse | None) -> dict[str, bytes]:

@@ -10,9 +10,9 @@ import numpy.typing as npt
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
-from hil.analysis.figures import _style as style
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.core.channels import CHANNELS, INPUT
+from reports.drawings import _canvas as style
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]

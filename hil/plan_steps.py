@@ -39,7 +39,7 @@ class IdentifyStep(Step):
     def _work(self, recording: Recording, made: Path) -> Mapping[str, bytes]:
         from hil.analysis.frequency_response import experiments_of
         from hil.analysis.identification import identify
-        from hil.analysis.outputs.identification import output_files
+        from reports.outputs.identification import output_files
 
         del made
         experiments = experiments_of(recording, segments=self.use)
@@ -70,8 +70,8 @@ class DesignStep(Step):
     def _work(self, recording: Recording, made: Path) -> Mapping[str, bytes]:
         from hil.analysis.control_design import DesignSpec, design
         from hil.analysis.frequency_response import frf_from_csv
-        from hil.analysis.outputs.control_design import output_files
         from hil.core.model import load_model
+        from reports.outputs.control_design import output_files
 
         del recording
         spec = DesignSpec(

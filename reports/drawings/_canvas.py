@@ -1,4 +1,4 @@
-"""The house style: one palette, units on every axis, the comfort band and the resonance marked."""
+"""A canvas in the house style: units on every axis, the comfort band and the resonance marked."""
 
 from __future__ import annotations
 
@@ -10,12 +10,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-#: Okabe & Ito's palette, told apart also by colour-blind readers.
-BLUE, VERMILLION, GREEN, BLACK = "#0072B2", "#D55E00", "#009E73", "#000000"
-ORANGE, SKY, PURPLE, GREY = "#E69F00", "#56B4E9", "#CC79A7", "#8A8A8A"
-BAND = "#F3EFD9"
+from hil.core.conventions import COMFORT_BAND_HZ
+from reports import style
 
-COMFORT_BAND_HZ = (8.0, 20.0)
+BLUE, VERMILLION, GREEN, PURPLE = (style.SERIES[r].light for r in ("gain", "phase", "third", "fourth"))
+ORANGE, GREY = style.SERIES["fifth"].light, style.SERIES["reference"].light
+SKY = style.SERIES["gain"].dark  # what was measured, under lines of the same quantity
+BLACK, BAND = style.SURFACE["ink"].light, style.SURFACE["band"].light
+
 _DPI = 150
 _FONT = 9.0
 
@@ -29,8 +31,8 @@ def new_figure(width_cm: float = 16.0, height_cm: float = 11.0) -> Figure:
 
 def style_axes(axes: Axes) -> None:
     """Light grid behind the data, no box, small type."""
-    axes.grid(True, which="major", color="#D9D9D9", linewidth=0.6)
-    axes.grid(True, which="minor", color="#EEEEEE", linewidth=0.4)
+    axes.grid(True, which="major", color=style.SURFACE["rule"].light, linewidth=0.6)
+    axes.grid(True, which="minor", color=style.SURFACE["grid"].light, linewidth=0.4)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(labelsize=_FONT, which="both")
