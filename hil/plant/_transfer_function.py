@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import expm
 
 from hil.core.compiled import compiled
 from hil.core.model import TransferFunction
@@ -45,6 +44,8 @@ def respond(function: TransferFunction, torque: Array, dt: float, start: float) 
 
 def _held(a: Array, b: Array, duration: float) -> Array:
     """exp([[A, B], [0, 0]]·duration): state transition and effect of a held input."""
+    from scipy.linalg import expm  # slow to import, and seldom needed
+
     n = len(a)
     block = np.zeros((n + 1, n + 1))
     block[:n, :n], block[:n, n:] = a, b

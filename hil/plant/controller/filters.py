@@ -32,8 +32,6 @@ def discretised(
     Raises:
         ValueError: improper, without a denominator, or of too high an order for the RMCU.
     """
-    from scipy.signal import bilinear  # slow to import: not for commands that only read files
-
     above = np.trim_zeros(np.atleast_1d(np.asarray(numerator, dtype=float)), "f")
     below = np.trim_zeros(np.atleast_1d(np.asarray(denominator, dtype=float)), "f")
     while len(above) > 1 and len(below) > 1 and above[-1] == 0.0 and below[-1] == 0.0:
@@ -44,8 +42,19 @@ def discretised(
         )
     if len(below) > LARGEST_ORDER + 1:
         raise ValueError(f"a filter of order {len(below) - 1} cannot be run, only up to {LARGEST_ORDER}")
-    b, a = bilinear(above, below, 1.0 / sample_time_s)
+    b, a = (_bilinear(part, len(below) - 1, sample_time_s) for part in (above, below))
     return b / a[0], a / a[0]
+
+
+def _bilinear(polynomial: Array, order: int, sample_time_s: float) -> Array:
+    """Coefficients in z⁻¹ of a polynomial in s times (z + 1)^order, the factor 2/T shared by both.
+
+    `scipy.signal.bilinear` does the same; scipy.signal takes longer to import than a plan to be predicted.
+    """
+    share = np.sqrt(2.0 / sample_time_s)
+    plus, minus = np.polynomial.Polynomial((1, 1)) / share, np.polynomial.Polynomial((-1, 1)) * share
+    powers = (c * plus ** (order - n) * minus**n for n, c in enumerate(polynomial[::-1]))
+    return np.asarray(sum(powers, np.polynomial.Polynomial((0.0,) * (order + 1))).coef[::-1])
 
 
 def tustin(numerator: npt.ArrayLike, denominator: npt.ArrayLike, sample_time_s: float) -> Filter:
