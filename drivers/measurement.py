@@ -63,7 +63,7 @@ class SampleAssembler:
         within_s = _NEAREST_WITHIN * self._sample_time_s
         for waiting in self._waiting.values():
             if waiting in self._slow:
-                values, late = waiting.placed(stamps, within_s)
+                values, late = waiting.placed(stamps, within_s, 0.5 * self._sample_time_s)
                 self.late += late if begun else 0
             else:
                 values = waiting.nearest(stamps, within_s)
@@ -82,7 +82,8 @@ class SampleAssembler:
         newest_s = self._base.newest_s
         until_s = [max(w.newest_s, newest_s - _GIVEN_UP_S) - w.stream.late_s for w in self._even]
         # Between two samples of a slow stream nothing can be awaited but that the next one comes late.
-        until_s += [newest_s - w.stream.late_s for w in self._slow]
+        # The row that it is nearest to may be the one before it.
+        until_s += [newest_s - w.stream.late_s - 0.5 * self._sample_time_s for w in self._slow]
         return int(np.searchsorted(self._base.stamps, min(until_s)))
 
     def _sample_times(self, stamps: Array) -> Array:
@@ -124,13 +125,13 @@ class _Waiting:
         found[np.abs(self.stamps[at] - stamps) > within_s] = np.nan
         return found
 
-    def placed(self, stamps: Array, within_s: float) -> tuple[Array, int]:
+    def placed(self, stamps: Array, within_s: float, reach_s: float) -> tuple[Array, int]:
         """Each sample at the stamp nearest to it, NaN elsewhere; and how many came after their row.
 
-        Takes away what has been placed; what lies behind the last stamp goes on waiting.
+        Takes away what has been placed; what lies more than `reach_s` behind the last stamp goes on waiting.
         """
         found = np.full((len(stamps), self._values.shape[1]), np.nan)
-        due = int(np.searchsorted(self.stamps, stamps[-1], side="right"))
+        due = int(np.searchsorted(self.stamps, stamps[-1] + reach_s, side="right"))
         times = self.stamps[:due]
         at = _nearest(stamps, times)
         near = np.abs(stamps[at] - times) <= within_s

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from drivers import SampleAssembler, SampleQueue, Samples, Stream
@@ -31,6 +31,7 @@ def assemble(other: Samples, base: np.ndarray, chunks: int = 1) -> tuple[SampleA
     return assembler, np.concatenate(rows)
 
 
+@example(period_s=0.14453125, begin_s=0.0, chunks=9, n=3)  # just behind the last row of a part
 @given(
     period_s=st.floats(0.0016, 0.3),
     begin_s=st.floats(0.0, 0.05),
