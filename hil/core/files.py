@@ -64,7 +64,7 @@ def refuse_special(path: Path) -> None:
             raise BadInputError("is a link to nothing", where=str(path), fix="remove the link, or mend it")
         if path.exists() and not path.is_file():
             what = "is a directory" if path.is_dir() else "is not a regular file"
-            raise BadInputError(what, where=str(path), fix="name a file with --out")
+            raise BadInputError(what, where=str(path), fix="name a file, not a directory")
 
 
 def make_directory(path: Path) -> None:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hil.core.channels import INPUT, TIME, WHEEL_ANGLE
 from hil.core.effects import EFFECTS, Stage
+from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import _kernel, _slots
@@ -22,6 +23,7 @@ LONGEST_STEP_S = 1e-4
 _UNEVEN_SHARE = 0.01
 _START_SAMPLES = (20, 10, 5)
 _RESTING_SHARE = 0.05
+_DIVERGED = 1e12
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,9 @@ def replay(model: Model, recording: Recording) -> Recording:
     """`model` driven by a recording's torque request from its initial speeds, at its time stamps.
 
     Uneven time stamps are resampled (input held, outputs interpolated); `notes` says so.
+
+    Raises:
+        BadInputError: the simulation diverges.
     """
     time = recording.time_s
     dt = recording.sample_time_s
@@ -103,9 +108,24 @@ def replay(model: Model, recording: Recording) -> Recording:
     if _rests(model, start, float(torque[0])):
         start = dataclasses.replace(start, motor_torque_nm=0.0)
     channels = simulate(model, torque, dt, start)
+    _refuse_divergence(channels, grid)
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
     return Recording({TIME: time, INPUT: recording[INPUT], **channels}, recording.source, notes=notes)
+
+
+def _refuse_divergence(channels: dict[str, Array], time_s: Array) -> None:
+    """Refuse numbers that no axle has: an unstable model, or one too stiff for the integrator's steps."""
+    for name, values in channels.items():
+        bad = ~(np.abs(values) < _DIVERGED)
+        if bad.any():
+            since_s = time_s[np.argmax(bad)]
+            raise BadInputError(
+                f"the simulation diverges: {name} is beyond {_DIVERGED:g} from {since_s:g} s on",
+                where="the model",
+                fix=f"look for a damping or stiffness too large for steps of {LONGEST_STEP_S * 1e3:g} ms, "
+                "or an inertia too small",
+            )
 
 
 def _rests(model: Model, start: Start, torque_nm: float) -> bool:

@@ -7,7 +7,10 @@ which a vanishing dead zone of the twist does not (Nordin, Galic and Gutman, Int
 Signal Processing 11, 1997). Flanks that lose energy in a blow have a damping d of their own while they
 touch; a coefficient of restitution e stands for the d with which rotor and wheel, meeting on the shafts'
 stiffness k with a reduced inertia m, part at e times the speed at which they met:
-e = exp(-2·ζ/√(1 - ζ²)·atan(√(1 - ζ²)/ζ)), d = 2·ζ·√(k·m), for flanks that let go once they would pull.
+e = exp(-2·ζ/√(1 - ζ²)·atan(√(1 - ζ²)/ζ)), d = 2·ζ·√(k·m), for flanks that let go once they would pull
+(for ζ above 1, e below 0.135: √(ζ² - 1) and atanh). Damping strikes with the speed of approach: flanks that
+give back little strike hard. Below 0.1 nothing is told apart; what is given there acts as 0.1. With both a
+damping and a restitution, the two dampings add.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from hil.core.effects._probe import Probe, Scene, sized
 _SEATED_NM = 2.0  # a first shaft torque that surely is in contact
 _HALVINGS = 60
 _CRITICAL = 1e-6
+_LEAST_RESTITUTION = 0.1
 
 
 def parting_share(ratio: float) -> float:
@@ -35,10 +39,11 @@ def parting_share(ratio: float) -> float:
 
 
 def damping_of(restitution: float, chain: Chain) -> float:
-    """Damping in N m s/rad, wheel side, of flanks of a coefficient of restitution above 0."""
+    """Damping in N m s/rad, wheel side, of flanks of a coefficient of restitution."""
     rotor = chain.motor_inertia * chain.gear_ratio * chain.gear_ratio
     wheel = chain.vehicle_inertia if chain.kind == TWO_INERTIA else chain.wheel_inertia
     reduced = rotor * wheel / (rotor + wheel)
+    restitution = max(restitution, _LEAST_RESTITUTION)
     low, high = 1e-9, 1e3
     for _ in range(_HALVINGS):
         middle = math.sqrt(low * high)
@@ -116,9 +121,9 @@ EFFECT = Effect(
         Parameter(
             "restitution",
             "1",
-            1e-3,
+            0.0,
             1.0,
-            "share of the speed of approach that a blow gives back: another way to give a damping",
+            "share of the speed of approach that a blow gives back: another way to give a damping; both add",
             optional=True,
             default=1.0,
             fitted=False,

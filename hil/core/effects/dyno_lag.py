@@ -41,7 +41,7 @@ EFFECT = Effect(
     summary=(
         "The dynamometer follows its vehicle model late: the load's inertia is right only for slow motion."
     ),
-    signature="The wheel swings as if the vehicle were lighter; slow motion fits.",
+    signature="The wheel swings less, as if the load were heavier the faster it moves; slow motion fits.",
     shown_by="A chirp over 0.05 to 30 Hz and a slow ramp of torque.",
     parameters=(
         Parameter(

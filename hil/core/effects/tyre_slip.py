@@ -3,7 +3,8 @@
 T' = (r/σ)·(C·(ω_l - ω_v) - |ω_v|·T), with slip stiffness C, relaxation length σ and wheel radius r; the
 tyre's torque is T + D·(ω_l - ω_v). Written for a twist θ = T / k with k = C·r/σ that is a spring at rest:
 θ' = ω_l - ω_v - (r/σ)·|ω_v|·θ: the faster the wheel, the more the spring relaxes (H. B. Pacejka, Tire and
-Vehicle Dynamics, ch. 7: single contact point transient tyre model).
+Vehicle Dynamics, ch. 7: single contact point transient tyre model). ω_v in |ω_v| is the vehicle model's
+speed, also where the dynamometer follows it late.
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model, load_model
 from hil.core.recording import Recording
 from hil.plant import Start, pack, replay, simulate
@@ -372,3 +373,20 @@ def test_a_wrong_drag_of_a_rigid_model_is_the_drag_itself():
     )
     right = Model("rigid", {**parameters, "viscous_drag": 0.003})
     assert np.array_equal(pack(wrong), pack(right))
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        THREE.with_parameters(shaft_damping=1e5),
+        THREE.with_effects(
+            EffectUse("backlash", {"half_gap_rad": 0.02, "contact_damping_nms_rad": 1e5, "restitution": 1.0})
+        ),
+    ],
+)
+def test_a_simulation_that_diverges_is_refused(model):
+    time = np.arange(3000, dtype=np.float64) * DT
+    torque = 30.0 * np.sin(20.0 * time)
+    recording = Recording({"time_s": time, "motor_torque_ref_nm": torque}, Path("x.csv"))
+    with pytest.raises(BadInputError, match=r"diverges.* from 0\.\d+ s on"):
+        replay(model, recording)

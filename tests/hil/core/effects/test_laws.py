@@ -49,7 +49,7 @@ def test_within_the_gap_nothing_is_carried(twist, rate, seat):
     assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0)) == 0.0
 
 
-@pytest.mark.parametrize("restitution", [0.05, 0.2, 0.5, 0.9])
+@pytest.mark.parametrize("restitution", [0.1, 0.2, 0.5, 0.9])
 def test_a_blow_gives_back_the_share_of_speed_that_restitution_says(restitution):
     """A mass on a damped spring that lets go once it would pull, by an integrator of others."""
     damping = damping_of(restitution, CHAIN)
@@ -64,6 +64,10 @@ def test_a_blow_gives_back_the_share_of_speed_that_restitution_says(restitution)
         lambda t, x: [x[1], -force(t, x) / mass], (0, 1), [0.0, 1.0], events=force, rtol=1e-9, atol=1e-12
     )
     assert -blow.y[1, -1] == pytest.approx(restitution, rel=1e-5)
+
+
+def test_what_gives_back_next_to_nothing_acts_as_a_tenth():
+    assert damping_of(0.0, CHAIN) == damping_of(0.1, CHAIN) < math.inf
 
 
 def test_an_elastic_blow_has_no_damping_of_its_own():
