@@ -40,6 +40,7 @@ def test_the_page_merges_what_says_the_same():
     assert "| a case; another | 2 | error: x: is missing / give another |" in page
 
 
+@pytest.mark.slow
 def test_the_quickest_commands_stand_bad_input(tmp_path):
     assert failures_of(try_all(quick_cases(), tmp_path)) == []
 
