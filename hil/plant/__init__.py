@@ -8,7 +8,7 @@ from hil.plant._sensors import GAIN as SENSOR_GAIN
 from hil.plant._sensors import OFFSET as SENSOR_OFFSET
 from hil.plant._sensors import STEP as SENSOR_STEP
 from hil.plant._sensors import bench_sensor, sensor_of
-from hil.plant._slots import pack
+from hil.plant._slots import chain_numbers, pack
 
 __all__ = [
     "LONGEST_STEP_S",
@@ -19,6 +19,7 @@ __all__ = [
     "LinearSystem",
     "Start",
     "bench_sensor",
+    "chain_numbers",
     "ideal_sensors",
     "linear_system",
     "linear_system_of",

@@ -109,6 +109,15 @@ def pack(model: Model) -> npt.NDArray[np.float64]:
     return vector
 
 
+def chain_numbers(model: Model) -> Chain:
+    """The linear numbers of a mechanical model, those of its effects included.
+
+    Raises:
+        BadInputError: an effect stands twice where the kernel has one place for it.
+    """
+    return Chain(*pack(model)[:CHAIN].tolist())
+
+
 def _values(use: EffectUse, chain: Chain) -> tuple[float, ...]:
     effect = EFFECTS[use.id]
     values = tuple(float(use.values.get(p.name, p.default)) for p in effect.parameters)

@@ -43,7 +43,7 @@ class Scene(Protocol):
 
     @property
     def parameters(self) -> Mapping[str, float]:
-        """Of the base model, corrected."""
+        """Linear numbers (names of `Chain`) of the model with what was found so far."""
 
     @property
     def channels(self) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._orders import order_lines
 from hil.core.channels import OUTPUTS
+from hil.plant import chain_numbers
 
 
 @dataclass(frozen=True)
@@ -24,8 +25,8 @@ class Recorded:
 
     @cached_property
     def parameters(self) -> Mapping[str, float]:
-        """Of the base model, corrected."""
-        return self.fit.hypothesis.model(self.fit.theta).parameters
+        """Of the model with what was found so far, corrected: a third inertia that was added has its tyre."""
+        return chain_numbers(self.fit.hypothesis.model(self.fit.theta))._asdict()
 
     @property
     def torque_nm(self) -> float:

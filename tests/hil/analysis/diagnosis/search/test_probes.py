@@ -1,6 +1,7 @@
 """Sizes at which effects are tried first."""
 
 import numpy as np
+import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
@@ -8,7 +9,7 @@ from hil.analysis.diagnosis.search._probes import mismatches, probes
 from hil.analysis.diagnosis.search._scene import Recorded
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
-from hil.core.model import EffectUse
+from hil.core.model import EffectUse, Model
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
 GAIN = EffectUse("sensor_gain", {"channel": OUTPUTS[2], "gain": 1.2})
@@ -43,3 +44,16 @@ def test_values_that_a_probe_leaves_out_are_the_defaults() -> None:
     problem = one_problem()
     found = [p for p in probes(problem, fit(problem, Hypothesis(MODEL), rounds=0)) if p.id == "backlash"]
     assert {p.use([1.0]).values["contact_damping_nms_rad"] for p in found} == {0.0}
+
+
+def test_effects_on_top_of_an_added_third_inertia_have_its_tyre() -> None:
+    two = Model(
+        "two_inertia", {n: v for n, v in MODEL.parameters.items() if "tyre" not in n and n != "wheel_inertia"}
+    )
+    tyre = EffectUse(
+        "tyre_compliance", {"wheel_inertia": 4.0, "tyre_stiffness": 5000.0, "tyre_damping": 300.0}
+    )
+    problem = one_problem()
+    one = fit(problem, Hypothesis(two, (tyre,)), rounds=0)
+    assert {"tyre_slip", "dyno_lag"} <= {probe.id for probe in probes(problem, one)}
+    assert Recorded(problem, one).parameters["tyre_stiffness"] == pytest.approx(5000.0)
