@@ -142,9 +142,9 @@ class PredictedDyno:
         """Supervision, vehicle model, SYNC, operation: the objects that are written, and their time."""
         v, closed = self._file.vehicle, self._loop.closed
         told = [v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2]
-        known = zip(told, closed.vehicle, (1, 2, 3), strict=True)
+        known = zip(told, closed.plant.vehicle, (1, 2, 3), strict=True)
         values = [self._stored(own if own is not None else model, sub) for own, model, sub in known]
-        closed.set_vehicle(
+        closed.plant.set_vehicle(
             inertia_kg_m2=values[0],
             rolling_nm=values[1],
             aero_nms2_rad2=values[2],
@@ -180,7 +180,7 @@ class PredictedDyno:
     def release_vehicle(self, initial_speed_m_s: float) -> None:
         """Simulate the vehicle from now on."""
         closed = self._loop.closed
-        closed.set_vehicle(initial_speed_m_s=self._stored(initial_speed_m_s, 6))
+        closed.plant.set_vehicle(initial_speed_m_s=self._stored(initial_speed_m_s, 6))
         self._loop.transact(_SDO_TICKS)
         for side in SIDES:
             closed.drive_mode(side, D.VEHICLE)

@@ -14,13 +14,12 @@ from hil.core.dbc import Names, read_dbc
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block, joined
 from hil.core.signals import FrameLayout
+from hil.plant.closed_loop import advance, state_at_rest
 from hil.plant.closed_loop import drive as drive
-from hil.plant.closed_loop import state_at_rest
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SimulationSettings
-from sim_backend.bench._ticks import advance
 from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s, single
 from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode

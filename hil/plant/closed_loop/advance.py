@@ -1,4 +1,4 @@
-"""Many ticks at once: the loop of the simulated bench without the wire."""
+"""Many ticks in one call, for the wire and for predictions; what the RMCU was asked may change with each."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from hil.plant.closed_loop.tick import tick
 
 @compiled
 def advance(  # type: ignore[no-untyped-def]
-    first, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requests, code, status, rows
+    first, x, vector, w, torques, fir, drives, sensors, past, noise, modes, requests, codes, status, rows
 ):
-    """Carry out a tick for each of `requests` (N m, of what `mode` asks) from sample `first` on.
+    """Carry out `tick` for sample `first` and those that follow it, one for each of `modes`.
 
-    Drives keep what they were told; row i of `rows` is filled with sample `first` + i.
+    `noise` and `rows` have a row, `requests` and `codes` an entry for each sample. Drives keep what they were
+    told.
     """
-    for i in range(requests.shape[0]):
+    for i in range(modes.shape[0]):
         tick(
             first + i,
             x,
@@ -25,10 +26,10 @@ def advance(  # type: ignore[no-untyped-def]
             drives,
             sensors,
             past,
-            noise,
-            mode,
+            noise[i],
+            modes[i],
             requests[i],
-            code,
+            codes[i],
             status,
             rows[i],
         )

@@ -43,7 +43,8 @@ class ClosedLoop:
                 fix="give a rigid, two_inertia or three_inertia model",
             )
         self.wire = wire
-        self._state = state_at_rest(model, wheel_radius_m)
+        #: What the drives' vehicle model is told stands here too.
+        self.plant = state_at_rest(model, wheel_radius_m)
         self._memory = m = M.Memory()
         m.gains[M.SAMPLE_TIME] = TICK_S
         m.gains[M.TORQUE_LIMIT] = LARGEST_TORQUE_NM  # until a controller sets its own
@@ -75,42 +76,17 @@ class ClosedLoop:
         if result:
             raise BenchError(f"refused the controller's parameters: {_REASONS[result]}", where="RMCU")
 
-    def set_vehicle(
-        self,
-        *,
-        inertia_kg_m2: float | None = None,
-        rolling_nm: float | None = None,
-        aero_nms2_rad2: float | None = None,
-        slip: float | None = None,
-        wheel_radius_m: float | None = None,
-        initial_speed_m_s: float | None = None,
-    ) -> None:
-        """Change what the drives' vehicle model is told; None leaves a value as it is."""
-        self._state.set_vehicle(
-            inertia_kg_m2=inertia_kg_m2,
-            rolling_nm=rolling_nm,
-            aero_nms2_rad2=aero_nms2_rad2,
-            slip=slip,
-            wheel_radius_m=wheel_radius_m,
-            initial_speed_m_s=initial_speed_m_s,
-        )
-
-    @property
-    def vehicle(self) -> tuple[float, float, float]:
-        """Inertia (kg m²), rolling (N m) and aerodynamic resistance (N m s²/rad²) of the vehicle model."""
-        return self._state.vehicle
-
     def set_ramp(self, acceleration_rad_s2: float) -> None:
         """How fast the drives change speed, rad/s²."""
-        self._state.drives[:, D.ACCELERATION] = acceleration_rad_s2
+        self.plant.drives[:, D.ACCELERATION] = acceleration_rad_s2
 
     def target_speed(self, side: int, speed_rad_s: float) -> None:
         """Tell one drive the speed to hold in mode speed, rad/s."""
-        self._state.drives[side, D.TARGET_SPEED] = rounded(self.wire.target_speed, speed_rad_s)[0]
+        self.plant.drives[side, D.TARGET_SPEED] = rounded(self.wire.target_speed, speed_rad_s)[0]
 
     def drive_mode(self, side: int, mode: int) -> None:
         """Let one drive be FREE, hold a SPEED or be a VEHICLE (names of `drive`)."""
-        self._state.drives[side, D.MODE] = mode
+        self.plant.drives[side, D.MODE] = mode
 
     def off(self) -> None:
         """Torque off."""
@@ -138,7 +114,9 @@ class ClosedLoop:
             longer = np.zeros((max(end, 2 * len(self._rows)), T.COLUMNS))
             longer[: self.samples] = self.rows
             self._rows = longer
-        s = self._state
+        s = self.plant
+        # no fault, and whether parameters are valid is not shown: the code is the mode alone
+        modes = np.full(len(requests), self.mode, np.int64)
         advance(
             self.samples,
             s.x,
@@ -149,10 +127,10 @@ class ClosedLoop:
             s.drives,
             s.sensors,
             s.past,
-            s.noise,
-            self.mode,
+            np.tile(s.noise, (len(requests), 1)),
+            modes,
             requests,
-            self.mode,  # no fault, and whether parameters are valid is not shown
+            modes,
             self._status,
             self._rows[self.samples : end],
         )

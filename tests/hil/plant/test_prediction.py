@@ -37,7 +37,7 @@ def hold(loop, speed_rad_s, samples):
 
 
 def release(loop, speed_rad_s):
-    loop.set_vehicle(initial_speed_m_s=speed_rad_s * RADIUS_M)
+    loop.plant.set_vehicle(initial_speed_m_s=speed_rad_s * RADIUS_M)
     for side in SIDES:
         loop.drive_mode(side, D.VEHICLE)
 
