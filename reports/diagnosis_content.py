@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -22,8 +21,8 @@ from hil.core.effects import EFFECTS
 from hil.core.model import parameter_unit
 from reports import quantities
 from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay
-from reports.figure import Figure
 from reports.labels import channel_label
+from reports.parts import Cell, Map, Part, Table
 
 Array = npt.NDArray[np.float64]
 
@@ -38,45 +37,6 @@ _FIGURES = {
     "overshoot_shaft_torque_percent": "overshoot of the shaft torque, %",
     "band_energy_motor_speed": "8-20 Hz energy of the motor speed, (rad/s)²",
 }
-
-
-@dataclass(frozen=True)
-class Table:
-    """Rows of text under a head; columns from `numbers_from` to before `words_from` are numbers."""
-
-    head: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    numbers_from: int = 1
-    words_from: int = 99
-
-
-@dataclass(frozen=True)
-class Cell:
-    """One field of a map: its text, and how dark it is from 0 (noise) to 1."""
-
-    text: str
-    shade: float
-
-
-@dataclass(frozen=True)
-class Map:
-    """A shaded table."""
-
-    title: str
-    head: tuple[str, ...]
-    rows: tuple[tuple[str, tuple[Cell, ...]], ...]
-
-
-@dataclass(frozen=True)
-class Part:
-    """A section of the report."""
-
-    id: str
-    title: str
-    text: str
-    tables: tuple[Table, ...] = ()
-    maps: tuple[Map, ...] = ()
-    figures: tuple[Figure, ...] = ()
 
 
 def headline(found: Diagnosis) -> str:

@@ -1,0 +1,166 @@
+"""Criteria of several runs side by side, and how far the responses of each are from the first run's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.comparison._runs import ComparedRun, controllers_that_differ, refuse_other_plans
+from hil.core.errors import BadInputError
+from hil.core.result import CriterionResult, CriterionVerdict
+
+Array = npt.NDArray[np.float64]
+
+_LEAST_SAMPLES = 2
+CHANNELS = ("shaft_torque_nm", "motor_speed_rad_s", "wheel_speed_rad_s")
+
+
+@dataclass(frozen=True)
+class CriterionRow:
+    """One criterion of every run, in the criterion's unit; a value of None has a verdict that says why."""
+
+    id: str
+    title: str
+    unit: str
+    values: tuple[float | None, ...]
+    verdicts: tuple[CriterionVerdict, ...]
+    limit: str
+    absolute: bool
+
+    @property
+    def relative(self) -> tuple[float | None, ...]:
+        """(value - first run's) / |first run's|; None where either is missing or the first is zero."""
+        first = self.values[0]
+        return tuple(
+            None if value is None or not first else (value - first) / abs(first) for value in self.values
+        )
+
+
+@dataclass(frozen=True)
+class ResponseRow:
+    """One channel of one segment: rms(run - first run) / rms(first run - its mean), by run; 0 for the first.
+
+    NaN where a run lacks the channel or the segment.
+    """
+
+    segment: str
+    channel: str
+    gaps: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Runs of one plan; everything is told against the first."""
+
+    runs: tuple[ComparedRun, ...]
+    criteria: tuple[CriterionRow, ...]
+    responses: tuple[ResponseRow, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def distances(self) -> tuple[float | None, ...]:
+        """By run: mean of |relative difference| over the criteria that have a value in every run.
+
+        Criteria relative to another segment repeat a value and do not count. None where none is left.
+        """
+        rows = [row.relative for row in self.criteria if row.absolute]
+        whole = [row for row in rows if all(value is not None for value in row)]
+        if not whole:
+            return (None,) * len(self.runs)
+        return tuple(
+            float(np.mean(np.abs(np.array(whole, dtype=float)[:, i]))) for i in range(len(self.runs))
+        )
+
+
+def compare(runs: Sequence[ComparedRun]) -> Comparison:
+    """Lay runs of one plan side by side.
+
+    Raises:
+        BadInputError: fewer than two runs, or different plans.
+    """
+    if len(runs) < 2:
+        raise BadInputError("one run cannot be compared", fix="name at least two run directories")
+    refuse_other_plans(runs)
+    notes = []
+    changed = controllers_that_differ(runs)
+    if changed:
+        notes.append(f"Controllers differ between the runs: {', '.join(changed)}.")
+    notes += [f"{run.name}: {sentence}." for run in runs for sentence in run.recording.damage]
+    notes += [f"{run.name}: {_first_line(run.result.reason)}" for run in runs if run.result.reason]
+    return Comparison(tuple(runs), _criteria(runs), _responses(runs), tuple(notes))
+
+
+def _first_line(text: str) -> str:
+    return text.splitlines()[0]
+
+
+def _criteria(runs: Sequence[ComparedRun]) -> tuple[CriterionRow, ...]:
+    tables = [{criterion.id: criterion for criterion in run.result.criteria} for run in runs]
+    return tuple(
+        CriterionRow(
+            criterion.id,
+            criterion.title,
+            criterion.unit,
+            tuple(table[criterion.id].value for table in tables),
+            tuple(table[criterion.id].verdict for table in tables),
+            _limit(criterion),
+            not criterion.below,
+        )
+        for criterion in runs[0].result.criteria
+    )
+
+
+def _limit(criterion: CriterionResult) -> str:
+    if criterion.below:
+        return f"< {criterion.below}"
+    parts = [f"≥ {criterion.lower:g}"] if criterion.lower is not None else []
+    parts += [f"≤ {criterion.upper:g}"] if criterion.upper is not None else []
+    return " ".join(parts)
+
+
+def _responses(runs: Sequence[ComparedRun]) -> tuple[ResponseRow, ...]:
+    rows = []
+    for segment in runs[0].result.segments:
+        for channel in CHANNELS:
+            first = _aligned(runs[0], segment.id, channel)
+            if first is None:
+                continue
+            spread = float(np.nanstd(first[1]))
+            gaps = (_rms(difference(runs[0], run, segment.id, channel), spread) for run in runs)
+            rows.append(ResponseRow(segment.id, channel, tuple(gaps)))
+    return tuple(rows)
+
+
+def difference(
+    first: ComparedRun, other: ComparedRun, segment: str, channel: str
+) -> tuple[Array, Array] | None:
+    """Time from the step in s, and a channel of `other` minus that of `first`, at the first one's samples.
+
+    Over the time that both have; None if one of them has not got the segment or the channel.
+    """
+    one, two = _aligned(first, segment, channel), _aligned(other, segment, channel)
+    if one is None or two is None:
+        return None
+    time, values = one
+    both = (time >= two[0][0]) & (time <= two[0][-1])
+    return time[both], np.interp(time[both], *two) - values[both]
+
+
+def _aligned(run: ComparedRun, segment: str, channel: str) -> tuple[Array, Array] | None:
+    found = next((s for s in run.result.segments if s.id == segment), None)
+    if found is None or channel not in run.recording:
+        return None
+    time = run.recording.time_s
+    inside = (time >= found.start_s) & (time < found.end_s)
+    if np.count_nonzero(inside) < _LEAST_SAMPLES:
+        return None
+    return time[inside] - found.step_s, run.recording[channel][inside]
+
+
+def _rms(found: tuple[Array, Array] | None, over: float) -> float:
+    if found is None or over == 0.0 or not np.isfinite(found[1]).any():
+        return float("nan")
+    return float(np.sqrt(np.nanmean(found[1] ** 2)) / over)

@@ -1,0 +1,34 @@
+"""`hil compare`: the same plan on several runs, side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    runs: Annotated[
+        list[Path],
+        typer.Argument(metavar="DIR...", help="run directories or recordings; the first is what others meet"),
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="directory for the results; default: out/compare-NNN")
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="replace an earlier comparison in --out")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print comparison.json on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Lay runs of one plan side by side: criteria, responses overlaid at the step, spectra.
+
+    Writes comparison.json, report.html and report.pdf, all or none. Everything is told against the first
+    run: name the measured bench first, then the base model, then the augmented one, and it is seen where
+    the gap has shrunk. Criteria are computed anew from the recordings.
+    """
+    from hil.cli.compare import carry_out
+
+    return carry_out(runs=runs, out=out, overwrite=overwrite, as_json=as_json)

@@ -1,0 +1,126 @@
+"""`hil compare`: the same plan on several runs, side by side."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from rich.table import Table
+
+from hil.analysis.comparison import ComparedRun, Comparison, compare
+from hil.cli._output import Show, console, print_json, progress, to_json, warn_of_damage
+from hil.cli._place import refuse_missing, results_in
+from hil.cli.report import rejudged
+from hil.core.errors import BadInputError
+from hil.core.recording import read_recording
+from hil.engine import RECORDING
+from reports.comparison import comparison_html, comparison_pdf, lead, value_text
+
+SUMMARY, HTML, PDF = "comparison.json", "report.html", "report.pdf"
+
+
+def carry_out(*, runs: list[Path], out: Path | None, overwrite: bool, as_json: bool) -> int:
+    """Carry the command out; its exit code."""
+    paths = [path / RECORDING if path.is_dir() else path for path in runs]
+    for path in paths:
+        refuse_missing(path)
+    _refuse_twice(paths)
+    names = (SUMMARY, HTML, PDF)
+    with results_in(
+        out, names, inputs=paths, overwrite=overwrite, default="compare", summary=SUMMARY
+    ) as place:
+        with progress("comparison") as show:
+            found = compare(_read(runs, paths, show))
+            show("writing the report")
+            summary = _summary(found, runs)
+            files = {
+                HTML: comparison_html(found).encode(),
+                PDF: comparison_pdf(found),
+                SUMMARY: (to_json(summary) + "\n").encode(),
+            }
+        place.write(files, paths)
+        if as_json:
+            print_json(summary)
+        else:
+            _tell(found, place.folder / HTML)
+    return 0
+
+
+def _refuse_twice(paths: list[Path]) -> None:
+    for path, times in Counter(path.resolve() for path in paths).items():
+        if times > 1:
+            raise BadInputError("is given twice", where=str(path), fix="name each run once")
+
+
+def _read(runs: list[Path], paths: list[Path], show: Show) -> list[ComparedRun]:
+    found = []
+    for name, path in zip(_names(runs), paths, strict=True):
+        show(f"reading {name}")
+        recording = read_recording(path, allow_missing=True)
+        warn_of_damage([recording])
+        result = rejudged(recording)
+        if result is None:
+            raise BadInputError(
+                "is no run of a plan: another tool made it", where=str(path), fix="compare runs of 'hil run'"
+            )
+        found.append(ComparedRun(name, recording, result))
+    return found
+
+
+def _names(runs: list[Path]) -> list[str]:
+    """The last parts of the paths, as many as tell them apart."""
+    resolved = [path.resolve() for path in runs]
+    for parts in range(1, max(len(path.parts) for path in resolved) + 1):
+        names = ["/".join(path.parts[-parts:]) for path in resolved]
+        if len(set(names)) == len(names):
+            return names
+    return [str(path) for path in resolved]
+
+
+def _summary(found: Comparison, runs: list[Path]) -> dict[str, Any]:
+    return {
+        "plan": found.runs[0].result.plan,
+        "runs": [
+            {
+                "name": run.name,
+                "path": str(path),
+                "bench": run.result.bench,
+                "verdict": run.result.verdict,
+                "mean_distance": distance,
+            }
+            for run, path, distance in zip(found.runs, runs, found.distances, strict=True)
+        ],
+        "criteria": [
+            {
+                "id": row.id,
+                "unit": row.unit,
+                "values": row.values,
+                "relative_difference": row.relative,
+                "verdicts": row.verdicts,
+            }
+            for row in found.criteria
+        ],
+        "responses": [
+            {"segment": row.segment, "channel": row.channel, "gaps": row.gaps} for row in found.responses
+        ],
+        "notes": found.notes,
+        "files": [SUMMARY, HTML, PDF],
+    }
+
+
+def _tell(found: Comparison, page: Path) -> None:
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    table.add_column("criterion", no_wrap=True)
+    for run in found.runs:
+        table.add_column(run.name, justify="right", no_wrap=True)
+    table.add_column("unit", no_wrap=True)
+    for row in found.criteria:
+        cells = (value_text(row, index) for index in range(len(found.runs)))
+        table.add_row(row.id, *cells, row.unit)
+    out = console()
+    out.print(table)
+    out.print(f"\n{lead(found)}", highlight=False, markup=False)
+    for note in found.notes:
+        out.print(f"note: {note}", highlight=False, markup=False)
+    out.print(f"report: {page}", highlight=False, markup=False, soft_wrap=True)

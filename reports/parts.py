@@ -1,0 +1,145 @@
+"""Reports made of parts, sections of text, tables, maps (shaded tables) and figures, on screen and on paper.
+
+One file without scripts on screen, figures drawn into it; PDF/A-2b on paper. Both are made from one `Page`.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+from dataclasses import asdict, dataclass
+from importlib import resources
+from typing import Any, Literal
+
+from reports import style
+from reports.figure import Figure
+from reports.pdf import _font_directory, _known_characters, _spelled_out
+from reports.svg_figure import svg_figure
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of text under a head; columns from `numbers_from` to before `words_from` are numbers."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    numbers_from: int = 1
+    words_from: int = 99
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One field of a map: its text, and how dark it is from 0 (noise) to 1."""
+
+    text: str
+    shade: float
+
+
+@dataclass(frozen=True)
+class Map:
+    """A shaded table."""
+
+    title: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, tuple[Cell, ...]], ...]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A section of the report."""
+
+    id: str
+    title: str
+    text: str
+    tables: tuple[Table, ...] = ()
+    maps: tuple[Map, ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+
+@dataclass(frozen=True)
+class Page:
+    """A whole report: `kind` says what it is a report of, `headline` and `lead` what came out."""
+
+    kind: str
+    title: str
+    headline: str
+    tone: Literal["pass", "fail", "error", "quiet"]
+    lead: str
+    notes: tuple[str, ...]
+    parts: tuple[Part, ...]
+
+
+def page_html(page: Page) -> str:
+    """The page for the screen."""
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("reports"),
+        autoescape=True,
+        trim_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    return environment.get_template("parts.html.j2").render(
+        kind=page.kind,
+        title=page.title,
+        headline=page.headline,
+        tone=page.tone,
+        lead=page.lead,
+        notes=page.notes,
+        parts=[_with_pictures(part) for part in page.parts],
+        light=style.css_variables("light"),
+        dark=style.css_variables("dark"),
+        css=resources.files("reports").joinpath("templates/report.css").read_text(encoding="utf-8"),
+    )
+
+
+def page_pdf(page: Page) -> bytes:
+    """The same on paper: PDF/A-2b. Every text reaches Typst as data."""
+    import typst
+
+    data: dict[str, Any] = {
+        "kind": page.kind,
+        "title": page.title,
+        "headline": page.headline,
+        "tone": page.tone,
+        "lead": page.lead,
+        "notes": list(page.notes),
+        "parts": [_as_data(part) for part in page.parts],
+        "colors": {name: tone.light for name, tone in style.SURFACE.items()},
+    }
+    data = _spelled_out(data, _known_characters())
+    pdf = typst.compile(  # type: ignore[misc]
+        resources.files("reports").joinpath("templates/parts.typ").read_bytes(),
+        font_paths=[_font_directory()],
+        ignore_system_fonts=True,
+        sys_inputs={"report": json.dumps(data, ensure_ascii=False)},
+        pdf_standards=["a-2b"],
+    )
+    return bytes(pdf)
+
+
+def _with_pictures(part: Part) -> dict[str, Any]:
+    data = _as_data(part)
+    for figure in data["figures"]:
+        figure["uri"] = "data:image/svg+xml;base64," + base64.b64encode(figure["svg"].encode()).decode()
+    return data
+
+
+def _as_data(part: Part) -> dict[str, Any]:
+    return {
+        "id": part.id,
+        "title": part.title,
+        "text": part.text,
+        "tables": [asdict(t) for t in part.tables],
+        "maps": [asdict(m) for m in part.maps],
+        "figures": [
+            {
+                "svg": svg_figure(f).decode(),
+                "title": f.title.plain(),
+                "alt": f.alternative_text(),
+                "caption": f.caption,
+                "wide": f.wide,
+            }
+            for f in part.figures
+        ],
+    }

@@ -1,0 +1,114 @@
+"""Runs of one plan side by side: criteria, distances, and plans that do not go together."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hil.analysis.comparison import ComparedRun, compare, difference
+from hil.core.errors import BadInputError
+from hil.core.recording import Recording
+from hil.core.result import CriterionResult, RunResult, Segment
+from reports.comparison import comparison_html, comparison_pdf, lead, value_text
+
+PLAN = b"name: one\nsteps: [{wait: {duration_s: 1}}]\ncriteria: []\n"
+
+
+def run(name, scale=1.0, delay_s=0.0, plan=PLAN, controller=b"p = 1", value: float | None = 400.0):
+    """A step of 326 N m at 2 s and `delay_s`, with a swing; its peak criterion has `value`."""
+    time = np.arange(0, 20_000) / 1000.0
+    u = np.maximum(time - 2 - delay_s, 0)
+    torque = scale * 326 * (1 - np.exp(-5 * u)) + 20 * scale * np.sin(60 * u) * np.exp(-u)
+    channels = {"time_s": time, "shaft_torque_nm": torque, "motor_speed_rad_s": 8.0 * u}
+    segment = Segment(id="s", start_s=1.0 + delay_s, step_s=2.0 + delay_s, end_s=18.0, controller="gain")
+    criteria = (
+        CriterionResult(id="s.peak", value=value, unit="N m", upper=500.0, verdict="pass"),
+        CriterionResult(id="s.peak.below.t", value=value, unit="N m", below="t", verdict="pass"),
+    )
+    result = RunResult(
+        verdict="pass",
+        plan="one",
+        bench="sim",
+        real_time_factor=1.0,
+        bench_time_s=20.0,
+        safe_state="confirmed",
+        criteria=criteria,
+        segments=(segment,),
+    )
+    recording = Recording(
+        channels, Path(f"{name}.mcap"), attachments={"plan.yaml": plan, "controller/gain.toml": controller}
+    )
+    return ComparedRun(name, recording, result)
+
+
+def test_values_stand_beside_each_other_with_their_difference_from_the_first():
+    found = compare([run("bench"), run("base", value=300.0), run("augmented", value=396.0)])
+    row = found.criteria[0]
+    assert row.values == (400.0, 300.0, 396.0)
+    assert row.relative == pytest.approx((0.0, -0.25, -0.01))
+    assert found.distances == pytest.approx((0.0, 0.25, 0.01))  # a relative criterion does not count twice
+    assert value_text(row, 1) == "300.0 (−25.0 %)"
+    assert lead(found) == "Mean distance of the criteria from bench: base 25 %, augmented 1 %."
+
+
+def test_a_run_that_began_later_is_aligned_at_its_step():
+    found = compare([run("one"), run("late", delay_s=0.5)])
+    gaps = {row.channel: row.gaps for row in found.responses}
+    assert gaps["shaft_torque_nm"] == pytest.approx((0.0, 0.0), abs=1e-6)
+
+
+def test_the_gap_is_the_rms_of_the_difference_over_the_firsts_spread():
+    one, two = run("one"), run("two", scale=1.1)
+    found = difference(one, two, "s", "shaft_torque_nm")
+    assert found is not None
+    time, apart = found
+    inside = (one.recording.time_s >= 1.0) & (one.recording.time_s < 18.0)
+    first = one.recording["shaft_torque_nm"][inside]
+    assert apart == pytest.approx(0.1 * first)
+    assert time[0] == pytest.approx(-1.0)
+    row = compare([one, two]).responses[0]
+    assert row.gaps[1] == pytest.approx(0.1 * np.sqrt(np.mean(first**2)) / np.std(first))
+
+
+def test_without_a_value_there_is_no_distance():
+    found = compare([run("one", value=None), run("two")])
+    assert found.criteria[0].relative == (None, None)
+    assert found.distances == (None, None)
+    assert "No criterion" in lead(found)
+
+
+def test_a_segment_that_a_run_lacks_has_no_gap():
+    short = run("short")
+    short = dataclasses.replace(short, result=short.result.model_copy(update={"segments": ()}))
+    assert np.isnan(compare([run("one"), short]).responses[0].gaps[1])
+
+
+def test_other_limits_are_another_plan():
+    other = PLAN.replace(b"criteria: []", b"criteria: [{segment: s, metric: peak, upper: 1}]")
+    with pytest.raises(BadInputError, match="another plan.*criteria differ"):
+        compare([run("one"), run("two", plan=other)])
+
+
+def test_another_title_is_the_same_plan():
+    compare([run("one"), run("two", plan=PLAN + b"title: again\n")])
+
+
+def test_controllers_that_differ_are_noted():
+    found = compare([run("one"), run("two", controller=b"p = 2")])
+    assert found.notes == ("Controllers differ between the runs: gain.toml.",)
+
+
+def test_one_run_is_no_comparison():
+    with pytest.raises(BadInputError, match="one run cannot be compared"):
+        compare([run("one")])
+
+
+def test_the_page_shows_every_run_and_stands_on_its_own():
+    found = compare([run("bench"), run("base <i>", scale=1.2, value=510.0)])
+    page = comparison_html(found)
+    assert "base &lt;i&gt;" in page
+    assert "base <i>" not in page
+    assert page.count("<figure") == 4  # two responses, their difference, one spectrum
+    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert comparison_pdf(found).startswith(b"%PDF")

@@ -1,0 +1,55 @@
+"""`hil compare`: what it prints and writes, and what it refuses."""
+
+import json
+
+import pytest
+
+from hil.cli._app import guarded
+from tests.hil.cli.test_check import PLAN
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory):
+    """Directories of two runs of one plan, and of a run with another limit."""
+    folder = tmp_path_factory.mktemp("runs")
+    for name, limit in (("one", 400), ("two", 400), ("other", 300)):
+        (folder / f"{name}.yaml").write_text(PLAN.replace("LIMIT", str(limit)))
+        assert guarded(["run", str(folder / f"{name}.yaml"), "--out", str(folder / name)]) == 0
+    return folder
+
+
+def test_criteria_side_by_side(runs, capsys):
+    out = runs / "compared"
+    assert guarded(["compare", str(runs / "one"), str(runs / "two"), "--out", str(out)]) == 0
+    shown = capsys.readouterr().out
+    (peak,) = (line.split() for line in shown.splitlines() if line.startswith("s.peak_shaft_torque"))
+    assert peak[1] == peak[2]
+    assert peak[3] == "(+0.0"
+    assert {path.name for path in out.iterdir()} == {"comparison.json", "report.html", "report.pdf"}
+    told = json.loads((out / "comparison.json").read_text())
+    assert [run["name"] for run in told["runs"]] == ["one", "two"]
+    assert guarded(["compare", str(runs / "one"), str(runs / "two"), "--out", str(out), "--json"]) == 2
+    assert "holds results already" in capsys.readouterr().err
+    options = ["--out", str(out), "--overwrite", "--json"]
+    assert guarded(["compare", str(runs / "one"), str(runs / "two"), *options]) == 0
+    assert json.loads(capsys.readouterr().out) == told
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        (("one", "other"), "carried out another plan than"),
+        (("one",), "one run cannot be compared"),
+        (("one", "one"), "is given twice"),
+        (("one", "nowhere"), "there is no such file"),
+    ],
+)
+def test_what_cannot_be_compared_is_one_message(runs, names, message, capsys):
+    out = runs / "refused"
+    assert guarded(["compare", *(str(runs / name) for name in names), "--out", str(out)]) == 2
+    shown = capsys.readouterr()
+    assert message in shown.err
+    assert shown.out == ""
+    assert not out.exists()
