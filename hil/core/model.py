@@ -57,7 +57,9 @@ _KINDS: dict[str, tuple[str, ...]] = {
     ),
     "transfer_function": (),
 }
+_KEYS = ("kind", "parameters", "tolerance", "wheel_radius_m", "effects", "transfer_functions", "meta")
 _LARGEST_DELAY_S = 1.0
+_LARGEST_TOLERANCE = 5.0  # relative: known to a factor of six
 _RADII_M = (0.01, 10.0)  # of a wheel
 _SIZES = (1e-12, 1e12)  # of a parameter in SI units: beyond, a unit is wrong and arithmetic overflows
 
@@ -95,6 +97,8 @@ class Model:
     transfer_functions: dict[str, TransferFunction] = field(default_factory=dict)
     meta: dict[str, Any] = field(default_factory=dict)
     wheel_radius_m: float = WHEEL_RADIUS_M
+    #: How well parameters are known, relative; those not named have the default of who asks.
+    tolerance: dict[str, float] = field(default_factory=dict)
 
     def with_parameters(self, **changes: float) -> Model:
         """The same model with other parameter values."""
@@ -139,9 +143,7 @@ def load_model(path: Path) -> Model:
 
 def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
     """Check the contents of a model file; `where` names it in messages."""
-    _no_others(
-        data, ("kind", "parameters", "wheel_radius_m", "effects", "transfer_functions", "meta"), "", where
-    )
+    _no_others(data, _KEYS, "", where)
     kind = data.get("kind")
     if not isinstance(kind, str) or kind not in _KINDS:
         raise BadInputError(f"kind is {shown(kind)}", where=where, fix=f"kind is one of: {', '.join(_KINDS)}")
@@ -151,7 +153,8 @@ def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
         raise BadInputError("[meta] is not a table", where=where)
     parameters = _parameters(data.get("parameters", {}), kind, where)
     effects = _effects(data.get("effects", []), kind, where)
-    return Model(kind, parameters, effects, functions, meta, _wheel_radius(data, where))
+    tolerance = _tolerance(data.get("tolerance", {}), kind, where)
+    return Model(kind, parameters, effects, functions, meta, _wheel_radius(data, where), tolerance)
 
 
 def save_model(model: Model, path: Path) -> None:
@@ -166,6 +169,8 @@ def model_to_toml(model: Model) -> str:
         data["wheel_radius_m"] = model.wheel_radius_m
     if model.parameters:
         data["parameters"] = dict(model.parameters)
+    if model.tolerance:
+        data["tolerance"] = dict(model.tolerance)
     if model.transfer_functions:
         data["transfer_functions"] = {
             name: {"numerator": list(f.numerator), "denominator": list(f.denominator), "delay": f.delay_s}
@@ -206,6 +211,23 @@ def _parameters(table: Any, kind: str, where: str) -> dict[str, float]:
         if name not in table:
             raise BadInputError(f"parameters.{name} ({parameter_unit(name)}) is missing", where=where)
         checked[name] = _checked_parameter(name, table[name], f"parameters.{name}", where)
+    return checked
+
+
+def _tolerance(table: Any, kind: str, where: str) -> dict[str, float]:
+    if not isinstance(table, dict):
+        raise BadInputError("[tolerance] is not a table", where=where)
+    _no_others(table, _KINDS[kind], "tolerance.", where)
+    checked = {}
+    for name, given in table.items():
+        value = _finite(given, f"tolerance.{name}", "1 (0.05 for 5 %)", where)
+        if not 0.0 < value <= _LARGEST_TOLERANCE:
+            raise BadInputError(
+                f"tolerance.{name} = {value:g}",
+                where=where,
+                fix=f"it is relative: 0.05 for 5 %, above 0 and at most {_LARGEST_TOLERANCE:g}",
+            )
+        checked[name] = value
     return checked
 
 

@@ -11,7 +11,7 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
-from hil.analysis.diagnosis.search._search import search
+from hil.analysis.diagnosis.search._from_base import search_from_base
 from hil.analysis.diagnosis.tell._confidence import drop_of
 from hil.analysis.diagnosis.tell._judged import Judged
 from hil.analysis.diagnosis.tell._result import Diagnosis
@@ -66,7 +66,7 @@ def _diagnosed(
     rounded = grids(traces, noise)
     problem = problem_of(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
     hypothesis = Hypothesis(model)
-    found = search(problem, hypothesis, show, rounded)
+    found = search_from_base(problem, hypothesis, show, rounded)
     problem = problem.with_angles(found.best.angles)
     show("judging")
     verdict = verdict_of(found, bool(rounded))

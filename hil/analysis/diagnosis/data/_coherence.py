@@ -43,6 +43,11 @@ class Split:
     noise: Array
     deviation: Array
 
+    def within(self, proven: Array) -> Split:
+        """No more noise than is proven, `proven` (3,) in the same unit: what lies above it is physics."""
+        noise = np.minimum(self.noise, proven)
+        return Split(self.physics + self.noise - noise, noise, self.deviation)
+
 
 def split(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Array]) -> Split:
     """Split the weighted errors of a fit (blocks x 3 each recording) over all recordings.

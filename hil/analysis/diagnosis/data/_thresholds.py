@@ -54,6 +54,16 @@ SPEEDS_UP: Annotated[
     float, Means("of the largest speed", "a slow speed that rises by more speeds up", "bad_input")
 ] = 0.05
 
+SLOW_UNPROVEN: Annotated[
+    float, Means("of the proven noise", "an error up to it may be called noise that is slow", "proven")
+] = 1.2
+REST_STILL: Annotated[float, Means("of the largest speed", "an axle slower than this rests", "proven")] = 0.01
+REST_AFTER_S: Annotated[float, Means("s", "of rest for vibration to die away in", "proven")] = 0.5
+REST_LEAST_S: Annotated[float, Means("s", "of rest that then tell a channel's noise", "proven")] = 1.0
+REPEATED: Annotated[
+    float, Means("of the largest torque", "requests that differ by less are one request", "proven")
+] = 1e-3
+
 SEGMENT_S: Annotated[
     float, Means("s", "segments over which physics comes and goes and noise does not", "coherence")
 ] = 2.0

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.fit._thresholds import MISMATCH_REACH, PRIOR, REACH, STEP
+from hil.analysis.diagnosis.fit._thresholds import (
+    FAR_PRIOR,
+    FAR_REACH,
+    MISMATCH_REACH,
+    PRIOR,
+    REACH,
+    STEP,
+    TOLERANCE,
+)
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model, parameter_names
@@ -32,11 +40,15 @@ class Coordinate:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A base model with effects added; `open` names optional effect parameters that are fitted too."""
+    """A base model with effects added; `open` names optional effect parameters that are fitted too.
+
+    Where `far`, the base model's numbers are not trusted: all of them may go far.
+    """
 
     base: Model
     terms: tuple[EffectUse, ...] = ()
     open: tuple[str, ...] = ()
+    far: bool = False
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -50,11 +62,11 @@ class Hypothesis:
 
     def with_term(self, term: EffectUse) -> Hypothesis:
         """One effect more."""
-        return Hypothesis(self.base, (*self.terms, term), self.open)
+        return replace(self, terms=(*self.terms, term))
 
     def without(self, index: int) -> Hypothesis:
         """One effect less."""
-        return Hypothesis(self.base, self.terms[:index] + self.terms[index + 1 :], self.open)
+        return replace(self, terms=self.terms[:index] + self.terms[index + 1 :])
 
     def coordinates(self) -> tuple[Coordinate, ...]:
         """Free numbers: base parameters first, then those of the effects."""
@@ -64,11 +76,20 @@ class Hypothesis:
             value = self.base.parameters[name]
             if value == 0.0 or (name == "torque_delay" and "dead_time" in self.ids):
                 continue
-            reach, prior = (MISMATCH_REACH, np.inf) if name in wrong else (REACH, PRIOR)
+            reach, prior = self._freedom(name)
+            if name in wrong:
+                reach, prior = MISMATCH_REACH, np.inf
             found.append(Coordinate(name, -1, "log", -reach, reach, STEP, prior))
         for index, term in enumerate(self.terms):
             found += self._of_term(index, term)
         return tuple(found)
+
+    def _freedom(self, name: str) -> tuple[float, float]:
+        """How far a parameter may go, and the standard deviation of its correction, natural logarithms."""
+        if self.far:
+            return FAR_REACH.get(name, MISMATCH_REACH), FAR_PRIOR
+        widened = self.base.tolerance.get(name, TOLERANCE) / TOLERANCE
+        return REACH * widened, PRIOR * widened
 
     def _of_term(self, index: int, term: EffectUse) -> list[Coordinate]:
         found = []

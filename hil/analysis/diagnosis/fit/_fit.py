@@ -59,7 +59,7 @@ def fit(
     lower, upper = _bounds(coordinates)
     theta = np.clip(hypothesis.start() if theta is None else theta, lower, upper)
     starts = [s.copy() for s in (starts or problem.first_starts(hypothesis))]
-    precision = np.array([1.0 / c.prior**2 for c in coordinates])
+    precision = np.array([problem.misfit / c.prior**2 for c in coordinates])
     by_samples = delay_by_samples(hypothesis, problem.traces[0].dt) if rounds else None
     done = 0
     while True:

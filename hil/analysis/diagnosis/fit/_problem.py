@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.signal import lfilter
 
+from hil.analysis.diagnosis.data._proven import proven_noise
 from hil.analysis.diagnosis.data._thresholds import LITTLE_TORQUE
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
@@ -39,6 +40,9 @@ class Problem:
     `weights` are trace by trace (3,): what one block's error is multiplied by, 0 for a missing channel.
     `angles` (rad, samples x wheel and rotor) are what ripples follow, measured ones (`search` corrects them):
     a simulated angle drifts off as long as the model is not right, and takes the ripple's phase with it.
+    `misfit` is the variance of an error, in noise variances, that weighs what is known beforehand of a model's
+    numbers: beside errors a thousand times the noise it would say nothing, and what the recordings do not tell
+    would run away. `proven` is the largest power, (3,), that noise may have in the weighed errors of each channel.
     A problem never changes: other angles make another one.
     """
 
@@ -49,7 +53,9 @@ class Problem:
     angles: tuple[Array, ...]
     weights: tuple[Array, ...]
     resting: tuple[bool, ...]
+    proven: Array
     whitening: Array | None = None
+    misfit: float = 1.0
 
     @cached_property
     def channels(self) -> int:
@@ -177,13 +183,19 @@ class Problem:
 
 
 def problem_of(
-    traces: Sequence[Trace], noise: Array, gear_ratio: float, *, floor: Array | None = None
+    traces: Sequence[Trace],
+    noise: Array,
+    gear_ratio: float,
+    *,
+    floor: Array | None = None,
+    stated: Mapping[str, float] | None = None,
 ) -> Problem:
     """Recordings weighed by `noise`, with the angles that their speeds give.
 
     Args:
         noise: standard deviation of each channel per sample, rounding included, shape (3,).
         floor: the same of single readings, without rounding; like `noise` if None.
+        stated: standard deviation per sample that a channel's noise is known to have, from outside.
     """
     noise = read_only(noise)
     floor = noise if floor is None else read_only(floor)
@@ -196,6 +208,7 @@ def problem_of(
         tuple(t.angles(gear_ratio) for t in traces),
         tuple(map(read_only, weights)),
         tuple(_rests(t, noise, floor) for t in traces),
+        read_only(proven_noise(traces, noise, stated)),
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.fit._thresholds import FAR_FROM_NOISE
+from hil.analysis.diagnosis.fit._thresholds import FAR_FROM_NOISE, MISS_WORSE
 from hil.analysis.diagnosis.fit._whitening import whitening_of
 
 
@@ -14,10 +14,11 @@ def reweighted(problem: Problem, best: Fit) -> Fit:
     """Where even the best leaves far more than noise, errors are weighed by their own spectrum.
 
     Otherwise the strongest resonance alone would set all parameters. Cost and errors that are handed on are
-    those of the plain weights.
+    those of the plain weights. Where the simulation would miss by clearly more, weights stay as they are.
     """
     if not best.hypothesis.terms or best.cost < FAR_FROM_NOISE * problem.rows:
         return best
+    plain = best
     for _ in range(3):
         other = problem.whitened(whitening_of(best.errors))
         again = fit(other, best.hypothesis, best.starts, best.theta)
@@ -25,4 +26,4 @@ def reweighted(problem: Problem, best: Fit) -> Fit:
         # its errors are white already
         covariance = again.covariance / max(1.0, best.cost / problem.rows)
         best = replace(best, covariance=covariance)
-    return best
+    return best if best.cost < MISS_WORSE**2 * plain.cost else plain

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Annotated
 
 from hil.analysis.diagnosis._threshold import Means
@@ -20,6 +22,19 @@ MISMATCH_REACH: Annotated[
     float,
     Means("natural logarithm", "how far a wrong parameter may go: a factor of five either way", "blind"),
 ] = 1.6
+FAR_PRIOR: Annotated[
+    float,
+    Means("natural logarithm", "standard deviation of a parameter that is as good as unknown", "far"),
+] = 0.7
+FAR_REACH: Annotated[
+    Mapping[str, float],
+    Means("natural logarithm", "a dead time that is further off is one that is missing", "far"),
+] = MappingProxyType({"torque_delay": 0.6})
+COARSE_S: Annotated[
+    tuple[float, ...],
+    Means("s", "means over so long are fitted first where parameters are far: slow motion, then fast", "far"),
+] = (0.256, 0.064, 0.016)
+FAR_ROUNDS: Annotated[int, Means("rounds", "of each of these fits", "far")] = 8
 STEP: Annotated[
     float, Means("natural logarithm, or typical sizes", "finite difference of a coordinate", "hidden")
 ] = 1e-3
@@ -62,6 +77,10 @@ FAR_FROM_NOISE: Annotated[
         "blind",
     ),
 ] = 50.0
+
+MISS_WORSE: Annotated[
+    float, Means("times the rms error", "that other weights may cost at most", "blind")
+] = 1.1
 
 WHITENING_ORDER: Annotated[
     int, Means("blocks", "memory of the filters that make errors white", "whitening")

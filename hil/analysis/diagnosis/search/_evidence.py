@@ -85,8 +85,9 @@ class Evidence:
 
 
 def split_of(problem: Problem, one: Fit) -> Split:
-    """Physics and noise in the errors of a fit."""
-    return split(problem.traces, problem.weights, [errors.channels for errors in one.errors])
+    """Physics and noise in the errors of a fit, no more noise than is proven."""
+    parts = split(problem.traces, problem.weights, [errors.channels for errors in one.errors])
+    return parts.within(problem.proven)
 
 
 def colour(one: Fit) -> float:

@@ -6,7 +6,7 @@ other sizes, with optional numbers, with angles aligned.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +19,8 @@ from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._thresholds import (
+    CONTENDER,
+    FAR,
     HOPE,
     LEAST_EVIDENCE,
     OPTIONAL_LEAVES,
@@ -50,24 +52,67 @@ class Step:
     fits: list[Fit]
 
 
-def grow(evidence: Evidence, parent: Fit) -> Step:
-    """`parent` with each promising further effect."""
+def grow(
+    evidence: Evidence, parent: Fit, scores: list[Score] | None = None, beside: Sequence[Fit] = ()
+) -> Step:
+    """`parent` with each promising further effect.
+
+    Args:
+        scores: of `screen`, where these are known already.
+        beside: fits with one effect more that other numbers led to, to be fitted on from where they are.
+    """
     if has_ripple(parent.hypothesis):
         problem = evidence.problem.with_angles(parent.angles)
     else:
         problem = evidence.problem.following(parent.hypothesis, parent.theta)
     blocks = problem.rows / max(problem.channels, 1)
-    scores = screen(problem, parent)
+    scores = screen(problem, parent) if scores is None else scores
     if not scores or scores[0].gain < PLAIN * evidence.left(parent) * blocks:
-        scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
+        if not parent.hypothesis.far:  # far numbers say nothing of what is missing
+            scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
         scores = _better(scores, _followed(problem, parent, scores))
-    if scores and scores[0].gain < max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
-        return Step(parent, scores, [])
-    step = Step(parent, scores, _race(problem, parent, scores))
+    step = Step(parent, scores, [_freed(problem, parent, one) for one in beside])
+    if not scores or scores[0].gain >= max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
+        step.fits += _race(problem, parent, scores)
+    step.fits.sort(key=lambda f: f.total + price(f))
     if step.fits:
+        step.fits[:] = _contended(problem, evidence, step.fits)
         best = aligned(problem, _refined(problem, evidence, step.fits[0]))
         step.fits[0] = _polished(evidence, best)
     return step
+
+
+def _freed(problem: Problem, parent: Fit, other: Fit) -> Fit:
+    """The effects of `other` beside parameters as free as those of `parent`."""
+    hypothesis = _either_way(replace(other.hypothesis, far=parent.hypothesis.far))
+    return fit(problem, hypothesis, other.starts, carried(other, hypothesis))
+
+
+def _either_way(hypothesis: Hypothesis) -> Hypothesis:
+    """With the optional numbers open that may have either sign, as that of uneven friction.
+
+    Where all parameters are free these make up for such a number, and end where none is missed.
+    """
+    signed = {
+        p.name
+        for term in hypothesis.terms
+        for p in EFFECTS[term.id].parameters
+        if p.opens and p.lower < 0.0 < p.upper
+    }
+    return replace(hypothesis, open=tuple(sorted({*hypothesis.open, *signed})))
+
+
+def _contended(problem: Problem, evidence: Evidence, fits: list[Fit]) -> list[Fit]:
+    """`fits` with those that come near the best given their optional numbers first, best first.
+
+    Friction that pulls one way more than the other is not seen by its even part alone.
+    """
+    floor = float(problem.rows)
+    least = CONTENDER * (fits[0].total - floor) + floor
+    if fits[0].total < FAR * floor:
+        return fits
+    refined = [_refined(problem, evidence, one) for one in fits if one.total < least]
+    return sorted([*refined, *fits[len(refined) :]], key=rank)
 
 
 def _followed(problem: Problem, parent: Fit, scores: list[Score]) -> list[Score]:
@@ -130,8 +175,11 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
     tried as well.
     """
     hypothesis = parent.hypothesis.with_term(use)
+    if hypothesis.far:
+        hypothesis = _either_way(hypothesis)
     bent = carried(parent, hypothesis)
-    tried = [t for theta in (bent, _nominal(hypothesis, bent)) for t in _sizes(hypothesis, theta)]
+    firsts = [bent] if hypothesis.far else [bent, _nominal(hypothesis, bent)]
+    tried = [t for theta in firsts for t in _sizes(hypothesis, theta)]
     first = cheapest(problem, hypothesis, tried, parent.starts)
     return fit(problem, hypothesis, parent.starts, first, rounds=rounds)
 
@@ -168,9 +216,7 @@ def _refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
 
 def _opened(problem: Problem, best: Fit, id_: str, parameter: Parameter) -> Fit:
     """`best` with one optional number more, from the most promising of its first values."""
-    hypothesis = Hypothesis(
-        best.hypothesis.base, best.hypothesis.terms, (*best.hypothesis.open, parameter.name)
-    )
+    hypothesis = replace(best.hypothesis, open=(*best.hypothesis.open, parameter.name))
     theta = carried(best, hypothesis)
     own = next(
         i

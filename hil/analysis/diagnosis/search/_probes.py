@@ -55,7 +55,9 @@ def probes(problem: Problem, fit: Fit) -> list[Candidate]:
 
 
 def mismatches(hypothesis: Hypothesis) -> list[EffectUse]:
-    """One candidate for each parameter of the base model that may be wrong."""
+    """One candidate for each parameter of the base model that may be wrong; none where all are free."""
+    if hypothesis.far:
+        return []
     taken = set(hypothesis.keys)
     return [
         EffectUse("parameter_mismatch", {"parameter": name, "value": hypothesis.base.parameters[name]})

@@ -20,6 +20,7 @@ from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._growth import Step, grow
 from hil.analysis.diagnosis.search._quantization import rounding_of
 from hil.analysis.diagnosis.search._rank import rank
+from hil.analysis.diagnosis.search._screen import Score
 from hil.analysis.diagnosis.search._thresholds import (
     LEAST_EVIDENCE,
     LEAST_SHARE,
@@ -43,6 +44,14 @@ class Found:
     best: Fit
     evidence: Evidence
     steps: list[Step] = field(default_factory=list)
+    #: Hypotheses that the next step grows from, best first, and how many effects they have.
+    frontier: list[Fit] = field(default_factory=list)
+    effects: int = 0
+
+    @property
+    def settled(self) -> bool:
+        """Whether no further effect is missing."""
+        return self.evidence.settled(self.best)
 
 
 def search(
@@ -50,26 +59,56 @@ def search(
 ) -> Found:
     """Find the effects that the base model lacks: the fewest that close the gap."""
     show("fitting the base model")
-    first = fit(problem, base)
-    rounding = rounding_of(problem, list(rounded), first)
-    found = Found(first, first, Evidence(problem, first, rounding))
-    frontier = [first]
-    for number in range(MOST_EFFECTS):
-        if found.evidence.settled(found.best):
-            break
-        parents = [f for f in frontier[: PARENTS[number]] if found.evidence.share(f) >= LEAST_SO_FAR[number]]
-        show(f"looking for effect {number + 1}")
-        steps = [grow(found.evidence, parent) for parent in parents]
-        found.steps += sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
-        frontier = _distinct([one for s in steps for one in s.fits])
-        if not frontier:
-            break
-        if earned(found.evidence, found.best, frontier[0]):
-            found.best = frontier[0]
-            if found.evidence.share(found.best) > NEARLY:
-                enough = RIVAL * found.evidence.left(found.best)
-                frontier = [f for f in frontier if found.evidence.left(f) <= enough]
-    return _needed(problem, found)
+    return finished(begun(problem, fit(problem, base), rounded), show)
+
+
+def begun(problem: Problem, base: Fit, rounded: Sequence[EffectUse] = ()) -> Found:
+    """A search that has looked for nothing yet."""
+    rounding = rounding_of(problem, list(rounded), base)
+    return Found(base, base, Evidence(problem, base, rounding), frontier=[base])
+
+
+def finished(found: Found, show: Callable[[str], None]) -> Found:
+    """`found` searched to its end, needless effects dropped."""
+    while advanced(found, show):
+        pass
+    return _needed(found.evidence.problem, found)
+
+
+def advanced(
+    found: Found,
+    show: Callable[[str], None],
+    scores: list[Score] | None = None,
+    beside: Sequence[Fit] = (),
+) -> bool:
+    """Look for one effect more; False where there is nothing more to look for.
+
+    Args:
+        scores: of a first effect, where these are known already.
+        beside: other fits with a first effect, to be fitted on from where they are.
+    """
+    number = found.effects
+    if number == MOST_EFFECTS or found.settled:
+        return False
+    parents = [f for f in found.frontier[: PARENTS[number]] if found.evidence.share(f) >= LEAST_SO_FAR[number]]
+    if not parents:
+        return False
+    if number:
+        show(f"looking for effect {number + 1} beside {' or '.join(f.hypothesis.ids[-1] for f in parents)}")
+    else:
+        show(f"looking for effect 1 of at most {MOST_EFFECTS}")
+    steps = [grow(found.evidence, parent, scores, beside) for parent in parents]
+    found.steps += sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
+    found.frontier = frontier = _distinct([one for s in steps for one in s.fits])
+    found.effects += 1
+    if not frontier:
+        return False
+    if earned(found.evidence, found.best, frontier[0]):
+        found.best = frontier[0]
+        if found.evidence.share(found.best) > NEARLY:
+            enough = RIVAL * found.evidence.left(found.best)
+            found.frontier = [f for f in frontier if found.evidence.left(f) <= enough]
+    return True
 
 
 def _distinct(fits: list[Fit]) -> list[Fit]:

@@ -59,7 +59,10 @@ FAR: Annotated[
 ] = 50.0
 DOUBT: Annotated[
     float, Means("factor of the total", "price of a fault in a sensor far from the noise", "rank")
-] = 1.02
+] = 1.5
+CONTENDER: Annotated[
+    float, Means("times what the best leaves", "far from the noise its optional numbers are tried too", "far")
+] = 1.5
 PRICE: Annotated[
     float,
     Means(
@@ -137,6 +140,27 @@ PROBE_DIVERGED: Annotated[
     float, Means("noise levels", "a larger response is a diverged probe and scores nothing", "screen")
 ] = 1e8
 
+FAR_BETTER: Annotated[
+    float, Means("of the remaining gap", "a base identified anew must leave less to be preferred", "far")
+] = 0.5
+FAR_MOVED: Annotated[
+    float, Means("natural logarithm", "a parameter that moves further was far off", "far")
+] = 0.1
+FAR_SHARE: Annotated[
+    float, Means("of the free parameters", "so many far off make a model far from the data", "far")
+] = 0.4
+FAR_SIGMAS: Annotated[
+    float, Means("standard errors", "a parameter that moved by less did not move", "far")
+] = 3.0
+HOPELESS_GAP: Annotated[
+    float, Means("gap over noise floor", "above it no effect alone may promise enough: numbers first", "far")
+] = 5.0
+HOPELESS_PROMISE: Annotated[
+    float, Means("of the gap", "an effect that promises more is looked for before numbers are", "far")
+] = 0.65
+NUMBERS_LEAVE: Annotated[
+    float, Means("of the gap", "numbers that leave less explain most", "far")
+] = 0.2
 MOST_EFFECTS: Annotated[int, Means("names", "at most", "blind")] = 3
 LEAST_SHARE: Annotated[float, Means("of the remaining gap", "a further effect must close it", "blind")] = 0.6
 LEAST_SHARE_OF_REST: Annotated[

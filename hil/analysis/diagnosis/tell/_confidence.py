@@ -37,10 +37,18 @@ def rivals(found: Found, index: int) -> list[tuple[Fit, float]]:
     kept: dict[frozenset[tuple[str, str]], tuple[Fit, float]] = {}
     for step in found.steps:
         for one in step.fits:
-            if len(one.hypothesis.terms) == len(best.hypothesis.terms) and key not in one.hypothesis.keys:
+            if _comparable(one, best, key) and key not in one.hypothesis.keys:
                 margin = found.evidence.between(one, best)
                 kept.setdefault(frozenset(one.hypothesis.keys), (one, margin))
     return sorted(kept.values(), key=lambda pair: pair[1])
+
+
+def _comparable(one: Fit, best: Fit, key: tuple[str, str]) -> bool:
+    """Whether two fits have as many effects. Where all parameters are free none of them is an effect."""
+    if one.hypothesis.far == best.hypothesis.far:
+        return len(one.hypothesis.terms) == len(best.hypothesis.terms)
+    mine, others = (sum(id_ != "parameter_mismatch" for id_ in f.hypothesis.ids) for f in (best, one))
+    return mine == others and key[0] != "parameter_mismatch"
 
 
 def drop_of(found: Found, index: int) -> float:
@@ -51,7 +59,9 @@ def drop_of(found: Found, index: int) -> float:
         one.total
         for step in found.steps
         for one in step.fits
-        if key not in one.hypothesis.keys and set(one.hypothesis.keys) < set(best.hypothesis.keys)
+        if one.hypothesis.far == best.hypothesis.far
+        and key not in one.hypothesis.keys
+        and set(one.hypothesis.keys) < set(best.hypothesis.keys)
     ]
     return min([found.base.total, *fewer]) - best.total
 

@@ -1,0 +1,138 @@
+"""From which base model to search: the one that was given, or the same identified anew.
+
+A model that is near explains with few names what is missing. One that comes from a catalogue is wrong in most of
+its numbers, and no effect can make up for that: its parameters are identified first, and physics is looked for
+from there. Few names go before many numbers: the given model is left only where it leads nowhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._far import identified
+from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
+from hil.analysis.diagnosis.search._screen import Score, screen
+from hil.analysis.diagnosis.search._search import Found, advanced, begun, finished
+from hil.analysis.diagnosis.search._thresholds import (
+    FAR_BETTER,
+    FAR_MOVED,
+    FAR_SHARE,
+    FAR_SIGMAS,
+    HOPELESS_GAP,
+    HOPELESS_PROMISE,
+    MOST_EFFECTS,
+    NUMBERS_LEAVE,
+)
+from hil.core.model import EffectUse
+
+
+def search_from_base(
+    problem: Problem, base: Hypothesis, show: Callable[[str], None], rounded: Sequence[EffectUse] = ()
+) -> Found:
+    """The effects that the base model lacks, searched from its own numbers, or from those that fit.
+
+    `base.hypothesis.far` of what is found says which.
+    """
+    show("fitting the base model")
+    near = begun(problem, fit(problem, base), rounded)
+    if near.settled:
+        return near
+    show("scoring effects")
+    scores = screen(problem, near.base)
+    start = None
+    if _hopeless(near, scores):
+        start = _identified(near, rounded, show)
+        if _explains(start.base, near):
+            far = _plainer(finished(start, show))
+            if far.settled:
+                return far
+            start = _identified(near, rounded, show)
+    advanced(near, show, scores)
+    if near.settled:
+        return finished(near, show)
+    return _better(near, start or _identified(near, rounded, show), show)
+
+
+def _identified(near: Found, rounded: Sequence[EffectUse], show: Callable[[str], None]) -> Found:
+    show("identifying the base model anew: its numbers may be far off")
+    problem, start = identified(near.evidence.problem, near.base.hypothesis)
+    return begun(problem, start, rounded)
+
+
+def _hopeless(near: Found, scores: Sequence[Score]) -> bool:
+    """Whether no effect alone promises much of a large gap."""
+    problem = near.evidence.problem
+    gap = near.evidence.left(near.base) * problem.rows / max(problem.channels, 1)
+    promised = max((score.gain for score in scores), default=0.0)
+    return near.evidence.worst(near.base) > HOPELESS_GAP and promised < HOPELESS_PROMISE * gap
+
+
+def _explains(start: Fit, near: Found) -> bool:
+    """Whether other numbers alone explain most, and many of them had to change."""
+    return is_far(start) and near.evidence.left(start) < NUMBERS_LEAVE * near.evidence.left(near.base)
+
+
+def _better(near: Found, far: Found, show: Callable[[str], None]) -> Found:
+    """What explains more of two searches, each as far as it is worth it; the near one where in doubt."""
+    if not is_far(far.base):
+        near = finished(near, show)
+        if near.settled:
+            return near
+    if near.steps and not far.settled:
+        show("looking for an effect beside other numbers of the base model")
+        promising = [f for f in near.steps[0].fits if "parameter_mismatch" not in f.hypothesis.ids]
+        advanced(far, show, beside=promising)
+    if near.evidence.left(far.best) > FAR_BETTER * near.evidence.left(near.best):
+        return finished(near, show)
+    far = _plainer(finished(far, show))
+    if far.settled or far.evidence.left(far.best) < FAR_BETTER * near.evidence.left(near.best):
+        return far
+    near = finished(near, show)
+    clearer = near.evidence.left(near.best) < FAR_BETTER * far.evidence.left(far.best)
+    return near if near.settled or clearer else far
+
+
+def moved(one: Fit, least: float = 0.0) -> list[str]:
+    """Parameters of the base model that are off by more than their tolerance, `least` and their own error."""
+    base = one.hypothesis.base
+    errors = np.sqrt(np.maximum(np.diag(one.covariance) * max(1.0, one.cost / rows_of(one)), 0.0))
+    return [
+        c.name
+        for c, value, error in zip(one.hypothesis.coordinates(), one.theta, errors, strict=True)
+        if c.term < 0 and abs(value) > max(least, base.tolerance.get(c.name, TOLERANCE), FAR_SIGMAS * error)
+    ]
+
+
+def is_far(one: Fit) -> bool:
+    """Whether the model as a whole was far off: not a number or two, but a good part of them."""
+    free = sum(c.term < 0 for c in one.hypothesis.coordinates())
+    return len(moved(one, FAR_MOVED)) >= FAR_SHARE * free
+
+
+def rows_of(one: Fit) -> int:
+    """How many errors a fit has."""
+    return max(1, sum(len(errors.rows) for errors in one.errors))
+
+
+def _plainer(far: Found) -> Found:
+    """What was found from far, told from near where most numbers turn out to be right after all."""
+    wrong = moved(far.best)
+    hypothesis = far.best.hypothesis
+    if is_far(far.best) or len(wrong) + len(hypothesis.terms) > MOST_EFFECTS:
+        return far
+    terms = list(hypothesis.terms)
+    values = hypothesis.model(far.best.theta).parameters
+    terms += [EffectUse("parameter_mismatch", {"parameter": n, "value": values[n]}) for n in wrong]
+    near = Hypothesis(hypothesis.base, tuple(terms), hypothesis.open)
+    problem = far.evidence.problem.with_angles(far.best.angles)
+    told = fit(problem, near, far.best.starts, carried(far.best, near))
+    base = fit(problem, Hypothesis(hypothesis.base))
+    found = begun(problem, base)
+    found.best, found.steps = told, far.steps
+    found.evidence.rounding = far.evidence.rounding
+    return found if found.settled else far
