@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from tests.blind.experiments import SAMPLE_S, Experiment
 from tests.blind.plant import Array, Truth, read_by_sensors, true_outputs
 from tests.blind.sensors import coloured_noise
 
+LOAD = "dyno_torque_ref_nm"
 _MAIN, _HOLDOUT, _SEALED = "recordings", "holdout", "answer.json"
 
 
@@ -24,7 +25,7 @@ class Answer:
     """What a case hides: opened after the diagnosis.
 
     `noise` and `holdout_noise` are rms(noise) / rms(measured - its mean) of each channel over the recordings
-    together, from the noise that was really added (rounding included).
+    together, from the noise that was really added (rounding included, and what a sensor drifts).
     """
 
     effects: tuple[tuple[str, dict[str, float | str]], ...]
@@ -89,7 +90,9 @@ def _measure(
             TIME: np.arange(len(request), dtype=np.float64) * SAMPLE_S,
             INPUT: request,
         }
-        columns |= {name: reading[:, i] for i, name in enumerate(OUTPUTS)}
+        if experiment.load_nm is not None:
+            columns[LOAD] = experiment.load_nm
+        columns |= {name: reading[:, i] for i, name in enumerate(OUTPUTS) if name in case.channels}
         _write_csv(columns, path)
         paths.append(path)
     together, error = np.concatenate(shown), np.concatenate(errors)
@@ -123,9 +126,10 @@ def _recorded(case: Case, experiment: Experiment, rng: np.random.Generator) -> t
         axis=1,
     )
     seat = rng.uniform(-1.0, 1.0)
-    request, outputs = true_outputs(case.truth, experiment, wheel_noise=noise[:, 1].copy(), seat=seat)
+    request, outputs = true_outputs(case.truth, experiment, noise=noise, seat=seat)
     if not math.isfinite(float(np.sum(outputs))):
         raise FloatingPointError(f"{case.spec.key}: the reference plant diverged in {experiment.name}")
     reading = read_by_sensors(case.truth, outputs, noise)
-    unrounded = Truth(case.truth.kind, {}, {}, tuple(s for s in case.truth.sensors if s.step == 0.0))
+    kept = tuple(replace(s, drift=0.0) for s in case.truth.sensors if s.step == 0.0)
+    unrounded = Truth(case.truth.kind, {}, {}, kept)
     return request, reading, read_by_sensors(unrounded, outputs, np.zeros_like(noise))

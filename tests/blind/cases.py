@@ -29,7 +29,7 @@ _TYPICAL = {
     "viscous_drag": 0.002,
     "torque_delay": 0.008,
 }
-_ALL: dict[str, Draw] = FAMILIES | LATER_FAMILIES
+ALL_FAMILIES: dict[str, Draw] = FAMILIES | LATER_FAMILIES
 _SPREAD = 0.25  # how far plants differ from the typical one
 _CALIBRATION = 0.015  # how far a model is from its plant; files state 2 %
 _CLOSED_LOOP_SHARE = 0.15
@@ -72,23 +72,20 @@ class Case:
     experiments: tuple[Experiment, ...]
     holdout: tuple[Experiment, ...]
     noise: NoiseLevel
+    channels: tuple[str, ...] = OUTPUTS
 
 
 def draw_case(seed: int, spec: Spec, length: float = 1.0) -> Case:
     """The case that `seed` and `spec` name, always the same; recordings `length` times as long as usual."""
     rng = np.random.default_rng([seed, zlib.crc32(spec.key.encode())])
     kind = _kind(rng, spec)
-    nominal = _nominal(rng, kind)
-    base = Truth(kind, {name: value * _off(rng) for name, value in nominal.items()})
+    nominal = nominal_parameters(rng, kind)
+    base = Truth(kind, {name: value * calibration_error(rng) for name, value in nominal.items()})
     scale = rng.uniform(0.8, 1.25)
     experiments, holdout = main_set(rng, scale, length), holdout_set(rng, scale, length)
     bench = Bench(base, experiments)
     deviation = np.std(np.concatenate(bench.plain), axis=0)
-    noise = NoiseLevel(
-        deviation * np.exp(rng.uniform(np.log(0.005), np.log(0.02), 3)) * QUIET.get(spec.subject, 1.0),
-        rng.uniform(0.0, 0.15),
-        rng.uniform(2.0, 15.0),
-    )
+    noise = noise_level(rng, deviation, QUIET.get(spec.subject, 1.0))
     setting = Setting(kind, base.parameters, scale, dict(zip(OUTPUTS, deviation.tolist(), strict=True)))
     hidden, share = _hidden(rng, spec, bench, setting, noise)
     if spec.group == "mismatch":
@@ -105,24 +102,36 @@ def draw_case(seed: int, spec: Spec, length: float = 1.0) -> Case:
     )
 
 
-def _off(rng: np.random.Generator) -> float:
+def noise_level(rng: np.random.Generator, deviation: Array, quiet: float) -> NoiseLevel:
+    """Noise of 0.5 to 2 % of the outputs' standard deviations, times `quiet`."""
+    return NoiseLevel(
+        deviation * np.exp(rng.uniform(np.log(0.005), np.log(0.02), 3)) * quiet,
+        rng.uniform(0.0, 0.15),
+        rng.uniform(2.0, 15.0),
+    )
+
+
+def calibration_error(rng: np.random.Generator) -> float:
+    """Factor between a plant's parameter and what its model file says."""
     return 1.0 + rng.uniform(-_CALIBRATION, _CALIBRATION)
 
 
 def _kind(rng: np.random.Generator, spec: Spec) -> str:
     kinds = ("three_inertia", "two_inertia", "rigid")
     draws = rng.choice(kinds, size=60, p=(0.55, 0.3, 0.15))
-    check = outsider_fits if spec.group == "outside" else _fits
-    if spec.subject in _ALL or spec.group == "outside":
+    check = outsider_fits if spec.group == "outside" else registered_fits
+    if spec.subject in ALL_FAMILIES or spec.group == "outside":
         return str(next(kind for kind in draws if check(spec.subject, kind)))
     return str(draws[0])
 
 
-def _fits(subject: str, kind: str) -> bool:
+def registered_fits(subject: str, kind: str) -> bool:
+    """Whether an effect of the registry, or a form of one, can be hidden behind a model of `kind`."""
     return later_fits(subject, kind) if subject in LATER_FAMILIES else fits(subject, kind)
 
 
-def _nominal(rng: np.random.Generator, kind: str) -> dict[str, float]:
+def nominal_parameters(rng: np.random.Generator, kind: str) -> dict[str, float]:
+    """What a model file of `kind` says, to four figures."""
     nominal = {
         name: _TYPICAL[name] * float(np.exp(rng.uniform(-_SPREAD, _SPREAD))) for name in parameter_names(kind)
     }
@@ -152,9 +161,9 @@ def _sized(
 ) -> tuple[tuple[Hidden], float]:
     """The subject at the size that was asked for; drawn again when these outputs cannot show it."""
     outside = spec.group == "outside"
-    draw = (OUTSIDERS | LATER_OUTSIDERS)[spec.subject] if outside else _ALL[spec.subject]
-    registered = FAMILIES if spec.subject in OUTSIDERS else _ALL
-    ruler = Ruler(bench, noise.deviations, _own_parameter(spec.subject))
+    draw = (OUTSIDERS | LATER_OUTSIDERS)[spec.subject] if outside else ALL_FAMILIES[spec.subject]
+    registered = FAMILIES if spec.subject in OUTSIDERS else ALL_FAMILIES
+    ruler = Ruler(bench, noise.deviations, own_parameter(spec.subject))
     wanted = share_of(SIZES[spec.size])
     best: tuple[float, Hidden, float] | None = None
     before: Hidden | None = None
@@ -167,7 +176,9 @@ def _sized(
         hidden = family.of_size(size)
         left = share
         if outside and 1.0 / _MISSED < share / wanted < _MISSED:
-            known = [registered[id](rng, setting) for id in registered if _fits(id, bench.base.kind)]
+            known = [
+                registered[id](rng, setting) for id in registered if registered_fits(id, bench.base.kind)
+            ]
             middles = [f.of_size(float(np.sqrt(f.smallest * f.largest))) for f in known]
             left = ruler.unexplained(ruler.residual(hidden), middles)
         missed = abs(np.log(max(left, 1e-9) / wanted))
@@ -184,7 +195,7 @@ def share_of(ratio: float) -> float:
     return float(np.sqrt(ratio**2 - 1.0))
 
 
-def _own_parameter(id: str) -> str:
+def own_parameter(id: str) -> str:
     """The base parameter that an effect is a change of: a refit may not take it away."""
     return {"dead_time": "torque_delay", "viscous_drag": "viscous_drag"}.get(id, "")
 
@@ -199,14 +210,14 @@ def _pair(
     """Two effects, each large enough alone, whose traces differ."""
     ruler = Ruler(bench, noise.deviations)
     while True:
-        first, second = (_ALL[id](rng, setting) for id in _pair_names(rng, spec, bench.base.kind))
+        first, second = (ALL_FAMILIES[id](rng, setting) for id in _pair_names(rng, spec, bench.base.kind))
         if first.id == second.id or {first.id, second.id} in _NOT_TOGETHER:
             continue
         hidden, traces = [], []
         for family in (first, second):
             of_one = ruler
-            if _own_parameter(family.id) in bench.base.parameters:
-                of_one = Ruler(bench, noise.deviations, _own_parameter(family.id))
+            if own_parameter(family.id) in bench.base.parameters:
+                of_one = Ruler(bench, noise.deviations, own_parameter(family.id))
             size, _ = of_one.size_for(family, share_of(SIZES[spec.size]))
             hidden.append(family.of_size(size))
             traces.append(of_one.residual(hidden[-1]))
@@ -260,7 +271,7 @@ def _most_telling(
     share: float,
 ) -> tuple[list[Experiment], tuple[Hidden, ...], float]:
     """One of the two recordings that show the effect best."""
-    own = _own_parameter(hidden.id)
+    own = own_parameter(hidden.id)
     shares = [
         Ruler(bench.only(number), noise.deviations, own).share(hidden)
         for number in range(len(bench.experiments))

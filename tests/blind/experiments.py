@@ -14,6 +14,17 @@ _LOWEST_HZ, _HIGHEST_HZ = 0.05, 30.0
 
 
 @dataclass(frozen=True)
+class MotorLoop:
+    """PI and phase lead on the motor speed: N m per rad/s, N m per rad, s, ratio; no lead at 0 s."""
+
+    proportional: float
+    integral: float
+    lead_s: float
+    lead_ratio: float
+    largest_nm: float
+
+
+@dataclass(frozen=True)
 class Experiment:
     """A torque request over time, open loop, or the test signal beside a speed controller."""
 
@@ -22,6 +33,10 @@ class Experiment:
     target_rad_s: Array
     wheel_speed_rad_s: float = 0.0
     closed_loop: bool = False
+    #: on the motor speed; None with `closed_loop`: on the wheel speed
+    motor_loop: MotorLoop | None = None
+    #: torque of the dynos in N m, positive against forward motion; None: none, and no channel of it
+    load_nm: Array | None = None
 
     @property
     def duration_s(self) -> float:

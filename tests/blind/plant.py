@@ -10,7 +10,7 @@ import numpy.typing as npt
 from hil.core.channels import OUTPUTS
 from tests.blind.experiments import SAMPLE_S, Experiment
 from tests.blind.reference.chain import simulate_chain
-from tests.blind.reference.controller import control
+from tests.blind.reference.controller import ON_MOTOR, control
 from tests.blind.reference.layout import Constants, record
 from tests.blind.reference.rigid import simulate_rigid
 from tests.blind.sensors import Sensor
@@ -58,29 +58,38 @@ def true_outputs(
     truth: Truth,
     experiment: Experiment,
     *,
-    wheel_noise: Array | None = None,
+    noise: Array | None = None,
     seat: float = 0.0,
     substeps: int = FINE,
 ) -> tuple[Array, Array]:
-    """(torque request, samples x outputs) before the sensors; `wheel_noise` enters a closed loop."""
+    """(torque request, samples x outputs) before the sensors; `noise`, of that shape, enters a loop."""
     request = experiment.torque_nm.copy()
-    noise = np.zeros_like(request) if wheel_noise is None else wheel_noise
-    if experiment.closed_loop:
-        inertia = truth.parameters["vehicle_inertia"]
-        gain = 0.5 * inertia / truth.parameters["gear_ratio"]
-        reading = [s for s in truth.sensors if s.channel == OUTPUTS[1]]
-        loop = control(
-            gain,
-            0.1 * gain,
-            gain=float(np.prod([s.gain for s in reading])),
-            offset=sum(s.offset for s in reading),
-        )
-    else:
-        loop = control()
-    common = (constants(truth), request, loop, experiment.target_rad_s, noise, experiment.wheel_speed_rad_s)
+    if noise is None:
+        noise = np.zeros((len(request), len(OUTPUTS)))
+    load = np.zeros_like(request) if experiment.load_nm is None else experiment.load_nm
+    loop, target = _loop(truth, experiment)
+    common = (constants(truth), request, loop, target, load, noise, experiment.wheel_speed_rad_s)
     if truth.kind == "rigid":
         return request, simulate_rigid(*common, substeps, SAMPLE_S)
     return request, simulate_chain(*common, seat, substeps, SAMPLE_S)
+
+
+def _loop(truth: Truth, experiment: Experiment) -> tuple[np.void, Array]:
+    """(controller, target in rad/s of what it feeds back)."""
+    if not experiment.closed_loop:
+        return control(), experiment.target_rad_s
+    motor = experiment.motor_loop
+    reading = [s for s in truth.sensors if s.channel == OUTPUTS[0 if motor else 1]]
+    errors = {
+        "gain": float(np.prod([s.gain for s in reading])),
+        "offset": float(sum(s.offset for s in reading)),
+    }
+    if motor is None:
+        gain = 0.5 * truth.parameters["vehicle_inertia"] / truth.parameters["gear_ratio"]
+        return control(gain, 0.1 * gain, **errors), experiment.target_rad_s
+    lead = {"lead_s": motor.lead_s, "lead_ratio": motor.lead_ratio, "largest_nm": motor.largest_nm}
+    loop = control(motor.proportional, motor.integral, form=ON_MOTOR, **lead, **errors)
+    return loop, experiment.target_rad_s * truth.parameters["gear_ratio"]
 
 
 def read_by_sensors(truth: Truth, outputs: Array, noise: Array) -> Array:

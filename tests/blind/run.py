@@ -16,10 +16,11 @@ from functools import partial
 from pathlib import Path
 
 from tests.blind.casefiles import OpenFiles, drawn_case, open_answer, seal_answer, write_case
-from tests.blind.cases import draw_case
 from tests.blind.diagnosing import Diagnose, by_command_line, says_nothing
+from tests.blind.draws import draw
+from tests.blind.later_groups import ON_REQUEST
 from tests.blind.scoring import Score, score
-from tests.blind.specs import GROUPS, Spec, full_set, subset
+from tests.blind.specs import GROUPS, Spec, full_set, on_request, subset
 from tests.blind.tables import as_markdown
 
 _RESULTS = Path("docs/reference/blind-results.md")
@@ -43,7 +44,7 @@ def run_case(
 def _draw(seed: int, spec: Spec, length: float, directory: Path) -> OpenFiles:
     shutil.rmtree(directory, ignore_errors=True)
     directory.mkdir(parents=True)
-    case = draw_case(seed, spec, length)
+    case = draw(seed, spec, length)
     files, answer = write_case(case, directory)
     seal_answer(directory, case.truth.kind, answer)
     return files
@@ -85,7 +86,8 @@ def _tell(one: Score, number: int, total: int) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run what the options ask for and write the results."""
     options = _options(arguments)
-    specs = [s for s in full_set() if _wanted(s, options)]
+    there = [*full_set(), *(on_request() if options.group else ())]
+    specs = [s for s in there if _wanted(s, options)]
     if options.cases:
         specs = subset(specs, options.cases, options.seed)
     if not specs:
@@ -120,14 +122,17 @@ def _wanted(spec: Spec, options: argparse.Namespace) -> bool:
         return False
     if options.size and spec.size not in options.size:
         return False
-    return not options.only or bool({spec.subject, spec.subject.split(":")[0]} & {*options.only})
+    forms = {spec.subject, spec.subject.split(":")[0].split("@")[0], spec.subject.split("@")[0]}
+    return not options.only or bool(forms & {*options.only})
 
 
 def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m tests.blind", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="another seed, other plants and noise")
     parser.add_argument("--cases", type=int, help="about this many, in the full set's proportions")
-    parser.add_argument("--group", action="append", choices=GROUPS, help="only this group; may be repeated")
+    parser.add_argument(
+        "--group", action="append", choices=(*GROUPS, *ON_REQUEST), help="only this group; may be repeated"
+    )
     parser.add_argument(
         "--only",
         action="append",

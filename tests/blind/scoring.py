@@ -10,6 +10,7 @@ from typing import Any
 from hil.core.channels import OUTPUTS
 from tests.blind.casefiles import Answer
 from tests.blind.diagnosing import Reply
+from tests.blind.fairness import intervals_that_hold, judged_gaps
 from tests.blind.families import FAMILIES
 from tests.blind.later_families import LATER_FAMILIES
 from tests.blind.specs import Spec
@@ -44,6 +45,10 @@ class Score:
     parameter_errors: dict[str, float] = field(default_factory=dict)
     gap_over_noise: dict[str, float] = field(default_factory=dict)
     gap_before_over_noise: dict[str, float] = field(default_factory=dict)
+    unshrunk: list[str] = field(default_factory=list)
+    unexplained: list[str] = field(default_factory=list)
+    intervals: list[bool] = field(default_factory=list)
+    started: list[str] = field(default_factory=list)
 
     @property
     def key(self) -> str:
@@ -78,11 +83,14 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
     ]
     result = Score(
         spec.group, spec.subject, spec.size, spec.turn, kind, hidden, answer.share, verdict, named,
-        _right(spec, hidden, verdict, named), reply.failure, reply.wall_s, judged,
+        _right(spec, hidden, verdict, named, diagnosis), reply.failure, reply.wall_s, judged,
     )  # fmt: skip
+    result.started = sorted(diagnosis.get("start") or {})
+    result.unshrunk, result.unexplained = judged_gaps(answer, diagnosis)
     result.honest = not any(confidence >= _SURE and not true for confidence, true in judged)
     if result.right and spec.group != "outside":
         result.parameter_errors = _parameter_errors(answer, entries, named)
+        result.intervals = intervals_that_hold(answer, entries, named)
     gaps = diagnosis.get("holdout_gap") or diagnosis.get("gap") or {}
     for channel in OUTPUTS:
         noise = answer.holdout_noise[channel]
@@ -92,17 +100,37 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
     return result
 
 
-def _right(spec: Spec, hidden: Sequence[str], verdict: str, named: Sequence[str]) -> bool:
+def _right(
+    spec: Spec, hidden: Sequence[str], verdict: str, named: Sequence[str], diagnosis: Mapping[str, Any]
+) -> bool:
     """Single, one recording, mismatch: that name alone. Pair: both, no third. None: nothing named.
 
-    Outside: unknown, or names that the registry does not have.
+    Outside: unknown, or names that the registry does not have. Too small: nothing named. Drift: nothing
+    named, be it that the drift is taken for noise or that something unknown is seen. Few channels: that
+    name alone, or an honest pair of rivals.
     """
-    if spec.group == "none":
+    if spec.group == "drift":
+        return verdict in ("none", "unknown") and not named
+    if spec.group in ("none", "too_small") or spec.subject.startswith("none"):
         return verdict == "none" and not named
     if spec.group == "outside":
         foreign = bool(named) and not any(name.split("(")[0] in KNOWN for name in named)
         return verdict == "unknown" or (verdict == "named" and foreign)
-    return verdict == "named" and sorted(named) == sorted(hidden)
+    if verdict == "named" and sorted(named) == sorted(hidden):
+        return True
+    return spec.group == "few_channels" and honest_rivals(hidden, diagnosis)
+
+
+def honest_rivals(hidden: Sequence[str], diagnosis: Mapping[str, Any]) -> bool:
+    """Whether the likeliest two names hold the truth, none is sure, and a test tells them apart."""
+    rivals = [*diagnosis.get("effects", []), *diagnosis.get("alternatives", [])]
+    rivals.sort(key=lambda one: -float(one.get("confidence", 0.0)))
+    pair = rivals[:2]
+    if len(pair) < 2 or len(diagnosis.get("effects", [])) > 1:
+        return False
+    names = [_label(one["id"], one.get("parameters", {})) for one in pair]
+    tests = any(one.get("separating_test") for one in pair)
+    return tests and hidden[0] in names and float(pair[0].get("confidence", 0.0)) < _SURE
 
 
 def _label(id: str, values: Values) -> str:
@@ -117,6 +145,8 @@ def _parameter_errors(
     errors = {}
     for id, values in answer.effects:
         label = _label(id, values)
+        if label not in named:
+            continue  # right by saying nothing, or as one of two rivals
         found = entries[named.index(label)]["parameters"]
         for name, error in errors_of(id, values, found).items():
             errors[f"{label}.{name}"] = error

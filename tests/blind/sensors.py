@@ -14,19 +14,28 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Sensor:
-    """Errors of one channel: reading = gain·truth(t - delay_s) + offset, then rounded to `step`."""
+    """Errors of one channel: reading = gain·truth(t - delay_s) + offset + drift, then rounded to `step`.
+
+    The drift swings by `drift` about a value of its own and is zero when a recording begins.
+    """
 
     channel: str
     gain: float = 1.0
     offset: float = 0.0
     delay_s: float = 0.0
     step: float = 0.0
+    drift: float = 0.0
+    drift_period_s: float = 60.0
+    drift_phase_rad: float = 0.0
 
     def read(self, truth: Array, sample_s: float) -> Array:
         """The reading before rounding; the first value stands for the time before the recording."""
+        time_s = np.arange(len(truth)) * sample_s
+        if self.drift != 0.0:
+            swing = np.sin(2.0 * np.pi * time_s / self.drift_period_s + self.drift_phase_rad)
+            truth = truth + self.drift * (swing - swing[0]) / self.gain
         if self.delay_s == 0.0:
             return self.gain * truth + self.offset
-        time_s = np.arange(len(truth)) * sample_s
         late = np.clip(time_s - self.delay_s, 0.0, time_s[-1])
         return self.gain * CubicSpline(time_s, truth)(late) + self.offset
 

@@ -9,9 +9,10 @@ import numpy as np
 
 from tests.blind.families import FAMILIES
 from tests.blind.later_families import LATER_FAMILIES
+from tests.blind.later_groups import LATER_GROUPS, ON_REQUEST, later_specs
 from tests.blind.outsiders import LATER_OUTSIDERS, OUTSIDERS
 
-GROUPS = ("single", "pair", "none", "outside", "mismatch", "one_recording")
+GROUPS = ("single", "pair", "none", "outside", "mismatch", "one_recording", *LATER_GROUPS)
 
 #: gap before over noise floor, by size
 SIZES = {"large": 10.0, "clear": 3.0, "middle": 1.8, "edge": 1.3}
@@ -30,6 +31,11 @@ class Spec:
     @property
     def key(self) -> str:
         return f"{self.group}/{self.subject}/{self.size}/{self.turn}"
+
+
+def on_request() -> list[Spec]:
+    """Cases that run only where their group is named."""
+    return [Spec(*parts) for parts in later_specs() if parts[0] in ON_REQUEST]
 
 
 def full_set() -> list[Spec]:
@@ -56,6 +62,7 @@ def full_set() -> list[Spec]:
         for id in LATER_FAMILIES
     ]
     specs += [Spec("one_recording", id, "clear", turn) for turn in range(2) for id in LATER_FAMILIES]
+    specs += [Spec(*parts) for parts in later_specs() if parts[0] in LATER_GROUPS]
     return specs
 
 

@@ -9,11 +9,23 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
+from tests.blind.figures import figure_rows
+from tests.blind.later_groups import LATER_GROUPS, ON_REQUEST
 from tests.blind.scoring import Score
 from tests.blind.specs import GROUPS, SIZES
 
 #: group: (line, target) in percent
-LINES = {"single": (95, 99), "pair": (85, 95), "none": (100, 100), "outside": (80, 95)}
+LINES = {
+    "single": (95, 99),
+    "pair": (85, 95),
+    "none": (100, 100),
+    "outside": (80, 95),
+    "far": (85, 95),
+    "few_channels": (85, 95),
+    "closed_loop": (95, 99),
+    "too_small": (100, 100),
+    "drift": (100, 100),
+}
 _BINS = (0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.0001)
 
 
@@ -28,6 +40,8 @@ def as_markdown(scores: Sequence[Score], how: str) -> str:
         "## Outside the registry",
         _by([s for s in scores if s.group == "outside"], lambda s: s.subject, "effect"),
     ]
+    later = [s for s in scores if s.group in (*LATER_GROUPS, *ON_REQUEST)]
+    parts += ["## Later groups by subject", _by(later, lambda s: f"{s.group}/{s.subject}", "subject")]
     parts += ["## Confusions", "What was named where one effect, or none, was hidden.", _confusions(scores)]
     parts += ["## Calibration of confidence", _calibration(scores)]
     parts += ["## Parameter errors, right answers", _parameters(scores)]
@@ -37,7 +51,7 @@ def as_markdown(scores: Sequence[Score], how: str) -> str:
 
 def _summary(scores: Sequence[Score]) -> list[str]:
     rows = []
-    for group in GROUPS:
+    for group in (*GROUPS, *ON_REQUEST):
         members = [s for s in scores if s.group == group]
         if not members:
             continue
@@ -50,6 +64,14 @@ def _summary(scores: Sequence[Score]) -> list[str]:
         "named (none), `unknown` (outside). A sensor's name counts with its channel, a mismatch with its "
         "parameter. Honest: no wrong name with a confidence of 0.9 or more.",
         _table(["group", "cases", "right %", "line %", "target %", "honest %"], rows),
+        "Far: the same as single, or nothing where nothing is hidden, from a base whose parameters are all "
+        "20 to 80 % off but for the gear ratio; what is found of the base stands under `start`. Few "
+        "channels: the name alone, or two honest rivals with a test that tells them apart. Too small and "
+        "drift: nothing named.",
+        "## Figures",
+        "Shrank: of what a gap has over the true noise, by squares; a channel counts if its gap was 1.1 "
+        "times the noise.",
+        _table(["figure", "of", "value", "line", "target"], figure_rows(scores)),
         "## Gap, parameters, time",
         "Gap after over the true noise on held-out recordings, in single-effect cases: rms over the "
         "channels, and the worst channel.",
@@ -95,7 +117,7 @@ def _confusions(scores: Sequence[Score]) -> str:
 
 def _said(one: Score) -> str:
     names = sorted({name.split("(")[0] if name.split("(")[0] != one.subject else name for name in one.named})
-    if one.right and one.group in ("single", "one_recording", "mismatch"):
+    if one.right and one.named and one.group not in ("pair", "outside"):
         return "the same"
     return f"{one.verdict}: {' + '.join(names)}" if names else one.verdict
 

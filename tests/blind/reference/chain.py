@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from tests.blind.reference.contact import SERIES, series_contact, shaft_torque
-from tests.blind.reference.controller import pi_torque
+from tests.blind.reference.controller import MEMORY, asked_torque
 from tests.blind.reference.friction import bristle_after, friction_torque, running_resistance, settled_bristle
 from tests.blind.reference.hysteresis import ELEMENTS, advance
 from tests.blind.reference.torque_path import acting, delayed
@@ -74,15 +74,20 @@ def _with_ripple(p: Any, torque: float, wheel_angle: float) -> float:
 
 
 @njit(error_model="numpy")
-def _accelerations(p: Any, x: Chain, v: Chain, drive: float, shaft: float, tyre: float, time_s: float) -> Any:
-    """Accelerations in rad/s²: `drive` between housing and rotor, `shaft` and `tyre` on the wheel."""
+def _accelerations(
+    p: Any, x: Chain, v: Chain, drive: float, shaft: float, tyre: float, load: float, time_s: float
+) -> Any:
+    """Accelerations in rad/s²: `drive` between housing and rotor, `shaft`, `tyre` and `load` on the wheel.
+
+    A load is a dyno's torque in N m; positive, it slows a wheel that turns forward.
+    """
     housing = vehicle = absorber = 0.0
     rotor = (drive - shaft / p.gear_ratio) / p.motor_inertia
     if p.has_mount > 0.0:
         stiffness = p.mount_stiffness * (1.0 + p.mount_speed_stiffening * abs(v.wheel))
         bushes = stiffness * x.housing + p.mount_damping * v.housing
         housing = (-drive - shaft * (1.0 - 1.0 / p.gear_ratio) - bushes) / p.housing_inertia
-    onto_wheel = shaft
+    onto_wheel = shaft - load
     if p.tone_nm > 0.0:
         onto_wheel += p.tone_nm * math.sin(2.0 * math.pi * p.tone_hz * time_s)
     if p.absorber_inertia > 0.0:
@@ -136,10 +141,11 @@ def _step(
     patch: np.ndarray,
     patch_mid: np.ndarray,
     torque: float,
+    load: float,
     start_s: float,
     h: float,
 ) -> Any:
-    """Angles, speeds, accelerations and inner state after `h` s at a constant motor torque.
+    """Angles, speeds, accelerations and inner state after `h` s at constant torques of motor and dyno.
 
     Iterates for the middle of the step. `a` are the last accelerations; `inner.shaft` is the torque at the
     end; `memory` of the hysteresis and `patch` of the tyre are changed in place.
@@ -160,7 +166,7 @@ def _step(
         slip = v_mid.wheel - road
         held = _tyre_after(p, inner.deflection, patch, patch_mid, slip, road, 0.5 * h)[1]
         tyre = held + p.tyre_damping * slip
-        a = _accelerations(p, x_mid, v_mid, drive, shaft, tyre, middle)
+        a = _accelerations(p, x_mid, v_mid, drive, shaft, tyre, load, middle)
         v_mid = _ahead(v, a, 0.5 * h)
     bristle = bristle_after(p, inner.bristle, v_mid.rotor - v_mid.housing, h)
     road = _road(p, v_mid.vehicle, inner.behind, 0.5 * h)[0]
@@ -191,7 +197,8 @@ def simulate_chain(
     ref: np.ndarray,
     control: Any,
     target: np.ndarray,
-    wheel_noise: np.ndarray,
+    load: np.ndarray,
+    noise: np.ndarray,
     wheel_speed: float,
     seat: float,
     substeps: int,
@@ -199,7 +206,9 @@ def simulate_chain(
 ) -> np.ndarray:
     """Samples x (motor speed against housing, wheel speed, shaft torque); `ref` is completed in closed loop.
 
-    `wheel_speed` is the initial speed in rad/s; `seat` (-1 to 1) where in the free play the flanks start.
+    `load` is the dyno's torque in N m at each sample, `noise` (samples x outputs) what a controller reads
+    beside the truth. `wheel_speed` is the initial speed in rad/s; `seat` (-1 to 1) where in the free play the
+    flanks start.
     """
     out = np.empty((len(ref), 3))
     h = sample_s / substeps
@@ -211,7 +220,7 @@ def simulate_chain(
     inner = Inner(settled_bristle(p, v.rotor), 0.0, p.dyno_lag_s * wheel_speed, 0.0, 0.0)
     smooth = p.lag_s > 0.0 or not math.isinf(p.rate_nm_s)
     lagged = torque = 0.0
-    loop = np.zeros(2)
+    loop = np.zeros(MEMORY)
     loop[1] = wheel_speed
     for k in range(len(ref)):
         time_s = k * sample_s
@@ -219,12 +228,15 @@ def simulate_chain(
         out[k, 1] = v.wheel
         out[k, 2] = inner.shaft
         if control.proportional > 0.0:
-            ref[k] = pi_torque(control, loop, ref[k], target[k], v.wheel + wheel_noise[k], sample_s)
+            motor, wheel = v.rotor - v.housing + noise[k, 0], v.wheel + noise[k, 1]
+            ref[k] = asked_torque(control, loop, ref[k], target[k], motor, wheel, sample_s)
         for i in range(substeps):
             start = time_s + i * h
             request = delayed(ref[: k + 1], start - p.delay_s, start + h - p.delay_s, sample_s)
             before = torque
             lagged, torque = acting(p, request, lagged, before, start + 0.5 * h, h)
             mean = 0.5 * (before + torque) if smooth else torque
-            x, v, a, inner = _step(p, x, v, a, inner, memory, memory_mid, patch, patch_mid, mean, start, h)
+            x, v, a, inner = _step(
+                p, x, v, a, inner, memory, memory_mid, patch, patch_mid, mean, load[k], start, h
+            )
     return out

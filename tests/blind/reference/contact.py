@@ -26,7 +26,7 @@ def _flank_damping(p: Any, depth: float, closing: float) -> float:
 
 
 #: Forms of the free play.
-SERIES, DISSIPATIVE = 1.0, 2.0
+SERIES, DISSIPATIVE, KELVIN_VOIGT, HUNT_CROSSLEY = 1.0, 2.0, 3.0, 4.0
 #: Stiffness of the flanks over that of the shafts: stiff enough to leave the base model's stiffness alone.
 _FLANKS = 400.0
 
@@ -65,6 +65,27 @@ def series_contact(p: Any, wound: float, twist: float, rate: float, span_s: floa
 
 
 @njit(error_model="numpy")
+def _bouncing(p: Any, twist: float, rate: float) -> float:
+    """Flanks as other authors have them; while they touch, the shafts are damped as without free play.
+
+    Kelvin and Voigt: a damper beside the spring, all of it from the first touch on, so that it pulls before
+    flanks part. Hunt and Crossley (1975): `contact_damping` is the factor of depth times rate,
+    3/2 (1 - restitution)/speed times stiffness; spring and flanks never pull.
+    """
+    depth = abs(twist) - p.half_gap
+    if depth <= 0.0:
+        return 0.0
+    side = math.copysign(1.0, twist)
+    closing = side * rate
+    pushing = p.shaft_stiffness * depth
+    if p.contact_form == HUNT_CROSSLEY:
+        pushing = max(0.0, pushing + p.contact_damping * depth * closing)
+    else:
+        pushing += p.contact_damping * closing
+    return side * (pushing + p.shaft_damping * closing)
+
+
+@njit(error_model="numpy")
 def shaft_torque(p: Any, twist: float, rate: float, time_s: float) -> float:
     """Torque in N m of the shafts, and of a free play whose flanks dissipate.
 
@@ -74,6 +95,8 @@ def shaft_torque(p: Any, twist: float, rate: float, time_s: float) -> float:
     gap = p.half_gap
     if gap <= 0.0:
         return elastic(p, twist, time_s) + (p.shaft_damping + p.squeeze_damping * abs(rate)) * rate
+    if p.contact_form >= KELVIN_VOIGT:
+        return _bouncing(p, twist, rate)
     if twist > gap:
         depth = twist - gap
         damping = p.shaft_damping * depth / (depth + p.contact_depth)

@@ -13,7 +13,7 @@ def sliding_torque(p: Any, speed: float) -> float:
     """Stribeck curve in N m at a steady sliding speed in rad/s, without sign."""
     if p.stribeck == 0.0:
         return p.coulomb
-    return p.coulomb + p.stribeck * math.exp(-((speed / p.stribeck_speed) ** 2))
+    return p.coulomb + p.stribeck * math.exp(-(abs(speed / p.stribeck_speed) ** p.stribeck_power))
 
 
 @njit(error_model="numpy")

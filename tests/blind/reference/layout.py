@@ -26,7 +26,7 @@ OFF: dict[str, float] = {
     "deadband_nm": 0.0,
     # contact and shaft
     "half_gap": 0.0,
-    "contact_form": 1.0,  # 1: compliant flanks in series with the shafts, 2: dissipative flanks
+    "contact_form": 1.0,  # series, dissipative, Kelvin-Voigt, Hunt-Crossley: see contact.py
     "contact_depth": 1e-3,
     "contact_damping": 0.0,  # N m s/rad of closed flanks, beside the shafts' own
     "cubic": 0.0,
@@ -38,6 +38,7 @@ OFF: dict[str, float] = {
     "coulomb": 0.0,
     "stribeck": 0.0,
     "stribeck_speed": 4.0,
+    "stribeck_power": 2.0,  # 2: Gaussian, 1: exponential
     "bristle_stiffness": 2000.0,
     "bristle_damping": 0.5,
     "bristle_exponent": 1.0,  # 1: LuGre, Dahl; others: Dahl's exponent
