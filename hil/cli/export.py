@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hil.cli._output import console, print_json, warn_of_damage
 from hil.cli._place import refuse_file
-from hil.core.recording import read_recording, write_recording
+from hil.core.recording import read_recording, write_recording, written_with
 
 
 def carry_out(
@@ -17,7 +17,8 @@ def carry_out(
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    refuse_file(out, [recording], overwrite=overwrite)
+    for file in written_with(out):
+        refuse_file(file, [recording], overwrite=overwrite)
     table = read_recording(recording)
     warn_of_damage([table])
     write_recording(table, out)

@@ -10,6 +10,7 @@ import numpy as np
 
 from hil.core.channels import WHEEL_ANGLE
 from hil.core.errors import BadInputError
+from hil.core.recording._evidence import sidecar
 from hil.core.recording._formats import READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_writer import RecordingWriter
@@ -74,8 +75,13 @@ def _with_wheel_angle(recording: Recording) -> Recording:
     return dataclasses.replace(recording, channels={**recording.channels, WHEEL_ANGLE: angle})
 
 
+def written_with(path: Path) -> list[Path]:
+    """The files that `write_recording` makes for a path: beside a CSV stands what it is a recording of."""
+    return [path, sidecar(path)] if path.suffix.lower() == ".csv" else [path]
+
+
 def write_recording(recording: Recording, path: Path) -> None:
-    """Write `.csv`, `.parquet` or `.mf4`, whole or not at all."""
+    """Write `.csv`, `.parquet` or `.mf4`, whole or not at all, with all that stands beside the samples."""
     writer = writer_of(path.suffix.lower())
     if writer is None:
         raise BadInputError(f"an export ends in {', '.join(WRITTEN)}", where=str(path))
@@ -95,4 +101,5 @@ __all__ = [
     "read_recording",
     "run_of",
     "write_recording",
+    "written_with",
 ]

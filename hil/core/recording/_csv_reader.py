@@ -14,6 +14,8 @@ import pyarrow.csv as arrow_csv
 
 from hil.core.channels import CHANNELS, TIME
 from hil.core.errors import BadInputError
+from hil.core.recording._csv_writer import sha256_of
+from hil.core.recording._evidence import LARGEST_BYTES, sidecar, take_evidence
 from hil.core.recording._regular_file import open_regular
 from hil.core.recording._table import Array, Recording
 
@@ -35,9 +37,25 @@ def read_csv(path: Path) -> Recording:
     """
     with open_regular(path) as file:
         try:
-            return _Table(path).read(file)
+            recording = _Table(path).read(file)
         except OSError as error:
             raise BadInputError(f"cannot be read: {error.strerror or error}", where=str(path)) from error
+    _take_sidecar(recording, path)
+    return recording
+
+
+def _take_sidecar(recording: Recording, path: Path) -> None:
+    """What an export wrote beside the table."""
+    beside = sidecar(path)
+    try:
+        if not beside.is_file():
+            return
+        if beside.stat().st_size > LARGEST_BYTES:
+            recording.damage.append(f"{beside.name} has more than {LARGEST_BYTES} bytes and was not read")
+            return
+        take_evidence(recording, beside.read_bytes(), beside.name, sha256_of(path))
+    except OSError as error:
+        recording.damage.append(f"{beside.name} cannot be read: {error.strerror or error}")
 
 
 class _Table:

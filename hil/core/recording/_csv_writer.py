@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 from pathlib import Path
 
@@ -12,7 +13,8 @@ import pyarrow.compute as compute
 import pyarrow.csv as arrow_csv
 
 from hil.core.channels import TIME
-from hil.core.files import replacing
+from hil.core.files import replacing, write_atomically
+from hil.core.recording._evidence import evidence_of, has_evidence, remove_sidecar, sidecar
 from hil.core.recording._table import Array, Recording
 
 _ROWS_AT_ONCE = 1 << 16
@@ -24,7 +26,8 @@ _LARGEST_EXACT_TIME_S = 9e6  # in whole nanoseconds still an exact double
 def write_csv(recording: Recording, path: Path) -> None:
     """Write every channel with 9 significant digits, `time_s` in whole nanoseconds.
 
-    A number always has a decimal point (1.0, not 1); a missing one is an empty cell.
+    A number always has a decimal point (1.0, not 1); a missing one is an empty cell. What the recording has
+    beside its samples stands in a file next to it (`sidecar`).
     """
     columns = list(recording.channels.values())
     samples = len(columns[0]) if columns else 0
@@ -39,6 +42,17 @@ def write_csv(recording: Recording, path: Path) -> None:
                 for name, values in recording.channels.items()
             }
             arrow_csv.write_csv(pa.table(block), file, options)
+        file.close()
+        if has_evidence(recording):
+            write_atomically(sidecar(path), evidence_of(recording, sha256_of(temporary)))
+        else:
+            remove_sidecar(path)
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256 of a file, in hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _as_text(values: Array, *, is_time: bool) -> pa.Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import datetime
 import warnings
 from pathlib import Path
 from typing import Any
@@ -11,10 +13,12 @@ import numpy as np
 from hil.core.channels import CHANNELS, INPUT, TIME
 from hil.core.errors import BadInputError
 from hil.core.files import replacing
+from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._regular_file import refuse_unless_regular
 from hil.core.recording._table import Array, Recording
 
 _SAMPLES_AT_ONCE = 1 << 20
+_EVENT_TICKS = 1_000_000  # in a second
 _MASTERS = (2, 3)  # channel types of the standard: time stamps, stored or counted
 
 
@@ -31,7 +35,12 @@ def read_mdf(path: Path) -> Recording:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             with MDF(path) as mdf:
-                return _Groups(mdf, path).read()
+                recording = _Groups(mdf, path).read()
+                for index, attachment in enumerate(mdf.attachments):
+                    if attachment.file_name == EVIDENCE:
+                        content = mdf.extract_attachment(index)[0]
+                        take_evidence(recording, content, f"the attachment '{EVIDENCE}'")
+                return recording
     except BadInputError:
         raise
     except Exception as error:  # of many kinds, for whatever is broken
@@ -106,7 +115,11 @@ class _Groups:
 
 
 def write_mdf(recording: Recording, path: Path) -> None:
-    """Write MDF 4.10 with units and comments, a stretch at a time so that the samples are not held twice."""
+    """Write MDF 4.10 with units and comments, a stretch at a time so that the samples are not held twice.
+
+    What the recording has beside its samples stands in an attachment; what happened also as the file's
+    events, what was run in its header.
+    """
     from asammdf import MDF, Signal
 
     names = [name for name in recording.channels if name != TIME]
@@ -127,4 +140,26 @@ def write_mdf(recording: Recording, path: Path) -> None:
         for start in range(_SAMPLES_AT_ONCE, len(time_s), _SAMPLES_AT_ONCE):
             stretch = slice(start, start + _SAMPLES_AT_ONCE)
             mdf.extend(0, [(values[stretch], None) for values in (time_s, *(recording[n] for n in names))])
+        if has_evidence(recording):
+            _tell(mdf, recording)
         mdf.save(temporary, overwrite=True, compression=2)
+
+
+def _tell(mdf: Any, recording: Recording) -> None:
+    """Attachment, header and events of a recording that has more than samples."""
+    from asammdf.blocks.v4_blocks import EventBlock
+
+    text = evidence_of(recording).encode()
+    mdf.attach(
+        text, EVIDENCE, comment="what the recording carries beside its samples", mime="application/json"
+    )
+    run, dut = recording.metadata.get("run", {}), recording.metadata.get("dut", {})
+    header = mdf.header
+    header.project, header.author = run.get("title", ""), run.get("operator", "")
+    header.subject = " ".join(filter(None, (dut.get("name"), dut.get("serial"))))
+    with contextlib.suppress(KeyError, ValueError):
+        header.start_time = datetime.datetime.fromisoformat(run["started_at"])
+    for event in recording.events:
+        block = EventBlock(sync_base=round(event.time_s * _EVENT_TICKS), sync_factor=1.0 / _EVENT_TICKS)
+        block.name, block.comment = event.kind, event.text
+        mdf.events.append(block)

@@ -12,6 +12,7 @@ import pyarrow.parquet as pq
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
 from hil.core.files import replacing
+from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._regular_file import refuse_unless_regular
 from hil.core.recording._table import Array, Recording
 
@@ -29,6 +30,7 @@ def read_parquet(path: Path) -> Recording:
         with pq.ParquetFile(path, page_checksum_verification=True) as file:
             fields = file.schema_arrow
             _refuse_twice(fields.names, path)
+            evidence = (fields.metadata or {}).get(EVIDENCE.encode())
             for field in fields:
                 if _is_number(field.type):
                     channels[field.name] = _column(file, field.name)
@@ -44,16 +46,23 @@ def read_parquet(path: Path) -> Recording:
         raise
     except Exception as error:  # of many kinds, for whatever is broken
         raise BadInputError("not a Parquet file, or a broken one", where=str(path)) from error
-    return Recording(channels, path, notes=notes)
+    recording = Recording(channels, path, notes=notes)
+    if evidence is not None:
+        take_evidence(recording, evidence, f"its metadata '{EVIDENCE}'")
+    return recording
 
 
 def write_parquet(recording: Recording, path: Path) -> None:
-    """Write Parquet with a checksum for each page; each column carries its unit in its field's metadata."""
+    """Write Parquet with a checksum for each page; each column carries its unit in its field's metadata.
+
+    What the recording has beside its samples stands in the file's metadata.
+    """
     fields = [
         pa.field(name, pa.float64(), metadata={"unit": CHANNELS[name].unit if name in CHANNELS else ""})
         for name in recording.channels
     ]
-    table = pa.table(list(recording.channels.values()), schema=pa.schema(fields))
+    metadata = {EVIDENCE: evidence_of(recording)} if has_evidence(recording) else None
+    table = pa.table(list(recording.channels.values()), schema=pa.schema(fields, metadata))
     with replacing(path) as temporary:
         pq.write_table(table, temporary, compression="zstd", write_page_checksum=True)
 

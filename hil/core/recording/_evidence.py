@@ -1,0 +1,138 @@
+"""What a recording carries beside its samples, as one JSON text: exports to other formats keep it."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import hashlib
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from hil.core.channels import CHANNELS
+from hil.core.recording._table import Event, Recording
+
+#: Name of the text where a format has named places: an attachment of MDF4, a key of Parquet's metadata.
+EVIDENCE = "hil_recording.json"
+#: Beyond it a text is not read: plans, models and results are small.
+LARGEST_BYTES = 1 << 26
+_FORMAT = "hil recording"
+
+
+class _Event(BaseModel):
+    time_s: float = Field(allow_inf_nan=False)
+    kind: str
+    text: str
+
+
+class _Attachment(BaseModel):
+    """A file: its text, or where it is none its bytes in base 64."""
+
+    sha256: str
+    text: str | None = None
+    base64: str | None = None
+
+    def content(self) -> bytes | None:
+        """The file; None if it is not what its hash says."""
+        content = (self.text or "").encode() if self.base64 is None else base64.b64decode(self.base64)
+        return content if hashlib.sha256(content).hexdigest() == self.sha256 else None
+
+
+class _Evidence(BaseModel):
+    model_config = ConfigDict(extra="ignore")
+
+    format: Literal["hil recording"] = "hil recording"
+    source: str = Field("", description="file that was exported")
+    samples: int
+    first_time_s: float
+    last_time_s: float
+    table_sha256: str = Field("", description="of the file that it stands beside")
+    units: dict[str, str] = {}
+    metadata: dict[str, dict[str, str]] = {}
+    attachments: dict[str, _Attachment] = {}
+    events: list[_Event] = []
+    damage: list[str] = []
+
+
+def sidecar(path: Path) -> Path:
+    """The file beside a CSV that says what it is a recording of."""
+    return path.with_name(f"{path.name}.json")
+
+
+def remove_sidecar(path: Path) -> None:
+    """Remove the file beside a CSV that an earlier export wrote: it would speak of other samples."""
+    beside = sidecar(path)
+    with contextlib.suppress(OSError, UnicodeDecodeError):
+        if _FORMAT in beside.read_text("utf-8")[:200]:
+            beside.unlink()
+
+
+def has_evidence(recording: Recording) -> bool:
+    """Whether there is anything to keep beside the samples."""
+    return bool(recording.metadata or recording.attachments or recording.events or recording.damage)
+
+
+def evidence_of(recording: Recording, table_sha256: str = "") -> str:
+    """Units, tables, files, events and damage of a recording, as JSON."""
+    time_s = recording.time_s
+    found = _Evidence(
+        source=recording.source.name,
+        samples=len(time_s),
+        first_time_s=float(time_s[0]) if len(time_s) else 0.0,
+        last_time_s=float(time_s[-1]) if len(time_s) else 0.0,
+        table_sha256=table_sha256,
+        units={name: CHANNELS[name].unit for name in recording.channels if name in CHANNELS},
+        metadata=recording.metadata,
+        attachments={name: _attached(content) for name, content in recording.attachments.items()},
+        events=[_Event(time_s=e.time_s, kind=e.kind, text=e.text) for e in recording.events],
+        damage=recording.damage,
+    )
+    return found.model_dump_json(indent=1, exclude_none=True) + "\n"
+
+
+def take_evidence(recording: Recording, text: str | bytes, where: str, table_sha256: str = "") -> None:
+    """Give a recording what `evidence_of` wrote of it; what does not fit is left out, and said in `damage`.
+
+    Args:
+        where: name of the place the text comes from.
+        table_sha256: of the table as it is now, to be held against that it was written with.
+    """
+    try:
+        found = _Evidence.model_validate_json(text)
+        contents = {name: attachment.content() for name, attachment in found.attachments.items()}
+    except (ValidationError, ValueError):
+        recording.damage.append(f"{where} is broken: run and segments are not known")
+        return
+    if not _is_of(found, recording):
+        recording.damage.append(
+            f"{where} was written for another table ({found.samples} samples from {found.first_time_s:.6g} s "
+            f"to {found.last_time_s:.6g} s): run and segments were left out"
+        )
+        return
+    if found.table_sha256 and found.table_sha256 != table_sha256:
+        recording.damage.append("the samples were changed after they had been exported: their hash differs")
+    recording.metadata.update(found.metadata)
+    recording.events += [Event(event.time_s, event.kind, event.text) for event in found.events]
+    recording.damage += found.damage
+    for name, content in contents.items():
+        if content is None:
+            recording.damage.append(f"the attachment '{name}' is not as it was written, and was left out")
+        else:
+            recording.attachments[name] = content
+
+
+def _attached(content: bytes) -> _Attachment:
+    sha256 = hashlib.sha256(content).hexdigest()
+    try:
+        return _Attachment(sha256=sha256, text=content.decode("utf-8"))
+    except UnicodeDecodeError:
+        return _Attachment(sha256=sha256, base64=base64.b64encode(content).decode("ascii"))
+
+
+def _is_of(found: _Evidence, recording: Recording) -> bool:
+    time_s = recording.channels.get("time_s")
+    if time_s is None or len(time_s) != found.samples:
+        return False
+    ends = (float(time_s[0]), float(time_s[-1])) if len(time_s) else (0.0, 0.0)
+    return abs(ends[0] - found.first_time_s) < 1e-6 and abs(ends[1] - found.last_time_s) < 1e-6
