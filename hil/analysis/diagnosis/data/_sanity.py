@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._broken_channels import coarse, refuse_broken_channels
+from hil.analysis.diagnosis.data._mistakes import mistaken
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._pair import Pair
 from hil.analysis.diagnosis.data._thresholds import (
@@ -64,7 +65,7 @@ def check(model: Model, traces: list[Trace], noise: Array, beside: Sequence[Trac
     for error in wrong.values():
         alike = [source for source, other in wrong.items() if _kind(other) == _kind(error)]
         raise BadInputError(error.what, where=", ".join(alike), fix=error.fix)
-    together = _wrong(model, traces, noise)
+    together = _wrong(model, traces, noise) or mistaken(model, traces, noise)
     if together is not None:
         raise together
     return notes

@@ -164,6 +164,22 @@ DEAD_SHARE: Annotated[
 LIKE_RPM: Annotated[
     float, Means("relative", "a factor this near to that between rpm and rad/s is named so", "bad_input")
 ] = 0.1
+UNLIKE: Annotated[
+    float,
+    Means(
+        "0 alike, 1 unrelated, 2 opposite",
+        "a channel further from what the model says may be in another unit, turned or swapped",
+        "bad_input",
+    ),
+] = 0.6
+ALIKE: Annotated[
+    float, Means("of the same", "all channels nearer once a mistake is undone: it was one", "bad_input")
+] = 0.25
+LEAST_BANDS: Annotated[int, Means("octaves", "that a wrong sign must show in", "bad_input")] = 2
+BAND_SHARE: Annotated[float, Means("of a channel's power", "a band with less says nothing", "bad_input")] = (
+    0.003
+)
+SHOWS: Annotated[float, Means("times the noise's power", "a band with less says nothing", "bad_input")] = 10.0
 
 LEAST_SAMPLES: Annotated[int, Means("samples", "a recording with fewer is refused", "bad_input")] = 200
 LEAST_DURATION_S: Annotated[
