@@ -31,7 +31,7 @@ _BINS = (0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.0001)
 
 def as_markdown(scores: Sequence[Score], how: str) -> str:
     """The whole page; `how` says with what the figures were made."""
-    parts = ["# Results of the blind set", how, *_summary(scores)]
+    parts = ["# Results of the blind set", how + " [What the groups are](blind-set.md).", *_summary(scores)]
     singles = [s for s in scores if s.group == "single"]
     parts += ["## Single effects by size", _by(singles, lambda s: s.size, "size", [*SIZES])]
     parts += ["## Single effects by name", _by(singles, lambda s: s.subject, "effect")]
