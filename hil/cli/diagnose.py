@@ -119,13 +119,21 @@ def text_of(found: Diagnosis, out: Path) -> str:
             name = f"{a.use.id} of {about}" if about else a.use.id
             test = f"hil run {out / a.plan}" if a.plan else a.separating_test
             lines.append(f"  or {name} ({chance(a.confidence)}); to tell: {test}")
-    lines += ["", f"{'gap':<22}{'before':>10}{'after':>10}{'noise':>10}"]
-    for name, after in found.gap_after.items():
-        before = found.gap_before[name]
-        lines.append(f"{name:<22}{before.gap:>10.4g}{after.gap:>10.4g}{after.noise_floor:>10.4g}")
-    for name, after in found.holdout_after.items():
-        before = found.holdout_before[name]
-        lines.append(f"{name + ' (held)':<22}{before.gap:>10.4g}{after.gap:>10.4g}{after.noise_floor:>10.4g}")
+    if found.start is not None:
+        lines.append("  the base model was far from the data; identified first:")
+        for parameter, (old, new, error) in found.start.parameters.items():
+            lines.append(f"    {parameter} = {new:.5g} ± {error:.2g} in place of {old:g}")
+    lines += ["", f"{'gap, % of the signal':<28}{'before':>10}{'after':>10}{'noise':>10}{'after/noise':>13}"]
+    for suffix, before, after in (
+        ("", found.gap_before, found.gap_after),
+        (" (held)", found.holdout_before, found.holdout_after),
+    ):
+        for name, gap in after.items():
+            figures = (before[name].gap, gap.gap, gap.noise_floor)
+            shown = "".join(f"{100.0 * figure:>10.4g}" for figure in figures)
+            lines.append(f"{name + suffix:<28}{shown}{gap.gap / max(gap.noise_floor, 1e-12):>13.3g}")
+    if found.open_channels and found.verdict == "named":
+        lines.append(f"what stays is more than noise: {', '.join(found.open_channels)}")
     lines += [f"note: {note}" for note in found.notes]
     plans = sorted({a.plan for a in found.alternatives if a.plan and a.plan_text})
     lines += ["", f"written to {out}: {', '.join([*_FILES, *plans])}"]

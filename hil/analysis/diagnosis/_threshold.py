@@ -26,6 +26,7 @@ CHECKS = {
     "gap": _TESTS.format("data/test_gap.py"),
     "trace": _TESTS.format("data/test_trace.py"),
     "problem": _TESTS.format("fit/test_problem.py"),
+    "covariance": _TESTS.format("fit/test_covariance.py"),
     "far": _TESTS.format("fit/test_far.py"),
     "least_squares": _TESTS.format("fit/test_least_squares.py"),
     "whitening": _TESTS.format("fit/test_whitening.py"),
@@ -40,5 +41,6 @@ CHECKS = {
     "tracking": _TESTS.format("search/test_tracking.py"),
     "consequences": _TESTS.format("tell/test_consequences.py"),
     "separating": _TESTS.format("tell/test_separating.py"),
+    "verdict": _TESTS.format("tell/test_verdict.py"),
     "words": _TESTS.format("tell/test_words.py"),
 }

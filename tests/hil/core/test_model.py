@@ -154,3 +154,13 @@ def test_a_function_without_a_delay_has_none():
             broken = {**data, "transfer_functions": {"motor_speed_rad_s": {**function, part: wrong}}}
             with pytest.raises(BadInputError, match=f"{part} is missing: a list"):
                 model_from_dict(broken, "here")
+
+
+def test_how_well_parameters_are_known_is_kept_and_checked():
+    data = two_inertia() | {"tolerance": {"shaft_stiffness": 0.3}}
+    model = model_from_dict(data, "model.toml")
+    assert model.tolerance == {"shaft_stiffness": 0.3}
+    assert model_from_dict(tomllib.loads(model_to_toml(model)), "again.toml") == model
+    for name, value in (("stiffness", 0.1), ("shaft_stiffness", 30), ("shaft_stiffness", 0.0)):
+        with pytest.raises(BadInputError, match="tolerance"):
+            model_from_dict(two_inertia() | {"tolerance": {name: value}}, "model.toml")

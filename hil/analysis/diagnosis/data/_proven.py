@@ -1,9 +1,10 @@
 """How much of an error noise may account for: what rest, repeats, the spectrum or a data sheet prove.
 
 What is left of an error after all physics is not noise for that reason: where recordings are few, short or
-nonlinear, nothing coherent may show although the model is wrong. So noise is bounded from outside the model:
-its white part by the spectrum above all modes, slow noise by what a channel does while the axle rests, by what
-two recordings of the same request do not have in common, or by what the sensor's maker states.
+nonlinear, nothing coherent may show although the model is wrong. So noise is bounded from outside the
+model: its white part by the spectrum above all modes, slow noise by what a channel does while the axle
+rests, by what two recordings of the same request do not have in common, or by what the sensor's maker
+states.
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ Array = npt.NDArray[np.float64]
 def proven_noise(traces: Sequence[Trace], noise: Array, stated: Mapping[str, float] | None = None) -> Array:
     """Largest power that noise may have in block means of each channel, shape (3,).
 
-    In variances of a block mean of white noise at level `noise`: 1 where all noise is white. A channel that no
-    recording has gets 1.
+    In variances of a block mean of white noise at level `noise`: 1 where all noise is white. A channel that
+    no recording has gets 1.
 
     Args:
         noise: standard deviation per sample that errors are weighed by, shape (3,).

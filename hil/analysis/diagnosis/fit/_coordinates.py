@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._thresholds import (
+    DELAY_REACH,
     FAR_PRIOR,
-    FAR_REACH,
     MISMATCH_REACH,
     PRIOR,
+    RATIO_PRIOR,
     REACH,
     STEP,
     TOLERANCE,
@@ -87,7 +88,8 @@ class Hypothesis:
     def _freedom(self, name: str) -> tuple[float, float]:
         """How far a parameter may go, and the standard deviation of its correction, natural logarithms."""
         if self.far:
-            return FAR_REACH.get(name, MISMATCH_REACH), FAR_PRIOR
+            prior = RATIO_PRIOR if name == "gear_ratio" else FAR_PRIOR
+            return DELAY_REACH if name == "torque_delay" else MISMATCH_REACH, prior
         widened = self.base.tolerance.get(name, TOLERANCE) / TOLERANCE
         return REACH * widened, PRIOR * widened
 

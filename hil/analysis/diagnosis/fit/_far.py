@@ -18,11 +18,9 @@ from hil.analysis.diagnosis.data._trace import Trace, blocks
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
-from hil.analysis.diagnosis.fit._thresholds import COARSE_S, FAR_ROUNDS
+from hil.analysis.diagnosis.fit._thresholds import COARSE_BLOCKS, COARSE_S, FAR_ROUNDS
 
 Array = npt.NDArray[np.float64]
-
-_LEAST_BLOCKS = 50  # of a recording: fewer means tell little
 
 
 def identified(problem: Problem, hypothesis: Hypothesis) -> tuple[Problem, Fit]:
@@ -47,9 +45,11 @@ def _coarser(problem: Problem, seconds: float) -> Problem | None:
     """The same recordings in means over `seconds`; None where the shortest has too few of them."""
     finest = problem.traces[0]
     block = round(seconds / finest.dt)
-    if block <= finest.block or min(len(t.samples) for t in problem.traces) < _LEAST_BLOCKS * block:
+    if block <= finest.block or min(len(t.samples) for t in problem.traces) < COARSE_BLOCKS * block:
         return None
-    return problem_of(_with_block(problem.traces, block), problem.noise, problem.gear_ratio, floor=problem.floor)
+    return problem_of(
+        _with_block(problem.traces, block), problem.noise, problem.gear_ratio, floor=problem.floor
+    )
 
 
 def _with_block(traces: Sequence[Trace], block: int) -> list[Trace]:

@@ -22,6 +22,8 @@ Array = npt.NDArray[np.float64]
 class Fit:
     """A hypothesis at its best: `cost` is the sum of squared weighted errors (1 per row for pure noise).
 
+    `covariance` holds for white errors of the size of the noise: see `standard_errors`.
+
     `angles` are those that its ripples, if any, follow.
     """
 
@@ -34,6 +36,8 @@ class Fit:
     errors: tuple[Errors, ...] = field(repr=False)
     rounds: int = 0
     angles: tuple[Array, ...] = field(default=(), repr=False)
+    #: Standard errors of the coordinates where other weights than those of `cost` led to them.
+    standard: Array | None = field(default=None, repr=False)
 
     @property
     def total(self) -> float:

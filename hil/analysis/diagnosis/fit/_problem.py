@@ -38,12 +38,12 @@ class Problem:
     """Recordings with the noise levels that weigh them (`noise`) and those of single readings (`floor`).
 
     `weights` are trace by trace (3,): what one block's error is multiplied by, 0 for a missing channel.
-    `angles` (rad, samples x wheel and rotor) are what ripples follow, measured ones (`search` corrects them):
-    a simulated angle drifts off as long as the model is not right, and takes the ripple's phase with it.
-    `misfit` is the variance of an error, in noise variances, that weighs what is known beforehand of a model's
-    numbers: beside errors a thousand times the noise it would say nothing, and what the recordings do not tell
-    would run away. `proven` is the largest power, (3,), that noise may have in the weighed errors of each channel.
-    A problem never changes: other angles make another one.
+    `angles` (rad, samples x wheel and rotor) are what ripples follow, measured ones (`search` corrects
+    them): a simulated angle drifts off as long as the model is not right, and takes the ripple's phase with
+    it. `misfit` is the variance of an error, in noise variances, that weighs what is known beforehand of a
+    model's numbers: beside errors a thousand times the noise it would say nothing, and what the recordings
+    do not tell would run away. `proven` is the largest power, (3,), that noise may have in the weighed
+    errors of each channel. A problem never changes: other angles make another one.
     """
 
     traces: tuple[Trace, ...]

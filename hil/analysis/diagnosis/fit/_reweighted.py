@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._thresholds import FAR_FROM_NOISE, MISS_WORSE
@@ -23,7 +24,5 @@ def reweighted(problem: Problem, best: Fit) -> Fit:
         other = problem.whitened(whitening_of(best.errors))
         again = fit(other, best.hypothesis, best.starts, best.theta)
         best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
-        # its errors are white already
-        covariance = again.covariance / max(1.0, best.cost / problem.rows)
-        best = replace(best, covariance=covariance)
+        best = replace(best, standard=standard_errors(other, again))
     return best if best.cost < MISS_WORSE**2 * plain.cost else plain

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Annotated
 
 from hil.analysis.diagnosis._threshold import Means
@@ -26,14 +24,17 @@ FAR_PRIOR: Annotated[
     float,
     Means("natural logarithm", "standard deviation of a parameter that is as good as unknown", "far"),
 ] = 0.7
-FAR_REACH: Annotated[
-    Mapping[str, float],
-    Means("natural logarithm", "a dead time that is further off is one that is missing", "far"),
-] = MappingProxyType({"torque_delay": 0.6})
+RATIO_PRIOR: Annotated[
+    float, Means("natural logarithm", "the same of a gear ratio: teeth are counted", "far")
+] = 0.1
+DELAY_REACH: Annotated[
+    float, Means("natural logarithm", "a dead time that is further off is one that is missing", "far")
+] = 0.6
 COARSE_S: Annotated[
     tuple[float, ...],
     Means("s", "means over so long are fitted first where parameters are far: slow motion, then fast", "far"),
 ] = (0.256, 0.064, 0.016)
+COARSE_BLOCKS: Annotated[int, Means("means", "of a recording: fewer tell little", "far")] = 50
 FAR_ROUNDS: Annotated[int, Means("rounds", "of each of these fits", "far")] = 8
 STEP: Annotated[
     float, Means("natural logarithm, or typical sizes", "finite difference of a coordinate", "hidden")
@@ -78,9 +79,14 @@ FAR_FROM_NOISE: Annotated[
     ),
 ] = 50.0
 
-MISS_WORSE: Annotated[
-    float, Means("times the rms error", "that other weights may cost at most", "blind")
-] = 1.1
+MISS_WORSE: Annotated[float, Means("times the rms error", "that other weights may cost at most", "blind")] = (
+    1.1
+)
+
+CLUSTER_S: Annotated[
+    float, Means("s", "of errors that may know of each other in a standard error", "covariance")
+] = 2.0
+CLUSTERS: Annotated[int, Means("stretches", "at least, of short recordings shorter ones", "covariance")] = 20
 
 WHITENING_ORDER: Annotated[
     int, Means("blocks", "memory of the filters that make errors white", "whitening")

@@ -73,10 +73,14 @@ class Evidence:
         whole = self.left(self.base)
         return 1.0 - self.left(one) / whole if whole > 0.0 else 0.0
 
+    def gaps(self, one: Fit) -> Array:
+        """Gap over noise floor of each channel, shape (3,), 1 for noise alone and where not measured."""
+        noise = np.maximum(self.split(one).noise, 1.0)
+        return np.asarray(np.sqrt(1.0 + self.physics(one) / noise))
+
     def worst(self, one: Fit) -> float:
         """Gap over noise floor of the channel that is worst off, 1 for noise alone."""
-        noise = np.maximum(self.split(one).noise, 1.0)
-        return float(np.max(np.sqrt(1.0 + self.physics(one) / noise)))
+        return float(np.max(self.gaps(one)))
 
     def between(self, poorer: Fit, richer: Fit) -> float:
         """Twice the log-likelihood ratio, deflated by the correlation time of the richer fit's errors."""

@@ -1,8 +1,9 @@
 """From which base model to search: the one that was given, or the same identified anew.
 
-A model that is near explains with few names what is missing. One that comes from a catalogue is wrong in most of
-its numbers, and no effect can make up for that: its parameters are identified first, and physics is looked for
-from there. Few names go before many numbers: the given model is left only where it leads nowhere.
+A model that is near explains with few names what is missing. One that comes from a catalogue is wrong in
+most of its numbers, and no effect can make up for that: its parameters are identified first, and physics is
+looked for from there. Few names go before many numbers: the given model is left only where it leads
+nowhere.
 """
 
 from __future__ import annotations
@@ -61,7 +62,9 @@ def search_from_base(
 def _identified(near: Found, rounded: Sequence[EffectUse], show: Callable[[str], None]) -> Found:
     show("identifying the base model anew: its numbers may be far off")
     problem, start = identified(near.evidence.problem, near.base.hypothesis)
-    return begun(problem, start, rounded)
+    found = begun(problem, start, rounded)
+    found.given = near.base
+    return found
 
 
 def _hopeless(near: Found, scores: Sequence[Score]) -> bool:

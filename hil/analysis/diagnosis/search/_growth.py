@@ -6,6 +6,7 @@ other sizes, with optional numbers, with angles aligned.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np

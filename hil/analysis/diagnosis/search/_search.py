@@ -22,6 +22,8 @@ from hil.analysis.diagnosis.search._quantization import rounding_of
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._screen import Score
 from hil.analysis.diagnosis.search._thresholds import (
+    ALONE,
+    HALF_AS_GOOD,
     LEAST_EVIDENCE,
     LEAST_SHARE,
     LEAST_SHARE_OF_REST,
@@ -31,6 +33,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     PARENTS,
     RIVAL,
 )
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
@@ -47,6 +50,13 @@ class Found:
     #: Hypotheses that the next step grows from, best first, and how many effects they have.
     frontier: list[Fit] = field(default_factory=list)
     effects: int = 0
+    #: The model as it was given, where the search began from another one.
+    given: Fit | None = None
+
+    @property
+    def clear(self) -> bool:
+        """Whether the accepted effect stands alone beside free numbers, though its law is not quite right."""
+        return self.best.hypothesis.far and stands_alone(self.evidence, self.base, self.best, self.frontier)
 
     @property
     def settled(self) -> bool:
@@ -90,7 +100,9 @@ def advanced(
     number = found.effects
     if number == MOST_EFFECTS or found.settled:
         return False
-    parents = [f for f in found.frontier[: PARENTS[number]] if found.evidence.share(f) >= LEAST_SO_FAR[number]]
+    parents = [
+        f for f in found.frontier[: PARENTS[number]] if found.evidence.share(f) >= LEAST_SO_FAR[number]
+    ]
     if not parents:
         return False
     if number:
@@ -103,7 +115,8 @@ def advanced(
     found.effects += 1
     if not frontier:
         return False
-    if earned(found.evidence, found.best, frontier[0]):
+    alone = number == 0 and stands_alone(found.evidence, found.base, frontier[0], frontier)
+    if alone or earned(found.evidence, found.best, frontier[0]):
         found.best = frontier[0]
         if found.evidence.share(found.best) > NEARLY:
             enough = RIVAL * found.evidence.left(found.best)
@@ -126,6 +139,20 @@ def earned(evidence: Evidence, poorer: Fit, richer: Fit) -> bool:
         return False
     closed = 1.0 - evidence.left(richer) / max(evidence.left(poorer), 1e-12)
     return closed > (LEAST_SHARE_OF_REST if evidence.share(poorer) > NEARLY else LEAST_SHARE)
+
+
+def stands_alone(evidence: Evidence, base: Fit, one: Fit, others: Sequence[Fit]) -> bool:
+    """Whether one effect of many laws explains a good part of what free numbers leave, and no other does.
+
+    Real friction and contact follow no law of a registry to the noise.
+    """
+    if not one.hypothesis.far or len(one.hypothesis.terms) != 1:
+        return False
+    if not EFFECTS[one.hypothesis.ids[0]].many_laws or evidence.between(base, one) < LEAST_EVIDENCE:
+        return False
+    share = evidence.share(one)
+    rest = [evidence.share(f) for f in others if f.hypothesis.keys != one.hypothesis.keys]
+    return share > ALONE and max(rest, default=0.0) < HALF_AS_GOOD * share
 
 
 def _needed(problem: Problem, found: Found) -> Found:

@@ -158,9 +158,14 @@ HOPELESS_GAP: Annotated[
 HOPELESS_PROMISE: Annotated[
     float, Means("of the gap", "an effect that promises more is looked for before numbers are", "far")
 ] = 0.65
-NUMBERS_LEAVE: Annotated[
-    float, Means("of the gap", "numbers that leave less explain most", "far")
-] = 0.2
+NUMBERS_LEAVE: Annotated[float, Means("of the gap", "numbers that leave less explain most", "far")] = 0.2
+ALONE: Annotated[
+    float,
+    Means("of what free numbers leave", "friction or contact that explains more, and alone, is named", "far"),
+] = 0.3
+HALF_AS_GOOD: Annotated[
+    float, Means("of its share", "another effect that explains less is no rival then", "far")
+] = 0.5
 MOST_EFFECTS: Annotated[int, Means("names", "at most", "blind")] = 3
 LEAST_SHARE: Annotated[float, Means("of the remaining gap", "a further effect must close it", "blind")] = 0.6
 LEAST_SHARE_OF_REST: Annotated[

@@ -9,18 +9,22 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, gap_map
 from hil.analysis.diagnosis.data._sanity import Examined
+from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._simulated import settled_starts, simulated_samples
 from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
 from hil.analysis.diagnosis.search._alignment import has_ripple
+from hil.analysis.diagnosis.search._from_base import moved
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
 from hil.analysis.diagnosis.search._tracking import track
 from hil.analysis.diagnosis.tell._confidence import alternatives_of, confidence_of, drop_of
 from hil.analysis.diagnosis.tell._consequences import consequences
-from hil.analysis.diagnosis.tell._result import Considered, Diagnosis, NamedEffect, Overlay, Verdict
+from hil.analysis.diagnosis.tell._result import Considered, Diagnosis, NamedEffect, Overlay, Start, Verdict
+from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.tell._words import Where, signature, where
+from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
@@ -80,7 +84,31 @@ class Judged:
             seconds=seconds,
             by_chance=self.by_chance,
             consequences=consequences(base.hypothesis.base, model),
+            start=self._start(kept, floor),
+            open_channels=self._open(kept),
         )
+
+    def _start(self, kept: Fit, floor: Array) -> Start | None:
+        """The numbers that had to change where the base model was far off, as they are in the end."""
+        if not kept.hypothesis.far:
+            return None
+        errors = standard_errors(self.problem, kept)
+        given, new = kept.hypothesis.base.parameters, kept.hypothesis.model(kept.theta).parameters
+        wrong = moved(kept)
+        parameters = {
+            c.name: (given[c.name], new[c.name], new[c.name] * float(error))
+            for c, error in zip(kept.hypothesis.coordinates(), errors, strict=True)
+            if c.term < 0 and c.name in wrong
+        }
+        base = self.found.base
+        shown = simulated_samples(self.problem, base.hypothesis, base.theta, base.starts)
+        names = tuple(t.name for t in self.problem.traces)
+        return Start(parameters, names, channel_gaps(self.problem.traces, floor, shown))
+
+    def _open(self, kept: Fit) -> tuple[str, ...]:
+        """Channels that keep more than noise is proven to be."""
+        gaps = self.found.evidence.gaps(kept)
+        return tuple(channel for channel, gap in zip(OUTPUTS, gaps, strict=True) if gap > CHANNEL_NOISES)
 
     def _nominal(self, problem: Problem) -> list[Array]:
         """The base model as it came, from its best initial values."""
@@ -113,7 +141,7 @@ class Judged:
 
     def _updates(self, kept: Fit) -> tuple[dict[str, tuple[float, float, float]], dict[str, float]]:
         """Corrections of base parameters beyond what noise explains, and all parameters as fitted."""
-        errors = np.sqrt(np.maximum(np.diag(kept.covariance), 0.0))
+        errors = standard_errors(self.problem, kept)
         model = kept.hypothesis.model(kept.theta)
         base = kept.hypothesis.base.parameters
         wrong = {
@@ -122,10 +150,15 @@ class Judged:
             if use.id == "parameter_mismatch" and not _within_tolerance(use, base)
         }
         updates = {}
-        for c, value, error in zip(kept.hypothesis.coordinates(), kept.theta, errors, strict=True):
-            if c.term >= 0 or c.name in wrong or abs(value) < 2.0 * error:
+        given = kept.hypothesis.base.parameters
+        if kept.hypothesis.far:
+            wrong |= {*moved(kept)}  # under `start`
+        for c, error in zip(kept.hypothesis.coordinates(), errors, strict=True):
+            if c.term >= 0 or c.name in wrong:
                 continue
-            old, new = self.found.base.hypothesis.base.parameters[c.name], model.parameters[c.name]
+            old, new = given[c.name], model.parameters[c.name]
+            if abs(np.log(new / old)) < 2.0 * error:
+                continue
             updates[c.name] = (old, new, new * float(error))
         return updates, dict(model.parameters)
 
@@ -138,13 +171,16 @@ class Judged:
         rounded: list[EffectUse],
     ) -> tuple[NamedEffect, ...]:
         uses = kept.hypothesis.model(kept.theta).effects[len(kept.hypothesis.base.effects) :]
-        errors = np.sqrt(np.maximum(np.diag(kept.covariance) * max(1.0, kept.cost / self.problem.rows), 0.0))
+        errors = standard_errors(self.problem, kept)
         named = []
         for index, use in enumerate(uses):
             if use.id == "parameter_mismatch" and _within_tolerance(use, kept.hypothesis.base.parameters):
                 continue  # a correction within the calibration tolerance is an update, not a finding
             fewer = kept.hypothesis.without(index)
             theta = carried(kept, fewer)
+            if use.id == "parameter_mismatch":  # without it the parameter is as it was
+                names = [c.name if c.term < 0 else "" for c in fewer.coordinates()]
+                theta[names.index(str(use.values["parameter"]))] = 0.0
             without = simulated_samples(self.problem, fewer, theta, kept.starts)
             standard = {}
             for c, error in zip(kept.hypothesis.coordinates(), errors, strict=True):

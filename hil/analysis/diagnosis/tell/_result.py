@@ -66,6 +66,29 @@ class Overlay:
 
 
 @dataclass(frozen=True)
+class Start:
+    """A base model that was far from the data, and was identified before physics was looked for.
+
+    `parameters` by name: as given, as in the model given back, standard error. `gap` is what other numbers
+    leave without any effect.
+    """
+
+    parameters: dict[str, tuple[float, float, float]]
+    recordings: tuple[str, ...]
+    gap: dict[str, ChannelGap]
+
+    def as_json(self) -> dict[str, Any]:
+        """As `start` of diagnosis.json."""
+        return {
+            "parameters": {
+                name: {"from": a, "to": b, "standard_error": s} for name, (a, b, s) in self.parameters.items()
+            },
+            "recordings": list(self.recordings),
+            "gap": {channel: g.gap for channel, g in self.gap.items()},
+        }
+
+
+@dataclass(frozen=True)
 class Diagnosis:
     """All that a diagnosis has to say; ratios of gaps are those of docs/reference/diagnosis.md.
 
@@ -92,12 +115,16 @@ class Diagnosis:
     seconds: float = 0.0
     by_chance: float | None = None
     consequences: dict[str, dict[str, float]] = field(default_factory=dict)
+    start: Start | None = None
+    #: Channels whose gap stays above what is proven to be noise.
+    open_channels: tuple[str, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""
         return {
             "verdict": self.verdict,
             "effects": [_effect(e) for e in self.effects],
+            **({"start": self.start.as_json()} if self.start is not None else {}),
             "parameter_updates": {
                 name: {"from": a, "to": b, "standard_error": s}
                 for name, (a, b, s) in self.parameter_updates.items()
@@ -114,6 +141,7 @@ class Diagnosis:
             ],
             "gap": _gaps(self.gap_before, self.gap_after),
             "holdout_gap": _gaps(self.holdout_before, self.holdout_after),
+            "open_channels": list(self.open_channels),
             "remaining_gap": self.signature,
             "considered": [
                 {

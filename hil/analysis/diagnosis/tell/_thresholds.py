@@ -73,6 +73,21 @@ NOISELESS: Annotated[
 SHUT_NOISELESS: Annotated[
     float, Means("share of the gap's power", "from it on a gap without noise is closed", "blind")
 ] = 0.9
+CHANNEL_NOISES: Annotated[
+    float, Means("gap over noise floor", "up to it a channel's gap is closed", "verdict")
+] = 1.5
+CHANNEL_SHUT: Annotated[
+    float,
+    Means(
+        "share of a channel's gap in power", "from it on the channel is closed: a tenth is left", "verdict"
+    ),
+] = 0.99
+HALVED: Annotated[
+    float, Means("of a channel's gap", "more may not stay of any, whatever the others do", "verdict")
+] = 0.5
+UNSEEN: Annotated[
+    float, Means("gap over noise floor", "below it a channel shows no gap that could be halved", "verdict")
+] = 1.15
 MORE: Annotated[
     float, Means("share of the gap's power", "that each further name must close besides", "blind")
 ] = 0.001

@@ -5,23 +5,55 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._result import Verdict
-from hil.analysis.diagnosis.tell._thresholds import MORE, NOISELESS, SHUT, SHUT_BY_LAW, SHUT_NOISELESS
+from hil.analysis.diagnosis.tell._thresholds import (
+    CHANNEL_NOISES,
+    CHANNEL_SHUT,
+    HALVED,
+    MORE,
+    NOISELESS,
+    SHUT,
+    SHUT_BY_LAW,
+    SHUT_NOISELESS,
+    UNSEEN,
+)
 from hil.core.effects import EFFECTS
+
+Array = npt.NDArray[np.float64]
 
 _BY_LAW = tuple(effect.id for effect in EFFECTS.values() if effect.many_laws)
 
 
 def verdict_of(found: Found, rounded: bool) -> Verdict:
-    """Named if the accepted effects close the gap, unknown if a gap stays, else none."""
+    """Named if the accepted effects close the gap, in each channel, unknown if a gap stays, else none."""
     evidence, best = found.evidence, found.best
-    if not best.hypothesis.terms:
+    ids = best.hypothesis.ids
+    if not ids:
         return verdict_without_effects(evidence.closed(best), rounded)
-    return verdict_on(
-        best.hypothesis.ids, evidence.worst(found.base), evidence.share(best), evidence.worst(best)
-    )
+    base = found.given or found.base
+    if any(open_channels(ids, evidence.gaps(base), evidence.gaps(best))):
+        return "unknown"
+    if found.clear:
+        return "named"
+    return verdict_on(ids, evidence.worst(found.base), evidence.share(best), evidence.worst(best))
+
+
+def open_channels(ids: Sequence[str], before: Array, after: Array) -> list[bool]:
+    """Which channels keep a gap that the named effects do not account for.
+
+    Args:
+        ids: of the effects.
+        before: gap over noise of each channel with the base model, shape (3,).
+        after: the same with the effects.
+    """
+    before, after = before**2 - 1.0, after**2 - 1.0  # powers over that of the noise add, ratios do not
+    least = SHUT_BY_LAW if any(id_ in _BY_LAW for id_ in ids) else CHANNEL_SHUT
+    bound = np.maximum(CHANNEL_NOISES**2 - 1.0, (1.0 - least) * before)
+    halved = (after <= HALVED**2 * before) | (after <= UNSEEN**2 - 1.0)
+    return [not fine for fine in ((after <= bound) & halved).tolist()]
 
 
 def verdict_without_effects(closed: bool, rounded: bool) -> Verdict:

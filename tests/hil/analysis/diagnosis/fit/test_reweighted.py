@@ -33,4 +33,13 @@ def test_a_fit_far_from_the_noise_keeps_its_plain_cost() -> None:
     again = reweighted(problem, one)
     plain = fit(problem, again.hypothesis, again.starts, again.theta, rounds=0)
     assert again.cost == plain.cost
-    assert not (again.covariance == plain.covariance).all()
+    assert again.standard is not None
+    assert again.cost <= (1.1**2) * one.cost
+
+
+def test_a_simulation_that_would_miss_by_more_keeps_its_weights() -> None:
+    problem = one_problem(EffectUse("backlash", {"half_gap_rad": 0.05}))
+    best = fit(problem, Hypothesis(MODEL, (EffectUse("backlash", {"half_gap_rad": 0.05}),)))
+    far = dataclasses.replace(best, errors=fit(problem, Hypothesis(MODEL), rounds=0).errors)
+    told = dataclasses.replace(far, cost=51.0 * problem.rows)
+    assert reweighted(problem, told).cost <= (1.1**2) * told.cost

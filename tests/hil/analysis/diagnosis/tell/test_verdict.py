@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.tell._verdict import verdict_on, verdict_without_effects
+from hil.analysis.diagnosis.tell._verdict import open_channels, verdict_on, verdict_without_effects
 
 LAG = ("actuator_lag",)
 
@@ -43,3 +43,21 @@ def test_without_effects(closed: bool, rounded: bool, verdict: str) -> None:
 )
 def test_with_effects(ids: tuple[str, ...], before: float, share: float, left: float, verdict: str) -> None:
     assert verdict_on(ids, before, share, left) == verdict
+
+
+@pytest.mark.parametrize(
+    ("ids", "before", "after", "open_"),
+    [
+        (LAG, (20.0, 20.0, 20.0), (1.4, 1.0, 1.9), [False, False, False]),  # within a tenth of the gap
+        (LAG, (20.0, 3.0, 1.0), (1.4, 2.9, 1.0), [False, True, False]),  # one channel kept its gap
+        (LAG, (20.0, 1.4, 1.0), (1.4, 1.39, 1.0), [False, True, False]),  # a small one too
+        (LAG, (20.0, 1.0, 1.0), (1.4, 2.0, 1.0), [False, True, False]),  # made worse
+        (LAG, (20.0, 1.0, 1.0), (1.4, 1.1, 1.0), [False, False, False]),  # within the noise's own scatter
+        (("backlash",), (20.0, 1.0, 1.0), (5.0, 1.0, 1.0), [False, False, False]),  # laws of contact are many
+        (LAG, (20.0, 1.0, 1.0), (5.0, 1.0, 1.0), [True, False, False]),
+    ],
+)
+def test_each_channel_must_close(
+    ids: tuple[str, ...], before: tuple[float, ...], after: tuple[float, ...], open_: list[bool]
+) -> None:
+    assert open_channels(ids, np.array(before), np.array(after)) == open_

@@ -1,0 +1,53 @@
+"""How well a fit knows its numbers, errors being what they are: coloured, and partly a model's misfit.
+
+Covariances of least squares hold for white errors of known size. Errors of a fit are neither: noise is
+slow, and what a formula has wrong is wrong again wherever the same happens. The sandwich estimator makes no
+assumption but that stretches of a few seconds know little of each other: it takes the spread of what each
+stretch alone would have the numbers do (H. White, Econometrica 48, 1980; clusters: Liang and Zeger,
+Biometrika 73, 1986).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.fit._errors import Errors
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._thresholds import CLUSTER_S, CLUSTERS
+
+Array = npt.NDArray[np.float64]
+
+
+def standard_errors(problem: Problem, one: Fit) -> Array:
+    """Standard error of each coordinate of a fit, the misfit that is left included.
+
+    The larger of two: that of white errors as large as those that are left, and that of the sandwich.
+    """
+    if one.standard is not None:
+        return one.standard
+    left = max(1.0, one.cost / max(problem.rows, 1))
+    white = np.diag(one.covariance) * left
+    sandwich = np.diag(one.covariance @ _spread(problem, one) @ one.covariance)
+    return np.asarray(np.sqrt(np.maximum(np.maximum(white, sandwich), 0.0)))
+
+
+def _spread(problem: Problem, one: Fit) -> Array:
+    """Sum over stretches of the outer products of their gradients, coordinates x coordinates."""
+    period = problem.traces[0].dt * problem.traces[0].block
+    lasts = sum(len(t.measured) for t in problem.traces) * period
+    length = max(1, round(min(CLUSTER_S, lasts / CLUSTERS) / period))
+    gradients = np.concatenate([_gradients(errors, length) for errors in one.errors])
+    count = len(gradients)
+    gradients = gradients - gradients.mean(axis=0)  # the prior's pull is no scatter
+    return np.asarray(gradients.T @ gradients * count / max(count - 1, 1))
+
+
+def _gradients(errors: Errors, length: int) -> Array:
+    """Gradient of each stretch of `length` blocks, initial values projected out: stretches x coordinates."""
+    basis = np.linalg.qr(errors.by_start)[0] if np.any(errors.by_start) else np.zeros((len(errors.rows), 1))
+    slopes = errors.by_coordinate - basis @ (basis.T @ errors.by_coordinate)
+    pulls = slopes * (errors.rows - basis @ (basis.T @ errors.rows))[:, None]
+    firsts = np.arange(0, len(pulls), 3 * length)  # rows are blocks x 3 channels
+    return np.asarray(np.add.reduceat(pulls, firsts, axis=0))
