@@ -17,6 +17,7 @@ import typer
 
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._log import LOG
+from hil.cli._several import each_with_its_option
 from hil.cli._streams import complain, tolerate_outputs
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.files import of_the_system
@@ -69,11 +70,12 @@ def _dispatch(arguments: list[str]) -> int:
         near = difflib.get_close_matches(name, _COMMANDS, 1)
         hint = f"did you mean '{near[0]}'?" if near else "see hil --help"
         raise BadInputError(f"there is no command '{name}'", fix=hint)
-    command = importlib.import_module(f"hil.cli.commands.{name}").command
+    module = importlib.import_module(f"hil.cli.commands.{name}")
+    command = module.command
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
     settings = {"help_option_names": ["-h", "--help"]}
     app.command(name, help=command.__doc__, context_settings=settings)(_with_exit_code(command))
-    app(arguments[1:], prog_name=f"hil {name}")
+    app(list(each_with_its_option(arguments[1:], getattr(module, "SEVERAL", ()))), prog_name=f"hil {name}")
     return 0
 
 

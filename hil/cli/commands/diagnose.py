@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+#: Options that take several values.
+SEVERAL = ("--holdout",)
+
 
 def command(
     recordings: Annotated[
@@ -17,7 +20,8 @@ def command(
     holdout: Annotated[
         list[Path] | None,
         typer.Option(
-            "--holdout", help="Recording that no fit sees, only the final figures; may be repeated."
+            "--holdout",
+            help="Recordings that no fit sees, only the final figures: all files up to the next option.",
         ),
     ] = None,
     overwrite: Annotated[
