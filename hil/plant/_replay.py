@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import INPUT, TIME, WHEEL_ANGLE
+from hil.core.channels import INPUT, OUTPUTS, TIME, WHEEL_ANGLE
 from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
@@ -24,6 +24,7 @@ _UNEVEN_SHARE = 0.01
 _START_SAMPLES = (20, 10, 5)
 _RESTING_SHARE = 0.05
 _DIVERGED = 1e12
+_SLOW_HZ = 1e-3
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,7 @@ def replay(model: Model, recording: Recording) -> Recording:
         notes.append(f"time stamps are uneven: simulated every {dt * 1e3:g} ms, interpolated back")
     else:
         dt = float((time[-1] - time[0]) / (len(time) - 1))
-    start = start_of(recording)
+    start = start_of(recording, _gear_ratio(model))
     if _rests(model, start, float(torque[0])):
         start = dataclasses.replace(start, motor_torque_nm=0.0)
     channels = simulate(model, torque, dt, start)
@@ -134,19 +135,39 @@ def _rests(model: Model, start: Start, torque_nm: float) -> bool:
     return abs(start.shaft_torque_nm) < _RESTING_SHARE * gear_ratio * abs(torque_nm)
 
 
-def start_of(recording: Recording) -> Start:
-    """Initial condition: the mean of the first samples, as many as show no motion beyond their noise."""
+def start_of(recording: Recording, gear_ratio: float | None = None) -> Start:
+    """Initial condition: the mean of the first samples, as many as show no motion beyond their noise.
 
-    def first(name: str) -> float:
-        return _beginning(recording[name]) if name in recording else 0.0
+    A speed that was not recorded follows from the other by the gear ratio; without one it is zero.
+    """
 
+    def first(name: str) -> float | None:
+        return _beginning(recording[name]) if name in recording else None
+
+    motor, wheel = first("motor_speed_rad_s"), first("wheel_speed_rad_s")
+    if gear_ratio:
+        if motor is None and wheel is not None:
+            motor = wheel * gear_ratio
+        if wheel is None and motor is not None:
+            wheel = motor / gear_ratio
     angle = float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0
     return Start(
-        first("motor_speed_rad_s"),
-        first("wheel_speed_rad_s"),
-        first("shaft_torque_nm"),
+        motor or 0.0,
+        wheel or 0.0,
+        first("shaft_torque_nm") or 0.0,
         wheel_angle_rad=angle,
     )
+
+
+def _gear_ratio(model: Model) -> float | None:
+    """Motor over wheel speed of slow motion; None where a model's functions do not have both."""
+    if "gear_ratio" in model.parameters:
+        return model.parameters["gear_ratio"]
+    both = [model.transfer_functions.get(name) for name in OUTPUTS[:2]]
+    if None in both:
+        return None
+    motor, wheel = (abs(complex(f.response(np.array(_SLOW_HZ)))) for f in both if f is not None)
+    return motor / wheel if wheel > 0.0 else None
 
 
 def _beginning(values: Array) -> float:

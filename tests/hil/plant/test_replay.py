@@ -336,6 +336,15 @@ def test_replay_gives_back_a_recording_of_the_same_model():
         np.testing.assert_allclose(got[name], truth[name], rtol=1e-12)
 
 
+@pytest.mark.parametrize("channel", ["motor_speed_rad_s", "wheel_speed_rad_s"])
+@pytest.mark.parametrize("model", [THREE, load_model(BENCHES / "paper_functions.toml")], ids=lambda m: m.kind)
+def test_a_speed_that_was_not_recorded_starts_with_the_other_over_the_gear(model, channel):
+    truth = simulate(model, np.zeros(3000), DT, Start(100.0, 100.0 / P["gear_ratio"]))
+    got = replay(model, recording(np.arange(3000) * DT, np.zeros(3000), **{channel: truth[channel]}))
+    for name in ("motor_speed_rad_s", "wheel_speed_rad_s"):
+        np.testing.assert_allclose(got[name], truth[name], rtol=1e-3)
+
+
 def test_a_recording_that_starts_with_its_torque_at_rest_has_no_torque_before():
     torque = np.full(2000, 20.0)
     truth = simulate(THREE, np.concatenate([np.zeros(50), torque]), DT)
