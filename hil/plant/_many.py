@@ -29,6 +29,8 @@ Array = npt.NDArray[np.float64]
 
 CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 SPEED, WHEEL, SHAFT = range(3)  # of the channels, and of a start
+VEHICLE, TYRE = 3, 4  # of a start alone
+STARTS = 5
 
 
 def ideal_sensors(sets: int) -> Array:
@@ -52,7 +54,9 @@ def simulate_many(
     Args:
         parameters: sets x slots, from `pack`.
         torque_nm: shape (n,), held for `dt` seconds each; the first value has acted since long before.
-        starts: sets x 3: motor speed, wheel speed (rad/s), shaft torque (N m).
+        starts: sets x 3: motor speed, wheel speed (rad/s), shaft torque (N m); or sets x 5, where three
+            inertias begin in mid-motion: vehicle less wheel speed (rad/s), and the tyre's twist beyond what
+            the shaft torque holds (rad).
         sensors: sets x 3 channels x (gain, offset, delay in s, step), as from `ideal_sensors`.
         angles: n x 2, wheel and rotor angle in rad that ripples follow (as measured); when left out, the
             simulated ones.
@@ -61,6 +65,8 @@ def simulate_many(
         sets x (n // block) x 3, in the order of `CHANNELS`. A diverged set shows as NaN or huge numbers.
     """
     sets = len(parameters)
+    begin = np.zeros((sets, STARTS))
+    begin[:, : starts.shape[1]] = starts
     substeps, varies = _parts(parameters, dt)
     most = int(substeps.max())
     transition = np.zeros((sets, X.LINEAR_STATES, X.LINEAR_STATES))
@@ -76,7 +82,7 @@ def simulate_many(
         np.ascontiguousarray(torque_nm, dtype=float),
         dt,
         np.ascontiguousarray(parameters),
-        np.ascontiguousarray(starts, dtype=float),
+        begin,
         np.ascontiguousarray(sensors, dtype=float),
         block,
         substeps,
@@ -160,9 +166,11 @@ def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
         wheel = start[SPEED] / p[P.GEAR_RATIO]
         return put(put(x, X.WHEEL_SPEED, wheel), X.VEHICLE_SPEED, wheel), memories
     twist += start[SHAFT] / p[P.SHAFT_STIFFNESS]
-    tyre = start[SHAFT] / p[P.TYRE_STIFFNESS] if p[P.KIND] == P.THREE_INERTIA else 0.0
-    x = put(put(x, X.TWIST, twist), X.TYRE_TWIST, tyre)
-    return put(put(x, X.WHEEL_SPEED, start[WHEEL]), X.VEHICLE_SPEED, start[WHEEL]), memories
+    x = put(put(x, X.TWIST, twist), X.WHEEL_SPEED, start[WHEEL])
+    if p[P.KIND] != P.THREE_INERTIA:
+        return put(x, X.VEHICLE_SPEED, start[WHEEL]), memories
+    x = put(x, X.TYRE_TWIST, start[SHAFT] / p[P.TYRE_STIFFNESS] + start[TYRE])
+    return put(x, X.VEHICLE_SPEED, start[WHEEL] + start[VEHICLE]), memories
 
 
 @inlined

@@ -16,12 +16,23 @@ from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._normal import Normal, normal_equations
-from hil.analysis.diagnosis.fit._thresholds import DIVERGED, FINE, HUGE, REST_SAMPLES, REST_SHARE, REST_SIGMAS
+from hil.analysis.diagnosis.fit._thresholds import (
+    DIVERGED,
+    FINE,
+    HUGE,
+    MID_MOTION,
+    REST_SAMPLES,
+    REST_SHARE,
+    REST_SIGMAS,
+    STEP,
+)
 from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
 
-STARTS = 3  # free initial values of each recording: motor speed, wheel speed, shaft torque
+#: Free initial values of each recording: motor speed, wheel speed, shaft torque, and where it begins in
+#: mid-motion vehicle less wheel speed and the tyre's own twist.
+STARTS = 5
 
 
 @dataclass(frozen=True)
@@ -92,7 +103,7 @@ class Problem:
                 motor = wheel * ratio if np.isfinite(wheel) else 0.0
             if not np.isfinite(wheel):
                 wheel = motor / ratio
-            starts.append(np.array([motor, wheel, shaft if np.isfinite(shaft) else 0.0]))
+            starts.append(np.array([motor, wheel, shaft if np.isfinite(shaft) else 0.0, 0.0, 0.0]))
         return starts
 
     def outputs(self, trace: int, slots: Array, sensors: Array, starts: Array) -> Array:
@@ -172,14 +183,16 @@ class Problem:
         rest can.
         """
         if not self.resting[trace]:
-            return np.zeros(STARTS)
+            return np.array([0.0, 0.0, 0.0, *(1.0 / np.array(MID_MOTION) ** 2)])
         known = np.where(np.isfinite(self.noise), self.noise, np.inf)[:2]
-        return np.array([*(1.0 / np.maximum(REST_SHARE * known, 1e-9) ** 2), 0.0])
+        firm = 1.0 / np.maximum(REST_SHARE * known, 1e-9) ** 2
+        return np.array([*firm, 0.0, *(1.0 / (REST_SHARE * np.array(MID_MOTION)) ** 2)])
 
     def start_steps(self) -> Array:
         """Sizes of the finite differences in the initial values."""
         typical = np.array([0.1, 0.0125, 1.0])
-        return np.where(np.isfinite(self.noise) & (self.noise > 0), 0.5 * self.noise, typical)
+        read = np.where(np.isfinite(self.noise) & (self.noise > 0), 0.5 * self.noise, typical)
+        return np.array([*read, *(STEP * np.array(MID_MOTION))])
 
 
 def problem_of(

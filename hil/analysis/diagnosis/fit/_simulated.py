@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import STARTS, Problem
 from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
@@ -21,11 +21,14 @@ def settled_starts(
     for index, start in enumerate(starts):
         steps = problem.start_steps()
         for _ in range(3):
-            tried = np.tile(start, (4, 1))
+            tried = np.tile(start, (1 + STARTS, 1))
             tried[1:] += np.diag(steps)
-            simulated = problem.outputs(index, np.tile(slots, (4, 1)), np.tile(sensors, (4, 1, 1)), tried)
+            sets = len(tried)
+            simulated = problem.outputs(
+                index, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried
+            )
             error = problem.errors(index, simulated[0]).ravel()
-            change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(3, -1).T / steps
+            change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(STARTS, -1).T / steps
             if not (np.isfinite(change).all() and np.any(change)):
                 break
             start = start + np.linalg.lstsq(change, error, rcond=1e-8)[0]

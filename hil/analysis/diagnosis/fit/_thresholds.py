@@ -60,6 +60,14 @@ REST_SHARE: Annotated[float, Means("of a sample's noise", "how still an axle at 
 REST_SIGMAS: Annotated[
     float, Means("standard deviations", "a mean speed nearer to zero may be rest", "problem")
 ] = 4.0
+MID_MOTION: Annotated[
+    tuple[float, float],
+    Means(
+        "rad/s and rad, wheel side",
+        "how far vehicle and wheel may differ, and the tyre be twisted, as a recording begins",
+        "problem",
+    ),
+] = (1.0, 0.1)
 REST_SAMPLES: Annotated[int, Means("samples", "in that mean", "problem")] = 20
 FINE: Annotated[
     float,

@@ -8,25 +8,54 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._simulated import settled_starts
 from hil.analysis.diagnosis.search._thresholds import (
     ALIGNMENT_LITTLE,
     ALIGNMENT_ROUNDS,
     WHOLE_ORDER,
     WHOLE_WORSE,
 )
-from hil.analysis.diagnosis.search._tracking import RIPPLES, track
+from hil.analysis.diagnosis.search._tracking import RIPPLES, angle_known, track
 
 Array = npt.NDArray[np.float64]
 
 
 def has_ripple(hypothesis: Hypothesis) -> bool:
-    """Whether a hypothesis knows a torque that follows an angle."""
+    """Whether a hypothesis or its base model knows a torque that follows an angle."""
+    return adds_ripple(hypothesis) or any(use.id in RIPPLES for use in hypothesis.base.effects)
+
+
+def adds_ripple(hypothesis: Hypothesis) -> bool:
+    """Whether a hypothesis adds one to its base model."""
     return any(term.id in RIPPLES for term in hypothesis.terms)
+
+
+def with_base_angles(problem: Problem, first: Fit) -> tuple[Problem, Fit]:
+    """Angles corrected by the ripples that the base model knows, and its fit with them."""
+    base = first.hypothesis
+    if not has_ripple(base):
+        return problem, first
+    theta, starts, turned = first.theta, first.starts, problem
+    if not all(angle_known(problem, index) for index in range(len(starts))):
+        theta = base.start()  # fitted parameters were bent to make up for a wrong phase
+        for _ in range(ALIGNMENT_ROUNDS):
+            starts = settled_starts(turned, base, theta, starts)
+            _, turned = track(turned, base, theta, starts)
+    for _ in range(ALIGNMENT_ROUNDS):
+        _, turned = track(turned, base, theta, starts)
+        again = fit(turned, base, starts, theta)
+        gain = first.total - again.total
+        if gain > 0.0:
+            problem, first = turned, again
+        if gain < ALIGNMENT_LITTLE * max(first.total - problem.rows, 0.5 * problem.rows):
+            break
+        theta, starts = again.theta, again.starts
+    return problem, first
 
 
 def aligned(problem: Problem, one: Fit) -> Fit:
     """The fit again, with angles corrected by what its ripples show."""
-    if not has_ripple(one.hypothesis):
+    if not adds_ripple(one.hypothesis):
         return one
     best = _in_turns(problem, one, one.theta)
     for index, c in enumerate(best.hypothesis.coordinates()):

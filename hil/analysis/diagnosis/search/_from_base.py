@@ -17,6 +17,7 @@ from hil.analysis.diagnosis.fit._far import identified
 from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
+from hil.analysis.diagnosis.search._alignment import with_base_angles
 from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._search import Found, advanced, begun, finished
 from hil.analysis.diagnosis.search._thresholds import (
@@ -40,7 +41,7 @@ def search_from_base(
     `base.hypothesis.far` of what is found says which.
     """
     show("fitting the base model")
-    near = begun(problem, fit(problem, base), rounded)
+    near = begun(*with_base_angles(problem, fit(problem, base)), rounded)
     if near.settled:
         return near
     show("scoring effects")

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._alignment import aligned, has_ripple
+from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
@@ -62,7 +62,7 @@ def grow(
         scores: of `screen`, where these are known already.
         beside: fits with one effect more that other numbers led to, to be fitted on from where they are.
     """
-    if has_ripple(parent.hypothesis):
+    if adds_ripple(parent.hypothesis):
         problem = evidence.problem.with_angles(parent.angles)
     else:
         problem = evidence.problem.following(parent.hypothesis, parent.theta)

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._alignment import with_base_angles
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._growth import Step, grow
 from hil.analysis.diagnosis.search._quantization import rounding_of
@@ -69,7 +70,7 @@ def search(
 ) -> Found:
     """Find the effects that the base model lacks: the fewest that close the gap."""
     show("fitting the base model")
-    return finished(begun(problem, fit(problem, base), rounded), show)
+    return finished(begun(*with_base_angles(problem, fit(problem, base)), rounded), show)
 
 
 def begun(problem: Problem, base: Fit, rounded: Sequence[EffectUse] = ()) -> Found:

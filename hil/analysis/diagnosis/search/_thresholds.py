@@ -198,6 +198,9 @@ REFINED: Annotated[int, Means("steps", "off the grid of phases", "tracking")] = 
 LEAST_STEP: Annotated[
     float, Means("rad of phase in a second", "an order may be a little off as well", "tracking")
 ] = 0.05
+KNOWN_STEP: Annotated[
+    float, Means("rad of phase in a second", "the same of an order that the model knows", "tracking")
+] = 0.0005
 START_RAD: Annotated[
     float, Means("rad", "how well the phase at the start is known once the ripple is", "tracking")
 ] = 0.3

@@ -18,6 +18,7 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis, sensors_of
 from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._thresholds import (
+    KNOWN_STEP,
     LEAST_STEP,
     NO_RIPPLE,
     PHASES,
@@ -67,8 +68,10 @@ def track(
 ) -> tuple[Array, Problem]:
     """Turn the angles of every recording to where the ripples of `hypothesis` say.
 
+    Those of the base model are known; what differs there is drift of the angles.
+
     Args:
-        order_known, phase_known: those of `theta` are right, what differs is drift of the angles.
+        order_known, phase_known: those of `theta` are right as well.
 
     Returns:
         `theta` with what all recordings have in common put into order and phase, where these are not known;
@@ -76,20 +79,22 @@ def track(
     """
     theta = theta.copy()
     coordinates = hypothesis.coordinates()
-    for term, use in enumerate(hypothesis.terms):
+    before = len(hypothesis.base.effects)
+    for position, use in enumerate((*hypothesis.base.effects, *hypothesis.terms)):
         if use.id not in RIPPLES:
             continue
         model = hypothesis.model(theta)
         column = RIPPLES[use.id][0]
-        position = len(hypothesis.base.effects) + term
+        term = position - before  # negative: of the base model, which knows its order and phase
         order = float(model.effects[position].values["order"])
         windows = [_windows(problem, model, position, index, start) for index, start in enumerate(starts)]
-        begin = START_RAD if phase_known else np.inf
-        paths = [
-            _likeliest(w, _step(problem, model.effects[position], i), begin) for i, w in enumerate(windows)
-        ]
-        more = 0.0 if order_known else _common_order(windows, paths)
-        turn = 0.0 if phase_known else _common_phase(windows, paths, order, more)
+        paths = []
+        for index, one in enumerate(windows):
+            begin = START_RAD if (phase_known if term >= 0 else angle_known(problem, index)) else np.inf
+            step = _step(problem, model.effects[position], index, LEAST_STEP if term >= 0 else KNOWN_STEP)
+            paths.append(_likeliest(one, step, begin))
+        more = 0.0 if order_known or term < 0 else _common_order(windows, paths)
+        turn = 0.0 if phase_known or term < 0 else _common_phase(windows, paths, order, more)
         angles = []
         for index, (one, path) in enumerate(zip(windows, paths, strict=True)):
             drift = path - turn - more * one.angle
@@ -100,6 +105,11 @@ def track(
             if c.term == term and c.name in ("order", "phase_rad"):
                 theta[i] += more if c.name == "order" else turn
     return theta, problem
+
+
+def angle_known(problem: Problem, index: int) -> bool:
+    """Whether a recording's angle counts from the bench's own zero, as the phases of a model do."""
+    return problem.resting[index] or problem.traces[index].first_wheel_angle_rad != 0.0
 
 
 def _turned(problem: Problem, index: int, column: int, times: Array, drift: Array) -> Array:
@@ -117,18 +127,22 @@ def tracked_gain(problem: Problem, parent: Fit, use: EffectUse) -> float:
     seen, own = 0.0, 0.0
     for index, start in enumerate(parent.starts):
         windows = _windows(problem, model, len(model.effects) - 1, index, start)
-        path = _likeliest(windows, _step(problem, model.effects[-1], index), np.inf)
+        path = _likeliest(windows, _step(problem, model.effects[-1], index, LEAST_STEP), np.inf)
         turned = np.stack([np.cos(path), np.sin(path)], axis=1)
         seen += float(np.sum(windows.seen * turned))
         own += float(np.einsum("wa,wab,wb->", turned, windows.own, turned))
     return max(seen, 0.0) ** 2 / max(own, 1e-12)
 
 
-def _step(problem: Problem, use: EffectUse, index: int) -> float:
-    """Variance of a ripple's phase from window to window, rad², for the noise of the speed it follows."""
+def _step(problem: Problem, use: EffectUse, index: int, least: float) -> float:
+    """Variance of a ripple's phase from window to window, rad², for the noise of the speed it follows.
+
+    Args:
+        least: standard deviation in a second, rad, that the order may be off by.
+    """
     noise = _followed_noise(problem, RIPPLES[use.id][1], index)
     walk = float(use.values["order"]) ** 2 * noise**2 * SLOW_NOISE * problem.traces[index].dt
-    return max(walk, LEAST_STEP**2) * WINDOW_S
+    return max(walk, least**2) * WINDOW_S
 
 
 def _followed_noise(problem: Problem, channel: int, index: int) -> float:

@@ -4,10 +4,45 @@ import pytest
 
 from hil.analysis.diagnosis import diagnose
 from hil.core.model import EffectUse, load_model
-from hil.core.recording import driven_by_torque, read_recording
+from hil.core.recording import driven_by_torque, read_recording, write_recording
 from hil.engine import RunRequest, run_plan
 from test_plans import load_plan
-from tests.benches_for_tests import SIM, sim_bench
+from tests.benches_for_tests import SIM, plan, sim_bench
+
+MODEL = load_model(SIM.simulation.model)
+# It begins in mid-motion: the third wheel order shakes the axle while the dynos hold its speed
+CHIRP = """
+  - hold_speed: {speed_km_h: 12, duration_s: 0.3}
+  - chirp: {segment: c, quantity: motor_torque, from_hz: 0.5, to_hz: 30, duration_s: 4, amplitude_nm: 20}
+"""
+
+
+@pytest.mark.slow
+def test_the_simulated_bench_agrees_with_its_own_model(tmp_path):
+    twice = plan(CHIRP + CHIRP.replace("segment: c", "segment: d"))
+    outcome = run_plan(RunRequest(twice, sim_bench("own"), tmp_path))
+    fitted, held = driven_by_torque(read_recording(outcome.recording))
+    found = diagnose(MODEL, [fitted], [held])
+    assert found.verdict == "none"
+    # what a noise floor read from four seconds may be off by
+    for after in (*found.gap_after.values(), *found.holdout_after.values()):
+        assert after.gap == pytest.approx(after.noise_floor, rel=0.08)
+
+
+@pytest.mark.slow
+def test_the_identification_plan_agrees_with_its_own_model_in_every_format(tmp_path):
+    outcome = run_plan(RunRequest(load_plan("identification"), sim_bench("formats"), tmp_path))
+    whole = read_recording(outcome.recording)
+    for ending in ("mcap", "csv", "parquet", "mf4"):
+        path = tmp_path / f"recording.{ending}"
+        if ending != "mcap":
+            write_recording(whole, path)
+        parts = driven_by_torque(read_recording(path))
+        assert len(parts) == 3
+        found = diagnose(MODEL, parts)
+        assert found.verdict == "none", ending
+        for after in found.gap_after.values():
+            assert after.gap == pytest.approx(after.noise_floor, rel=0.02)
 
 
 @pytest.mark.slow

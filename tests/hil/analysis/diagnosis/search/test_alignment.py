@@ -11,13 +11,13 @@ from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
-from hil.analysis.diagnosis.search._alignment import aligned
+from hil.analysis.diagnosis.search._alignment import aligned, with_base_angles
 from hil.analysis.diagnosis.search._screen import screen
 from hil.analysis.diagnosis.search._tracking import track, tracked_gain
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
-from hil.plant import simulate
+from hil.plant import Start, simulate
 from tests.hil.analysis.diagnosis.reference_plant import BASE
 
 MODEL = Model("three_inertia", dict(BASE))
@@ -100,3 +100,21 @@ def test_a_followed_ripple_promises_more_than_one_that_is_not(tmp_path):
     assert tracked_gain(problem, base, HIGH) > 1.5 * plain
     closed = base.cost - aligned(problem, fit(problem, Hypothesis(MODEL, (HIGH,)))).cost
     assert tracked_gain(problem, base, HIGH) == pytest.approx(closed, rel=0.1)
+
+
+def test_a_ripple_that_the_model_knows_is_followed_from_mid_motion_on():
+    ripple = EffectUse("wheel_order_disturbance", {"order": 3.0, "amplitude_nm": 30.0, "phase_rad": 0.0})
+    known = MODEL.with_effects(ripple)
+    at = np.arange(0.0, 7.0, 1e-3)
+    torque = 12.0 + 8.0 * np.sin(2 * np.pi * (0.3 * at + 0.5 * at**2))
+    clean = simulate(known, torque, 1e-3, Start(120.0, 120.0 / BASE["gear_ratio"]))
+    rng = np.random.default_rng(2)
+    channels = {TIME: at[3000:], INPUT: torque[3000:]}
+    for name, noise in zip(OUTPUTS, (0.02, 0.0015, 0.7), strict=True):
+        channels[name] = clean[name][3000:] + rng.normal(0.0, noise, 4000)
+    traces = [trace_of(Recording(channels, Path("cut.csv")))]
+    problem = problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
+    first = fit(problem, Hypothesis(known))
+    assert first.cost > 1000.0 * problem.rows  # nobody knows the wheel's angle where the recording begins
+    _, found = with_base_angles(problem, first)
+    assert found.cost < 2.0 * problem.rows
