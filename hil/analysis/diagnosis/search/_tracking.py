@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.linalg import solveh_banded
+from scipy.linalg import LinAlgError, solveh_banded
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, sensors_of
 from hil.analysis.diagnosis.fit._fit import Fit, carried
@@ -249,7 +249,13 @@ def _smoothed(windows: _Windows, path: Array, size: float, step: float) -> Array
         steps = np.diff(path) / step
         pull[:-1] += steps
         pull[1:] -= steps
-        path = path + np.clip(solveh_banded(bands, pull), -_GRID, _GRID)
+        if not (np.isfinite(bands).all() and np.isfinite(pull).all() and bands[1].min() > 0.0):
+            break  # numbers beyond a double's range: the grid's phase is as good as any
+        try:
+            moved = solveh_banded(bands, pull)
+        except LinAlgError:  # not positive definite to its last digits
+            break
+        path = path + np.clip(np.nan_to_num(moved), -_GRID, _GRID)
     return np.asarray(path)
 
 

@@ -11,7 +11,7 @@ from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._sanity import examine
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._problem import problem_of
-from hil.analysis.diagnosis.search._tracking import track
+from hil.analysis.diagnosis.search._tracking import _smoothed, _Windows, track
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.degenerate import MODEL, recording
@@ -40,3 +40,14 @@ def test_one_channel_alone_is_enough(id_: str, channel: str) -> None:
 def test_a_simulation_that_diverges_says_nothing_of_the_phase(amplitude_nm: float) -> None:
     found = followed("wheel_order_disturbance", *OUTPUTS, amplitude_nm=amplitude_nm)
     assert not np.any(np.isnan(found))
+
+
+@pytest.mark.parametrize("size", [np.nan, np.inf, 1e200])
+def test_windows_that_broke_down_leave_the_phase_where_it_was(size: float) -> None:
+    count = 12
+    own = np.tile(np.eye(2), (count, 1, 1))
+    own[3] *= size
+    windows = _Windows(own, np.full((count, 2), 1.0), np.arange(count) * 0.1, np.arange(count) * 1.0)
+    with np.errstate(all="ignore"):  # as a diagnosis computes
+        path = _smoothed(windows, np.full(count, 0.5), 1e60, 1e-6)
+    assert np.all(np.isfinite(path))
