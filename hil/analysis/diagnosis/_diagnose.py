@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
+from hil.analysis.diagnosis.data._proven import checked_noise
 from hil.analysis.diagnosis.data._sanity import examined
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._problem import problem_of
@@ -14,6 +16,7 @@ from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._from_base import search_from_base
 from hil.analysis.diagnosis.tell._confidence import drop_of
 from hil.analysis.diagnosis.tell._judged import Judged
+from hil.analysis.diagnosis.tell._least import checked_least
 from hil.analysis.diagnosis.tell._result import Diagnosis
 from hil.analysis.diagnosis.tell._verdict import verdict_of
 from hil.analysis.plausible import refuse_same_data, within_floating_point
@@ -27,6 +30,8 @@ def diagnose(
     recordings: Sequence[Recording],
     holdout: Sequence[Recording] = (),
     *,
+    noise: Mapping[str, float] | None = None,
+    least: Mapping[str, float] | None = None,
     show: Callable[[str], None] = lambda text: None,
 ) -> Diagnosis:
     """Say which effects `model` lacks to explain `recordings`, and by how much they close the gap.
@@ -34,6 +39,8 @@ def diagnose(
     Args:
         model: rigid, two_inertia or three_inertia.
         holdout: recordings that no fit sees, only the final figures.
+        noise: standard deviation of a sample that a channel's sensor is known to have, by channel.
+        least: smallest size of an effect that is worth a name, by effect; others have sizes of their own.
         show: told what is going on.
 
     Raises:
@@ -47,14 +54,24 @@ def diagnose(
             fix="give the chain that `hil identify` writes as physical.toml",
         )
     refuse_same_data(recordings, holdout)
+    asked = Asked(checked_noise(noise or {}), checked_least(least or {}))
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
-        return _diagnosed(model, recordings, holdout, show)
+        return _diagnosed(model, recordings, holdout, asked, show)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a user knows or wants beside model and recordings."""
+
+    noise: dict[str, float]
+    least: dict[str, float]
 
 
 def _diagnosed(
     model: Model,
     recordings: Sequence[Recording],
     holdout: Sequence[Recording],
+    asked: Asked,
     show: Callable[[str], None],
 ) -> Diagnosis:
     began = time.perf_counter()
@@ -64,7 +81,8 @@ def _diagnosed(
     traces, noise = seen.traces, seen.noise
     notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + seen.notes
     rounded = grids(traces, noise)
-    problem = problem_of(traces, coarse_noise(noise, rounded), model.parameters["gear_ratio"], floor=noise)
+    ratio = model.parameters["gear_ratio"]
+    problem = problem_of(traces, coarse_noise(noise, rounded), ratio, floor=noise, stated=asked.noise)
     hypothesis = Hypothesis(model)
     found = search_from_base(problem, hypothesis, show, rounded)
     problem = problem.with_angles(found.best.angles)
@@ -77,5 +95,5 @@ def _diagnosed(
             verdict = "none" if found.evidence.closed(found.base) else "unknown"
     if verdict == "named":
         found.best = reweighted(problem, found.best)
-    judged = Judged(problem, found, verdict, held, by_chance)
+    judged = Judged(problem, found, verdict, held, by_chance, asked.least)
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)

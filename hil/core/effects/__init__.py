@@ -4,7 +4,7 @@ To add one, write a file beside these (or in a package of your own with an entry
 docs/how-to/own-effect.md.
 """
 
-from hil.core.effects._effect import SENSED, Effect, Memory, Parameter, Stage, finite_number, shown
+from hil.core.effects._effect import SENSED, Effect, Least, Memory, Parameter, Stage, finite_number, shown
 from hil.core.effects._law import Law, Motion
 from hil.core.effects._probe import (
     STRETCH,
@@ -31,6 +31,7 @@ __all__ = [
     "Direction",
     "Effect",
     "Law",
+    "Least",
     "Memory",
     "Motion",
     "Parameter",

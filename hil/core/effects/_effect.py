@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Literal
 
 from hil.core.channels import OUTPUTS
 from hil.core.effects._law import Law
@@ -80,6 +81,18 @@ class Parameter:
 
 
 @dataclass(frozen=True)
+class Least:
+    """The smallest size of an effect that is worth a name: what a bench's instruments are good to.
+
+    `amount` counts from where the effect does nothing (`off`) in the unit of its first acting number, or in
+    samples, in largest torque requests, or in rms readings of its channel.
+    """
+
+    amount: float
+    of: Literal["", "samples", "largest torque", "rms reading"] = ""
+
+
+@dataclass(frozen=True)
 class Memory:
     """The number that an effect keeps from step to step."""
 
@@ -107,6 +120,7 @@ class Effect:
         kin: effects that look like it, tried along with it.
         abrupt: errors have false minima in its size: fits are repeated from other sizes.
         many_laws: formulas for it differ, so that one of them never closes a gap to the noise.
+        least: the smallest size worth naming; None: any that the data prove.
         derived: numbers that users know beside the fitted ones: of its values, name (with its unit): number.
     """
 
@@ -128,6 +142,7 @@ class Effect:
     kin: tuple[str, ...] = ()
     abrupt: bool = False
     many_laws: bool = False
+    least: Least | None = None
     derived: Callable[[Mapping[str, float]], Mapping[str, float]] | None = None
     source: str = ""
 

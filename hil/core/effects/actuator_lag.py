@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._effect import Effect, Least, Parameter, Stage
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probe, Scene, sized
 
@@ -29,6 +29,7 @@ EFFECT = Effect(
     shown_by="A chirp up to 30 Hz with little noise: the amplitude above 15 Hz tells lag from dead time.",
     parameters=(Parameter("time_constant_s", "s", 0.0, 1.0, "time constant of the lag", within=(0.0, 0.3)),),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    least=Least(0.05, "samples"),
     law=Law(chain=_lag),
     probes=_probes,
     kin=("dead_time", "channel_skew"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._effect import Effect, Least, Parameter, Stage
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probe, Scene, reading
 
@@ -28,6 +28,7 @@ EFFECT = Effect(
     parameters=(Parameter("delay_s", "s", -0.5, 0.5, "how late the channel is", typical=1e-3),),
     text_parameters=("channel",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    least=Least(0.05, "samples"),
     law=Law(reads="delay_s"),
     probes=_probes,
     kin=("dead_time", "actuator_lag"),

@@ -15,7 +15,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from hil.core.chain import Chain
-from hil.core.effects._effect import Effect, Memory, Parameter, Stage
+from hil.core.effects._effect import Effect, Least, Memory, Parameter, Stage
 from hil.core.effects._law import Law, Motion, Values
 from hil.core.effects._probe import Direction, Probe, Scene
 from hil.core.effects._probe import Values as Named
@@ -122,6 +122,7 @@ EFFECT = Effect(
             opens=(3e-3, 0.03, 0.3),
         ),
     ),
+    least=Least(1e-4, "largest torque"),
     law=Law(dry=_dry, loss=_loss, remember=_remember, steps=_steps, steady=_steady),
     sizes=("torque_nm", "stribeck_torque_nm", "offset_nm"),
     memory=Memory("1", "friction over its level, while it turns around"),

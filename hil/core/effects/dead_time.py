@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._effect import Effect, Least, Parameter, Stage
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probe, Scene, scaled, sized
 
@@ -31,6 +31,7 @@ EFFECT = Effect(
         Parameter("extra_delay_s", "s", -0.05, 0.5, "added to the model's torque_delay", typical=1e-3),
     ),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    least=Least(0.05, "samples"),
     law=Law(chain=_later),
     probes=_probes,
     kin=("actuator_lag", "channel_skew"),

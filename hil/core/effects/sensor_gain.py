@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._effect import Effect, Least, Parameter, Stage
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probe, Scene, reading
 
@@ -24,6 +24,8 @@ EFFECT = Effect(
     parameters=(Parameter("gain", "", -100.0, 100.0, "reading per truth", typical=0.01),),
     text_parameters=("channel",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    off=1.0,
+    least=Least(5e-4),
     law=Law(reads="gain"),
     probes=_probes,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._effect import Effect, Least, Parameter, Stage
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probe, Scene, reading
 
@@ -24,6 +24,7 @@ EFFECT = Effect(
     parameters=(Parameter("offset", "channel's", -1e6, 1e6, "added to the truth", typical=0.1),),
     text_parameters=("channel",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    least=Least(5e-4, "rms reading"),
     law=Law(reads="offset"),
     probes=_probes,
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from hil.core.effects._effect import Effect, Parameter, Stage
+from hil.core.effects._effect import Effect, Least, Parameter, Stage
 from hil.core.effects._law import Law, Values
 from hil.core.effects._probe import Probe, Scene, sized
 
@@ -29,6 +29,7 @@ EFFECT = Effect(
     shown_by="Chirp at two amplitudes around zero torque.",
     parameters=(Parameter("half_width_nm", "N m", 0.0, 1e4, "half of the dead band's width"),),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
+    least=Least(2e-4, "largest torque"),
     law=Law(shape=_lose),
     probes=_probes,
     abrupt=True,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -21,10 +22,12 @@ from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
 from hil.analysis.diagnosis.search._tracking import track
 from hil.analysis.diagnosis.tell._confidence import alternatives_of, confidence_of, drop_of
 from hil.analysis.diagnosis.tell._consequences import consequences
+from hil.analysis.diagnosis.tell._least import worth_naming
 from hil.analysis.diagnosis.tell._result import Considered, Diagnosis, NamedEffect, Overlay, Start, Verdict
 from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.tell._words import Where, signature, where
 from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
@@ -39,6 +42,8 @@ class Judged:
     verdict: Verdict
     holdout: Examined
     by_chance: float | None = None
+    #: Smallest sizes worth naming that a user set, by effect.
+    least: Mapping[str, float] = field(default_factory=dict)
 
     def diagnosis(self, rounded: list[EffectUse], notes: list[str], seconds: float) -> Diagnosis:
         base, best = self.found.base, self.found.best
@@ -57,8 +62,11 @@ class Judged:
         model = model.with_effects(*_lasting(model), *tail)
         held_before, held_after = self._held(kept)
         effects = self._effects(kept, after, map_before, map_after, rounded) if verdict == "named" else ()
+        traces = problem.traces
+        small = [e for e in effects if not worth_naming(e.use, traces, self.least)]
+        effects = tuple(e for e in effects if e not in small)
         if verdict == "named" and not effects:
-            # Small corrections of parameters were all that was found: do they explain the data?
+            # Small corrections were all that was found: do they explain the data?
             verdict = "none" if self.found.evidence.closed(kept) else "unknown"
         overlays = tuple(
             Overlay(t.name, t.dt, t.torque, t.samples, b, a)
@@ -69,7 +77,7 @@ class Judged:
             base=base.hypothesis.base,
             model=model,
             effects=effects,
-            parameter_updates=updates,
+            parameter_updates=updates | _as_corrections(small),
             alternatives=alternatives_of(self.found, verdict),
             considered=self._considered(kept),
             gap_before=channel_gaps(problem.traces, floor, before),
@@ -225,6 +233,18 @@ def _reason(one: Fit | None, gain: float, fits: list[Fit]) -> str:
     if fits and one is not fits[0]:
         return f"leaves {np.sqrt(one.cost / fits[0].cost):.3g} times the gap of {fits[0].hypothesis.ids[-1]}"
     return "closes too small a share of what is left"
+
+
+def _as_corrections(small: Sequence[NamedEffect]) -> dict[str, tuple[float, float, float]]:
+    """Effects too small to be named, as corrections of numbers that were where they do nothing."""
+    found = {}
+    for effect in small:
+        about = [str(v) for v in effect.use.values.values() if isinstance(v, str)]
+        for name, error in effect.standard_error.items():
+            neutral = EFFECTS[effect.use.id].off if name in EFFECTS[effect.use.id].acting() else 0.0
+            key = ".".join([effect.use.id, *about, name])
+            found[key] = (neutral, float(effect.use.values[name]), error)
+    return found
 
 
 def _clean(use: EffectUse) -> EffectUse:

@@ -1,0 +1,54 @@
+"""Effects that are there and do not matter: smaller than what a bench's instruments are good to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from hil.analysis.diagnosis.data._trace import Trace
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
+from hil.core.errors import BadInputError
+from hil.core.model import EffectUse
+
+
+def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, float]) -> bool:
+    """Whether an effect is at least as large as the smallest size worth a name.
+
+    Args:
+        least: sizes that a user set, by effect, in the unit of the effect's first number.
+    """
+    effect = EFFECTS[use.id]
+    known = {p.name: p.default for p in effect.parameters if p.optional} | dict(use.values)
+    size = max(abs(float(known[name]) - effect.off) for name in effect.acting())
+    if use.id in least:
+        return size >= least[use.id]
+    if effect.least is None:
+        return True
+    unit = 1.0
+    if effect.least.of == "samples":
+        unit = traces[0].dt
+    elif effect.least.of == "largest torque":
+        unit = max(float(np.max(np.abs(t.torque))) for t in traces)
+    elif effect.least.of == "rms reading":
+        column = OUTPUTS.index(str(use.values["channel"]))
+        readings = np.concatenate([t.samples[:, column] for t in traces if t.has[column]])
+        unit = float(np.sqrt(np.mean(readings**2)))
+    return size >= effect.least.amount * unit
+
+
+def checked_least(least: Mapping[str, float]) -> dict[str, float]:
+    """Smallest sizes that a user set.
+
+    Raises:
+        BadInputError: no such effect, or a size that is none.
+    """
+    for id_, size in least.items():
+        if id_ not in EFFECTS:
+            raise BadInputError(
+                f"unknown effect '{id_}'", where="--least", fix=f"effects: {', '.join(EFFECTS)}"
+            )
+        if not (np.isfinite(size) and size >= 0.0):
+            raise BadInputError(f"{id_}={size:g}", where="--least", fix="give a size from 0 up")
+    return dict(least)
