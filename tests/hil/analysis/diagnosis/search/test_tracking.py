@@ -46,8 +46,8 @@ def test_a_simulation_that_diverges_says_nothing_of_the_phase(amplitude_nm: floa
 def test_windows_that_broke_down_leave_the_phase_where_it_was(size: float) -> None:
     count = 12
     own = np.tile(np.eye(2), (count, 1, 1))
-    own[3] *= size
-    windows = _Windows(own, np.full((count, 2), 1.0), np.arange(count) * 0.1, np.arange(count) * 1.0)
+    own[3] = size
+    windows = _Windows(own, np.ones((count, 2)), np.linspace(0.0, 1.1, count), np.linspace(0.0, 11.0, count))
     with np.errstate(all="ignore"):  # as a diagnosis computes
         path = _smoothed(windows, np.full(count, 0.5), 1e60, 1e-6)
     assert np.all(np.isfinite(path))
