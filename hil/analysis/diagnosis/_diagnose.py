@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
 from hil.analysis.diagnosis.data._proven import checked_noise
 from hil.analysis.diagnosis.data._sanity import examined
-from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis, untold
 from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
@@ -83,7 +83,7 @@ def _diagnosed(
     rounded = grids(traces, noise)
     ratio = model.parameters["gear_ratio"]
     problem = problem_of(traces, coarse_noise(noise, rounded), ratio, floor=noise, stated=asked.noise)
-    hypothesis = Hypothesis(model)
+    hypothesis = Hypothesis(model, held=untold(traces))
     found = search_from_base(problem, hypothesis, show, rounded)
     problem = problem.with_angles(found.best.angles)
     show("judging")

@@ -43,10 +43,15 @@ class Split:
     noise: Array
     deviation: Array
 
-    def within(self, proven: Array) -> Split:
-        """No more noise than is proven, `proven` (3,) in the same unit: what lies above it is physics."""
-        noise = np.minimum(self.noise, proven)
-        return Split(self.physics + self.noise - noise, noise, self.deviation)
+    def within(self, proven: Array, white: Array) -> Split:
+        """No more noise than is proven, and no less than what is white, both (3,) in the same unit.
+
+        What lies above the one is physics, and physics is at most what lies above the other: in a closed loop
+        noise is in the request too, and coherent with all that follows from it.
+        """
+        power = self.physics + self.noise
+        noise = np.clip(self.noise, np.minimum(white, power), np.maximum(proven, white))
+        return Split(power - noise, noise, self.deviation)
 
 
 def split(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Array]) -> Split:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._thresholds import (
     DELAY_REACH,
     FAR_PRIOR,
@@ -43,13 +45,15 @@ class Coordinate:
 class Hypothesis:
     """A base model with effects added; `open` names optional effect parameters that are fitted too.
 
-    Where `far`, the base model's numbers are not trusted: all of them may go far.
+    Where `far`, the base model's numbers are not trusted: all of them may go far. Those that are `held`
+    stay as they are: the recordings cannot tell them.
     """
 
     base: Model
     terms: tuple[EffectUse, ...] = ()
     open: tuple[str, ...] = ()
     far: bool = False
+    held: tuple[str, ...] = ()
 
     @property
     def ids(self) -> tuple[str, ...]:
@@ -75,7 +79,7 @@ class Hypothesis:
         found = []
         for name in parameter_names(self.base.kind):
             value = self.base.parameters[name]
-            if value == 0.0 or (name == "torque_delay" and "dead_time" in self.ids):
+            if value == 0.0 or name in self.held or (name == "torque_delay" and "dead_time" in self.ids):
                 continue
             reach, prior = self._freedom(name)
             if name in wrong:
@@ -147,6 +151,12 @@ class Hypothesis:
         """Slots of the plant and sensors (3 x 3) at `theta`."""
         model = self.model(theta)
         return pack(model), sensors_of(model)
+
+
+def untold(traces: Sequence[Trace]) -> tuple[str, ...]:
+    """Parameters that no recording can tell: one speed alone knows nothing of a gear."""
+    channels = np.any([t.has for t in traces], axis=0)
+    return ("gear_ratio",) if np.count_nonzero(channels) == 1 else ()
 
 
 def key_of(term: EffectUse) -> tuple[str, str]:

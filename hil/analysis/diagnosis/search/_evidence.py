@@ -10,7 +10,14 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data._coherence import Split, split
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._thresholds import NEARLY_ALL, NOTHING, SIGMAS, SMALL, SMALLISH
+from hil.analysis.diagnosis.search._thresholds import (
+    NEARLY_ALL,
+    NOTHING,
+    SIGMAS,
+    SMALL,
+    SMALLISH,
+    WHITE_AT_LEAST,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -89,9 +96,10 @@ class Evidence:
 
 
 def split_of(problem: Problem, one: Fit) -> Split:
-    """Physics and noise in the errors of a fit, no more noise than is proven."""
+    """Physics and noise in the errors of a fit, no more noise than is proven, no less than is white."""
     parts = split(problem.traces, problem.weights, [errors.channels for errors in one.errors])
-    return parts.within(problem.proven)
+    white = np.nan_to_num(problem.floor / problem.noise) ** 2
+    return parts.within(problem.proven, WHITE_AT_LEAST * white)
 
 
 def colour(one: Fit) -> float:

@@ -64,5 +64,5 @@ def mismatches(hypothesis: Hypothesis) -> list[EffectUse]:
         for name in parameter_names(hypothesis.base.kind)
         if hypothesis.base.parameters[name] > 0.0
         and ("parameter_mismatch", name) not in taken
-        and name != "torque_delay"
+        and name not in ("torque_delay", *hypothesis.held)
     ]

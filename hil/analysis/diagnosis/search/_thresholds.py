@@ -46,6 +46,9 @@ SMALL: Annotated[
 SMALLISH: Annotated[
     float, Means("gap over noise floor", "the same, once 99 % of the gap are closed", "evidence")
 ] = 1.1
+WHITE_AT_LEAST: Annotated[
+    float, Means("of the white noise", "is in any error: its level is known to a few per cent", "evidence")
+] = 0.95
 NEARLY_ALL: Annotated[
     float, Means("of the whole gap", "once it is closed a little more may be left", "evidence")
 ] = 0.99
@@ -59,7 +62,7 @@ FAR: Annotated[
 ] = 50.0
 DOUBT: Annotated[
     float, Means("factor of the total", "price of a fault in a sensor far from the noise", "rank")
-] = 1.5
+] = 2.5
 CONTENDER: Annotated[
     float, Means("times what the best leaves", "far from the noise its optional numbers are tried too", "far")
 ] = 1.5

@@ -65,7 +65,8 @@ def test_a_stated_noise_counts_for_its_channel():
     assert found == pytest.approx([UNPROVEN, 4 * 25 * SLOW_UNPROVEN**2, UNPROVEN])
 
 
-def test_what_is_above_the_proven_noise_is_physics():
-    parts = Split(np.array([0.0, 1.0, 0.0]), np.array([9.0, 2.0, 0.0]), np.zeros(3)).within(np.full(3, 3.0))
-    assert parts.physics.tolist() == [6.0, 1.0, 0.0]
-    assert parts.noise.tolist() == [3.0, 2.0, 0.0]
+def test_what_is_above_the_proven_noise_is_physics_and_what_is_below_the_white_is_not():
+    parts = Split(np.array([0.0, 1.0, 0.6, 0.5]), np.array([9.0, 2.0, 0.5, 0.1]), np.zeros(4))
+    parts = parts.within(np.full(4, 3.0), np.ones(4))
+    assert parts.physics == pytest.approx([6.0, 1.0, 0.1, 0.0])
+    assert parts.noise == pytest.approx([3.0, 2.0, 1.0, 0.6])
