@@ -32,6 +32,7 @@ _HEADLINES = {
     "unknown": "A gap that no known effect closes",
 }
 _MOST_CONSIDERED = 20
+_MOST_WORSE = 3
 _DARKEST = 30.0  # error over noise
 _FIGURES = {
     "overshoot_shaft_torque_percent": "overshoot of the shaft torque, %",
@@ -61,19 +62,21 @@ def lead(found: Diagnosis) -> str:
 
 
 def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
-    return {c: g.gap / max(g.noise_floor, 1e-12) for c, g in gaps.items()}
+    return {c: _ratio(g) for c, g in gaps.items()}
 
 
 def parts(found: Diagnosis) -> list[Part]:
     """All sections in order; one without tables, maps, figures and text has nothing to tell."""
     overlay = shown_overlay(found)
     return [
+        Part("start", "Identified first", _start_text(found), _if_any(_start(found))),
         Part("effects", "Effects named", _effects_text(found), _if_any(_effects(found))),
         Part(
             "gap",
             "Gap per channel",
-            "Rms of measured minus simulated over rms of the measured channel around its mean. The noise "
-            "floor is the same ratio for the noise, estimated from the spectrum above all modes.",
+            "Rms of measured minus simulated in per cent of the rms of the measured channel around its "
+            "mean. The noise floor is the same for the noise that is proven: by the spectrum above all "
+            f"modes, by rest, by repeats of a request, or as stated.{_what_stays(found)}",
             _gaps(found),
         ),
         Part(
@@ -161,16 +164,35 @@ def _gaps(found: Diagnosis) -> tuple[Table, ...]:
         rows = tuple(
             (
                 channel_label(c).text,
-                quantities.number(before[c].gap, significant=3),
-                quantities.number(after[c].gap, significant=3),
-                quantities.number(after[c].noise_floor, significant=3),
-                f"{after[c].gap / max(after[c].noise_floor, 1e-12):.2f}",
+                *(quantities.number(100.0 * v, significant=3) for v in _figures(before[c], after[c])),
+                quantities.number(_ratio(before[c]), significant=3),
+                quantities.number(_ratio(after[c]), significant=3),
             )
             for c in after
         )
         if rows:
-            tables.append(Table((name, "before", "after", "noise floor", "after / noise"), rows))
+            head = (name, "before, %", "after, %", "noise floor, %", "before / noise", "after / noise")
+            tables.append(Table(head, rows))
     return tuple(tables)
+
+
+def _figures(before: ChannelGap, after: ChannelGap) -> tuple[float, float, float]:
+    return before.gap, after.gap, after.noise_floor
+
+
+def _ratio(gap: ChannelGap) -> float:
+    return gap.gap / max(gap.noise_floor, 1e-12)
+
+
+def _what_stays(found: Diagnosis) -> str:
+    """What a name leaves, and where it makes things worse."""
+    said = ""
+    if found.open_channels:
+        names = ", ".join(channel_label(c).text.lower() for c in found.open_channels)
+        said += f" What stays is more than noise: {names}."
+    if found.worse:
+        said += f" Made worse: {'; '.join(found.worse[:_MOST_WORSE])}."
+    return said
 
 
 def _maps(found: Diagnosis) -> tuple[Map, ...]:
@@ -205,19 +227,48 @@ def _cell(ratio: float) -> Cell:
     return Cell(quantities.number(ratio, significant=2), round(shade, 3))
 
 
+def _start_text(found: Diagnosis) -> str:
+    if found.start is None:
+        return ""
+    gaps = ", ".join(
+        f"{channel_label(c).text.lower()} {100.0 * g.gap:.3g} %" for c, g in found.start.gap.items()
+    )
+    return (
+        "The base model was far from the data as a whole: its numbers were wrong, which is not physics "
+        f"that is missing. Other numbers alone, from {', '.join(found.start.recordings)}, leave a gap "
+        f"of {gaps}."
+    )
+
+
+def _start(found: Diagnosis) -> Table:
+    return _changes(found.start.parameters if found.start is not None else {})
+
+
 def _parameters(found: Diagnosis) -> Table:
+    return _changes(found.parameter_updates)
+
+
+def _changes(changes: Mapping[str, tuple[float, float, float]]) -> Table:
     rows = tuple(
         (
             name,
             quantities.number(old),
             quantities.number(new),
             quantities.number(error, significant=2),
-            f"{new / old - 1.0:+.2%}",
-            parameter_unit(name),
+            f"{new / old - 1.0:+.2%}" if old else quantities.DASH,
+            _unit(name),
         )
-        for name, (old, new, error) in found.parameter_updates.items()
+        for name, (old, new, error) in changes.items()
     )
     return Table(("parameter", "from", "to", "standard error", "change", "unit"), rows, 1, 5)
+
+
+def _unit(name: str) -> str:
+    """Unit of a base parameter, or of an effect's number (its id, what it speaks of, its name)."""
+    id_, _, number = name.partition(".")
+    if not number:
+        return parameter_unit(name)
+    return EFFECTS[id_].parameter(number.rpartition(".")[2]).unit
 
 
 def _consequences(found: Diagnosis) -> Table:

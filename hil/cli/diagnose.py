@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.analysis.diagnosis import LEAST_SAMPLES, Diagnosis, diagnose
+from hil.cli._named_numbers import named_numbers
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import results_in
 from hil.core.errors import BadInputError
@@ -17,6 +18,7 @@ from reports.quantities import chance
 
 _FILES = ("model.toml", "diagnosis.json", "report.html", "report.pdf")
 _WORTH_A_LINE = 0.02
+_MOST_WORSE = 3
 
 
 def carry_out(
@@ -25,18 +27,21 @@ def carry_out(
     model: Path,
     out: Path,
     holdout: list[Path] | None,
+    noise: list[str] | None,
+    least: list[str] | None,
     overwrite: bool,
     json_: bool,
 ) -> int:
     """Carry the command out; its exit code."""
     base = load_model(model)
+    known, smallest = named_numbers(noise or [], "--noise"), named_numbers(least or [], "--least")
     _refuse_twice(recordings, holdout or [])
     inputs = [model, *recordings, *(holdout or [])]
     with results_in(out, _FILES, inputs=inputs, overwrite=overwrite, summary="diagnosis.json") as place:
         with progress("diagnosis") as show:
             read = _read(recordings, show)
             held = _read(holdout or [], show)
-            found = diagnose(base, read, held, show=show)
+            found = diagnose(base, read, held, noise=known, least=smallest, show=show)
             show("writing the report")
             files = output_files(found, model.name)
         place.write(files, inputs)
@@ -134,6 +139,9 @@ def text_of(found: Diagnosis, out: Path) -> str:
             lines.append(f"{name + suffix:<28}{shown}{gap.gap / max(gap.noise_floor, 1e-12):>13.3g}")
     if found.open_channels and found.verdict == "named":
         lines.append(f"what stays is more than noise: {', '.join(found.open_channels)}")
+    lines += [f"made worse: {place}" for place in found.worse[:_MOST_WORSE]]
+    if len(found.worse) > _MOST_WORSE:
+        lines.append(f"made worse: {len(found.worse) - _MOST_WORSE} more, see diagnosis.json")
     lines += [f"note: {note}" for note in found.notes]
     plans = sorted({a.plan for a in found.alternatives if a.plan and a.plan_text})
     lines += ["", f"written to {out}: {', '.join([*_FILES, *plans])}"]

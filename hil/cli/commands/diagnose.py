@@ -24,6 +24,22 @@ def command(
             help="Recordings that no fit sees, only the final figures: all files up to the next option.",
         ),
     ] = None,
+    noise: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--noise",
+            metavar="CHANNEL=VALUE",
+            help="Standard deviation of a sample of a channel, as its sensor's data sheet says; repeatable.",
+        ),
+    ] = None,
+    least: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--least",
+            metavar="EFFECT=SIZE",
+            help="Smallest size of an effect that is worth a name, in its own unit; repeatable.",
+        ),
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an earlier diagnosis in --out.")
     ] = False,
@@ -36,5 +52,12 @@ def command(
     from hil.cli.diagnose import carry_out
 
     return carry_out(
-        recordings=recordings, model=model, out=out, holdout=holdout, overwrite=overwrite, json_=json_
+        recordings=recordings,
+        model=model,
+        out=out,
+        holdout=holdout,
+        noise=noise,
+        least=least,
+        overwrite=overwrite,
+        json_=json_,
     )

@@ -8,7 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data._thresholds import HIGH_SPEED, LARGE_TORQUE, REVERSAL_S, STANDSTILL_SHARE
+from hil.analysis.diagnosis.data._thresholds import (
+    HIGH_SPEED,
+    LARGE_TORQUE,
+    REVERSAL_S,
+    STANDSTILL_SHARE,
+    WORSE,
+    WORSE_NOISES,
+)
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import OUTPUTS
 
@@ -73,6 +80,21 @@ def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -
     with np.errstate(invalid="ignore", divide="ignore"):
         condition = np.sqrt(sums / counts[:, None])
     return GapMap(tuple(t.name for t in traces), bands, condition)
+
+
+def made_worse(before: GapMap, after: GapMap) -> list[str]:
+    """In words where the error grew: channel, band and recording, worst first."""
+    grown = np.nan_to_num(after.by_band) > np.maximum(WORSE_NOISES, WORSE * np.nan_to_num(before.by_band))
+    places = sorted(np.argwhere(grown).tolist(), key=lambda place: -after.by_band[tuple(place)])
+    words = []
+    for row, column, band in places:
+        low, high = BANDS_HZ[band]
+        old, new = before.by_band[row, column, band], after.by_band[row, column, band]
+        words.append(
+            f"{OUTPUTS[column]} at {low:g}-{high:g} Hz in {before.recordings[row]}: "
+            f"from {old:.2g} to {new:.2g} times the noise"
+        )
+    return words
 
 
 def _band_ratios(error: Array, dt: float) -> Array:

@@ -19,6 +19,8 @@ from hil.analysis.diagnosis.data._thresholds import (
     ALIKE,
     BAND_SHARE,
     LEAST_BANDS,
+    MISTAKE_BANDS_HZ,
+    MISTAKE_TREND,
     SHOWS,
     UNLIKE,
 )
@@ -32,8 +34,6 @@ Array = npt.NDArray[np.float64]
 
 _MOTOR, _WHEEL, _SHAFT = OUTPUTS
 _PER_RPM = 2.0 * np.pi / 60.0
-_EDGES_HZ = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
-_TREND = 2  # degree: initial speeds, and what loads the axle evenly
 
 
 @dataclass(frozen=True)
@@ -123,11 +123,11 @@ class _Likeness:
     @classmethod
     def of(cls, model: Model, traces: Sequence[Trace], noise: Array) -> _Likeness:
         """Compare recordings with what the model says to their torque."""
-        apart, size, least = (np.zeros((len(_EDGES_HZ) - 1, 3)) for _ in range(3))
+        apart, size, least = (np.zeros((len(MISTAKE_BANDS_HZ) - 1, 3)) for _ in range(3))
         for trace in traces:
             seen, said = _spectra(trace.measured), _spectra(_said(model, trace))
             lines = np.fft.rfftfreq(len(trace.measured), trace.dt * trace.block)
-            for band, (low, high) in enumerate(pairwise(_EDGES_HZ)):
+            for band, (low, high) in enumerate(pairwise(MISTAKE_BANDS_HZ)):
                 inside = (lines >= low) & (lines < high)
                 apart[band] += np.sum(np.abs(seen[inside] - said[inside]) ** 2, axis=0)
                 size[band] += np.sum(np.abs(seen[inside]) ** 2 + np.abs(said[inside]) ** 2, axis=0)
@@ -166,7 +166,7 @@ def _spectra(values: Array) -> Array:
     """Spectra of channels (blocks x 3) about their trend; NaN where not measured."""
     at = np.linspace(-1.0, 1.0, len(values))
     known = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
-    trend = np.polynomial.legendre.legvander(at, _TREND)
+    trend = np.polynomial.legendre.legvander(at, MISTAKE_TREND)
     about = known - trend @ np.linalg.lstsq(trend, known, rcond=None)[0]
     window = np.hanning(len(values) + 1)[:-1, None]
     spectra = np.fft.rfft(about * window, axis=0)

@@ -175,6 +175,15 @@ UNLIKE: Annotated[
 ALIKE: Annotated[
     float, Means("of the same", "all channels nearer once a mistake is undone: it was one", "bad_input")
 ] = 0.25
+MISTAKE_BANDS_HZ: Annotated[
+    tuple[float, ...], Means("Hz", "edges of the bands in which a mistake is looked for", "bad_input")
+] = (0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0)
+MISTAKE_TREND: Annotated[
+    int,
+    Means(
+        "degree", "of what is left aside then: initial speeds, and what loads the axle evenly", "bad_input"
+    ),
+] = 2
 LEAST_BANDS: Annotated[int, Means("octaves", "that a wrong sign must show in", "bad_input")] = 2
 BAND_SHARE: Annotated[float, Means("of a channel's power", "a band with less says nothing", "bad_input")] = (
     0.003
@@ -214,3 +223,9 @@ GAP_SAMPLES: Annotated[float, Means("samples", "a longer pause is a gap", "bad_i
 SLOWEST_SAMPLE_S: Annotated[float, Means("s", "a recording sampled more slowly is refused", "bad_input")] = (
     0.02
 )
+WORSE: Annotated[
+    float, Means("times the error before", "a band of a channel with more was made worse", "gap")
+] = 1.5
+WORSE_NOISES: Annotated[
+    float, Means("error over noise", "and with less than this nobody would see it", "gap")
+] = 3.0

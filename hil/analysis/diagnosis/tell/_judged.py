@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, gap_map
+from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, gap_map, made_worse
 from hil.analysis.diagnosis.data._sanity import Examined
 from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._fit import Fit, carried
@@ -94,6 +94,7 @@ class Judged:
             consequences=consequences(base.hypothesis.base, model),
             start=self._start(kept, floor),
             open_channels=self._open(kept),
+            worse=tuple(made_worse(map_before, map_after)),
         )
 
     def _start(self, kept: Fit, floor: Array) -> Start | None:

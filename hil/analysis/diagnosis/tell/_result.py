@@ -118,6 +118,8 @@ class Diagnosis:
     start: Start | None = None
     #: Channels whose gap stays above what is proven to be noise.
     open_channels: tuple[str, ...] = ()
+    #: Where the model given back is further off than the one that came, in words.
+    worse: tuple[str, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""
@@ -142,6 +144,7 @@ class Diagnosis:
             "gap": _gaps(self.gap_before, self.gap_after),
             "holdout_gap": _gaps(self.holdout_before, self.holdout_after),
             "open_channels": list(self.open_channels),
+            "made_worse": list(self.worse),
             "remaining_gap": self.signature,
             "considered": [
                 {

@@ -1,0 +1,16 @@
+"""Options of the form NAME=VALUE."""
+
+import pytest
+
+from hil.cli._named_numbers import named_numbers
+from hil.core.errors import BadInputError
+
+
+def test_names_and_numbers() -> None:
+    assert named_numbers(["a=1e-3", " b = 2"], "--least") == {"a": 1e-3, "b": 2.0}
+
+
+@pytest.mark.parametrize("text", ["a", "a=", "a=x", ""])
+def test_what_is_no_number_is_refused_with_the_option(text: str) -> None:
+    with pytest.raises(BadInputError, match="--least"):
+        named_numbers([text], "--least")
