@@ -9,11 +9,12 @@ from typing import Any
 
 import can
 
-from drivers import DynoTable, RmcuTable
+from drivers import DynoTable, RmcuTable, read_rmcu
 from hil.core.errors import BadInputError
 from hil.core.printable import is_printable, printable
-from hil.engine._simulable import check_simulable
+from hil.engine._simulable import check_simulable, rmcu_of
 from hil.engine.bench_tables import BenchFile
+from hil.plant.controller import in_range
 from sim_backend.bench import DYNO_BUS, RMCU_BUS
 
 SIMULATED = "hil-sim"
@@ -56,6 +57,7 @@ def device_mistakes(bench: BenchFile) -> list[str]:
     if not found and bench.simulation:
         try:
             check_simulable(bench)
+            found += _of_held_parameters(bench)
         except BadInputError as error:
             found.append(f"for the simulated bench: {_on_one_line(error)}")
     return found or list(_of_identifiers(bench))
@@ -94,6 +96,23 @@ def _of_simulation(bench: BenchFile) -> Iterator[str]:
             if not isinstance(table, kind):
                 known = kind.model_fields["kind"].default
                 yield f"{key}.kind = '{printable(table.kind)}': the simulated bench has only '{known}'"
+
+
+def _of_held_parameters(bench: BenchFile) -> Iterator[str]:
+    """Parameters that the simulated RMCU is to keep, but does not know or would refuse."""
+    assert bench.simulation is not None
+    if not bench.simulation.rmcu:
+        return
+    rmcu = rmcu_of(bench)
+    known = sorted(read_rmcu(rmcu.dbc, rmcu.names).texts.get(("RMCU_ParameterWrite", "Index"), {}))
+    for name, value in bench.simulation.rmcu.items():
+        key = f"simulation.rmcu.{printable(name)}"
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
+            yield f"{key}: the RMCU has no such parameter; {hint}"
+        elif not in_range(name, value):
+            yield f"{key} = {value:g}: the RMCU does not take this value"
 
 
 def _of_interfaces(bench: BenchFile) -> Iterator[str]:

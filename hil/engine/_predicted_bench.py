@@ -215,7 +215,8 @@ class PredictedBench:
     def __init__(self, file: BenchFile, model: Model) -> None:
         self.file, self.model = file, model
         self.wire = wire_of(file)
-        closed = ClosedLoop(model, file.vehicle.wheel_radius_m, self.wire.rounding)
+        held = file.simulation.rmcu if file.simulation else {}
+        closed = ClosedLoop(model, file.vehicle.wheel_radius_m, self.wire.rounding, held)
         self.loop = PredictedLoop(closed)
         self.rmcu = PredictedRmcu(self.loop, file, self.wire)
         self.dyno = PredictedDyno(self.loop, file, self.wire)

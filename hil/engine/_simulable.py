@@ -63,6 +63,7 @@ def simulated(bench: BenchFile, model: Model) -> SimulatedBench:
             dyno_bit_rate=bench.buses[dyno.bus].bit_rate,
             wheel_radius_m=bench.vehicle.wheel_radius_m,
             seed=bench.simulation.seed,
+            held=bench.simulation.rmcu,
             noise=Noise(noise.motor_speed_rad_s, noise.wheel_speed_rad_s, noise.shaft_torque_nm),
         )
     )

@@ -92,6 +92,9 @@ class Simulation(_Table):
     model: File
     seed: int = Field(1, ge=0, le=2**63 - 1)
     noise: NoiseTable = NoiseTable()
+    rmcu: dict[str, Bound] = Field(
+        {}, description="parameters that this RMCU keeps in place of those that are written to it"
+    )
 
 
 class BenchFile(_Table):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -34,3 +35,6 @@ class SimulationSettings:
     seed: int = 1
     noise: Noise = field(default_factory=Noise)
     names: Names = field(default_factory=Names)  # what the DBC calls things
+    held: Mapping[str, float] = field(
+        default_factory=dict
+    )  # parameters that the RMCU keeps, whatever it is told

@@ -142,7 +142,7 @@ class SimulatedBench:
     def _make_nodes(self) -> None:
         s = self.settings
         dbc = read_dbc(s.dbc, NEEDED, s.names)
-        self._rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data))
+        self._rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data), s.held)
         self._vehicle = dbc.layouts["RCS_Vehicle"]
         self._request_id = dbc.layouts["RMCU_Request"].id
         rows = {s.rear_left: self._drives[0], s.rear_right: self._drives[1]}

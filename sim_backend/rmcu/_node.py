@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from hil.core.checksum import crc8
 from hil.core.dbc import Dbc, Needed
@@ -48,10 +48,13 @@ class RmcuNode:
     """Receives frames and decides on the mode; the control law runs compiled.
 
     `mode` and `request` are what the control law uses in the next sample; `status` and `control` are the
-    layouts of the frames that show the outcome.
+    layouts of the frames that show the outcome. Parameters in `held` are used in place of those written.
     """
 
-    def __init__(self, dbc: Dbc, send: Callable[[int, bytes], None]) -> None:
+    def __init__(
+        self, dbc: Dbc, send: Callable[[int, bytes], None], held: Mapping[str, float] | None = None
+    ) -> None:
+        self._held = dict(held or {})
         self.memory = M.Memory()
         self.mode = M.OFF
         self.request = 0.0
@@ -162,6 +165,6 @@ class RmcuNode:
     def _apply(self) -> int:
         if self.mode != M.OFF:
             return parameters.NOT_OFF
-        result = parameters.build(self._stored, self.memory)
+        result = parameters.build(self._stored | self._held, self.memory)
         self._valid = result == parameters.OK
         return result

@@ -29,20 +29,23 @@ class ClosedLoop:
     """The simulated bench without its wire: the same compiled tick, and numbers rounded as frames round.
 
     Time passes in `run` only; what is told to drives and RMCU counts from the next sample on. Sensors have
-    no noise.
+    no noise. Parameters in `held` are what the RMCU uses in place of those that it is given.
 
     Raises:
         BadInputError: a model that has no shaft to load, an effect that stands twice, or a sensor that would
             read what has not happened.
     """
 
-    def __init__(self, model: Model, wheel_radius_m: float, wire: Wire) -> None:
+    def __init__(
+        self, model: Model, wheel_radius_m: float, wire: Wire, held: Mapping[str, float] | None = None
+    ) -> None:
         if model.kind == "transfer_function":
             raise BadInputError(
                 "a 'transfer_function' model cannot be a simulated bench: it has no shaft to load",
                 fix="give a rigid, two_inertia or three_inertia model",
             )
         self.wire = wire
+        self._held = dict(held or {})
         #: What the drives' vehicle model is told stands here too.
         self.plant = state_at_rest(model, wheel_radius_m)
         self._memory = m = M.Memory()
@@ -72,7 +75,7 @@ class ClosedLoop:
                 raise BenchError(
                     f"refused parameter '{name}' = {value:g}: {_REASONS[OUT_OF_RANGE]}", where="RMCU"
                 )
-        result = build(stored, self._memory)
+        result = build(stored | self._held, self._memory)
         if result:
             raise BenchError(f"refused the controller's parameters: {_REASONS[result]}", where="RMCU")
 

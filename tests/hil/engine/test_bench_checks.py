@@ -76,3 +76,18 @@ def test_a_file_that_cannot_be_used_is_told_with_its_key_and_on_one_line(tmp_pat
     (told,) = device_mistakes(SIM.model_copy(update={"rmcu": rmcu}))
     assert told.startswith("rmcu.dbc = 'broken.dbc': ")
     assert "\n" not in told
+
+
+@pytest.mark.parametrize(
+    ("held", "said"),
+    [
+        ({"sigma": 3.0, "k_i_dfc": 0.005}, ""),
+        ({"k_i_dcf": 0.005}, "simulation.rmcu.k_i_dcf: the RMCU has no such parameter; did you mean 'k_i_dfc'?"),
+        ({"torque_limit": 1e5}, "simulation.rmcu.torque_limit = 100000: the RMCU does not take this value"),
+    ],
+)
+def test_parameters_that_the_simulated_rmcu_keeps_are_those_that_it_has(
+    held: dict[str, float], said: str
+) -> None:
+    simulation = SIM.simulation.model_copy(update={"rmcu": held})
+    assert device_mistakes(SIM.model_copy(update={"simulation": simulation})) == ([said] if said else [])

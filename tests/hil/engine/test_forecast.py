@@ -103,7 +103,7 @@ RIGID = {
 
 def both(directory, checked, model=MODEL, **changes):
     """The outcome of a run with its recording, and the prediction."""
-    bench = sim_bench("forecast", simulation=SIMULATION, **changes)
+    bench = sim_bench("forecast", **{"simulation": SIMULATION, **changes})
     outcome = run_plan(RunRequest(checked, bench, directory, model=model))
     assert outcome.error is None
     return outcome, read_recording(outcome.recording), predict(checked, bench, model)
@@ -166,6 +166,14 @@ def test_the_acceptance_plan_is_predicted_with_its_criteria(tmp_path):
         assert (found.id, found.verdict) == (run.id, run.verdict)
         if run.value is not None:
             assert found.value == pytest.approx(run.value, rel=1e-3)
+
+
+def test_parameters_that_the_rmcu_keeps_act_on_the_wire_and_in_a_prediction_alike(tmp_path):
+    held = SIMULATION.model_copy(update={"rmcu": {"k_i_dfc": 0.02, "sigma": 4.0}})
+    outcome, recorded, predicted = both(tmp_path, plan(STEPS), simulation=held)
+    assert_equal(outcome, recorded, predicted)
+    usual = predict(plan(STEPS), sim_bench("forecast", simulation=SIMULATION), MODEL)
+    assert predicted.peaks["shaft_torque_left_nm"] > 1.02 * usual.peaks["shaft_torque_left_nm"]
 
 
 def test_noise_changes_peaks_by_little(tmp_path):
