@@ -33,6 +33,7 @@ _COMMANDS = {
     "design": "Controller from a model, with margins.",
     "diagnose": "Find where model and measurement disagree, name the effect, add it.",
     "compare": "The same plan on several runs, side by side.",
+    "explain": "What would bring a predicted run to target figures.",
     "simulate": "Replay a recording's torque through a model.",
     "export": "Write a recording as CSV, Parquet or MDF4.",
     "schema": "JSON schema of plan files, for editors.",

@@ -82,7 +82,10 @@ def test_a_file_that_cannot_be_used_is_told_with_its_key_and_on_one_line(tmp_pat
     ("held", "said"),
     [
         ({"sigma": 3.0, "k_i_dfc": 0.005}, ""),
-        ({"k_i_dcf": 0.005}, "simulation.rmcu.k_i_dcf: the RMCU has no such parameter; did you mean 'k_i_dfc'?"),
+        (
+            {"k_i_dcf": 0.005},
+            "simulation.rmcu.k_i_dcf: the RMCU has no such parameter; did you mean 'k_i_dfc'?",
+        ),
         ({"torque_limit": 1e5}, "simulation.rmcu.torque_limit = 100000: the RMCU does not take this value"),
     ],
 )

@@ -1,0 +1,57 @@
+"""`hil explain`: what would bring a predicted run to target figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+
+def command(
+    targets: Annotated[
+        Path | None, typer.Argument(help="targets file (TOML), such as benches/paper_targets.toml")
+    ] = None,
+    target: Annotated[
+        list[str] | None,
+        typer.Option("--target", metavar="ID=VALUE", help="figure of a criterion; may be repeated"),
+    ] = None,
+    plan: Annotated[
+        str | None, typer.Option(help="plan file or name; default: the targets file's, or acceptance")
+    ] = None,
+    bench: Annotated[str, typer.Option(help="simulated bench, by file or name")] = "sim",
+    model: Annotated[Path | None, typer.Option(help="model file; default: the bench's")] = None,
+    evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="predicted runs to spend")] = 700,
+    seed: Annotated[int, typer.Option(min=0, help="of the scattered guesses")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="directory for the results; default: out/explain-NNN")
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="replace an earlier result in --out")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print targets.json on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Search for effects, alone or in pairs, that bring a predicted run of a plan to target figures.
+
+    Writes targets.json, rival_1.toml and further models, separating_plan.yaml, report.html and report.pdf.
+    Ctrl-C ends the search and keeps what is known. Exit code: 0 a rival holds every condition, 1 none does.
+    """
+    import_python_can()
+    from hil.cli.explain import carry_out
+
+    return carry_out(
+        targets=targets,
+        target=target or [],
+        plan=plan,
+        bench=bench,
+        model=model,
+        evaluations=evaluations,
+        seed=seed,
+        out=out,
+        overwrite=overwrite,
+        as_json=as_json,
+    )

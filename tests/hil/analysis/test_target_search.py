@@ -1,0 +1,184 @@
+"""What brings a predicted run to target figures: sizes, targets, search, conditions and what is told."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hil.analysis.target_search import (
+    Guess,
+    Targets,
+    Trial,
+    candidates,
+    explain,
+    files_of,
+    read_targets,
+)
+from hil.core.effects import EFFECTS, Stage
+from hil.core.errors import BadInputError
+from hil.core.model import EffectUse, load_model, model_from_dict
+from hil.core.toml_file import parse_toml
+from hil.engine.prediction import predict
+from reports.target_search import caution, explanation_html, explanation_pdf
+from tests.benches_for_tests import SIM, plan
+
+BENCHES = Path(__file__).parents[3] / "benches"
+BASE = load_model(BENCHES / "three_inertia.toml")
+STEPS = """
+  - set_controller: {file: gain_stabilization.toml}
+  - step: {segment: s, quantity: driving_torque, from_nm: 0, to_nm: 326, before_s: 0.1, after_s: 0.7}
+"""
+CRITERIA = "[{segment: s, metric: peak_shaft_torque}]"
+PEAK = "s.peak_shaft_torque"
+
+
+def carry_out(checked, model, held):
+    simulation = SIM.simulation.model_copy(update={"rmcu": dict(held)})
+    return predict(checked, SIM.model_copy(update={"simulation": simulation}), model)
+
+
+def targets(value, **changes):
+    return Targets(plan(STEPS, CRITERIA), {PEAK: value}, **changes)
+
+
+def test_every_plausible_size_is_within_its_declaration_and_no_sensor_is_among_them():
+    found = candidates(BASE, 326.0, {"sigma": (0.5, 6.0)})
+    assert found[0].id == "controller"
+    ids = {candidate.id for candidate in found}
+    assert {"backlash", "coulomb_friction", "wheel_order_disturbance", "tyre_slip"} <= ids
+    for candidate in found[1:]:
+        effect = EFFECTS[candidate.id]
+        assert effect.stage not in (Stage.SENSOR, Stage.MODEL)
+        for number in candidate.numbers:
+            declared = effect.parameter(number.name)
+            assert declared.lower <= number.low < number.high <= declared.upper
+            assert number.at(0.0) == pytest.approx(number.low)
+            assert number.at(1.0) == pytest.approx(number.high)
+
+
+def test_a_ripple_is_at_most_a_third_of_the_torque_on_its_side():
+    sizes = {c.id: {n.name: n for n in c.numbers} for c in candidates(BASE, 326.0, {})}
+    assert sizes["wheel_order_disturbance"]["amplitude_nm"].high == pytest.approx(0.3 * 326)
+    assert sizes["motor_order_ripple"]["amplitude_nm"].high == pytest.approx(0.3 * 326 / 8.148)
+
+
+def test_a_guess_takes_the_place_of_an_effect_that_the_model_has():
+    values = {"order": 4.0, "amplitude_nm": 50.0, "phase_rad": 0.0}
+    model = Guess({"wheel_order_disturbance": values, "backlash": {"half_gap_rad": 0.01}}, {}).model(BASE)
+    assert model.effects == (
+        EffectUse("wheel_order_disturbance", values),
+        EffectUse("backlash", {"half_gap_rad": 0.01}),
+    )
+
+
+def test_the_base_model_at_its_own_figure_costs_nothing():
+    trial = Trial(BASE, carry_out, targets(1.0))
+    figure = trial.of(Guess({}, {})).figures[PEAK]
+    assert figure is not None
+    assert trial.of(Guess({}, {})).cost(targets(figure, first_seconds=0.7)) == pytest.approx(0.0)
+    assert trial.of(Guess({}, {})).cost(targets(2.0 * figure)) == pytest.approx(np.log(2.0) ** 2)
+
+
+def test_a_guess_that_cannot_be_carried_out_has_no_figure_and_a_high_cost():
+    trial = Trial(BASE, carry_out, targets(400.0))
+    refused = Guess({}, {"wheel_radius": -1.0})
+    outcome = trial.of(refused)
+    assert outcome.figures == {PEAK: None}
+    assert outcome.cost(trial.targets) == 9.0
+
+
+@pytest.fixture(scope="module")
+def found():
+    wanted = targets(430.0, first_seconds=0.7, open={"k_i_dfc": (0.001, 0.01), "sigma": (0.5, 6.0)})
+    return explain(BASE, carry_out, wanted, evaluations=60, seed=1)
+
+
+@pytest.mark.slow
+def test_a_figure_that_can_be_reached_is_reached(found):
+    best = found.rivals[0]
+    assert found.reached
+    assert not best.missed
+    assert best.outcome.figures[PEAK] == pytest.approx(430.0, rel=0.05)
+    assert found.base.missed
+    assert "controller" in {name for rival in found.rivals for name in rival.names}
+
+
+@pytest.mark.slow
+def test_the_same_seed_gives_the_same_rivals(found):
+    again = explain(BASE, carry_out, found.targets, evaluations=60, seed=1)
+    assert [r.guess for r in again.rivals] == [r.guess for r in found.rivals]
+
+
+@pytest.mark.slow
+def test_what_was_found_can_be_used(found):
+    files = files_of(found)
+    for number, rival in enumerate(found.rivals, 1):
+        text = files[f"rival_{number}.toml"].decode()
+        model = model_from_dict(parse_toml(text, "rival"), "rival")
+        assert [use.id for use in model.effects] == [use.id for use in rival.model.effects]
+        for name in rival.guess.held:
+            assert f"#   {name} = " in text
+    assert (
+        b"set_controller" in files["separating_plan.yaml"] or b"motor_torque" in files["separating_plan.yaml"]
+    )
+    assert "do not single out" in caution(found)
+    page = explanation_html(found)
+    assert page.count("<figure") == 1
+    assert explanation_pdf(found).startswith(b"%PDF")
+
+
+@pytest.mark.slow
+def test_stopped_at_once_it_tells_what_it_knows():
+    asked = iter([False] * 3)
+    wanted = targets(430.0)
+    found = explain(BASE, carry_out, wanted, evaluations=60, stopped=lambda: next(asked, True))
+    assert (found.interrupted, found.evaluations) == (True, 3)
+    assert len(found.rivals) >= 1
+
+
+def test_nothing_found_is_said():
+    found = explain(BASE, carry_out, targets(430.0), evaluations=60, stopped=lambda: True)
+    assert found.rivals == ()
+    assert not found.reached
+    assert found.verdict == "Nothing was carried out."
+    assert "Nothing holds" in explanation_html(dataclasses.replace(found))
+
+
+def test_the_shipped_targets_are_the_papers():
+    wanted = read_targets(BENCHES / "paper_targets.toml", None, [])
+    assert sorted(wanted.values.values()) == [534.0, 564.0, 723.0]
+    assert wanted.response is not None
+    base = Trial(BASE, carry_out, wanted).misfit(BASE)
+    for name, limits in wanted.response.within.items():
+        assert all(value <= limit for value, limit in zip(base[name], limits, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("text", "further", "said"),
+    [
+        ("", ["gain_0kmh.peak_shaft_torqe=534"], "did you mean 'gain_0kmh.peak_shaft_torque'?"),
+        ("", ["gain_0kmh.peak_shaft_torque"], "is not ID=VALUE"),
+        ("", ["gain_0kmh.peak_shaft_torque=-1"], "is -1"),
+        ("", [], "no target is given"),
+        ("tolerence = 0.1", [], "did you mean 'tolerance'?"),
+        ("tolerance = 'a'", [], "tolerance: "),
+        ("[targets]\n'x' = 1.0", [], "no criterion is called 'x'"),
+        (
+            "[targets]\n'gain_0kmh.peak_shaft_torque' = 1.0\n[open]\nsigma = [2.0, 1.0]",
+            [],
+            "open.sigma runs from 2 to 1",
+        ),
+        (
+            "[targets]\n'gain_0kmh.peak_shaft_torque' = 1.0\n[settles]\nphase_0kmhh = 1.0",
+            [],
+            "did you mean 'phase_0kmh'?",
+        ),
+    ],
+)
+def test_wrong_targets_are_one_message(tmp_path, text, further, said):
+    path = tmp_path / "targets.toml"
+    path.write_text(text)
+    with pytest.raises(BadInputError) as caught:
+        read_targets(path if text else None, "acceptance", further)
+    assert said in str(caught.value)
