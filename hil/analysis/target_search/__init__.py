@@ -1,6 +1,6 @@
 """Target figures in place of recordings: which effects would bring a predicted run to them."""
 
-from hil.analysis.target_search._conditions import Condition
+from hil.analysis.target_search._conditions import Condition, conditions_of
 from hil.analysis.target_search._explain import (
     SEPARATING,
     Explanation,
@@ -29,6 +29,7 @@ __all__ = [
     "Targets",
     "Trial",
     "candidates",
+    "conditions_of",
     "explain",
     "files_of",
     "model_name",

@@ -100,7 +100,7 @@ def _response(guess: Guess, trial: Trial, wanted: ResponseTarget) -> Iterator[Co
         )
         attachments = {**found.recording.attachments, RUN: run.model_dump_json().encode()}
         recording = dataclasses.replace(found.recording, attachments=attachments)
-        modes = identify(experiments_of(recording, segments=[wanted.segment])).fit.modes
+        modes = identify(experiments_of(recording, segments=wanted.segments)).fit.modes
         response = modes.response(frequency)
     except HilError:
         response = None

@@ -19,7 +19,7 @@ from hil.core.effects import EFFECTS, Effect, Parameter, Probe, Stage
 from hil.core.model import Model
 from hil.plant import chain_numbers
 
-LARGEST_RIPPLE = 0.3
+LARGEST_RIPPLE = 1 / 3
 _LEAST_RIPPLE = 0.01
 ORDERS = {"wheel": (1.0, 6.0), "rotor": (0.3, 12.0)}
 _UNBOUNDED = 1e3  # a direction that may be added more often than this has no size of its own

@@ -26,7 +26,7 @@ class _Keys(BaseModel):
 class _ResponseKeys(_Keys):
     functions: Path
     plan: str = "identification"
-    segment: str = "chirp_biased"
+    segments: tuple[str, ...] = ()
     within: dict[str, tuple[float, float]]
 
 
@@ -46,13 +46,13 @@ class ResponseTarget:
 
     Args:
         functions: a transfer-function model.
-        plan, segment: the run, and its chirp that is looked at.
+        plan, segments: the run, and its segments that are looked at; none: every chirp and multisine.
         within: by output, the largest rms misfit over 0.05-30 Hz in dB and in degrees.
     """
 
     functions: Model
     plan: Plan
-    segment: str
+    segments: tuple[str, ...]
     within: Mapping[str, tuple[float, float]]
 
 
@@ -138,8 +138,8 @@ def _response(keys: _ResponseKeys, path: Path) -> ResponseTarget:
         if name not in functions.transfer_functions:
             raise BadInputError(f"has no transfer function of '{name}'", where=str(keys.functions))
     plan = load_plan(keys.plan)
-    _refuse_unknown([keys.segment], [s.id for s in plan.segments], "segment", where)
-    return ResponseTarget(functions, plan, keys.segment, keys.within)
+    _refuse_unknown(keys.segments, [s.id for s in plan.segments], "segment", where)
+    return ResponseTarget(functions, plan, keys.segments, keys.within)
 
 
 def _refuse_unknown(names: Iterable[str], known: Iterable[str], what: str, where: str) -> None:

@@ -11,6 +11,7 @@ from hil.analysis.target_search import (
     Targets,
     Trial,
     candidates,
+    conditions_of,
     explain,
     files_of,
     read_targets,
@@ -19,6 +20,7 @@ from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, load_model, model_from_dict
 from hil.core.toml_file import parse_toml
+from hil.engine import load_bench
 from hil.engine.prediction import predict
 from reports.target_search import caution, explanation_html, explanation_pdf
 from tests.benches_for_tests import SIM, plan
@@ -59,15 +61,15 @@ def test_every_plausible_size_is_within_its_declaration_and_no_sensor_is_among_t
 
 def test_a_ripple_is_at_most_a_third_of_the_torque_on_its_side():
     sizes = {c.id: {n.name: n for n in c.numbers} for c in candidates(BASE, 326.0, {})}
-    assert sizes["wheel_order_disturbance"]["amplitude_nm"].high == pytest.approx(0.3 * 326)
-    assert sizes["motor_order_ripple"]["amplitude_nm"].high == pytest.approx(0.3 * 326 / 8.148)
+    assert sizes["wheel_order_disturbance"]["amplitude_nm"].high == pytest.approx(326 / 3)
+    assert sizes["motor_order_ripple"]["amplitude_nm"].high == pytest.approx(326 / 3 / 8.148)
 
 
 def test_a_guess_takes_the_place_of_an_effect_that_the_model_has():
     values = {"order": 4.0, "amplitude_nm": 50.0, "phase_rad": 0.0}
     model = Guess({"wheel_order_disturbance": values, "backlash": {"half_gap_rad": 0.01}}, {}).model(BASE)
     assert model.effects == (
-        EffectUse("wheel_order_disturbance", values),
+        EffectUse("wheel_order_disturbance", {**values}),
         EffectUse("backlash", {"half_gap_rad": 0.01}),
     )
 
@@ -152,6 +154,24 @@ def test_the_shipped_targets_are_the_papers():
     base = Trial(BASE, carry_out, wanted).misfit(BASE)
     for name, limits in wanted.response.within.items():
         assert all(value <= limit for value, limit in zip(base[name], limits, strict=True))
+
+
+def _numbers(use):
+    return {name: value for name, value in use.values.items() if not isinstance(value, str)}
+
+
+@pytest.mark.slow
+def test_the_bench_of_the_papers_car_holds_every_condition():
+    """Its own numbers as a guess: the whole acceptance plan and an identification run."""
+    bench = load_bench("paper_car")
+    wanted = read_targets(BENCHES / "paper_targets.toml", None, [])
+    axle = load_model(bench.simulation.model)
+    assert axle.parameters == BASE.parameters
+    guess = Guess({use.id: _numbers(use) for use in axle.effects}, bench.simulation.rmcu)
+    trial = Trial(BASE, carry_out, wanted)
+    conditions = conditions_of(guess, trial.of(guess), trial)
+    assert len(conditions) == 17
+    assert [condition for condition in conditions if not condition.holds] == []
 
 
 @pytest.mark.parametrize(
