@@ -253,9 +253,9 @@ def _clean(use: EffectUse) -> EffectUse:
     values = dict(use.values)
     if "phase_rad" in values:
         values["phase_rad"] = float((float(values["phase_rad"]) + np.pi) % (2 * np.pi) - np.pi)
-    for name in ("stribeck_torque_nm", "offset_nm"):
-        if values.get(name) == 0.0:
-            del values[name]
+    for parameter in EFFECTS[use.id].parameters:
+        if parameter.optional and values.get(parameter.name) == parameter.default:
+            del values[parameter.name]
     return EffectUse(use.id, values)
 
 
