@@ -15,6 +15,8 @@ ON_REQUEST = ("load_side",)
 COUNTS = {"one": 1, "two": 2}
 
 _NOT_FAR = ("dead_time",)  # a wrong dead time of the base is just that
+# a tyre that shows so little is too stiff for the plant's steps
+_NEVER_TINY = ("tyre_compliance",)
 #: A gain of the only channel is an inertia.
 _CANNOT_BE_SEEN = (("sensor_gain", "one"),)
 #: What a load at the wheels shows beside the motor's torque.
@@ -52,7 +54,7 @@ def later_specs() -> list[tuple[str, str, str, int]]:
         for size in ("large", "clear")
         for turn in range(2)
     ]
-    specs += [("too_small", id, "tiny", 0) for id in every]
+    specs += [("too_small", id, "tiny", 0) for id in every if id not in _NEVER_TINY]
     specs += [("drift", "none", size, turn) for size in ("clear", "large") for turn in range(6)]
     specs += [("load_side", id, "clear", 0) for id in _BY_LOAD]
     specs += [("load_side", "none", "none", turn) for turn in range(6)]

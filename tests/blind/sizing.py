@@ -55,13 +55,15 @@ class Ruler:
     """Measures effects in units of the noise, for one base plant, its experiments and noise levels.
 
     Residuals are divided by the channels' noise, and the span of the base parameters' sensitivities and of
-    the initial speeds is projected out: what is left no refit of the base model can take away.
+    the initial speeds is projected out: what is left no refit of the base model can take away. A refit has no
+    bounds here. Without `refit` all that an effect does is measured.
     """
 
-    def __init__(self, bench: Bench, noise: Array, not_fitted: str = "") -> None:
+    def __init__(self, bench: Bench, noise: Array, not_fitted: str = "", *, refit: bool = True) -> None:
         self._bench = bench
         self._noise = noise
-        self._span = np.linalg.qr(np.stack(self._sensitivities(not_fitted), axis=1))[0]
+        columns = self._sensitivities(not_fitted) if refit else []
+        self._span = np.linalg.qr(np.stack(columns, axis=1))[0] if columns else None
 
     def residual(self, *hidden: Hidden) -> Array:
         """What effects do to the outputs, in units of noise, projected; samples x 3 flattened."""
@@ -98,7 +100,7 @@ class Ruler:
                 at = 0.5 * (low + high)
                 continue
             error = abs(math.log(max(reached, 1e-9) / share))
-            if error < abs(math.log(best[1] / share)):
+            if error < abs(math.log(max(best[1], 1e-9) / share)):
                 best = (math.exp(at), reached)
             if error < _CLOSE:
                 break
@@ -112,6 +114,8 @@ class Ruler:
         return best
 
     def _projected(self, change: Array) -> Array:
+        if self._span is None:
+            return change
         return np.asarray(change - self._span @ (self._span.T @ change))
 
     def _shown(self, change: Array) -> Array:

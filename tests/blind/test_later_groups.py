@@ -159,6 +159,13 @@ def test_too_small_an_effect_hardly_widens_the_gap():
     assert case.share < 0.08
 
 
+@pytest.mark.slow
+def test_a_tiny_gain_is_not_a_large_one_that_a_gear_ratio_would_explain():
+    case = draw(1, Spec("too_small", "sensor_gain", "tiny", 0), 0.2)
+    assert case.truth.kind == "rigid"
+    assert abs(case.hidden[0].sensors[0].gain - 1.0) < 0.01
+
+
 @pytest.mark.parametrize(
     ("group", "subject", "hidden", "reply", "right"),
     [
