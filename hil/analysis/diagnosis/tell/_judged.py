@@ -72,6 +72,7 @@ class Judged:
             Overlay(t.name, t.dt, t.torque, t.samples, b, a)
             for t, b, a in zip(problem.traces, before, after, strict=True)
         )
+        gap_after = channel_gaps(problem.traces, floor, after)
         return Diagnosis(
             verdict=verdict,
             base=base.hypothesis.base,
@@ -81,12 +82,12 @@ class Judged:
             alternatives=alternatives_of(self.found, verdict),
             considered=self._considered(kept),
             gap_before=channel_gaps(problem.traces, floor, before),
-            gap_after=channel_gaps(problem.traces, floor, after),
+            gap_after=gap_after,
             holdout_before=held_before,
             holdout_after=held_after,
             map_before=map_before,
             map_after=map_after,
-            signature=signature(self.problem, kept, map_after) if verdict == "unknown" else "",
+            signature=self._signature(kept, gap_after, map_after) if verdict == "unknown" else "",
             overlays=overlays,
             notes=tuple(notes),
             seconds=seconds,
@@ -113,6 +114,16 @@ class Judged:
         shown = simulated_samples(self.problem, base.hypothesis, base.theta, base.starts)
         names = tuple(t.name for t in self.problem.traces)
         return Start(parameters, names, channel_gaps(self.problem.traces, floor, shown))
+
+    def _signature(self, kept: Fit, gaps: dict[str, ChannelGap], by_place: GapMap) -> str:
+        """How much stays that neither the model nor a proven noise accounts for, and what it looks like."""
+        ratios = {channel: g.gap / max(g.noise_floor, 1e-12) for channel, g in gaps.items()}
+        worst = max(ratios, key=lambda channel: ratios[channel])
+        share = f"{100.0 * gaps[worst].gap:.3g} % of {worst}"
+        size = f"{share} stay unexplained, {ratios[worst]:.3g} times its noise"
+        tried = self.found.best.hypothesis.ids
+        closest = f"; closest, and not close enough: {', '.join(tried)}" if tried else ""
+        return f"{size}; {signature(self.problem, kept, by_place)}{closest}"
 
     def _open(self, kept: Fit) -> tuple[str, ...]:
         """Channels that keep more than noise is proven to be."""
