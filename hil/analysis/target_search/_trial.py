@@ -18,7 +18,6 @@ from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
 from hil.plant import linear_system
 from test_plans import Plan, judge
-from test_plans.steps import TorqueStep
 
 SETTLED_UNTIL_S = 4.0
 SETTLED_SHARE = 0.05
@@ -116,18 +115,18 @@ class Outcome:
 
 
 class Trial:
-    """Carries guesses out; the search's plan may be shorter than the targets'."""
+    """Carries guesses out; of the plan's criteria, only those that are asked for are judged."""
 
     def __init__(self, base: Model, carry_out: CarryOut, targets: Targets) -> None:
         self.base, self.targets, self._carry_out = base, targets, carry_out
         wanted = [c for c in targets.plan.criteria if c.id in targets.values or c.below]
         self.plan = targets.plan.model_copy(update={"criteria": tuple(wanted)})
 
-    def of(self, guess: Guess, after_s: float = math.inf) -> Outcome:
-        """What comes of a guess; steps of the plan end `after_s` after the step at the latest."""
+    def of(self, guess: Guess) -> Outcome:
+        """What comes of a guess in the whole plan."""
         model = guess.model(self.base)
         try:
-            found = self.run(shortened(self.plan, after_s), guess)
+            found = self.run(self.plan, guess)
         except HilError:  # the bench refuses it, or it does not reach a speed: no figure
             nothing = dict.fromkeys(self.targets.values)
             return Outcome(nothing, nothing, {}, {}, {})
@@ -185,17 +184,6 @@ def rms_misfit(response: Any, functions: Model, name: str, frequency_hz: Any) ->
     gain_db = 20.0 * np.log10(np.abs(ratio))
     phase_deg = np.degrees(np.unwrap(np.angle(ratio)))
     return float(np.sqrt(np.mean(gain_db**2))), float(np.sqrt(np.mean(phase_deg**2)))
-
-
-def shortened(plan: Plan, after_s: float) -> Plan:
-    """The plan with steps that end at the latest `after_s` after the step."""
-    steps = tuple(
-        step.model_copy(update={"after_s": min(step.after_s, after_s)})
-        if isinstance(step, TorqueStep)
-        else step
-        for step in plan.steps
-    )
-    return plan.model_copy(update={"steps": steps})
 
 
 def _cut(segment: Segment, seconds: float) -> Segment:
