@@ -50,7 +50,7 @@ def _page(found: Explanation) -> Page:
     return Page(
         kind="Target figures in place of recordings",
         title=f"{found.targets.plan.name}: what would give the figures",
-        headline="A rival holds every condition" if found.reached else "Nothing holds every condition",
+        headline="Reached" if found.reached else "Not reached",
         tone="pass" if found.reached else "error",
         lead=found.verdict,
         notes=(caution(found), *notes),
@@ -93,7 +93,8 @@ def _rivals(found: Explanation) -> Table:
         figures = (quantities.number(rival.outcome.figures[n], significant=4) for n in names)
         missed = f"{len(rival.missed)} of {len(rival.conditions)}"
         rows.append((name, *figures, str(rival.numbers), missed))
-    return Table(("", *names, "free numbers", "conditions missed"), tuple(rows))
+    heads = (name.replace(".", " ").replace("_", " ") for name in names)  # with room to break lines
+    return Table(("", *heads, "free numbers", "conditions missed"), tuple(rows))
 
 
 def _values(rival: Rival) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,7 @@ from hil.analysis.target_search._targets import Targets
 from hil.analysis.target_search._trial import CarryOut, Guess, Outcome, Trial, guess_at
 from hil.core.errors import BadInputError
 from hil.core.model import Model, model_to_toml
+from test_plans.registry import did_you_mean
 
 #: Rivals that are told.
 RIVALS = 4
@@ -100,14 +101,17 @@ def explain(
     targets: Targets,
     *,
     evaluations: int,
+    among: Sequence[str] = (),
     seed: int = 0,
     show: Callable[[str, float | None], None] = lambda text, share: None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> Explanation:
     """Search for what brings the predicted run to the targets; `carry_out` predicts runs.
 
+    Only candidates `among` are looked at, all if there are none.
+
     Raises:
-        BadInputError: a base model that carries no effect.
+        BadInputError: a base model that carries no effect, or no candidate of a name.
     """
     trial = Trial(base, carry_out, targets)
     largest = max(abs(segment.reference_after) for segment in targets.plan.segments)
@@ -116,6 +120,11 @@ def explain(
         raise BadInputError(
             f"a '{base.kind}' model carries no effect", fix="give a two- or three-inertia model"
         )
+    known = {candidate.id: candidate for candidate in every}
+    for name in among:
+        if name not in known:
+            raise BadInputError(f"no candidate is called '{name}'", fix=did_you_mean(name, known))
+    every = tuple(known[name] for name in dict.fromkeys(among)) or every
     search = Search(trial, evaluations, seed, show, stopped)
     search.carry_out(every)
     show("checking the best", None)

@@ -23,6 +23,14 @@ def command(
     ] = None,
     bench: Annotated[str, typer.Option(help="simulated bench, by file or name")] = "sim",
     model: Annotated[Path | None, typer.Option(help="model file; default: the bench's")] = None,
+    among: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--among",
+            metavar="ID",
+            help="look at this effect, or 'controller', and at no other; may be repeated",
+        ),
+    ] = None,
     evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="predicted runs to spend")] = 700,
     seed: Annotated[int, typer.Option(min=0, help="of the scattered guesses")] = 0,
     out: Annotated[
@@ -49,6 +57,7 @@ def command(
         plan=plan,
         bench=bench,
         model=model,
+        among=among or [],
         evaluations=evaluations,
         seed=seed,
         out=out,

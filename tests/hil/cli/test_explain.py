@@ -52,6 +52,7 @@ def test_rivals_are_ranked_and_their_models_written(tmp_path, plan, capsys):
         (["--target", TARGET, "--bench", "rear_axle_socketcan"], "is no simulated bench"),
         (["--target", TARGET, "--evaluations", "1"], "--evaluations"),
         (["nowhere.toml"], "nowhere.toml"),
+        (["--target", TARGET, "--among", "backlach"], "did you mean 'backlash'?"),
     ],
 )
 def test_wrong_input_is_one_message_and_leaves_nothing(tmp_path, plan, options, said, capsys):
