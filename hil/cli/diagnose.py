@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.analysis.diagnosis import LEAST_SAMPLES, Diagnosis, diagnose
+from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_numbers import named_numbers
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import results_in
@@ -42,6 +43,8 @@ def carry_out(
             read = _read(recordings, show)
             held = _read(holdout or [], show)
             found = diagnose(base, read, held, noise=known, least=smallest, show=show)
+            if found.unfinished:
+                INTERRUPTS.answered()
             show("writing the report")
             files = output_files(found, model.name)
         place.write(files, inputs)
@@ -49,7 +52,7 @@ def carry_out(
         print_json(_summary(found, files))
     else:
         print(text_of(found, out))
-    return 0
+    return EXIT_CODE if found.unfinished else 0
 
 
 def _summary(found: Diagnosis, files: Iterable[str]) -> dict[str, Any]:
@@ -104,7 +107,8 @@ def output_files(found: Diagnosis, title: str) -> dict[str, bytes]:
 
 def text_of(found: Diagnosis, out: Path) -> str:
     """What a person reads."""
-    lines = [f"verdict: {found.verdict}"]
+    unfinished = " (unfinished: interrupted, this is what was known by then)" if found.unfinished else ""
+    lines = [f"verdict: {found.verdict}{unfinished}"]
     for e in found.effects:
         values = ", ".join(
             f"{name} = {value}"

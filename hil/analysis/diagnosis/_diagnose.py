@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
 from hil.analysis.diagnosis.data._proven import checked_noise
@@ -14,10 +14,11 @@ from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._from_base import search_from_base
+from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._confidence import drop_of
 from hil.analysis.diagnosis.tell._judged import Judged
 from hil.analysis.diagnosis.tell._least import checked_least
-from hil.analysis.diagnosis.tell._result import Diagnosis
+from hil.analysis.diagnosis.tell._result import Diagnosis, Verdict
 from hil.analysis.diagnosis.tell._verdict import verdict_of
 from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.errors import BadInputError
@@ -42,6 +43,9 @@ def diagnose(
         noise: standard deviation of a sample that a channel's sensor is known to have, by channel.
         least: smallest size of an effect that is worth a name, by effect; others have sizes of their own.
         show: told what is going on.
+
+    An interrupt (KeyboardInterrupt) ends the search, and what is known by then is told as `unfinished`;
+    before anything is known, and while it is told, it is raised.
 
     Raises:
         BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
@@ -84,10 +88,17 @@ def _diagnosed(
     ratio = model.parameters["gear_ratio"]
     problem = problem_of(traces, coarse_noise(noise, rounded), ratio, floor=noise, stated=asked.noise)
     hypothesis = Hypothesis(model, held=untold(traces))
-    found = search_from_base(problem, hypothesis, show, rounded)
+    known: list[Found] = []
+    unfinished = False
+    try:
+        found = search_from_base(problem, hypothesis, show, rounded, known)
+    except KeyboardInterrupt:
+        if not known:
+            raise
+        found, unfinished = min(known, key=lambda one: one.evidence.left(one.best)), True
     problem = problem.with_angles(found.best.angles)
     show("judging")
-    verdict = verdict_of(found, bool(rounded))
+    verdict: Verdict = "unknown" if unfinished else verdict_of(found, bool(rounded))
     by_chance = None
     if verdict == "named" and found.best.hypothesis.terms:
         by_chance = most_by_chance(problem, found.best)
@@ -96,4 +107,5 @@ def _diagnosed(
     if verdict == "named":
         found.best = reweighted(problem, found.best)
     judged = Judged(problem, found, verdict, held, by_chance, asked.least)
-    return judged.diagnosis(rounded, notes, time.perf_counter() - began)
+    told = judged.diagnosis(rounded, notes, time.perf_counter() - began)
+    return replace(told, unfinished=unfinished)

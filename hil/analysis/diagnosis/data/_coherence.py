@@ -18,8 +18,12 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._thresholds import (
+    FED_BACK,
     KEPT,
     LEAST_SEGMENTS,
+    LOOP_BAND,
+    LOOP_COHERENT,
+    LOOP_NOISE,
     NEIGHBOURS,
     RED,
     SEGMENT_S,
@@ -27,6 +31,8 @@ from hil.analysis.diagnosis.data._thresholds import (
     SLOW_LINES,
 )
 from hil.analysis.diagnosis.data._trace import Trace, blocks
+
+_REQUEST = 6  # column of it among the signals
 
 Array = npt.NDArray[np.float64]
 Spectra = npt.NDArray[np.complex128]
@@ -77,6 +83,8 @@ def split(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Ar
         known[:SLOW_LINES] = passing[:SLOW_LINES] = np.maximum(known[:SLOW_LINES], slow)
         mine = known if np.sum(known) >= np.sum(passing) else passing
         physics[column] = float(np.sum(mine))
+        if _is_fed_back(products, column, segments):
+            physics[column] = max(0.0, physics[column] - LOOP_NOISE * float(np.sum(power)))
         noise[column] = float(np.sum(power)) - physics[column]
         deviation[column] = float(np.sqrt(variance @ np.maximum(power - mine, 0.0) ** 2))
     return Split(physics, noise, deviation)
@@ -87,7 +95,8 @@ def _explained(products: Spectra, column: int, segments: float) -> tuple[Array, 
 
     With it the variance of that, in squares of the power that nothing explains. In a closed loop the
     request, and all that is simulated from it, know the noise of the channel that is fed back: what these
-    explain is physics at most by as much as the channel itself shows at that frequency.
+    explain is physics at most by a share of what the channel itself shows at that frequency: where a loop
+    answers to little but noise, noise is all that it shows.
     """
     size = products.shape[1]
     errors = [c for c in range(3) if c != column]
@@ -99,9 +108,18 @@ def _explained(products: Spectra, column: int, segments: float) -> tuple[Array, 
         across, _ = _coherent(matrix, column, errors, segments)
         altogether, rank = _coherent(matrix, column, others, segments)
         shown = float(matrix[3 + column, 3 + column].real)
-        known[row] = max(across, min(altogether, across + shown))
+        known[row] = max(across, min(altogether, across + FED_BACK * shown))
         variance[row] = NEIGHBOURS * rank / segments**2
     return known, variance
+
+
+def _is_fed_back(products: Spectra, column: int, segments: float) -> bool:
+    """Whether the request follows the noise of a channel: above all modes no plant follows a request."""
+    band = products[round(LOOP_BAND * len(products)) :]
+    error, request = band[:, column, column].real, band[:, _REQUEST, _REQUEST].real
+    both = np.abs(band[:, column, _REQUEST]) ** 2
+    seen = both / np.maximum(error * request, 1e-300)
+    return bool(np.mean(seen) > LOOP_COHERENT + 1.0 / segments)
 
 
 def _coherent(matrix: Spectra, column: int, others: list[int], segments: float) -> tuple[float, int]:

@@ -81,6 +81,22 @@ RED: Annotated[
 LEAST_SEGMENTS: Annotated[
     int, Means("segments", "fewer give no coherence: segments are made shorter", "coherence")
 ] = 12
+FED_BACK: Annotated[
+    float,
+    Means(
+        "of the power shown", "an error that only the request explains may be physics by so much", "coherence"
+    ),
+] = 0.1
+LOOP_BAND: Annotated[
+    float,
+    Means("of the highest frequency", "above it a request that follows a channel is a loop", "coherence"),
+] = 0.4
+LOOP_COHERENT: Annotated[
+    float, Means("coherence", "there, from which on a channel is fed back", "coherence")
+] = 0.2
+LOOP_NOISE: Annotated[
+    float, Means("of an error's power", "may be the noise that went round the loop", "coherence")
+] = 0.15
 KEPT: Annotated[
     float, Means("of the largest", "regressors below it say the same as others and count once", "coherence")
 ] = 1e-6

@@ -34,30 +34,42 @@ from hil.core.model import EffectUse
 
 
 def search_from_base(
-    problem: Problem, base: Hypothesis, show: Callable[[str], None], rounded: Sequence[EffectUse] = ()
+    problem: Problem,
+    base: Hypothesis,
+    show: Callable[[str], None],
+    rounded: Sequence[EffectUse] = (),
+    known: list[Found] | None = None,
 ) -> Found:
     """The effects that the base model lacks, searched from its own numbers, or from those that fit.
 
     `base.hypothesis.far` of what is found says which.
+
+    Args:
+        known: gets every search as it begins: what is known of it should it be interrupted.
     """
+    known = [] if known is None else known
     show("fitting the base model")
     near = begun(*with_base_angles(problem, fit(problem, base)), rounded)
+    known.append(near)
     if near.settled:
         return near
     show("scoring effects")
     scores = screen(problem, near.base)
-    start = None
+    far = None
     if _hopeless(near, scores):
-        start = _identified(near, rounded, show)
-        if _explains(start.base, near):
-            far = _plainer(finished(start, show))
-            if far.settled:
-                return far
-            start = _identified(near, rounded, show)
+        far = _identified(near, rounded, show)
+        known.append(far)
+        if _explains(far.base, near):
+            found = _plainer(finished(far, show))
+            if found.settled:
+                return found
+            far = _anew(far)
     advanced(near, show, scores)
     if near.settled:
         return finished(near, show)
-    return _better(near, start or _identified(near, rounded, show), show)
+    far = far or _identified(near, rounded, show)
+    known.append(far)
+    return _better(near, far, show)
 
 
 def _identified(near: Found, rounded: Sequence[EffectUse], show: Callable[[str], None]) -> Found:
@@ -66,6 +78,11 @@ def _identified(near: Found, rounded: Sequence[EffectUse], show: Callable[[str],
     found = begun(problem, start, rounded)
     found.given = near.base
     return found
+
+
+def _anew(found: Found) -> Found:
+    """The same search, nothing looked for yet."""
+    return Found(found.base, found.base, found.evidence, frontier=[found.base], given=found.given)
 
 
 def _hopeless(near: Found, scores: Sequence[Score]) -> bool:

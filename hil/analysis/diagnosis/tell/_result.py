@@ -118,6 +118,8 @@ class Diagnosis:
     start: Start | None = None
     #: Channels whose gap stays above what is proven to be noise.
     open_channels: tuple[str, ...] = ()
+    #: The search was interrupted: this is what was known by then.
+    unfinished: bool = False
     #: Where the model given back is further off than the one that came, in words.
     worse: tuple[str, ...] = ()
 
@@ -125,6 +127,7 @@ class Diagnosis:
         """The content of `diagnosis.json`."""
         return {
             "verdict": self.verdict,
+            **({"unfinished": True} if self.unfinished else {}),
             "effects": [_effect(e) for e in self.effects],
             **({"start": self.start.as_json()} if self.start is not None else {}),
             "parameter_updates": {
