@@ -110,10 +110,12 @@ def _told(answer: dict[str, Any], took_s: float) -> str:
     if not answer["effects"]:
         rivals = ", ".join(f"{a['id']} ({a['confidence']:.2f})" for a in answer["alternatives"])
         lines.append(f"      or {rivals}" if rivals else "      no rival")
-    for key in ("start", "parameter_updates"):
-        changed = answer.get(key) or {}
+    found = {"start": (answer.get("start") or {}).get("parameters"), "updates": answer["parameter_updates"]}
+    for key, changed in found.items():
+        if not changed:
+            continue
         told = ", ".join(f"{name} {_value(value)}" for name, value in changed.items())
-        lines += [f"      {key}: {told}"] if told else []
+        lines.append(f"      {key}: {told}")
     return "\n".join(lines)
 
 

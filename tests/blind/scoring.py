@@ -85,7 +85,7 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
         spec.group, spec.subject, spec.size, spec.turn, kind, hidden, answer.share, verdict, named,
         _right(spec, hidden, verdict, named, diagnosis), reply.failure, reply.wall_s, judged,
     )  # fmt: skip
-    result.started = sorted(str(name) for name in diagnosis.get("start") or {})
+    result.started = sorted((diagnosis.get("start") or {}).get("parameters", {}))
     result.unshrunk, result.unexplained = judged_gaps(answer, diagnosis)
     result.honest = not any(confidence >= _SURE and not true for confidence, true in judged)
     if result.right and spec.group != "outside":

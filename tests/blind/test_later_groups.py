@@ -170,7 +170,13 @@ def test_a_tiny_gain_is_not_a_large_one_that_a_gear_ratio_would_explain():
     ("group", "subject", "hidden", "reply", "right"),
     [
         ("far", "backlash", [BACKLASH], _reply("named", (*BACKLASH, 0.9)), True),
-        ("far", "none", [], _reply("none", start={"motor_inertia": {"from": 1, "to": 2}}), True),
+        (
+            "far",
+            "none",
+            [],
+            _reply("none", start={"parameters": {"motor_inertia": {"from": 1, "to": 2}}}),
+            True,
+        ),
         ("far", "none", [], _reply("named", (*MASS, 0.9)), False),
         ("closed_loop", "none@pi", [], _reply("none"), True),
         ("closed_loop", "none@pi", [], _reply("unknown"), False),
