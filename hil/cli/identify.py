@@ -8,7 +8,7 @@ from typing import get_args
 from hil.analysis.frequency_response import Experiment, Method, experiments_of
 from hil.analysis.identification import identify
 from hil.analysis.plausible import refuse_same_data
-from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
+from hil.cli._output import Show, print_json, progress, to_json, warn, warn_of_damage
 from hil.cli._place import refuse_missing, results_in
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
@@ -56,6 +56,8 @@ def carry_out(
             summary = summary_of(found, experiments, sorted(files))
             files["identification.json"] = (to_json(summary) + "\n").encode()
         place.write(files, recordings)
+    for doubt in found.doubts:
+        warn(doubt)
     if json_:
         print_json(summary)
     else:

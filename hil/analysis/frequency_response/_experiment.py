@@ -37,6 +37,7 @@ class Experiment:
         reference: N samples of the loop's reference, where recorded.
         hold_s: how long the real input keeps a value (zero-order hold of the RMCU).
         kind: 'chirp', 'multisine', or '' where unknown.
+        input_name: the channel that `input` was recorded as.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Experiment:
     hold_s: float = 0.0
     kind: str = ""
     notes: tuple[str, ...] = ()
+    input_name: str = INPUT
 
     @property
     def duration_s(self) -> float:
@@ -142,6 +144,7 @@ def _experiment(
         min(step, TICK_S) if hold_s is None else hold_s,
         kind,
         tuple(recording.notes) + notes,
+        input_channel,
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from hil.analysis.frequency_response import Experiment, FrequencyResponse, Method, estimate
 from hil.analysis.identification._chain_fit import ChainChoice, choose_chain
 from hil.analysis.identification._fit import Fit
+from hil.analysis.identification._mistakes import refuse_mistakes
 from hil.analysis.identification._order import ORDERS, OrderChoice, choose_order
 from hil.analysis.identification._table import model_of
 from hil.analysis.identification._trust import Judgement, Trust, judge
@@ -21,6 +22,7 @@ class Identification:
     """What `hil identify` finds; `chain` and `physical` are None without motor speed and another output.
 
     `judgement` tells whether the model may be trusted. A doubtful one carries `[meta] warning`.
+    `doubts` (also in `notes`) say which channels may be in another unit or turned.
     """
 
     frf: FrequencyResponse
@@ -30,6 +32,7 @@ class Identification:
     physical: Model | None
     notes: tuple[str, ...]
     judgement: Judgement
+    doubts: tuple[str, ...] = ()
 
     @property
     def verdict(self) -> Trust:
@@ -70,26 +73,29 @@ def identify(
 
     Raises:
         UnfitDataError: the data cannot give a frequency response.
-        BadInputError: arguments that make no sense, too few data, or data that no linear model explains.
+        BadInputError: arguments that make no sense, too few data, channels that are swapped, inverted or in
+            another unit, or data that no linear model explains.
     """
     with within_floating_point(", ".join(experiment.name for experiment in experiments)):
         progress("frequency response")
         frf = estimate(experiments, from_hz=from_hz, to_hz=to_hz, method=method)
+        doubts = refuse_mistakes(experiments, frf, gear_ratio)
         orders = choose_order(frf, ORDERS if order is None else (order,), progress=progress)
-        return _identified(experiments, frf, orders, gear_ratio, progress)
+        return _identified(experiments, frf, orders, doubts, gear_ratio, progress)
 
 
 def _identified(
     experiments: Sequence[Experiment],
     frf: FrequencyResponse,
     orders: OrderChoice,
+    doubts: tuple[str, ...],
     gear_ratio: float | None,
     progress: Callable[[str], None],
 ) -> Identification:
     """Judgement, chain and models of an order that was taken."""
     fit = orders.best.fit
     judgement = judge(frf, orders.best)
-    notes = [*frf.notes, *judgement.remarks]
+    notes = [*frf.notes, *doubts]
     chain = None
     if OUTPUTS[0] in frf.outputs and len(frf.outputs) > 1:
         chain = choose_chain(frf, gear_ratio=gear_ratio, torque_delay_s=fit.modes.delay_s, progress=progress)
@@ -100,7 +106,7 @@ def _identified(
     sources = [experiment.name for experiment in experiments]
     model = model_of(fit, _meta(frf, fit, chain, judgement, sources))
     physical = None if chain is None else _physical(chain, judgement, sources)
-    return Identification(frf, orders, chain, model, physical, tuple(notes), judgement)
+    return Identification(frf, orders, chain, model, physical, tuple(notes), judgement, doubts)
 
 
 def _meta(

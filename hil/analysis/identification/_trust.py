@@ -15,7 +15,6 @@ import numpy.typing as npt
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.analysis.identification._order import Candidate
-from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]
@@ -36,7 +35,6 @@ HOPELESS_DISTORTION = 1.0
 _EARLY_S = 0.0005
 _ADVANCE_S = 0.02
 _SIGNIFICANT = 5.0  # standard errors
-_LOW_HZ = 0.3  # below the first anti-resonance, where all that turns turns together
 
 
 @dataclass(frozen=True)
@@ -46,7 +44,6 @@ class Judgement:
     Attributes:
         verdict: 'linear' (standard errors hold) or 'doubtful'.
         warnings: why it is doubtful, for people; empty when linear.
-        remarks: what is odd but does not make the model wrong.
         misfit: by output, rms relative to the response beyond noise (median over frequency), 0 to 1.
         distortion: by output, relative to the linear response; None where the input shows none.
         coherence: by output, median over frequency.
@@ -54,7 +51,6 @@ class Judgement:
 
     verdict: Trust
     warnings: tuple[str, ...]
-    remarks: tuple[str, ...]
     misfit: dict[str, float]
     distortion: dict[str, float] | None
     coherence: dict[str, float]
@@ -101,9 +97,7 @@ def judge(frf: FrequencyResponse, taken: Candidate) -> Judgement:
             f"the outputs answer {early_s * 1e3:.3g} ms before the input acts: "
             "are channels swapped or not in step?"
         )
-    return Judgement(
-        "doubtful" if warnings else "linear", tuple(warnings), _remarks(frf), misfit, distortion, coherence
-    )
+    return Judgement("doubtful" if warnings else "linear", tuple(warnings), misfit, distortion, coherence)
 
 
 def _refuse_hopeless(misfit: dict[str, float], distortion: dict[str, float] | None) -> None:
@@ -161,36 +155,3 @@ def _early(frf: FrequencyResponse, found: Fit) -> float:
     early = _ADVANCE_S - again.modes.delay_s
     sure = early > _SIGNIFICANT * again.delay_error_s and again.chi_square < found.chi_square
     return early if sure else 0.0
-
-
-def _remarks(frf: FrequencyResponse) -> tuple[str, ...]:
-    """Signs and ratio at low frequency that no axle has: a matter of wiring, not of linearity."""
-    low = frf.frequency_hz <= _LOW_HZ
-    if not low.any():
-        return ()
-    remarks = []
-    weight = 1 / np.maximum(
-        expected_deviation(frf)[:, low] / np.maximum(np.abs(frf.response[:, low]), 1e-300), 1e-6
-    )
-    integrates = np.array([name != OUTPUTS[2] for name in frf.outputs])[:, None]
-    # A speed is the integral of what torque does: turned by jω it has the torque's sign.
-    upright = (
-        np.where(integrates, 1j, 1.0)
-        * frf.response[:, low]
-        / np.maximum(np.abs(frf.response[:, low]), 1e-300)
-    )
-    for name, value in zip(frf.outputs, np.sum(upright.real * weight, axis=1), strict=True):
-        if value < 0:
-            remarks.append(
-                f"'{name}' falls when torque pushes: its sign, or the input's, looks inverted; "
-                "the model keeps it as recorded"
-            )
-    if OUTPUTS[0] in frf.outputs and OUTPUTS[1] in frf.outputs:
-        motor, wheel = (np.abs(frf.of(name)[low]) for name in OUTPUTS[:2])
-        ratio = float(np.median(motor / np.maximum(wheel, 1e-300)))
-        if ratio < 1:
-            remarks.append(
-                f"the wheel turns {1 / max(ratio, 1e-300):.3g} times as fast as the motor: "
-                "are the speeds swapped?"
-            )
-    return tuple(remarks)
