@@ -41,11 +41,12 @@ class DelayBySamples:
     def leaps(self, theta: Array, lower: Array, upper: Array) -> list[Array]:
         """`theta` with the dead time in other samples; with the channel's delay making up for it as well.
 
-        A mere correction of the model's dead time stays within its calibration tolerance: more is a finding.
+        A mere correction of the model's dead time stays within its calibration tolerance: more is a finding,
+        unless all numbers are free.
         """
         found = []
         least, most = float(lower[self.index]), float(upper[self.index])
-        if np.isfinite(self.hypothesis.coordinates()[self.index].prior):
+        if np.isfinite(self.hypothesis.coordinates()[self.index].prior) and not self.hypothesis.far:
             least, most = max(least, -TOLERANCE), min(most, TOLERANCE)
         delay = self._delay(theta)
         sample = np.floor(delay / self.dt + 1e-9)

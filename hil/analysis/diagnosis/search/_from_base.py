@@ -18,6 +18,7 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
 from hil.analysis.diagnosis.search._alignment import with_base_angles
+from hil.analysis.diagnosis.search._probes import delay_is_free
 from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._search import Found, advanced, begun, finished
 from hil.analysis.diagnosis.search._thresholds import (
@@ -106,7 +107,8 @@ def _better(near: Found, far: Found, show: Callable[[str], None]) -> Found:
             return near
     if near.steps and not far.settled:
         show("looking for an effect beside other numbers of the base model")
-        promising = [f for f in near.steps[0].fits if "parameter_mismatch" not in f.hypothesis.ids]
+        numbers = {"parameter_mismatch"} | ({"dead_time"} if delay_is_free(far.base) else set())
+        promising = [f for f in near.steps[0].fits if not numbers & {*f.hypothesis.ids}]
         advanced(far, show, beside=promising)
     if near.evidence.left(far.best) > FAR_BETTER * near.evidence.left(near.best):
         return finished(near, show)

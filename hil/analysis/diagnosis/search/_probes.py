@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._thresholds import STEP
 from hil.analysis.diagnosis.search._scene import Recorded
 from hil.core.effects import EFFECTS, Direction, Probe
 from hil.core.model import EffectUse, kind_of, parameter_names
@@ -47,11 +48,25 @@ def probes(problem: Problem, fit: Fit) -> list[Candidate]:
     for effect in EFFECTS.values():
         if effect.probes is None or kind not in effect.needs or (effect.id, "") in taken:
             continue
+        if effect.id == "dead_time" and delay_is_free(fit):
+            continue
         for probe in effect.probes(scene):
             name = str(probe.directions[0].values.get("channel", ""))
             if (effect.id, name) not in taken:
                 found.append(Candidate(effect.id, probe))
     return found
+
+
+def delay_is_free(fit: Fit) -> bool:
+    """Whether the model's own dead time may still grow: then none is missing beside it."""
+    if not fit.hypothesis.far:
+        return False
+    own = [
+        (c, v)
+        for c, v in zip(fit.hypothesis.coordinates(), fit.theta, strict=True)
+        if c.name == "torque_delay"
+    ]
+    return any(value < c.upper - STEP for c, value in own)
 
 
 def mismatches(hypothesis: Hypothesis) -> list[EffectUse]:

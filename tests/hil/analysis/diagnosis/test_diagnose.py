@@ -125,3 +125,23 @@ def wheel_misfit_db(model: Model) -> float:
     wheel = np.linalg.solve(resolvent, np.broadcast_to(b[:, :1], (300, len(a), 1)))[:, 2, 0]
     true = paper_plant.response("wheel_speed_rad_s", frequency)
     return float(np.sqrt(np.mean((20 * np.log10(np.abs(wheel / true))) ** 2)))
+
+
+def test_an_interrupted_search_tells_what_is_known() -> None:
+    def interrupted(doing: str) -> None:
+        if doing.startswith("looking for effect"):
+            raise KeyboardInterrupt
+
+    data = recordings(Truth({"torque_delay": 0.011}), 2, short=True, only=SOME)
+    found = diagnose(MODEL, data, show=interrupted)
+    assert (found.verdict, names(found), found.unfinished) == ("unknown", [], True)
+    assert found.as_json()["unfinished"] is True
+    assert "stay unexplained" in found.signature
+
+
+def test_an_interrupt_before_anything_is_known_ends_the_diagnosis() -> None:
+    def interrupted(doing: str) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        diagnose(MODEL, recordings(Truth(), 1, short=True, only=SOME), show=interrupted)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.data._coherence import Split, split
+from hil.analysis.diagnosis.data._coherence import Split, _is_fed_back, _spectra, split
 from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
@@ -104,3 +104,19 @@ def test_a_drift_of_the_simulation_is_physics(problem, perfect):
         extra.append(e)
     parts, _ = with_errors(problem, perfect, extra)
     assert parts.physics[1] > 10.0
+
+
+@pytest.mark.parametrize(("gain", "loop"), [(0.5, True), (0.0, False)])
+def test_a_request_that_follows_a_channels_noise_is_a_loop(problem, perfect, gain, loop):
+    """A proportional controller on the motor speed: above all modes nothing else moves both."""
+    noises, traces = [], []
+    for index, (trace, errors) in enumerate(zip(problem.traces, perfect.errors, strict=True)):
+        e = np.random.default_rng(index).normal(size=errors.channels.shape)
+        torque = trace.torque.copy()
+        at_full_rate = np.repeat(e[:, 0], trace.block)
+        torque[: len(at_full_rate)] -= gain * at_full_rate
+        traces.append(replace(trace, torque=torque))
+        noises.append(e)
+    spectra = _spectra(traces, problem.weights, noises)
+    products = np.einsum("kfi,kfj->fij", spectra, spectra.conj()) / len(spectra)
+    assert [_is_fed_back(products, c, len(spectra)) for c in range(3)] == [loop, False, False]
