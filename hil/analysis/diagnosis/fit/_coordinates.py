@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._thresholds import (
-    DELAY_REACH,
     FAR_PRIOR,
     MISMATCH_REACH,
     PRIOR,
@@ -93,7 +92,7 @@ class Hypothesis:
         """How far a parameter may go, and the standard deviation of its correction, natural logarithms."""
         if self.far:
             prior = RATIO_PRIOR if name == "gear_ratio" else FAR_PRIOR
-            return DELAY_REACH if name == "torque_delay" else MISMATCH_REACH, prior
+            return MISMATCH_REACH, prior
         widened = self.base.tolerance.get(name, TOLERANCE) / TOLERANCE
         return REACH * widened, PRIOR * widened
 

@@ -27,9 +27,6 @@ FAR_PRIOR: Annotated[
 RATIO_PRIOR: Annotated[
     float, Means("natural logarithm", "the same of a gear ratio: teeth are counted", "far")
 ] = 0.1
-DELAY_REACH: Annotated[
-    float, Means("natural logarithm", "a dead time that is further off is one that is missing", "far")
-] = 0.6
 COARSE_S: Annotated[
     tuple[float, ...],
     Means("s", "means over so long are fitted first where parameters are far: slow motion, then fast", "far"),
