@@ -132,13 +132,14 @@ def _ratio_and_inertia(model: Model) -> tuple[float, float]:
 
 def _speeds(traces: list[Trace], ratio: float, noise: Array, pushes: dict[str, Pair]) -> BadInputError | None:
     """Motor speed against wheel speed: sign, order of magnitude, ratio."""
-    uneven, even = Pair(), Pair()
+    uneven, even, plain = Pair(), Pair(), Pair()
     both = [t for t in traces if t.has[0] and t.has[1] and not (coarse(t, 0) or coarse(t, 1))]
     for t in both:
         wheel, motor = t.measured[:, 1], t.measured[:, 0] / ratio
         step = t.block * t.dt
         turns = np.column_stack([_around(1, np.cumsum(v) * step) for v in (wheel, motor)])
         uneven.add(*turns[np.abs(turns).max(axis=1) > APART_RAD].T)
+        plain.add(wheel - wheel.mean(), motor - motor.mean())
         mean = np.array([wheel.mean()]), np.array([motor.mean()])
         if max(abs(mean[0][0]), abs(mean[1][0])) > FAST_RAD_S:
             even.add(*mean)
@@ -149,12 +150,13 @@ def _speeds(traces: list[Trace], ratio: float, noise: Array, pushes: dict[str, P
         sizes = [(p.sizes[1], p.sizes[0])[column] / (p.sizes[1], p.sizes[0])[other] for p in seen]
         if max(sizes) < DEAD_SHARE and all(_noise_alone(t, column, noise) for t in both):
             return _dead(OUTPUTS[column])
-    if all(p.correlation < INVERTED for p in seen):
+    # a drift bends angles, and hardly speeds
+    if all(p.correlation < INVERTED for p in seen) and plain.correlation < 0.0:
         channel = min((_MOTOR, _WHEEL), key=lambda c: pushes[c].correlation)
         if not any(p.count for p in pushes.values()):
             channel = f"either {_MOTOR} or {_WHEEL}"
         return BadInputError(f"{channel} looks inverted", fix="turn the sign of the channel")
-    if all(abs(p.correlation) < RELATED for p in seen):
+    if all(abs(p.correlation) < RELATED for p in (*seen, plain)):
         return BadInputError(
             f"{_MOTOR} and {_WHEEL} have nothing to do with each other",
             fix="are both from one axle, and in step?",

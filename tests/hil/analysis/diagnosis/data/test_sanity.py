@@ -8,6 +8,7 @@ import pytest
 from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._sanity import examine, examined
 from hil.core.errors import BadInputError
+from hil.plant import simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL, recorded
 
 
@@ -26,3 +27,19 @@ def test_an_inverted_channel_is_named() -> None:
     turned = dataclasses.replace(one, channels={**one.channels, "shaft_torque_nm": -one["shaft_torque_nm"]})
     with pytest.raises(BadInputError, match="shaft_torque_nm looks inverted"):
         examined(MODEL, [turned])
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_speed_that_drifts_slowly_is_not_inverted(sign: float) -> None:
+    one = recorded(seconds=16.0)
+    time = one["time_s"]
+    torque = 20.0 * np.sin(2 * np.pi * (0.2 * time + 0.1 * time**2))  # slow: both speeds go together
+    clean = simulate(MODEL, torque, 1e-3)
+    rng = np.random.default_rng(7)
+    channels = {
+        name: values + 1e-3 * np.std(values) * rng.normal(size=len(time)) for name, values in clean.items()
+    }
+    speed = channels["wheel_speed_rad_s"]
+    channels["wheel_speed_rad_s"] = speed + sign * 0.4 * np.std(speed) * np.sin(2 * np.pi * time / 25.0)
+    told = {**one.channels, **channels, "motor_torque_ref_nm": torque}
+    examined(MODEL, [dataclasses.replace(one, channels=told)])
