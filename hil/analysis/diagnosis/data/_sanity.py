@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._broken_channels import coarse, refuse_broken_channels
+from hil.analysis.diagnosis.data._frozen import refuse_frozen
 from hil.analysis.diagnosis.data._mistakes import mistaken
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._pair import Pair
@@ -61,6 +62,8 @@ def check(model: Model, traces: list[Trace], noise: Array, beside: Sequence[Trac
             gear ratio is wrong, or nothing is excited.
     """
     notes = refuse_broken_channels(traces, noise, beside)
+    for trace in traces:
+        refuse_frozen(trace, noise, model)
     wrong = {t.source: error for t in traces if (error := _wrong(model, [t], noise)) is not None}
     for error in wrong.values():
         alike = [source for source, other in wrong.items() if _kind(other) == _kind(error)]

@@ -47,6 +47,23 @@ FROZEN_NOISY: Annotated[
     float,
     Means("share of steps", "that must turn back elsewhere for a channel to count as noisy", "bad_input"),
 ] = 0.3
+FREEZE_WINDOWS_S: Annotated[
+    tuple[float, float],
+    Means("s", "a channel that holds a value for so long as others move on is frozen", "bad_input"),
+] = (1.0, 4.0)
+HOLDS_NOISE: Annotated[
+    float, Means("noise levels", "a channel that does less holds a value", "bad_input")
+] = 2.0
+HOLDS_SHARE: Annotated[
+    float, Means("of what a channel does in all", "a channel that does less holds a value", "bad_input")
+] = 1e-3
+PLAY_RAD: Annotated[
+    float,
+    Means("rad rms, wheel side", "and the twist: a speed that turns less may be held", "bad_input"),
+] = 0.08
+TURNS_ON: Annotated[
+    float, Means("of what a channel does in all", "torque and speed that do more move on", "bad_input")
+] = 0.3
 BELOW_STEPS: Annotated[
     float, Means("steps of the grid", "a speed that moves by less may stand still as rounded", "bad_input")
 ] = 3.0
