@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
 from hil.analysis.diagnosis.data._proven import checked_noise
 from hil.analysis.diagnosis.data._sanity import examined
+from hil.analysis.diagnosis.data._thresholds import COARSE_SAMPLE_S
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, untold
 from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
@@ -84,6 +85,12 @@ def _diagnosed(
     held = examined(model, holdout, seen.traces)
     traces, noise = seen.traces, seen.noise
     notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + seen.notes
+    notes += [
+        f"{t.name} is sampled at {1.0 / t.dt:.4g} Hz: torque between samples is not known, and a gap "
+        "at changes of torque may be no more than that"
+        for t in traces
+        if t.dt > COARSE_SAMPLE_S
+    ]
     rounded = grids(traces, noise)
     ratio = model.parameters["gear_ratio"]
     problem = problem_of(traces, coarse_noise(noise, rounded), ratio, floor=noise, stated=asked.noise)

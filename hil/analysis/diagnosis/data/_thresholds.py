@@ -253,6 +253,10 @@ LITTLE_TORQUE: Annotated[
     float, Means("of the largest", "torque below it is none: a fed back torque is never quite zero", "trace")
 ] = 0.01
 GAP_SAMPLES: Annotated[float, Means("samples", "a longer pause is a gap", "bad_input")] = 20.0
+COARSE_SAMPLE_S: Annotated[
+    float,
+    Means("s", "with longer ones torque between samples is not known, and a note says so", "trace"),
+] = 0.004
 SLOWEST_SAMPLE_S: Annotated[float, Means("s", "a recording sampled more slowly is refused", "bad_input")] = (
     0.02
 )

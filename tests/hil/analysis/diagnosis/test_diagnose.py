@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -145,3 +146,13 @@ def test_an_interrupt_before_anything_is_known_ends_the_diagnosis() -> None:
 
     with pytest.raises(KeyboardInterrupt):
         diagnose(MODEL, recordings(Truth(), 1, short=True, only=SOME), show=interrupted)
+
+
+@pytest.mark.slow
+def test_coarse_samples_are_said_to_hide_the_torque() -> None:
+    """With the right model no effect may be named because torque between samples is not known."""
+    some = recordings(Truth(), 1, short=True, only=SOME)
+    coarse = [replace(r, channels={name: values[::10] for name, values in r.channels.items()}) for r in some]
+    found = diagnose(MODEL, coarse)
+    assert names(found) == []
+    assert any("sampled at 100 Hz" in note for note in found.notes)
