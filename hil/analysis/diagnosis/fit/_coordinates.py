@@ -78,7 +78,11 @@ class Hypothesis:
         found = []
         for name in parameter_names(self.base.kind):
             value = self.base.parameters[name]
-            if value == 0.0 or name in self.held or (name == "torque_delay" and "dead_time" in self.ids):
+            if (
+                value == 0.0
+                or (self.far and name in self.held)
+                or (name == "torque_delay" and "dead_time" in self.ids)
+            ):
                 continue
             reach, prior = self._freedom(name)
             if name in wrong:

@@ -11,11 +11,14 @@ from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._result import Alternative
 from hil.analysis.diagnosis.tell._separating import separating_plan
 from hil.analysis.diagnosis.tell._thresholds import (
+    CHANNEL_NOISES,
     CLOSED_FAIRLY,
     CLOSED_WELL,
     CONFIDENCE_FLOOR,
     FAIRLY_SURE,
     HALF_MARGIN,
+    HALF_OPEN,
+    HALVED,
     LEAST_TORQUE_NM,
     LESS_SURE,
     OPEN_CONFIDENCE,
@@ -74,7 +77,14 @@ def confidence_of(found: Found, index: int) -> float:
     closing = (
         1.0 - CONFIDENCE_FLOOR if worst < CLOSED_WELL else FAIRLY_SURE if worst < CLOSED_FAIRLY else LESS_SURE
     )
-    return sure * closing
+    return sure * (min(closing, HALF_OPEN) if _half_open(found) else closing)
+
+
+def _half_open(found: Found) -> bool:
+    """Whether any channel keeps more than half of its gap, though all together close."""
+    base = found.given or found.base
+    before, after = (np.sqrt(found.evidence.physics(f)) for f in (base, found.best))
+    return bool(np.any((after > HALVED * before) & (found.evidence.gaps(found.best) > CHANNEL_NOISES)))
 
 
 def alternatives_of(found: Found, verdict: str) -> tuple[Alternative, ...]:

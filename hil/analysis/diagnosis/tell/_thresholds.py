@@ -23,6 +23,9 @@ CLOSED_FAIRLY: Annotated[float, Means("gap over noise floor", "below it a name i
 )
 FAIRLY_SURE: Annotated[float, Means("probability", "at most, where the gap is closed fairly", "blind")] = 0.97
 LESS_SURE: Annotated[float, Means("probability", "at most, where more is left", "blind")] = 0.9
+HALF_OPEN: Annotated[
+    float, Means("probability", "at most, where a channel keeps more than half of its gap", "verdict")
+] = 0.6
 OPEN_CONFIDENCE: Annotated[
     float, Means("probability", "of names that are told where no gap was closed", "blind")
 ] = 0.05
@@ -79,9 +82,14 @@ CHANNEL_NOISES: Annotated[
 CHANNEL_SHUT: Annotated[
     float,
     Means(
-        "share of a channel's gap in power", "from it on the channel is closed: a tenth is left", "verdict"
+        "share of a channel's gap in power",
+        "from it on the channel is closed: a quarter at most is left",
+        "verdict",
     ),
-] = 0.99
+] = 0.95
+NOT_WORSE: Annotated[
+    float, Means("times the gap before", "of a channel where formulas differ: more would be worse", "verdict")
+] = 1.1
 HALVED: Annotated[
     float, Means("of a channel's gap", "more may not stay of any, whatever the others do", "verdict")
 ] = 0.5
