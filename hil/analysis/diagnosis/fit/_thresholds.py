@@ -85,7 +85,7 @@ FAR_FROM_NOISE: Annotated[
 ] = 50.0
 
 MISS_WORSE: Annotated[float, Means("times the rms error", "that other weights may cost at most", "blind")] = (
-    1.1
+    1.6
 )
 
 CLUSTER_S: Annotated[

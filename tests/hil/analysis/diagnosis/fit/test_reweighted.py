@@ -5,6 +5,7 @@ import dataclasses
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.fit._reweighted import reweighted
+from hil.analysis.diagnosis.fit._thresholds import MISS_WORSE
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
@@ -34,7 +35,7 @@ def test_a_fit_far_from_the_noise_keeps_its_plain_cost() -> None:
     plain = fit(problem, again.hypothesis, again.starts, again.theta, rounds=0)
     assert again.cost == plain.cost
     assert again.standard is not None
-    assert again.cost <= (1.1**2) * one.cost
+    assert again.cost <= MISS_WORSE**2 * one.cost
 
 
 def test_a_simulation_that_would_miss_by_more_keeps_its_weights() -> None:
@@ -42,4 +43,4 @@ def test_a_simulation_that_would_miss_by_more_keeps_its_weights() -> None:
     best = fit(problem, Hypothesis(MODEL, (EffectUse("backlash", {"half_gap_rad": 0.05}),)))
     far = dataclasses.replace(best, errors=fit(problem, Hypothesis(MODEL), rounds=0).errors)
     told = dataclasses.replace(far, cost=51.0 * problem.rows)
-    assert reweighted(problem, told).cost <= (1.1**2) * told.cost
+    assert reweighted(problem, told).cost <= MISS_WORSE**2 * told.cost
