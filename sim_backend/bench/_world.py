@@ -246,6 +246,7 @@ class SimulatedBench:
             if bus == RMCU_BUS:
                 self._rmcu.receive(frame_id, int.from_bytes(data, "little"), time_s)
             else:
+                self._show_measured()
                 self._emit()  # what the nodes send may change from here on
                 for node in self._dynos:
                     node.receive(frame_id, data, time_s)
@@ -253,6 +254,19 @@ class SimulatedBench:
                 self._dyno_traffic = self._traffic_of_dynos()
         while self._breaks and self._breaks[0] <= sample:
             self._breaks.popleft()
+
+    def _show_measured(self) -> None:
+        """The newest sample, to whoever reads it by SDO."""
+        if self._samples == self._first_row:
+            return  # nothing new
+        row = self._rows[self._samples - self._first_row - 1]
+        for side, node in enumerate(self._dynos[:2]):
+            node.measure(
+                row[T.WHEEL_LEFT + side],
+                row[T.SHAFT_LEFT + side],
+                row[T.VEHICLE_SPEED],
+                row[T.LOAD_LEFT + side],
+            )
 
     def _is_deaf(self, bus: str) -> bool:
         if not self.faults:

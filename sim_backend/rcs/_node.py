@@ -9,16 +9,31 @@ from typing import Any
 import canopen
 import numpy as np
 import numpy.typing as npt
+from canopen.objectdictionary import SIGNED_TYPES, ODVariable
 
 from hil.core.pdo import ObjectDictionary, layout_of_pdo, read_eds
 from hil.core.signals import FrameLayout
 from hil.plant.closed_loop import drive as law
+from sim_backend.rcs._objects import INVALID_VALUE, ServedNode, check_value
 from sim_backend.rcs._power_states import PowerStates, State
 
 _OPERATIONAL = 5
 _MODES = {3: law.SPEED, 4: law.TORQUE, -1: law.VEHICLE}
+_NO_MODE = 0  # CiA 402: "no mode assigned", which the EDS has as default; the drive turns free
 _EMCY_HEARTBEAT_LOST = 0x8130
-_SYNC_PRODUCER = 1 << 30
+_SYNC_ID, _SYNC_PRODUCER = 0x80, 1 << 30
+_SYNC_PERIODS_US = (0, 1000)  # the bench has one sample time
+_HIGHEST_NODE_ID = 127
+_PDO_PARAMETERS = range(0x1400, 0x1C00)  # they can be read and written back; what is mapped stays
+# Vehicle model (0x2000) by subindex: what a vehicle can have
+_VEHICLE_RANGES = {
+    1: (1e-3, 1e6),  # inertia, kg m2
+    2: (0.0, 1e6),  # rolling resistance, N m
+    3: (0.0, 1e6),  # aerodynamic resistance, N m s2/rad2
+    4: (0.0, 1.0 - 1e-6),  # slip
+    5: (1e-3, 10.0),  # wheel radius, m
+    6: (-150.0, 150.0),  # initial speed, m/s
+}
 # What the emulation reads or shows: index and subindex
 _OBJECTS = (
     (0x1005, 0),
@@ -103,7 +118,7 @@ class DynoNode:
         self._powered = True
         self._network = _Network(send)
         self._dictionary, (self._command, self.values, self.status) = read_node(eds, node_id)
-        self._node: Any = canopen.LocalNode(node_id, self._dictionary)
+        self._node: Any = ServedNode(node_id, self._dictionary)
         self._node.associate_network(self._network)
         self._node.add_write_callback(self._written)
         self._node.nmt.send_command(0)  # boots: boot-up message, then pre-operational
@@ -168,9 +183,26 @@ class DynoNode:
         return variable.decode_raw(self._node.get_data(index, subindex))
 
     def show(self, index: int, value: int) -> None:
-        """Update a read-only object so that SDO reads see it."""
+        """Update an object so that SDO reads see it."""
         variable = self._dictionary[index]
         self._node.data_store.setdefault(index, {})[0] = variable.encode_raw(value)
+
+    def measure(
+        self, wheel_speed_rad_s: float, shaft_torque_nm: float, vehicle_speed_m_s: float, torque_nm: float
+    ) -> None:
+        """What SDO reads of measured values see; an EDS need not have all of them."""
+        measured = {
+            0x2100: shaft_torque_nm,
+            0x2101: wheel_speed_rad_s,
+            0x2102: vehicle_speed_m_s,
+            0x606C: wheel_speed_rad_s,
+            0x6077: torque_nm,
+        }
+        for index, value in measured.items():
+            variable = self._dictionary.get(index)
+            if isinstance(variable, ODVariable) and variable.data_type in SIGNED_TYPES:
+                largest = (1 << (len(variable) - 1)) - 1
+                self.show(index, max(-largest, min(largest, round(value / variable.factor))))
 
     def preset(self, index: int, subindex: int, value: float) -> None:
         """Value of a float object before the host has written it."""
@@ -182,17 +214,36 @@ class DynoNode:
         self.row[law.TARGET_SPEED] = signals["Target velocity"].value(payload)
         self.row[law.TARGET_TORQUE] = signals["Target torque"].value(payload)
         self.power.command(signals["Controlword"].raw(payload))
+        for index, name in ((0x6040, "Controlword"), (0x60FF, "Target velocity"), (0x6071, "Target torque")):
+            data = signals[name].raw(payload).to_bytes(signals[name].length // 8, "little")
+            self._node.data_store.setdefault(index, {})[0] = data
 
     def _written(self, index: int, subindex: int, od: Any, data: bytes) -> None:
-        del subindex
+        self._refuse(index, subindex, od.decode_raw(data), data)
         if index == 0x6040:
             self.power.command(od.decode_raw(data))
         elif index == 0x60FF:
             self.row[law.TARGET_SPEED] = od.decode_raw(data) * od.factor
         elif index == 0x6071:
             self.row[law.TARGET_TORQUE] = od.decode_raw(data) * od.factor
-        elif index == 0x6060 and od.decode_raw(data) not in _MODES:
-            raise canopen.SdoAbortedError(0x06090030)
+
+    def _refuse(self, index: int, subindex: int, value: Any, data: bytes) -> None:
+        """What this drive does not do, beyond what its EDS says: it is refused, not taken and ignored."""
+        wrong = False
+        if index == 0x1005:
+            wrong = value & ~_SYNC_PRODUCER != _SYNC_ID
+        elif index == 0x1006:
+            wrong = value not in _SYNC_PERIODS_US
+        elif index == 0x1016:
+            wrong = value >> 16 > _HIGHEST_NODE_ID
+        elif index == 0x6060:
+            wrong = value not in (*_MODES, _NO_MODE)
+        elif index in _PDO_PARAMETERS:
+            wrong = bytes(data) != self._node.get_data(index, subindex)
+        elif index == 0x2000 and subindex in _VEHICLE_RANGES:
+            check_value(value, *_VEHICLE_RANGES[subindex])
+        if wrong:
+            raise canopen.SdoAbortedError(INVALID_VALUE)
 
     def _follow(self) -> None:
         """Bring the drive in line with power state, mode of operation and heartbeat supervision."""
