@@ -1,5 +1,7 @@
 """Drivers: devices on their wires, in one loop, by one clock."""
 
+from drivers.bus_health import BusHealth
+from drivers.can_adapter import CanSettings, open_can
 from drivers.device import Device, MotorControl, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
 from drivers.frame_source import Binding, FrameSource
@@ -19,7 +21,9 @@ __all__ = [
     "OWN_KINDS",
     "TICK_S",
     "Binding",
+    "BusHealth",
     "BusLoop",
+    "CanSettings",
     "Connections",
     "Device",
     "DeviceTable",
@@ -42,6 +46,7 @@ __all__ = [
     "VehicleParameters",
     "WheelLoad",
     "Wire",
+    "open_can",
     "parameters_of",
     "read_dyno",
     "read_rmcu",

@@ -5,6 +5,8 @@ from __future__ import annotations
 from hil.core.errors import BenchError
 from hil.core.printable import printable
 
+_WRITE_TIMEOUT_S = 0.005
+
 
 class SerialLine:
     """One port, opened by pyserial, used from one thread: `BusLoop.serve` hands out what comes.
@@ -26,7 +28,10 @@ class SerialLine:
         import serial  # here: benches without a serial line start without it
 
         try:
-            self._port = serial.serial_for_url(url, baudrate=baud_rate, timeout=0, write_timeout=0)
+            # A write timeout of 0 would have pyserial try for ever when the line takes nothing.
+            self._port = serial.serial_for_url(
+                url, baudrate=baud_rate, timeout=0, write_timeout=_WRITE_TIMEOUT_S
+            )
         except (ValueError, OSError) as error:
             raise self._failed("cannot be opened", error) from error
 

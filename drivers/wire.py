@@ -2,14 +2,44 @@
 
 from __future__ import annotations
 
+import errno
+import logging
 from typing import Any
 
 import can
 import numpy as np
 
+from drivers.bus_health import BusHealth
 from hil.core.clock import Clock
 from hil.core.errors import BenchError
 from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
+from hil.core.printable import printable
+
+_LOG = logging.getLogger(__name__)
+
+_LONGEST_DATA = 8
+_OTHER_CLOCK_S = 10.0  # stamps that are further off are none since 1970, but of the adapter's own clock
+
+# What drivers and adapters say of why nothing passes, in words
+_GONE = "the adapter is gone: unplugged, or its driver was unloaded"
+_FULL = "the transmit queue is full: frames do not leave; is another node there that acknowledges them?"
+_CLOSED = "nobody is at the other end any more"
+_REASONS = {
+    errno.ENETDOWN: "the network interface is down",
+    errno.ENXIO: _GONE,
+    errno.ENODEV: _GONE,
+    errno.EIO: _GONE,
+    errno.EBADF: _GONE,
+    errno.ENOBUFS: _FULL,
+    errno.EAGAIN: _FULL,
+    errno.ECONNREFUSED: _CLOSED,
+    errno.ECONNRESET: _CLOSED,
+    errno.EPIPE: _CLOSED,
+}
+_FIX = (
+    "check the CAN adapter, its cable and terminators (120 ohm at both ends), and the bit rate of all nodes"
+)
+_FULL_WORDS = ("buffer full", "queue full", "queue is full", "buffer overflow", "QXMTFULL", "XMTFULL")
 
 
 class Wire:
@@ -17,13 +47,33 @@ class Wire:
 
     A bus that has a `recv_block` of its own (see `hil.core.frames`) is drained with it, any other message
     by message; a bus that has `send_frame(id, data)` is given no message object. The result is the same.
+
+    Frames that no device of a bench sends are left out, and told in the log: remote frames, and CAN FD frames
+    of more than 8 bytes.
+
+    Args:
+        epoch_offset_s: time stamps of messages (since 1970) minus clock time, in wall-clock seconds.
+        time_scale: seconds of the clock in a second of the time stamps.
+        health: looks at error frames and at what the adapter says of itself.
     """
 
-    def __init__(self, name: str, bus: can.BusABC, clock: Clock, *, epoch_offset_s: float = 0.0) -> None:
+    def __init__(
+        self,
+        name: str,
+        bus: can.BusABC,
+        clock: Clock,
+        *,
+        epoch_offset_s: float = 0.0,
+        time_scale: float = 1.0,
+        health: BusHealth | None = None,
+    ) -> None:
         self.name = name
         self._bus = bus
         self._clock = clock
-        self._epoch_offset_s = epoch_offset_s  # message time stamps minus clock time
+        self._epoch_offset_s, self._time_scale = epoch_offset_s, time_scale
+        self._health = health or BusHealth(name)
+        self._stamped = False
+        self._left_out: set[str] = set()
         self._sent: list[tuple[float, int, int, int, int]] = []
         self._take: Any = getattr(bus, "recv_block", None)
         self._put: Any = getattr(bus, "send_frame", self._put_message)
@@ -57,9 +107,25 @@ class Wire:
             block = block[np.argsort(block["time_s"], kind="stable")]
         return block
 
+    def check(self) -> None:
+        """Look at what the adapter says of the bus; each fault is raised once.
+
+        Raises:
+            BenchError: bus-off, error-passive, a transmit queue that is full.
+        """
+        try:
+            faults = self._health.new_faults(self._clock.now_s())
+        except (can.CanError, OSError) as error:
+            raise self._failed("asking for its state", error) from error
+        if faults:
+            raise BenchError("; ".join(faults), where=f"bus '{self.name}'", fix=_FIX)
+
     def close(self) -> None:
         """Leave the bus."""
-        self._bus.shutdown()
+        try:
+            self._bus.shutdown()
+        except (can.CanError, OSError):  # what is gone need not be left
+            _LOG.info("bus '%s' cannot be closed", self.name, exc_info=True)
 
     def _put_message(self, frame_id: int, data: bytes) -> None:
         self._bus.send(can.Message(arbitration_id=frame_id, data=data, is_extended_id=False, check=False))
@@ -67,15 +133,52 @@ class Wire:
     def _take_one_by_one(self) -> FrameBlock:
         frames = []
         while (message := self._bus.recv(0)) is not None:
+            data = message.data
+            if message.is_error_frame:
+                self._health.take(message)
+            elif message.is_remote_frame:
+                self._leave_out("remote frames")
+                continue
+            elif len(data) > _LONGEST_DATA:
+                self._leave_out("CAN FD frames of more than 8 bytes")
+                continue
             flags = EXTENDED * message.is_extended_id | ERROR_FRAME * message.is_error_frame
-            payload = int.from_bytes(message.data, "little")
-            stamp = message.timestamp - self._epoch_offset_s
-            frames.append((stamp, message.arbitration_id, flags, len(message.data), payload))
+            payload = int.from_bytes(data, "little")
+            frames.append(
+                (self._bench_time(message.timestamp), message.arbitration_id, flags, len(data), payload)
+            )
         return np.array(frames, FRAME) if frames else empty_block()
 
+    def _bench_time(self, stamp: float) -> float:
+        if not self._stamped:
+            self._stamped = True
+            ahead_s = stamp - self._epoch_offset_s - self._clock.now_s() / self._time_scale
+            if abs(ahead_s) > _OTHER_CLOCK_S:
+                _LOG.info("bus '%s': stamps count from a moment of the adapter's own", self.name)
+                self._epoch_offset_s += ahead_s
+        return (stamp - self._epoch_offset_s) * self._time_scale
+
+    def _leave_out(self, what: str) -> None:
+        if what not in self._left_out:
+            self._left_out.add(what)
+            _LOG.warning("bus '%s': %s are left out", self.name, what)
+
     def _failed(self, doing: str, error: Exception) -> BenchError:
+        said = printable(str(error).strip(), 200)
+        reason = _reason(error)
         return BenchError(
-            f"{doing} failed: {error}",
+            f"{doing} failed: {reason} ({said})" if reason else f"{doing} failed: {said}",
             where=f"bus '{self.name}'",
-            fix="check the CAN adapter, its cable and its bit rate",
+            fix=_FIX,
         )
+
+
+def _reason(error: Exception) -> str:
+    """Why, in words; '' if only the adapter's software knows."""
+    link: BaseException | None = error
+    while link is not None:
+        number = getattr(link, "error_code", None) or getattr(link, "errno", None)
+        if number in _REASONS and isinstance(link, OSError | can.CanError):
+            return _REASONS[number]
+        link = link.__cause__ or link.__context__
+    return _FULL if any(words.lower() in str(error).lower() for words in _FULL_WORDS) else ""

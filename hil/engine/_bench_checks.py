@@ -12,6 +12,7 @@ import can
 from drivers import DynoTable, RmcuTable, read_rmcu
 from hil.core.errors import BadInputError
 from hil.core.printable import is_printable, printable
+from hil.engine._bus_settings import adapter_mistakes
 from hil.engine._simulable import check_simulable, rmcu_of
 from hil.engine.bench_tables import BenchFile
 from hil.plant.controller import in_range
@@ -20,7 +21,8 @@ from sim_backend.bench import DYNO_BUS, RMCU_BUS
 SIMULATED = "hil-sim"
 
 _LINES = str.maketrans("", "", "\n\t")  # a description of the DUT may have lines
-_OURS = {"interface", "channel", "bitrate"}  # what the bench file's own keys give to python-can
+# What the bench file's own keys give to python-can
+_OURS = {"interface", "channel", "bitrate", "fd", "data_bitrate", "timing"}
 
 
 def unprintable(data: dict[str, Any], place: str = "") -> list[str]:
@@ -79,9 +81,11 @@ def _of_uses(bench: BenchFile) -> Iterator[str]:
     for name in bench.buses:
         if name not in used.values():
             yield f"buses.{name}: is used by nothing; name it under [rmcu] or [dyno], or leave it out"
-    seen: dict[tuple[str, str], str] = {}
+    seen: dict[tuple[str, str, str], str] = {}
     for name, bus in bench.buses.items():
-        other = seen.setdefault((bus.interface, bus.channel), name)
+        # Two adapters of one make may both have a channel 0: their options tell which is meant.
+        which = repr(sorted(bus.options.items()))
+        other = seen.setdefault((bus.interface, str(bus.channel), which), name)
         if other != name:
             yield (
                 f"buses.{name}.channel = '{printable(bus.channel)}': is also buses.{other}; "
@@ -130,8 +134,11 @@ def _of_interfaces(bench: BenchFile) -> Iterator[str]:
             yield f"{key}: a simulated bus without [simulation]; add [simulation] with a model"
         elif bus.interface == SIMULATED:
             yield from _of_simulated_bus(bench, name)
+        else:
+            yield from adapter_mistakes(name, bus)
         for option in sorted(_OURS & bus.options.keys()):
-            yield f"buses.{name}.options.{option}: stands outside of options (interface, channel, bit_rate)"
+            ours = "interface, channel, bit_rate, fd, data_bit_rate, timing"
+            yield f"buses.{name}.options.{option}: stands outside of options ({ours})"
 
 
 def _of_simulated_bus(bench: BenchFile, name: str) -> Iterator[str]:
@@ -144,8 +151,9 @@ def _of_simulated_bus(bench: BenchFile, name: str) -> Iterator[str]:
             f"buses.{name}.channel = '{printable(bus.channel)}': "
             f"with name = '{bench.name}' this simulated bus is '{bench.name}/{role}'"
         )
-    if bus.options:
-        yield f"buses.{name}.options: the simulated bench takes none; leave them out"
+    for key in ("options", "fd", "data_bit_rate", "timing"):
+        if getattr(bus, key):
+            yield f"buses.{name}.{key}: the simulated bench takes none; leave it out"
 
 
 def _of_identifiers(bench: BenchFile) -> Iterator[str]:

@@ -9,9 +9,8 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 
-import can
-
 from drivers import (
+    BusHealth,
     BusLoop,
     Connections,
     Device,
@@ -21,12 +20,14 @@ from drivers import (
     VehicleParameters,
     WheelLoad,
     Wire,
+    open_can,
 )
 from hil.core.channels import TIME
 from hil.core.clock import Clock, WallClock
-from hil.core.errors import BadInputError, BenchError
+from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model
 from hil.core.printable import printable
+from hil.engine._bus_settings import can_settings
 from hil.engine._simulable import simulated
 from hil.engine.bench_tables import BenchFile
 from sim_backend.can_interface import attach, detach
@@ -98,12 +99,15 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
             clock, offset_s = world, 0.0
         wires: dict[str, Wire] = {}
         for name, bus in file.buses.items():
-            wire = _open(name, bus.interface, bus.channel, bus.bit_rate, bus.options)
-            wires[name] = Wire(name, wire, clock, epoch_offset_s=offset_s)
+            opened_bus = open_can(can_settings(name, bus))
+            health = BusHealth(name, bus.interface, opened_bus)
+            wires[name] = Wire(name, opened_bus, clock, epoch_offset_s=offset_s, health=health)
             opened.callback(wires[name].close)
         v = file.vehicle
         vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)
         loop = BusLoop(clock, list(wires.values()))
+        for wire in wires.values():
+            loop.on_drained(wire.check)
         connections = Connections(loop, wires, vehicle, simulated=file.simulation is not None)
         bench = _with_devices(file, connections, model, opened)
         _refuse_channels(bench)
@@ -168,14 +172,3 @@ def _refuse_channels(bench: Bench) -> None:
                 where=where,
                 fix=f"there are: {', '.join(list(seen)[1:])}",
             )
-
-
-def _open(name: str, interface: str, channel: str, bit_rate: int, options: dict[str, object]) -> can.BusABC:
-    try:
-        return can.Bus(interface=interface, channel=channel, bitrate=bit_rate, **options)  # type: ignore[arg-type]
-    except Exception as error:  # an adapter's own software raises what it likes
-        raise BenchError(
-            f"cannot be opened: {printable(error, 200) or type(error).__name__}",
-            where=f"bus '{name}' ({interface} {channel})",
-            fix="check [buses] in the bench file, the adapter and its driver",
-        ) from error

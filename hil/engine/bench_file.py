@@ -13,6 +13,7 @@ from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.core.printable import printable
 from hil.engine._bench_checks import contradictions, device_mistakes, unprintable
+from hil.engine._bench_lines import line_of
 from hil.engine._device_tables import device_tables, told
 from hil.engine.bench_tables import BenchFile
 
@@ -50,14 +51,15 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
         BadInputError: all that is wrong with it.
     """
     where = printable(path, 200)
-    _refuse(where, [*unprintable(data), *(f"{key}: unknown key" for key in _LOADED if key in data)])
+    unknown = [f"{key}: unknown key" for key in _LOADED if key in data]
+    _refuse(where, [*unprintable(data), *unknown], text)
     devices, mistakes = device_tables(data)
     try:
         bench = BenchFile.model_validate({**data, **devices, "text": text, "source": path.resolve()})
     except ValidationError as error:
-        _refuse(where, [*mistakes, *told(error, known=mistakes)])
+        _refuse(where, [*mistakes, *told(error, known=mistakes)], text)
         raise
-    _refuse(where, mistakes or contradictions(bench))
+    _refuse(where, mistakes or contradictions(bench), text)
     base = path.resolve().parent
     changes: dict[str, Any] = {
         "rmcu": bench.rmcu.beside(base),
@@ -67,21 +69,28 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
     if bench.simulation:
         changes["simulation"] = bench.simulation.model_copy(update={"model": base / bench.simulation.model})
     loaded = bench.model_copy(update=changes)
-    _refuse(where, device_mistakes(loaded))
+    _refuse(where, device_mistakes(loaded), text)
     return loaded
 
 
-def _refuse(where: str, mistakes: list[str]) -> None:
+def _refuse(where: str, mistakes: list[str], text: str) -> None:
     """Tell every mistake of a file, each on a line; nothing if there is none.
 
     Raises:
         BadInputError: there are mistakes.
     """
-    if len(mistakes) == 1:
-        raise BadInputError(mistakes[0], where=where, fix=_FIX)
-    if mistakes:
-        lines = "".join(f"\n  {mistake}" for mistake in mistakes)
-        raise BadInputError(f"{len(mistakes)} mistakes{lines}", where=where, fix=_FIX)
+    placed = [(line_of(text, _key(mistake)), mistake) for mistake in mistakes]
+    if len(placed) == 1:
+        line, mistake = placed[0]
+        raise BadInputError(mistake, where=f"{where}, line {line}" if line else where, fix=_FIX)
+    if placed:
+        lines = "".join(f"\n  line {line}: {told}" if line else f"\n  {told}" for line, told in placed)
+        raise BadInputError(f"{len(placed)} mistakes{lines}", where=where, fix=_FIX)
+
+
+def _key(mistake: str) -> str:
+    """The key that a mistake begins with."""
+    return mistake.partition(": ")[0].partition(" = ")[0]
 
 
 def _shipped_bench(name: str) -> Path:

@@ -21,6 +21,7 @@ def _date(value: object) -> object:
 
 
 Day = Annotated[datetime.date, BeforeValidator(_date)]
+_HIGHEST_CHANNEL = 255
 Bound = Annotated[float, Field(ge=-1e6, le=1e6)]
 Limit = Annotated[float, Field(gt=0, le=1e6, description="beyond 1e6 it would limit nothing")]
 Deviation = Annotated[float, Field(ge=0, le=1e4)]
@@ -30,12 +31,71 @@ class _Table(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True)
 
 
+def _channel(value: object) -> object:
+    """A name, or a number as the adapter counts."""
+    if not isinstance(value, str | int) or isinstance(value, bool) or value == "":
+        raise ValueError('is no channel; write a name such as "can0", or a number such as 0')
+    if isinstance(value, int) and not 0 <= value <= _HIGHEST_CHANNEL:
+        raise ValueError(f"is no channel; they count from 0 to {_HIGHEST_CHANNEL}")
+    return value
+
+
+Channel = Annotated[str | int, BeforeValidator(_channel)]
+Segment = Annotated[int, Field(ge=1, le=1024)]
+SamplePoint = Annotated[float, Field(ge=50.0, le=100.0, description="%")]
+
+
+class Timing(_Table):
+    """How an adapter cuts a bit, where its own choice does not do; by sample points or by segments.
+
+    Segments count time quanta and have CiA's and python-can's names; those of CAN FD's data phase begin
+    with data_.
+    """
+
+    f_clock: int = Field(ge=1_000_000, le=160_000_000, description="clock of the CAN controller, Hz")
+    sample_point: SamplePoint | None = None
+    data_sample_point: SamplePoint | None = None
+    tseg1: Segment | None = None
+    tseg2: Segment | None = None
+    sjw: Segment | None = None
+    data_tseg1: Segment | None = None
+    data_tseg2: Segment | None = None
+    data_sjw: Segment | None = None
+
+    @model_validator(mode="after")
+    def _is_whole(self) -> Self:
+        for data in ("", "data_"):
+            segments = [getattr(self, f"{data}{key}") for key in ("tseg1", "tseg2", "sjw")]
+            given = [segment is not None for segment in segments]
+            if any(given) and not all(given):
+                raise ValueError(f"give {data}tseg1, {data}tseg2 and {data}sjw together")
+            if any(given) and getattr(self, f"{data}sample_point") is not None:
+                raise ValueError(
+                    f"give {data}sample_point or {data}tseg1, {data}tseg2 and {data}sjw, not both"
+                )
+        if (self.data_sample_point is None) != (self.sample_point is None) and self.has_data_phase:
+            raise ValueError("give both phases by sample points, or both by segments")
+        if self.sample_point is None and self.tseg1 is None:
+            raise ValueError("says nothing; give sample_point, or tseg1, tseg2 and sjw")
+        return self
+
+    @property
+    def has_data_phase(self) -> bool:
+        """Whether it is one of CAN FD."""
+        return self.data_sample_point is not None or self.data_tseg1 is not None
+
+
 class Bus(_Table):
     """One CAN bus, opened by python-can."""
 
     interface: str = Field(min_length=1)
-    channel: str = Field(min_length=1)
+    channel: Channel
     bit_rate: int = Field(ge=10_000, le=1_000_000, description="bit/s")
+    fd: bool = Field(False, description="open the controller for CAN FD")
+    data_bit_rate: int | None = Field(
+        None, ge=10_000, le=10_000_000, description="bit/s of CAN FD's data phase"
+    )
+    timing: Timing | None = None
     options: dict[str, Any] = Field({}, description="further arguments for can.Bus")
 
 

@@ -85,3 +85,18 @@ def test_a_serial_line_sends_receives_and_says_when_it_is_gone() -> None:
     with pytest.raises(BenchError, match=r"device 'panel' \(/dev/.*\): receiving failed"):
         line.drain()
     line.close()
+
+
+def test_a_serial_line_that_takes_nothing_is_not_waited_for() -> None:
+    there, terminal = pty.openpty()
+    line = SerialLine("panel", os.ttyname(terminal))
+
+    def flood() -> None:
+        for _ in range(10_000):
+            line.send(bytes(100))
+
+    with pytest.raises(BenchError, match=r"device 'panel' \(/dev/.*\): sending failed"):
+        flood()
+    line.close()
+    os.close(terminal)
+    os.close(there)

@@ -1,0 +1,33 @@
+"""Where in the text of a bench file a key stands; TOML's reader does not say."""
+
+from __future__ import annotations
+
+import re
+
+_HEADER = re.compile(r"^\s*\[\s*([^\[\]]+?)\s*\]\s*(?:#.*)?$")
+_KEY = re.compile(r"""^\s*((?:[\w-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[\w-]+|"[^"]*"|'[^']*'))*)\s*=""")
+_PART = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
+
+
+def line_of(text: str, key: str) -> int | None:
+    """Line of a dotted key, or of the nearest table around it that has a line; None if none has.
+
+    What stands inside of an inline table or of a text over several lines may be missed: then the line of what
+    is around it is given.
+    """
+    lines: dict[str, int] = {}
+    table = ""
+    for number, line in enumerate(text.splitlines(), 1):
+        if header := _HEADER.match(line):
+            table = _dotted(header[1])
+            lines.setdefault(table, number)
+        elif found := _KEY.match(line):
+            name = _dotted(found[1])
+            lines.setdefault(f"{table}.{name}" if table else name, number)
+    while key and key not in lines:
+        key = key.rpartition(".")[0]
+    return lines.get(key)
+
+
+def _dotted(name: str) -> str:
+    return ".".join(part.strip("\"'") for part in _PART.findall(name))
