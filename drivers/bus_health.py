@@ -36,6 +36,13 @@ class BusHealth:
         self._told: set[str] = set()
         self._new: list[str] = []
         self._error_frames = 0
+        self._remarks: list[str] = []
+
+    @property
+    def remarks(self) -> list[str]:
+        """What was seen that ends no run, each once."""
+        counted = [f"{self._error_frames} error frames"] if self._error_frames else []
+        return self._remarks + counted
 
     def take(self, message: can.Message) -> None:
         """Take an error frame."""
@@ -68,6 +75,7 @@ class BusHealth:
     def _remark(self, text: str) -> None:
         if text and text not in self._told:
             self._told.add(text)
+            self._remarks.append(text)
             _LOG.warning("bus '%s': %s", self._name, text)
 
 

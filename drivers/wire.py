@@ -45,8 +45,9 @@ _FULL_WORDS = ("buffer full", "queue full", "queue is full", "buffer overflow", 
 class Wire:
     """One bus, used from one thread, without a receive thread that could die unseen.
 
-    A bus that has a `recv_block` of its own (see `hil.core.frames`) is drained with it, any other message
-    by message; a bus that has `send_frame(id, data)` is given no message object. The result is the same.
+    A bus that has a `recv_block` of its own (see `hil.core.frames`) is drained with it, or with
+    `recv_epoch_block`, whose stamps count from 1970; any other message by message. A bus that has
+    `send_frame(id, data)` is given no message object. The result is the same.
 
     Frames that no device of a bench sends are left out, and told in the log: remote frames, and CAN FD frames
     of more than 8 bytes.
@@ -75,7 +76,8 @@ class Wire:
         self._stamped = False
         self._left_out: set[str] = set()
         self._sent: list[tuple[float, int, int, int, int]] = []
-        self._take: Any = getattr(bus, "recv_block", None)
+        self._take: Any = getattr(bus, "recv_block", self._take_one_by_one)
+        self._take_stamped: Any = getattr(bus, "recv_epoch_block", None)
         self._put: Any = getattr(bus, "send_frame", self._put_message)
 
     def send(self, frame_id: int, data: bytes) -> None:
@@ -95,7 +97,7 @@ class Wire:
     def drain(self) -> FrameBlock:
         """Every frame that came since the last call, and those sent, in order of time."""
         try:
-            block: FrameBlock = self._take() if self._take is not None else self._take_one_by_one()
+            block: FrameBlock = self._take_block() if self._take_stamped is not None else self._take()
         except (can.CanError, OSError) as error:
             raise self._failed("receiving", error) from error
         if self._sent:
@@ -106,6 +108,13 @@ class Wire:
             block = joined([sent, block])
             block = block[np.argsort(block["time_s"], kind="stable")]
         return block
+
+    @property
+    def remarks(self) -> list[str]:
+        """What was seen on the bus so far that ends no run but belongs to its record."""
+        lost = getattr(self._bus, "lost", 0)
+        told = [f"{what} were left out" for what in sorted(self._left_out)] + self._health.remarks
+        return [*told, f"{lost} frames were lost on the way"] if lost else told
 
     def check(self) -> None:
         """Look at what the adapter says of the bus; each fault is raised once.
@@ -129,6 +138,12 @@ class Wire:
 
     def _put_message(self, frame_id: int, data: bytes) -> None:
         self._bus.send(can.Message(arbitration_id=frame_id, data=data, is_extended_id=False, check=False))
+
+    def _take_block(self) -> FrameBlock:
+        block: FrameBlock = self._take_stamped()
+        if len(block):
+            block["time_s"] = (block["time_s"] - self._epoch_offset_s) * self._time_scale
+        return block
 
     def _take_one_by_one(self) -> FrameBlock:
         frames = []

@@ -24,7 +24,7 @@ from hil.core.files import of_the_system
 
 logger = logging.getLogger(__name__)
 
-# name: one line for `hil --help`. The module hil.cli.commands.NAME is imported when the command is used.
+# name: one line for `hil --help`. The module hil.cli.commands.NAME (_ for -) is imported when it is used.
 _COMMANDS = {
     "run": "Run a test plan on a bench, and report.",
     "check": "Validate a plan, estimate its duration, predict its peaks.",
@@ -36,6 +36,7 @@ _COMMANDS = {
     "explain": "What would bring a predicted run to target figures.",
     "simulate": "Replay a recording's torque through a model.",
     "export": "Write a recording as CSV, Parquet or MDF4.",
+    "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
     "schema": "JSON schema of plan files, for editors.",
 }
 
@@ -71,7 +72,7 @@ def _dispatch(arguments: list[str]) -> int:
         near = difflib.get_close_matches(name, _COMMANDS, 1)
         hint = f"did you mean '{near[0]}'?" if near else "see hil --help"
         raise BadInputError(f"there is no command '{name}'", fix=hint)
-    module = importlib.import_module(f"hil.cli.commands.{name}")
+    module = importlib.import_module(f"hil.cli.commands.{name.replace('-', '_')}")
     command = module.command
     app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
     settings = {"help_option_names": ["-h", "--help"]}

@@ -19,17 +19,22 @@ class Clock(Protocol):
 
 
 class WallClock:
-    """Monotonic real time."""
+    """Monotonic real time.
 
-    def __init__(self) -> None:
-        self._start = time.monotonic()
+    Args:
+        scale: seconds of this clock in a second of real time; less than 1 for a simulated bench in a process
+            of its own that cannot keep up.
+    """
+
+    def __init__(self, scale: float = 1.0) -> None:
+        self._start, self._scale = time.monotonic(), scale
 
     def now_s(self) -> float:
         """Seconds since this clock was made."""
-        return time.monotonic() - self._start
+        return (time.monotonic() - self._start) * self._scale
 
     def sleep_until(self, time_s: float) -> None:
         """Sleep; the last part of a millisecond is left to the operating system's timer."""
         remaining = time_s - self.now_s()
         if remaining > 0:
-            time.sleep(remaining)
+            time.sleep(remaining / self._scale)

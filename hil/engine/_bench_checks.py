@@ -12,7 +12,7 @@ import can
 from drivers import DynoTable, RmcuTable, read_rmcu
 from hil.core.errors import BadInputError
 from hil.core.printable import is_printable, printable
-from hil.engine._bus_settings import adapter_mistakes
+from hil.engine._bus_settings import adapter_mistakes, slows_down
 from hil.engine._simulable import check_simulable, rmcu_of
 from hil.engine.bench_tables import BenchFile
 from hil.plant.controller import in_range
@@ -46,7 +46,13 @@ def contradictions(bench: BenchFile) -> list[str]:
     own = [
         f"{key}.{mistake}" for key, table in bench.device_tables.items() for mistake in table.contradictions()
     ]
-    return [*own, *_of_uses(bench), *_of_interfaces(bench), *_of_simulation(bench)]
+    return [
+        *own,
+        *_of_uses(bench),
+        *_of_interfaces(bench),
+        *_of_simulation(bench),
+        *_of_time_scale(bench),
+    ]
 
 
 def device_mistakes(bench: BenchFile) -> list[str]:
@@ -100,6 +106,19 @@ def _of_simulation(bench: BenchFile) -> Iterator[str]:
             if not isinstance(table, kind):
                 known = kind.model_fields["kind"].default
                 yield f"{key}.kind = '{printable(table.kind)}': the simulated bench has only '{known}'"
+
+
+def _of_time_scale(bench: BenchFile) -> Iterator[str]:
+    """Hardware knows one time: its time-outs are not to be stretched."""
+    if bench.time_scale == 1.0:
+        return
+    key = f"time_scale = {bench.time_scale:g}"
+    if bench.simulation:
+        yield f"{key}: the simulated bench computes its time; leave it out"
+    for name, bus in bench.buses.items():
+        if not bench.simulation and not slows_down(bus):
+            shown = printable(bus.interface)
+            yield f"{key}: buses.{name} ('{shown}') may be hardware, which keeps real time; leave it out"
 
 
 def _of_held_parameters(bench: BenchFile) -> Iterator[str]:

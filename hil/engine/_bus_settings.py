@@ -41,6 +41,15 @@ def can_settings(name: str, bus: Bus) -> CanSettings:
     )
 
 
+def slows_down(bus: Bus) -> bool:
+    """Whether what is at the other end can be a simulated bench that does not keep real time."""
+    if bus.interface == "slcan":
+        return str(bus.channel).startswith("/dev/pts/")
+    if bus.interface == "socketcand":
+        return bus.options.get("host") in ("127.0.0.1", "localhost")
+    return bus.interface == "hil-udp"
+
+
 def adapter_mistakes(name: str, bus: Bus) -> Iterator[str]:
     """What the adapter does not take: key, value and what to do, each a line."""
     yield from _of_channel(f"buses.{name}.channel", bus)

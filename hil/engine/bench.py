@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import logging
 import time
 from collections.abc import Iterator
@@ -84,8 +85,9 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
         BadInputError: a file that the bench file names cannot be used, or devices that do not go together.
         BenchError: a bus or a port cannot be opened.
     """
-    clock: Clock = WallClock()
-    offset_s = time.time() - clock.now_s()
+    scale = file.time_scale
+    clock: Clock = WallClock(scale)
+    offset_s = time.time() - clock.now_s() / scale
     if model is not None and not file.simulation:
         raise BadInputError(
             "--model goes with a simulated bench only", where=str(file.source), fix="leave --model out"
@@ -99,10 +101,13 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
             clock, offset_s = world, 0.0
         wires: dict[str, Wire] = {}
         for name, bus in file.buses.items():
-            opened_bus = open_can(can_settings(name, bus))
-            health = BusHealth(name, bus.interface, opened_bus)
-            wires[name] = Wire(name, opened_bus, clock, epoch_offset_s=offset_s, health=health)
+            adapter = open_can(can_settings(name, bus))
+            health = BusHealth(name, bus.interface, adapter)
+            wires[name] = Wire(name, adapter, clock, epoch_offset_s=offset_s, time_scale=scale, health=health)
             opened.callback(wires[name].close)
+            _refuse_other_pace(name, getattr(adapter, "time_scale", scale), scale)
+        if not file.simulation:
+            opened.enter_context(_short_collections())
         v = file.vehicle
         vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)
         loop = BusLoop(clock, list(wires.values()))
@@ -112,6 +117,29 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
         bench = _with_devices(file, connections, model, opened)
         _refuse_channels(bench)
         yield bench
+
+
+def _refuse_other_pace(name: str, theirs: float, ours: float) -> None:
+    if theirs != ours:
+        raise BadInputError(
+            f"the bench at the other end runs at {theirs:g} of real time, the bench file says {ours:g}",
+            where=f"bus '{name}'",
+            fix=f"write time_scale = {theirs:g} at the top of the bench file",
+        )
+
+
+@contextlib.contextmanager
+def _short_collections() -> Iterator[None]:
+    """Where time passes by itself: what there is already is not looked through for garbage again and again.
+
+    That takes longer than a device waits for its host.
+    """
+    gc.collect()
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
 
 
 def _with_devices(file: BenchFile, connections: Connections, model: Model | None, opened: ExitStack) -> Bench:

@@ -163,6 +163,9 @@ class BenchFile(_Table):
     name: Name
     title: str = ""
     operator: str = ""
+    time_scale: float = Field(
+        1.0, ge=0.001, le=1, description="seconds of bench time in a second; for `hil sim-bench` only"
+    )
     buses: dict[Name, Bus]
     rmcu: SerializeAsAny[DeviceTable]
     dyno: SerializeAsAny[LoadTable]

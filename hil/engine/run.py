@@ -180,6 +180,9 @@ class _Run:
             self._error = BenchError(
                 "; ".join(self._unsafe), where="safe state", fix="cut the drives' power before you go near"
             )
+        for wire in loop.wires:
+            for remark in wire.remarks:
+                self._try_event("bus", f"{wire.name}: {remark}")
         bench_time_s = loop.clock.now_s() - self._begin_s
         recording = self._recording()
         criteria = self._judged(recording) if recording is not None else ()

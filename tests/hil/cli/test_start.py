@@ -46,7 +46,8 @@ def modules_of(*arguments):
 
 
 def test_every_command_is_listed_and_every_listed_one_is_there(capsys):
-    assert set(_COMMANDS) == {module.name for module in pkgutil.iter_modules(commands.__path__)}
+    modules = {name.replace("-", "_") for name in _COMMANDS}
+    assert modules == {module.name for module in pkgutil.iter_modules(commands.__path__)}
     assert guarded(["--help"]) == 0
     told = capsys.readouterr().out
     assert all(f"  {name} " in told and text in told for name, text in _COMMANDS.items())
@@ -54,8 +55,8 @@ def test_every_command_is_listed_and_every_listed_one_is_there(capsys):
 
 @pytest.mark.parametrize("name", _COMMANDS)
 def test_the_work_takes_what_the_command_takes(name):
-    command = inspect.signature(importlib.import_module(f"hil.cli.commands.{name}").command)
-    work = inspect.signature(importlib.import_module(f"hil.cli.{name}").carry_out)
+    command = inspect.signature(importlib.import_module(f"hil.cli.commands.{name.replace('-', '_')}").command)
+    work = inspect.signature(importlib.import_module(f"hil.cli.{name.replace('-', '_')}").carry_out)
     assert list(command.parameters) == list(work.parameters)
 
 

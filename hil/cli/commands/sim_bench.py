@@ -1,0 +1,52 @@
+"""`hil sim-bench`: the simulated bench as a process of its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+SEVERAL = ("--hide",)
+
+
+def command(
+    bench: Annotated[str, typer.Argument(help="bench file with [simulation], or the name of a shipped one")],
+    time_scale: Annotated[
+        float,
+        typer.Option(help="seconds of bench time in a second; less than 1 where full rate cannot be held"),
+    ] = 1.0,
+    seed: Annotated[
+        int | None, typer.Option(help="of the sensors' noise, in place of the bench file's")
+    ] = None,
+    hide: Annotated[
+        list[str] | None,
+        typer.Option(metavar="EFFECT=VALUE", help="effects in the bench beside its model's: backlash=0.01"),
+    ] = None,
+    for_s: Annotated[
+        float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
+    ] = None,
+    transport: Annotated[str, typer.Option(help="udp")] = "udp",
+    port: Annotated[int, typer.Option(help="first port on 127.0.0.1; 0 takes free ones")] = 47110,
+    bench_file: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="write the bench file that connects to it here, too"),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else there")
+    ] = False,
+) -> int:
+    """Serve the simulated RMCU and dynos in wall-clock time, for `hil run` and others in other processes.
+
+    Prints the bench file that connects to it, and serves until Ctrl-C or SIGTERM. Exit code: 0 its time
+    (--for) is over, 2 bad input, 3 a port is taken, 130 ended by a signal.
+    """
+    import_python_can()
+    from hil.cli.sim_bench import carry_out
+
+    return carry_out(
+        bench=bench, time_scale=time_scale, seed=seed, hide=tuple(hide or ()), for_s=for_s,
+        transport=transport, port=port, bench_file=bench_file, as_json=as_json,
+    )  # fmt: skip

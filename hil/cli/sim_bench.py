@@ -1,0 +1,99 @@
+"""`hil sim-bench`: the simulated bench in wall-clock time, until somebody ends it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from hil.cli._interrupts import EXIT_CODE
+from hil.cli._output import print_json
+from hil.cli._place import refuse_file
+from hil.core.errors import BadInputError
+from hil.core.files import write_atomically
+from hil.core.printable import printable
+from hil.engine import StopRequest, load_bench
+from hil.engine.sim_bench import TRANSPORTS, Served, Serving, SimBenchRequest, serve
+
+
+def carry_out(
+    *,
+    bench: str,
+    time_scale: float,
+    seed: int | None,
+    hide: tuple[str, ...],
+    for_s: float | None,
+    transport: str,
+    port: int,
+    bench_file: Path | None,
+    as_json: bool,
+) -> int:
+    """Carry the command out; its exit code."""
+    if transport not in TRANSPORTS:
+        raise BadInputError(
+            f"--transport '{printable(transport)}' is not known", fix=f"one of {', '.join(TRANSPORTS)}"
+        )
+    checked = load_bench(bench)
+    if bench_file is not None:
+        refuse_file(bench_file, [checked.source], overwrite=True)
+    stop = StopRequest()
+
+    def ready(serving: Serving) -> None:
+        if bench_file is not None:
+            write_atomically(bench_file, serving.bench_file)
+        if as_json:
+            print_json(_as_json(checked.name, time_scale, serving))
+        else:
+            _print(checked.name, time_scale, serving)
+        sys.stdout.flush()
+
+    request = SimBenchRequest(
+        bench=checked,
+        time_scale=time_scale,
+        seed=seed,
+        hidden=hide,
+        for_s=float("inf") if for_s is None else for_s,
+        transport=transport,
+        port=port,
+        ready=ready,
+        stop=stop,
+    )
+    with stop.by_signals():
+        served = serve(request)
+    print(_in_words(served), file=sys.stderr)
+    return EXIT_CODE if stop.times else 0
+
+
+def _print(name: str, time_scale: float, serving: Serving) -> None:
+    pace = "in real time" if time_scale == 1.0 else f"at {time_scale:g} of real time"
+    print(f"# The simulated bench '{name}' {pace}: its RMCU and dynos, served until Ctrl-C.")
+    for hidden in serving.hidden:
+        print(f"# Hidden in it: {hidden}")
+    for device in serving.left_out:
+        print(f"# Not served: devices.{device}")
+    print("# Save what follows and give it to another command: hil run acceptance --bench FILE.toml\n")
+    print(serving.bench_file, end="")
+
+
+def _as_json(name: str, time_scale: float, serving: Serving) -> dict[str, object]:
+    return {
+        "bench": name,
+        "time_scale": time_scale,
+        "buses": {bus: dict(table) for bus, table in serving.buses.items()},
+        "hidden": list(serving.hidden),
+        "not_served": list(serving.left_out),
+        "bench_file": serving.bench_file,
+    }
+
+
+def _in_words(served: Served) -> str:
+    pace = served.pace
+    stalls = f"{pace.stalls} stalls of more than 5 ms in {pace.turns} turns"
+    largest, left_out = 1e3 * pace.largest_stall_s, 1e3 * pace.left_out_s
+    lines = [
+        f"served {pace.bench_time_s:.1f} s of bench time; {stalls}, the largest {largest:.0f} ms; "
+        f"{left_out:.0f} ms left out"
+    ]
+    for bus, (sent, received) in served.frames.items():
+        lost = f", {served.lost[bus]} lost on the way" if served.lost[bus] else ""
+        lines.append(f"bus '{bus}': {sent} frames sent, {received} received{lost}")
+    return "\n".join(lines)

@@ -1,0 +1,205 @@
+"""The simulated bench of a bench file as a process of its own, in wall-clock time, for other processes."""
+
+from __future__ import annotations
+
+import contextlib
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import tomli_w
+
+from drivers import RmcuTable
+from hil.core.effects import EFFECTS
+from hil.core.errors import BadInputError, BenchError
+from hil.core.model import Model, load_model, model_from_dict, model_to_toml
+from hil.core.printable import printable
+from hil.engine._simulable import dyno_of, rmcu_of, simulated
+from hil.engine.bench_tables import BenchFile
+from hil.engine.stopping import StopRequest
+from sim_backend.bench import DYNO_BUS, RMCU_BUS
+from sim_backend.serving import BenchServer, BusServer, Pace, UdpHub
+
+TRANSPORTS = ("udp",)
+FIRST_PORT = 47110
+_HIGHEST_PORT = 65535
+
+
+@dataclass(frozen=True)
+class Serving:
+    """What is served: told before the first millisecond passes.
+
+    Attributes:
+        bench_file: text of the bench file that connects to it.
+        buses: for each bus of the bench file what its table says.
+        hidden: effects that were added to the model, with their numbers.
+        left_out: devices of the bench file that nothing stands in for here.
+    """
+
+    bench_file: str
+    buses: Mapping[str, Mapping[str, Any]]
+    hidden: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Served:
+    """How it went; `frames` sent and received and `lost` frames by bus."""
+
+    pace: Pace
+    frames: Mapping[str, tuple[int, int]]
+    lost: Mapping[str, int]
+
+
+@dataclass
+class SimBenchRequest:
+    """A simulated bench to be served.
+
+    Attributes:
+        bench: with [simulation].
+        time_scale: seconds of bench time in a second of the wall clock.
+        seed: of the sensors' noise; None: that of the bench file.
+        hidden: effects in the served bench beside those of its model: "backlash=0.01" gives an effect's first
+            number, "backlash.restitution=0.5" another.
+        for_s: ends by itself after this many seconds of the wall clock.
+        port: first UDP or TCP port; 0 takes free ones.
+        ready: called once, when hosts can connect.
+    """
+
+    bench: BenchFile
+    time_scale: float = 1.0
+    seed: int | None = None
+    hidden: tuple[str, ...] = ()
+    for_s: float = float("inf")
+    transport: str = "udp"
+    port: int = FIRST_PORT
+    ready: Callable[[Serving], None] = lambda serving: None
+    stop: StopRequest = field(default_factory=StopRequest)
+
+
+def serve(request: SimBenchRequest) -> Served:
+    """Serve until the request is stopped or its time is over.
+
+    Raises:
+        BadInputError: the bench file has no simulation, or something that is asked for makes no sense.
+        BenchError: a port is taken.
+    """
+    bench = _checked(request)
+    assert bench.simulation is not None
+    model = with_hidden(load_model(bench.simulation.model), request.hidden)
+    world = simulated(bench, model)
+    roles = {RMCU_BUS: rmcu_of(bench).bus, DYNO_BUS: dyno_of(bench).bus}
+    with contextlib.ExitStack() as opened:
+        servers: dict[str, BusServer] = {}
+        for number, (role, name) in enumerate(roles.items()):
+            port = request.port + number if request.port else 0
+            servers[role] = _server(request, port, bench.buses[name].bit_rate, name)
+            opened.callback(servers[role].close)
+        server = BenchServer(world, servers, request.time_scale)
+        tables = {
+            name: {**servers[role].table, "bit_rate": bench.buses[name].bit_rate}
+            for role, name in roles.items()
+        }
+        text = bench_text(bench, tables, request.time_scale)
+        added = tuple(f"{use.id}: {_numbers(use.values)}" for use in model.effects if use.id in _ids(request))
+        request.ready(Serving(text, tables, added, tuple(bench.devices)))
+        server.serve(lambda: request.stop.times > 0, request.for_s)
+        frames = {roles[role]: (sent, received) for role, (sent, received) in server.frames.items()}
+        lost = {name: servers[role].lost for role, name in roles.items()}
+    return Served(server.pace, frames, lost)
+
+
+def with_hidden(model: Model, hidden: Iterable[str]) -> Model:
+    """The model with effects added, or with other numbers for those that it has.
+
+    Raises:
+        BadInputError: no such effect or parameter, or a value that it does not take.
+    """
+    data = tomllib.loads(model_to_toml(model))
+    effects: list[dict[str, Any]] = data.setdefault("effects", [])
+    for text in hidden:
+        name, sign, value = (part.strip() for part in text.partition("="))
+        effect_id, _, parameter = name.partition(".")
+        if not sign or effect_id not in EFFECTS:
+            known = ", ".join(EFFECTS)
+            what = (
+                f"there is no effect '{printable(effect_id)}'" if sign else f"'{printable(text)}' has no '='"
+            )
+            raise BadInputError(
+                what,
+                where="--hide",
+                fix=f"write --hide EFFECT=VALUE or EFFECT.PARAMETER=VALUE; known: {known}",
+            )
+        entry = next((entry for entry in effects if entry["id"] == effect_id), None)
+        if entry is None:
+            effects.append(entry := {"id": effect_id})
+        entry[parameter or EFFECTS[effect_id].acting()[0]] = _number_or_text(value)
+    if not effects:
+        del data["effects"]
+    return model_from_dict(data, "--hide")
+
+
+def bench_text(bench: BenchFile, buses: Mapping[str, Mapping[str, Any]], time_scale: float) -> str:
+    """The bench file for those who connect: the same devices and limits, these buses, no simulation."""
+    data = tomllib.loads(bench.text)
+    for key in ("simulation", "devices", "time_scale"):
+        data.pop(key, None)
+    if time_scale != 1.0:
+        data["time_scale"] = time_scale
+    data["buses"] = {name: dict(table) for name, table in buses.items()}
+    data["rmcu"]["dbc"] = str(rmcu_of(bench).dbc)
+    data["dyno"]["eds"] = str(dyno_of(bench).eds)
+    return tomli_w.dumps(data)
+
+
+def _checked(request: SimBenchRequest) -> BenchFile:
+    bench = request.bench
+    where = printable(bench.source, 200)
+    if bench.simulation is None:
+        raise BadInputError(
+            "has no [simulation]: it is a bench with hardware", where=where, fix="give one such as 'sim'"
+        )
+    assert isinstance(bench.rmcu, RmcuTable)
+    if not 0.001 <= request.time_scale <= 1.0:
+        raise BadInputError(
+            f"--time-scale is {request.time_scale:g}",
+            fix="give 1 for real time, or less to run slower (0.001 to 1)",
+        )
+    if not request.for_s > 0:
+        raise BadInputError(f"--for is {request.for_s:g}", fix="give seconds greater than 0, or leave it out")
+    if request.port and not 0 < request.port < _HIGHEST_PORT:
+        raise BadInputError(
+            f"--port is {request.port}", fix=f"give 1 to {_HIGHEST_PORT - 1}, or 0 for free ones"
+        )
+    if request.seed is None:
+        return bench
+    if request.seed < 0:
+        raise BadInputError(f"--seed is {request.seed}", fix="give 0 or more")
+    return bench.model_copy(update={"simulation": bench.simulation.model_copy(update={"seed": request.seed})})
+
+
+def _server(request: SimBenchRequest, port: int, bit_rate: int, name: str) -> BusServer:
+    try:
+        return UdpHub(port, bit_rate, request.time_scale)
+    except OSError as error:
+        raise BenchError(
+            f"port {port} cannot be taken: {error.strerror}",
+            where=f"bus '{name}'",
+            fix="is another simulated bench running? Name another port with --port, or 0 for free ones",
+        ) from error
+
+
+def _ids(request: SimBenchRequest) -> set[str]:
+    return {text.partition("=")[0].partition(".")[0].strip() for text in request.hidden}
+
+
+def _numbers(values: Mapping[str, object]) -> str:
+    return ", ".join(f"{name} = {value}" for name, value in values.items())
+
+
+def _number_or_text(value: str) -> float | str:
+    try:
+        return float(value)
+    except ValueError:
+        return value

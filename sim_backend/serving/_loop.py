@@ -1,0 +1,151 @@
+"""Steps a simulated bench through wall-clock time, and passes frames between it and its wires."""
+
+from __future__ import annotations
+
+import gc
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from hil.core.conventions import TICK_S
+from hil.core.frames import FrameBlock
+from sim_backend.bench import SimulatedBench
+
+# Below the 50 ms after which the RMCU takes its torque away: a pause of this process alone is not to look
+# to the RMCU as if its host had fallen silent.
+_LONGEST_CATCH_UP_S = 0.03
+_STALL_S = 0.005
+
+
+class BusServer(Protocol):
+    """One bus of the bench on a wire."""
+
+    @property
+    def table(self) -> Mapping[str, Any]:
+        """What a bench file says to reach it: keys of [buses.NAME]."""
+        ...
+
+    @property
+    def lost(self) -> int:
+        """Frames that are known to have been lost on the way."""
+        ...
+
+    def take(self) -> list[tuple[int, bytes]]:
+        """Frames of hosts since the last call: identifier and data. Never waits."""
+        ...
+
+    def give(self, block: FrameBlock) -> None:
+        """Frames of the bench, stamps in seconds since 1970. Never waits."""
+        ...
+
+    def close(self) -> None:
+        """Let go of the wire."""
+        ...
+
+
+@dataclass
+class Pace:
+    """How well the wall clock was kept; seconds of the wall clock where nothing else is said.
+
+    Attributes:
+        turns: looks at the wires, one each millisecond of bench time.
+        stalls: turns that came more than 5 ms late.
+        largest_stall_s: latest of them.
+        bench_time_s: seconds of bench time that passed.
+        left_out_s: seconds of bench time by which the bench's clock was put back after stalls that were too
+            long to be caught up with.
+    """
+
+    turns: int = 0
+    stalls: int = 0
+    largest_stall_s: float = 0.0
+    bench_time_s: float = 0.0
+    left_out_s: float = 0.0
+
+
+class BenchServer:
+    """A bench and its buses on their wires.
+
+    Args:
+        time_scale: seconds of bench time in a second of the wall clock.
+        clock: seconds of the wall clock, monotonic.
+        sleep: waits for some seconds of it.
+    """
+
+    def __init__(
+        self,
+        world: SimulatedBench,
+        buses: Mapping[str, BusServer],
+        time_scale: float = 1.0,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._world, self.buses, self._scale = world, dict(buses), time_scale
+        self._clock, self._sleep = clock, sleep
+        self.pace = Pace()
+        self.frames: dict[str, list[int]] = {bus: [0, 0] for bus in buses}  # sent, received
+        self._world.sleep_until(world.now_s() + TICK_S)  # what is compiled is compiled before time counts
+        for bus in buses:
+            world.take(bus)
+
+    def serve(self, stop: Callable[[], bool], for_s: float = float("inf")) -> None:
+        """Serve until `stop` says so, at most `for_s` of the wall clock."""
+        with _without_collections():
+            start_s = self._clock()
+            first_s = self._world.now_s()
+            origin_s = start_s - first_s / self._scale  # when bench time was 0
+            epoch_s = time.time() - start_s
+            turn = 0
+            while not stop() and self._clock() - start_s < for_s:
+                origin_s += self._turn(origin_s, epoch_s)
+                turn += 1
+                self.pace.bench_time_s = self._world.now_s() - first_s
+                next_s = origin_s + (self._world.now_s() + TICK_S) / self._scale
+                self._sleep(max(0.0, next_s - self._clock()))
+
+    def close(self) -> None:
+        """Let go of every wire."""
+        for bus in self.buses.values():
+            bus.close()
+
+    def _turn(self, origin_s: float, epoch_s: float) -> float:
+        """One look at everything; seconds of the wall clock that are left out."""
+        world, pace = self._world, self.pace
+        behind_s = (self._clock() - origin_s) * self._scale - world.now_s() - TICK_S
+        late_s = behind_s / self._scale
+        pace.turns += 1
+        pace.stalls += late_s > _STALL_S
+        pace.largest_stall_s = max(pace.largest_stall_s, late_s)
+        left_out_s = max(0.0, behind_s - _LONGEST_CATCH_UP_S)
+        pace.left_out_s += left_out_s
+        origin_s += left_out_s / self._scale
+        for name, bus in self.buses.items():
+            for frame_id, data in bus.take():
+                world.put(name, frame_id, data)
+                self.frames[name][1] += 1
+        world.sleep_until((self._clock() - origin_s) * self._scale)
+        for name, bus in self.buses.items():
+            block = world.take(name)
+            if len(block):
+                block["time_s"] = epoch_s + origin_s + block["time_s"] / self._scale
+                bus.give(block)
+                self.frames[name][0] += len(block)
+        return left_out_s / self._scale
+
+
+@contextmanager
+def _without_collections() -> Iterator[None]:
+    """No pauses for garbage: what is there stays; what is added is freed by counting references."""
+    enabled = gc.isenabled()
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
+        if enabled:
+            gc.enable()

@@ -1,0 +1,129 @@
+"""A CAN bus as a UDP port of this machine: every host that says hello takes part."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import time
+from typing import Any
+
+import numpy as np
+
+from hil.core.frames import FrameBlock
+from sim_backend.datagrams import LARGEST, LOOPBACK, Incoming, Kind, Outgoing, Welcome, kind_of, signal
+
+_SILENT_S = 5.0  # hosts say hello every half a second
+_BUFFER_BYTES = 4 << 20
+
+
+class _Host:
+    def __init__(self) -> None:
+        self.outgoing, self.incoming = Outgoing(), Incoming()
+        self.heard_s = time.monotonic()
+
+
+class UdpHub:
+    """One bus; hosts hear the bench and each other.
+
+    Args:
+        port: 0 takes a free one.
+
+    Raises:
+        OSError: the port is taken.
+    """
+
+    def __init__(self, port: int, bit_rate: int, time_scale: float) -> None:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.bind((LOOPBACK, port))
+        except OSError:
+            self._socket.close()
+            raise
+        self._socket.setblocking(False)
+        for option in (socket.SO_RCVBUF, socket.SO_SNDBUF):
+            self._socket.setsockopt(socket.SOL_SOCKET, option, _BUFFER_BYTES)
+        self._welcome = Welcome(bit_rate, time_scale).packed()
+        self._hosts: dict[tuple[str, int], _Host] = {}
+        self._lost_before = 0  # by hosts that have left
+
+    @property
+    def table(self) -> dict[str, Any]:
+        """What a bench file says to reach it."""
+        return {"interface": "hil-udp", "channel": f"{LOOPBACK}:{self._socket.getsockname()[1]}"}
+
+    @property
+    def lost(self) -> int:
+        """Frames that hosts sent and that never came."""
+        return self._lost_before + sum(host.incoming.lost for host in self._hosts.values())
+
+    def take(self) -> list[tuple[int, bytes]]:
+        """Frames of hosts since the last call: identifier and data."""
+        frames: list[tuple[int, bytes]] = []
+        while True:
+            try:
+                datagram, address = self._socket.recvfrom(LARGEST)
+            except BlockingIOError:
+                return frames
+            except OSError:
+                continue  # a host that is gone; it will be silent
+            block = self._heard(datagram, address)
+            if block is not None:
+                frames += _plain(block)
+
+    def _heard(self, datagram: bytes, address: tuple[str, int]) -> FrameBlock | None:
+        """The frames of a host that takes part."""
+        kind = kind_of(datagram)
+        if kind is Kind.HELLO:
+            self._hosts.setdefault(address, _Host()).heard_s = time.monotonic()
+            self._send(self._welcome, address)
+        elif kind is Kind.BYE:
+            self._forget(address)
+        elif kind is Kind.FRAMES and address in self._hosts:
+            host = self._hosts[address]
+            host.heard_s = time.monotonic()
+            block = host.incoming.frames(datagram)
+            self._spread(block, besides=address)
+            return block
+        return None
+
+    def give(self, block: FrameBlock) -> None:
+        """Frames of the bench to every host; stamps in seconds since 1970."""
+        now_s = time.monotonic()
+        for address in [a for a, host in self._hosts.items() if now_s - host.heard_s > _SILENT_S]:
+            self._forget(address)
+        self._spread(block)
+
+    def close(self) -> None:
+        """Let every host know, and leave."""
+        for address in self._hosts:
+            self._send(signal(Kind.BYE), address)
+        self._socket.close()
+
+    def _spread(self, block: FrameBlock, besides: tuple[str, int] | None = None) -> None:
+        for address, host in self._hosts.items():
+            if address != besides:
+                for datagram in host.outgoing.packed(block):
+                    self._send(datagram, address)
+
+    def _send(self, datagram: bytes, address: tuple[str, int]) -> None:
+        with contextlib.suppress(OSError):  # the host misses it by its number
+            self._socket.sendto(datagram, address)
+
+    def _forget(self, address: tuple[str, int]) -> None:
+        host = self._hosts.pop(address, None)
+        if host is not None:
+            self._lost_before += host.incoming.lost
+
+
+def _plain(block: np.ndarray[Any, Any]) -> list[tuple[int, bytes]]:
+    return [
+        (identifier, data.to_bytes(8, "little")[:length])
+        for identifier, flags, length, data in zip(
+            block["id"].tolist(),
+            block["flags"].tolist(),
+            block["length"].tolist(),
+            block["data"].tolist(),
+            strict=True,
+        )
+        if not flags
+    ]

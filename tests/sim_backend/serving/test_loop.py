@@ -1,0 +1,116 @@
+"""A bench in wall-clock time: by a clock that the test turns, stalls and all."""
+
+from __future__ import annotations
+
+import gc
+
+import numpy as np
+import pytest
+
+from hil.core.frames import empty_block, joined
+from hil.core.model import load_model
+from sim_backend.bench import SimulatedBench, SimulationSettings
+from sim_backend.serving import BenchServer
+from tests.benches_for_tests import SIM
+
+
+class Turned:
+    """A wall clock that passes only while somebody sleeps; now and then sleeping takes too long."""
+
+    def __init__(self, stalls=()):
+        self.now_s = 100.0
+        self.stalls = dict(stalls)
+
+    def __call__(self):
+        return self.now_s
+
+    def sleep(self, duration_s):
+        self.now_s += max(duration_s, 1e-5)
+        for at_s in [at_s for at_s in self.stalls if self.now_s >= at_s]:
+            self.now_s += self.stalls.pop(at_s)
+
+
+class Wire:
+    lost = 0
+
+    def __init__(self):
+        self.table = {}
+        self.waiting, self.blocks, self.closed = [], [], False
+
+    def take(self):
+        waiting, self.waiting = self.waiting, []
+        return waiting
+
+    def give(self, block):
+        self.blocks.append(block)
+
+    def close(self):
+        self.closed = True
+
+    @property
+    def frames(self):
+        return joined(self.blocks) if self.blocks else empty_block()
+
+
+def served(for_s, scale=1.0, stalls=()):
+    world = SimulatedBench(SimulationSettings(load_model(SIM.simulation.model), SIM.rmcu.dbc, SIM.dyno.eds))
+    clock, wires = Turned(stalls), {"rmcu": Wire(), "dyno": Wire()}
+    server = BenchServer(world, wires, scale, clock=clock, sleep=clock.sleep)
+    server.serve(lambda: False, for_s)
+    return server, wires, clock
+
+
+def test_bench_time_passes_as_the_wall_clock_does():
+    server, wires, _ = served(1.0)
+    assert server.pace.bench_time_s == pytest.approx(1.0, abs=0.002)
+    assert (server.pace.stalls, server.pace.left_out_s) == (0, 0.0)
+    stamps = wires["rmcu"].frames["time_s"]
+    assert stamps[-1] - stamps[0] == pytest.approx(1.0, abs=0.003)
+    assert len(stamps) == pytest.approx(3000, abs=10)
+    assert server.frames["rmcu"] == [len(stamps), 0]
+
+
+def test_slower_than_real_time_the_stamps_lie_further_apart():
+    server, wires, _ = served(1.0, scale=0.2)
+    assert server.pace.bench_time_s == pytest.approx(0.2, abs=0.002)
+    stamps = wires["rmcu"].frames["time_s"]
+    np.testing.assert_allclose(np.diff(stamps[::3]), 0.005, atol=2e-6)
+
+
+def test_a_short_stall_is_caught_up_with_and_told():
+    server, wires, _ = served(1.0, stalls={100.5: 0.02}.items())
+    assert (server.pace.stalls, server.pace.left_out_s) == (1, 0.0)
+    assert server.pace.largest_stall_s == pytest.approx(0.02, abs=0.001)
+    assert server.pace.bench_time_s == pytest.approx(1.0, abs=0.002)
+    np.testing.assert_allclose(np.diff(wires["rmcu"].frames["time_s"][::3]), 0.001, atol=2e-6)
+
+
+def test_after_a_long_stall_the_bench_goes_on_where_it_stood_and_says_so():
+    server, wires, _ = served(1.0, stalls={100.5: 0.3}.items())
+    assert server.pace.largest_stall_s == pytest.approx(0.3, abs=0.001)
+    assert server.pace.left_out_s == pytest.approx(0.27, abs=0.002)
+    assert server.pace.bench_time_s == pytest.approx(0.73, abs=0.004)
+    gaps = np.diff(wires["rmcu"].frames["time_s"][::3])
+    assert np.max(gaps) == pytest.approx(0.27, abs=0.005)
+    assert np.sum(gaps > 0.0011) == 1
+
+
+def test_frames_of_hosts_reach_the_bench_and_collections_pause():
+    world = SimulatedBench(SimulationSettings(load_model(SIM.simulation.model), SIM.rmcu.dbc, SIM.dyno.eds))
+    clock, wires = Turned(), {"rmcu": Wire(), "dyno": Wire()}
+    server = BenchServer(world, wires, clock=clock, sleep=clock.sleep)
+    wires["dyno"].waiting = [(0x000, bytes([1, 0]))]  # NMT: start all nodes
+    collecting = []
+
+    def stop():
+        collecting.append(gc.isenabled())
+        return False
+
+    server.serve(stop, 0.01)
+    assert world.dynos[0].operational
+    assert server.frames["dyno"][1] == 1
+    assert not any(collecting)
+    assert gc.isenabled()
+    server.close()
+    assert wires["rmcu"].closed
+    assert wires["dyno"].closed
