@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import io
+import select
+from typing import Any
+
 from hil.core.errors import BenchError
 from hil.core.printable import printable
 
-_WRITE_TIMEOUT_S = 0.005
+_ROOM_WITHIN_S = 0.005
 
 
 class SerialLine:
@@ -28,10 +32,7 @@ class SerialLine:
         import serial  # here: benches without a serial line start without it
 
         try:
-            # A write timeout of 0 would have pyserial try for ever when the line takes nothing.
-            self._port = serial.serial_for_url(
-                url, baudrate=baud_rate, timeout=0, write_timeout=_WRITE_TIMEOUT_S
-            )
+            self._port = serial.serial_for_url(url, baudrate=baud_rate, timeout=0, write_timeout=0)
         except (ValueError, OSError) as error:
             raise self._failed("cannot be opened", error) from error
 
@@ -42,7 +43,7 @@ class SerialLine:
             BenchError: the port does not take them (unplugged, queue full).
         """
         try:
-            written = self._port.write(data)
+            written = written_at_once(self._port, data)
         except OSError as error:
             raise self._failed("sending failed", error) from error
         if written != len(data):
@@ -69,3 +70,21 @@ class SerialLine:
             where=f"device '{self.name}' ({printable(self._url, 80)})",
             fix="check its table in the bench file, the adapter and its cable",
         )
+
+
+def written_at_once(port: Any, data: bytes) -> int:
+    """How many bytes a pyserial port with `write_timeout` 0 takes now; 5 ms at most are waited.
+
+    pyserial itself tries for ever when a line takes nothing; with a time-out it raises one for what it has
+    written whenever the machine was busy meanwhile.
+
+    Raises:
+        OSError: the port is gone.
+    """
+    try:
+        descriptor = port.fileno()
+    except (AttributeError, io.UnsupportedOperation):  # Windows, a network: these do not try for ever
+        return int(port.write(data))
+    if not select.select([], [descriptor], [], _ROOM_WITHIN_S)[1]:
+        return 0
+    return int(port.write(data))

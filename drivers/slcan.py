@@ -14,12 +14,11 @@ from collections import deque
 from typing import Any
 
 import can
-import serial
 from can.interfaces.slcan import slcanBus
 
 from drivers import linux_errors as errors
+from drivers.serial_line import written_at_once
 
-_WRITE_TIMEOUT_S = 0.005
 _QUIET_S = 0.02  # after this long without an answer the adapter has said all to being opened
 _LONGEST_LINE = 200
 _STATES = {
@@ -45,13 +44,12 @@ class SlcanBus(slcanBus):
 
     def __init__(self, channel: str, **kwargs: Any) -> None:
         self._ready: deque[can.Message] = deque()
-        self._cut = False  # a line was written in part: the next one must end it
+        self._unsent = b""  # the end of a line that was written in part
         # Neither means anything to this kind of adapter beyond its `timing`.
         kwargs.pop("fd", None)
         kwargs.pop("data_bitrate", None)
         super().__init__(channel, **kwargs)
         self.serialPortOrig.timeout = 0
-        self.serialPortOrig.write_timeout = _WRITE_TIMEOUT_S
         self._forget_answers()
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
@@ -61,24 +59,25 @@ class SlcanBus(slcanBus):
             CanOperationError: the line is gone, or full.
         """
         del timeout
-        super().send(msg, _WRITE_TIMEOUT_S)
+        super().send(msg, 0)
 
     def send_frame(self, frame_id: int, data: bytes) -> None:
         """Hand one standard data frame to the adapter."""
         self._write(f"t{frame_id:03X}{len(data)}{data.hex().upper()}")
 
     def _write(self, string: str) -> None:
-        line = string.encode() + self.LINE_TERMINATOR
+        data = self._unsent + string.encode() + self.LINE_TERMINATOR
         try:
-            self.serialPortOrig.write(b"\r" + line if self._cut else line)
-            self._cut = False
-        except serial.SerialTimeoutException as error:
-            self._cut = True
-            raise can.CanOperationError("Transmit buffer full") from error
+            if self.serialPortOrig.write_timeout != 0:
+                self.serialPortOrig.write_timeout = 0
+            written = written_at_once(self.serialPortOrig, data)
         except (OSError, TypeError) as error:  # TypeError: closed meanwhile
             raise can.CanOperationError(
                 f"Could not write to serial device: {error}", getattr(error, "errno", None)
             ) from error
+        if not written:
+            raise can.CanOperationError("Transmit buffer full")
+        self._unsent = data[written:]
 
     def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
         end_s = None if timeout is None else time.monotonic() + timeout
