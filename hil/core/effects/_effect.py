@@ -161,6 +161,10 @@ class Effect:
         """Names of the numbers that are all at `off` where the effect does nothing."""
         return self.sizes or (self.parameters[0].name,)
 
+    def completed(self, values: Mapping[str, float | str]) -> dict[str, float | str]:
+        """`values`, which need not give optional numbers, with the defaults of those."""
+        return {p.name: p.default for p in self.parameters if p.optional} | dict(values)
+
     def check(self, values: Mapping[str, object], where: str) -> dict[str, float | str]:
         """Return `values` complete with defaults.
 

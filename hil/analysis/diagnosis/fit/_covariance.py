@@ -23,10 +23,15 @@ Array = npt.NDArray[np.float64]
 def standard_errors(problem: Problem, one: Fit) -> Array:
     """Standard error of each coordinate of a fit, the misfit that is left included.
 
-    The larger of two: that of white errors as large as those that are left, and that of the sandwich.
+    The larger of two: that of white errors as large as those that are left, and that of the sandwich; and
+    how far other fits lie that are as good.
     """
-    if one.standard is not None:
-        return one.standard
+    own = _own_errors(problem, one) if one.standard is None else one.standard
+    return own if one.scatter is None else np.hypot(own, one.scatter)
+
+
+def _own_errors(problem: Problem, one: Fit) -> Array:
+    """The same without other fits."""
     left = max(1.0, one.cost / max(problem.rows, 1))
     white = np.diag(one.covariance) * left
     sandwich = np.diag(one.covariance @ _spread(problem, one) @ one.covariance)

@@ -24,5 +24,5 @@ def reweighted(problem: Problem, best: Fit) -> Fit:
         other = problem.whitened(whitening_of(best.errors))
         again = fit(other, best.hypothesis, best.starts, best.theta)
         best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
-        best = replace(best, standard=standard_errors(other, again))
+        best = replace(best, standard=standard_errors(other, again), scatter=plain.scatter)
     return best if best.cost < MISS_WORSE**2 * plain.cost else plain

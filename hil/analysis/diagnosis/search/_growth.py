@@ -17,6 +17,7 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._places import placed
 from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._thresholds import (
@@ -34,7 +35,6 @@ from hil.analysis.diagnosis.search._thresholds import (
     RACE_SLACK,
     RELATIVE_PROMISES,
     SIZES,
-    WIDTHS,
     WORTH_POLISH,
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
@@ -233,22 +233,16 @@ def _opened(problem: Problem, best: Fit, id_: str, parameter: Parameter) -> Fit:
 
 
 def _polished(evidence: Evidence, best: Fit) -> Fit:
-    """From other sizes of the newest effect: abrupt effects have false minima.
-
-    Once no gap is left, only a little wider and narrower where errors are rough in a number: the place in a
-    gap at the start makes up for some of its width.
-    """
+    """From other sizes of the newest effect: abrupt effects have false minima."""
     effect = EFFECTS[best.hypothesis.ids[-1]]
     if not effect.abrupt or evidence.share(best) < WORTH_POLISH:
         return best
-    coordinates = best.hypothesis.coordinates()
-    if evidence.settled(best):
-        rough = {p.name for p in effect.parameters if p.rough}
-        for index in [i for i, c in enumerate(coordinates) if c.name in rough]:
-            best = _from_sizes(evidence, best, best.theta, index, WIDTHS)
-        return best
-    own = next(i for i, c in enumerate(coordinates) if c.term == len(best.hypothesis.terms) - 1)
-    return _from_sizes(evidence, best, _nominal(best.hypothesis, best.theta), own, OTHER_SIZES)
+    if not evidence.settled(best) and not best.hypothesis.far:  # far numbers have no nominal ones
+        own = next(
+            i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
+        )
+        best = _from_sizes(evidence, best, _nominal(best.hypothesis, best.theta), own, OTHER_SIZES)
+    return placed(evidence, best)
 
 
 def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:

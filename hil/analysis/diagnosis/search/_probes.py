@@ -35,8 +35,7 @@ class Candidate:
         return self._use(self.probe.start(amounts))
 
     def _use(self, values: dict[str, float | str]) -> EffectUse:
-        optional = {p.name: p.default for p in EFFECTS[self.id].parameters if p.optional}
-        return EffectUse(self.id, {**optional, **values})
+        return EffectUse(self.id, EFFECTS[self.id].completed(values))
 
 
 def probes(problem: Problem, fit: Fit) -> list[Candidate]:

@@ -20,7 +20,7 @@ def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, fl
         least: sizes that a user set, by effect, in the unit of the effect's first number.
     """
     effect = EFFECTS[use.id]
-    known = {p.name: p.default for p in effect.parameters if p.optional} | dict(use.values)
+    known = effect.completed(use.values)
     size = max(abs(float(known[name]) - effect.off) for name in effect.acting())
     if use.id in least:
         return size >= least[use.id]

@@ -187,11 +187,10 @@ def _effect(effect: NamedEffect) -> dict[str, Any]:
 
 def derived_of(use: EffectUse) -> dict[str, float]:
     """Numbers of an effect that users know beside the fitted ones, by names that end in their units."""
-    derived = EFFECTS[use.id].derived
-    # a use need not give its optional parameters
-    numbers = {p.name: p.default for p in EFFECTS[use.id].parameters if p.optional}
-    numbers |= {name: value for name, value in use.values.items() if not isinstance(value, str)}
-    return dict(derived(numbers)) if derived is not None else {}
+    effect = EFFECTS[use.id]
+    known = effect.completed(use.values).items()
+    numbers = {name: value for name, value in known if not isinstance(value, str)}
+    return dict(effect.derived(numbers)) if effect.derived is not None else {}
 
 
 def _gaps(before: dict[str, ChannelGap], after: dict[str, ChannelGap]) -> dict[str, dict[str, float]]:

@@ -46,9 +46,6 @@ def test_the_identification_plan_agrees_with_its_own_model_in_every_format(tmp_p
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(
-    strict=True, reason="a wheel order that is not there is named beside the backlash: to be mended"
-)
 def test_simulation_and_bench_agree_once_the_hidden_effect_is_named_and_added(tmp_path):
     base = load_model(SIM.simulation.model).with_effects()
     hidden = base.with_parameters(motor_inertia=0.0201, shaft_stiffness=6040.0, vehicle_inertia=304.0)
@@ -62,8 +59,11 @@ def test_simulation_and_bench_agree_once_the_hidden_effect_is_named_and_added(tm
     recording, bench = accepted(hidden, "hidden")
     found = diagnose(base, driven_by_torque(read_recording(recording)))
     assert [effect.use.id for effect in found.effects] == ["backlash"]
-    # Steps from rest cross the gap once, from an unknown place in it: a tenth is what they can tell.
-    assert found.effects[0].use.values["half_gap_rad"] == pytest.approx(0.02, rel=0.1)
+    # Steps from rest cross the gap once. From which place in it nobody can tell: the bench begins in the
+    # middle, and so does what is told; that it could be another is in the error.
+    half_gap, error = found.effects[0].use.values["half_gap_rad"], found.effects[0].standard_error
+    assert half_gap == pytest.approx(0.02, rel=0.1)
+    assert abs(half_gap - 0.02) < 2.0 * error["half_gap_rad"]
     for name, after in found.gap_after.items():
         assert after.gap < 1.1 * after.noise_floor
         assert after.gap < 0.5 * found.gap_before[name].gap

@@ -1,0 +1,157 @@
+"""How wide a play is where nobody knows in which place of it the axle stood as a recording began.
+
+What is seen of a play is when contact is met. That moves as much by another place at the start as by another
+width, and sharply: between two widths, each with its places, lies a mountain of errors that no descent
+crosses. So width and places are tried together. Steps that cross the play but once tell no more than the
+way to the flank: widths that explain the data as well are the scatter of the one that is told.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._rank import rank
+from hil.analysis.diagnosis.search._thresholds import (
+    AS_GOOD,
+    BEHIND,
+    PLACE_ROUNDS,
+    PLACE_STEPS,
+    PLACES_FINISHED,
+    PLACES_NM,
+    PLACES_TRIED,
+    PLACES_WORTH,
+    WIDTHS,
+)
+from hil.core.effects import EFFECTS
+from hil.plant import chain_numbers
+
+Array = npt.NDArray[np.float64]
+
+_FINE = 81  # places between which a way to a flank is looked up
+_ALL = 0.9  # of a play: a way from its middle leaves some of it
+_SHAFT = 2  # of a recording's initial values: the torque whose place in the play is taken
+
+
+@dataclass(frozen=True)
+class _Begun:
+    """A width with the places that suit it best, unfitted."""
+
+    theta: Array
+    starts: list[Array]
+    total: float
+
+
+def placed(evidence: Evidence, best: Fit) -> Fit:
+    """The best of fits from other widths and places, with the scatter of those that are as good.
+
+    `best` itself where its newest effect does not remember a place.
+    """
+    index = _width(best)
+    if index is None:
+        return best
+    problem = evidence.problem.with_angles(best.angles)
+    fits = [best]
+    for _ in range(PLACE_ROUNDS):
+        fits += _fitted(problem, best, _promising(problem, best, index))
+        first = min(fits, key=rank)
+        if rank(first) > (1.0 - AS_GOOD) * rank(best):
+            break
+        best = first
+    middle = [_begun(problem, best, index, width) for width in _from_the_middle(problem, best, index)]
+    return _told(problem, fits + _fitted(problem, best, middle))
+
+
+def _fitted(problem: Problem, best: Fit, begun: list[_Begun]) -> list[Fit]:
+    """Fits from there; those that are behind after a few rounds are left."""
+    first = [fit(problem, best.hypothesis, one.starts, one.theta, rounds=PLACE_STEPS) for one in begun]
+    least = min((one.total for one in first), default=0.0)
+    hopeful = sorted((one for one in first if one.total < BEHIND * least), key=rank)[:PLACES_FINISHED]
+    return [fit(problem, best.hypothesis, one.starts, one.theta) for one in hopeful]
+
+
+def _width(best: Fit) -> int | None:
+    """Which coordinate is the width of a play that the newest effect remembers a place in."""
+    effect = EFFECTS[best.hypothesis.ids[-1]]
+    rough = {p.name for p in effect.parameters if p.rough}
+    newest = len(best.hypothesis.terms) - 1
+    found = [i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == newest and c.name in rough]
+    return found[0] if found and effect.law.begin is not None else None
+
+
+def _promising(problem: Problem, best: Fit, index: int) -> list[_Begun]:
+    """Other widths with their best places, most promising first."""
+    begun = [_begun(problem, best, index, width) for width in WIDTHS]
+    worth = [one for one in begun if one.total < PLACES_WORTH * best.total]
+    return sorted(worth, key=lambda one: one.total)[:PLACES_TRIED]
+
+
+def _begun(problem: Problem, best: Fit, index: int, width: float) -> _Begun:
+    """`best` with its width times `width`, every recording begun where that suits it best."""
+    theta = best.theta.copy()
+    theta[index] += np.log(width)
+    slots, sensors = best.hypothesis.packed(theta)
+    total, starts = best.prior, []
+    for trace, start in enumerate(best.starts):
+        places = [start[_SHAFT], *PLACES_NM, *_same_ways(best, index, width, float(start[_SHAFT]))]
+        sets = len(places)
+        tried = np.tile(start, (sets, 1))
+        tried[:, _SHAFT] = places
+        shown = problem.outputs(trace, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried)
+        costs = np.array([np.sum(problem.errors(trace, one) ** 2) for one in shown])
+        costs += tried**2 @ problem.start_precision(trace)
+        total += float(costs.min())
+        starts.append(tried[int(np.argmin(costs))])
+    return _Begun(theta, starts, total)
+
+
+def _same_ways(best: Fit, index: int, width: float, torque: float) -> list[float]:
+    """Torques whose places in the other width are as far from one flank, or the other, as before."""
+    gap, now = _gap(best, index), _place(best, index, torque, 1.0)
+    torques = np.linspace(PLACES_NM[0], PLACES_NM[-1], _FINE)
+    places = [_place(best, index, t, width) for t in torques]
+    return [float(np.interp(now + side * (width - 1.0) * gap, places, torques)) for side in (-1.0, 1.0)]
+
+
+def _from_the_middle(problem: Problem, best: Fit, index: int) -> list[float]:
+    """Widths with which a recording that begins at rest has the same way to a flank from the middle."""
+    torques = [float(s[_SHAFT]) for s, rests in zip(best.starts, problem.resting, strict=True) if rests]
+    shares = [_place(best, index, torque, 1.0) / _gap(best, index) for torque in torques]
+    return [1.0 + way for share in shares for way in (-share, share) if way > -_ALL]
+
+
+def _gap(best: Fit, index: int) -> float:
+    return float(
+        best.hypothesis.model(best.theta).effects[-1].values[best.hypothesis.coordinates()[index].name]
+    )
+
+
+def _place(best: Fit, index: int, torque: float, width: float) -> float:
+    """Where in a play times `width` a torque begins."""
+    model, name = best.hypothesis.model(best.theta), best.hypothesis.coordinates()[index].name
+    effect = EFFECTS[best.hypothesis.ids[-1]]
+    known = effect.completed(model.effects[-1].values)
+    values = known | {name: float(known[name]) * width}
+    assert effect.law.begin is not None
+    numbers = tuple(float(values[p.name]) for p in effect.parameters)
+    return float(effect.law.begin(torque, chain_numbers(model), numbers))
+
+
+def _told(problem: Problem, fits: list[Fit]) -> Fit:
+    """Of the fits that are as good as the best, the one that begins at rest nearest to the middle."""
+    least = min(rank(one) for one in fits)
+    as_good = [one for one in fits if rank(one) < (1.0 + AS_GOOD) * least]
+    told = min(as_good, key=lambda one: _off_the_middle(problem, one))
+    away = np.stack([one.theta - told.theta for one in as_good])
+    return replace(told, scatter=np.sqrt(np.sum(away**2, axis=0) / max(len(as_good) - 1, 1)))
+
+
+def _off_the_middle(problem: Problem, one: Fit) -> float:
+    """How far off the middle of the play those recordings begin that begin at rest; else what is left."""
+    resting = [start[_SHAFT] ** 2 for start, rests in zip(one.starts, problem.resting, strict=True) if rests]
+    return float(sum(resting)) if resting else rank(one)
