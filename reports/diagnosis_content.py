@@ -64,7 +64,7 @@ def lead(found: Diagnosis) -> str:
 
 
 def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
-    return {c: _ratio(g) for c, g in gaps.items()}
+    return {c: g.noises for c, g in gaps.items()}
 
 
 def parts(found: Diagnosis) -> list[Part]:
@@ -167,8 +167,8 @@ def _gaps(found: Diagnosis) -> tuple[Table, ...]:
             (
                 channel_label(c).text,
                 *(quantities.number(100.0 * v, significant=3) for v in _figures(before[c], after[c])),
-                quantities.number(_ratio(before[c]), significant=3),
-                quantities.number(_ratio(after[c]), significant=3),
+                quantities.number(before[c].noises, significant=3),
+                quantities.number(after[c].noises, significant=3),
             )
             for c in after
         )
@@ -180,10 +180,6 @@ def _gaps(found: Diagnosis) -> tuple[Table, ...]:
 
 def _figures(before: ChannelGap, after: ChannelGap) -> tuple[float, float, float]:
     return before.gap, after.gap, after.noise_floor
-
-
-def _ratio(gap: ChannelGap) -> float:
-    return gap.gap / max(gap.noise_floor, 1e-12)
 
 
 def _what_stays(found: Diagnosis) -> str:

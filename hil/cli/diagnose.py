@@ -140,7 +140,7 @@ def text_of(found: Diagnosis, out: Path) -> str:
         for name, gap in after.items():
             figures = (before[name].gap, gap.gap, gap.noise_floor)
             shown = "".join(f"{100.0 * figure:>10.4g}" for figure in figures)
-            lines.append(f"{name + suffix:<28}{shown}{gap.gap / max(gap.noise_floor, 1e-12):>13.3g}")
+            lines.append(f"{name + suffix:<28}{shown}{gap.noises:>13.3g}")
     if found.open_channels and found.verdict == "named":
         lines.append(f"what stays is more than noise: {', '.join(found.open_channels)}")
     lines += [f"made worse: {place}" for place in found.worse[:_MOST_WORSE]]

@@ -19,6 +19,7 @@ from hil.analysis.target_search import (
     read_targets,
 )
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
+from hil.cli._named_numbers import named_numbers
 from hil.cli._output import console, print_json, progress, to_json
 from hil.cli._place import results_in
 from hil.core.errors import BadInputError
@@ -46,7 +47,7 @@ def carry_out(
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    wanted, file = read_targets(targets, plan, target), load_bench(bench)
+    wanted, file = read_targets(targets, plan, named_numbers(target, "--target")), load_bench(bench)
     if file.simulation is None:
         raise BadInputError("is no simulated bench", where=str(file.source), fix="give one with [simulation]")
     source = model or file.simulation.model

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from hil.analysis.diagnosis._asked import Asked
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
-from hil.analysis.diagnosis.data._proven import checked_noise
 from hil.analysis.diagnosis.data._sanity import examined
 from hil.analysis.diagnosis.data._thresholds import COARSE_SAMPLE_S
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, untold
@@ -18,7 +18,6 @@ from hil.analysis.diagnosis.search._from_base import search_from_base
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._confidence import drop_of
 from hil.analysis.diagnosis.tell._judged import Judged
-from hil.analysis.diagnosis.tell._least import checked_least
 from hil.analysis.diagnosis.tell._result import Diagnosis, Verdict
 from hil.analysis.diagnosis.tell._verdict import verdict_of
 from hil.analysis.plausible import refuse_same_data, within_floating_point
@@ -59,17 +58,9 @@ def diagnose(
             fix="give the chain that `hil identify` writes as physical.toml",
         )
     refuse_same_data(recordings, holdout)
-    asked = Asked(checked_noise(noise or {}), checked_least(least or {}))
+    asked = Asked.checked(noise or {}, least or {})
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
         return _diagnosed(model, recordings, holdout, asked, show)
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What a user knows or wants beside model and recordings."""
-
-    noise: dict[str, float]
-    least: dict[str, float]
 
 
 def _diagnosed(

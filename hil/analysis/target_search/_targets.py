@@ -78,22 +78,14 @@ class Targets:
     response: ResponseTarget | None = None
 
 
-def read_targets(path: Path | None, plan: str | None, further: Iterable[str]) -> Targets:
-    """Targets from a file, from ID=VALUE texts that add to or replace them, or from both.
+def read_targets(path: Path | None, plan: str | None, further: Mapping[str, float]) -> Targets:
+    """Targets from a file, from `further` ones by criterion that add to or replace them, or from both.
 
     Raises:
         BadInputError: what is unknown, missing or no number; names file and key.
     """
     keys = _keys_of(path) if path else _FileKeys()
-    values = dict(keys.targets)
-    for text in further:
-        name, _, number = text.partition("=")
-        try:
-            values[name.strip()] = float(number)
-        except ValueError:
-            raise BadInputError(
-                f"--target {text!r} is not ID=VALUE", fix="such as --target gain_0kmh.peak_shaft_torque=534"
-            ) from None
+    values = {**keys.targets, **further}
     loaded = load_plan(plan or keys.plan)
     where = str(path) if path else "--target"
     if not values:

@@ -32,6 +32,11 @@ class ChannelGap:
     gap: float
     noise_floor: float
 
+    @property
+    def noises(self) -> float:
+        """The gap over the noise floor."""
+        return self.gap / max(self.noise_floor, 1e-12)
+
 
 @dataclass(frozen=True)
 class GapMap:

@@ -25,7 +25,6 @@ from hil.analysis.diagnosis.data._thresholds import (
 )
 from hil.analysis.diagnosis.data._trace import Trace, blocks
 from hil.core.channels import OUTPUTS
-from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]
 
@@ -92,21 +91,3 @@ def _same_request(one: Trace, other: Trace) -> bool:
         return False
     largest = float(np.max(np.abs(one.torque)))
     return bool(np.max(np.abs(one.torque - other.torque)) <= REPEATED * largest)
-
-
-def checked_noise(stated: Mapping[str, float]) -> dict[str, float]:
-    """Noise that a user states, standard deviation of a sample by channel.
-
-    Raises:
-        BadInputError: no such channel, or no such noise.
-    """
-    for channel, level in stated.items():
-        if channel not in OUTPUTS:
-            raise BadInputError(
-                f"unknown channel '{channel}'", where="--noise", fix=f"channels: {', '.join(OUTPUTS)}"
-            )
-        if not (np.isfinite(level) and level >= 0.0):
-            raise BadInputError(
-                f"{channel}={level:g}", where="--noise", fix="give a standard deviation from 0 up"
-            )
-    return dict(stated)

@@ -44,8 +44,8 @@ class Coordinate:
 class Hypothesis:
     """A base model with effects added; `open` names optional effect parameters that are fitted too.
 
-    Where `far`, the base model's numbers are not trusted: all of them may go far. Those that are `held`
-    stay as they are: the recordings cannot tell them.
+    Where `far`, the base model's numbers are not trusted: all of them may go far, but for those that are
+    `held`, which the recordings cannot tell. Near, their tolerance holds those.
     """
 
     base: Model

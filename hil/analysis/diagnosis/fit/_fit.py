@@ -42,6 +42,17 @@ class Fit:
     scatter: Array | None = field(default=None, repr=False)
 
     @property
+    def rows(self) -> int:
+        """How many errors there are, at least 1."""
+        return max(1, sum(len(errors.rows) for errors in self.errors))
+
+    @property
+    def white_errors(self) -> Array:
+        """Standard errors of the coordinates for white errors as large as those that are left."""
+        left = max(1.0, self.cost / self.rows)
+        return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance) * left, 0.0)))
+
+    @property
     def total(self) -> float:
         """Cost with the price of parameter corrections."""
         return self.cost + self.prior

@@ -9,8 +9,7 @@ nowhere.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-
-import numpy as np
+from dataclasses import replace
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._far import identified
@@ -123,10 +122,9 @@ def _better(near: Found, far: Found, show: Callable[[str], None]) -> Found:
 def moved(one: Fit, least: float = 0.0) -> list[str]:
     """Parameters of the base model that are off by more than their tolerance, `least` and their own error."""
     base = one.hypothesis.base
-    errors = np.sqrt(np.maximum(np.diag(one.covariance) * max(1.0, one.cost / rows_of(one)), 0.0))
     return [
         c.name
-        for c, value, error in zip(one.hypothesis.coordinates(), one.theta, errors, strict=True)
+        for c, value, error in zip(one.hypothesis.coordinates(), one.theta, one.white_errors, strict=True)
         if c.term < 0 and abs(value) > max(least, base.tolerance.get(c.name, TOLERANCE), FAR_SIGMAS * error)
     ]
 
@@ -135,11 +133,6 @@ def is_far(one: Fit) -> bool:
     """Whether the model as a whole was far off: not a number or two, but a good part of them."""
     free = sum(c.term < 0 for c in one.hypothesis.coordinates())
     return len(moved(one, FAR_MOVED)) >= FAR_SHARE * free
-
-
-def rows_of(one: Fit) -> int:
-    """How many errors a fit has."""
-    return max(1, sum(len(errors.rows) for errors in one.errors))
 
 
 def _plainer(far: Found) -> Found:
@@ -151,10 +144,10 @@ def _plainer(far: Found) -> Found:
     terms = list(hypothesis.terms)
     values = hypothesis.model(far.best.theta).parameters
     terms += [EffectUse("parameter_mismatch", {"parameter": n, "value": values[n]}) for n in wrong]
-    near = Hypothesis(hypothesis.base, tuple(terms), hypothesis.open)
+    near = replace(hypothesis, terms=tuple(terms), far=False)
     problem = far.evidence.problem.with_angles(far.best.angles)
     told = fit(problem, near, far.best.starts, carried(far.best, near))
-    base = fit(problem, Hypothesis(hypothesis.base))
+    base = fit(problem, replace(near, terms=(), open=()))
     found = begun(problem, base)
     found.best, found.steps = told, far.steps
     found.evidence.rounding = far.evidence.rounding

@@ -78,8 +78,7 @@ def grow(
     step.fits.sort(key=lambda f: f.total + price(f))
     if step.fits:
         step.fits[:] = _contended(problem, evidence, step.fits)
-        best = aligned(problem, _refined(problem, evidence, step.fits[0]))
-        step.fits[0] = _polished(evidence, best)
+        step.fits[0] = _polished(evidence, aligned(problem, step.fits[0]))
     return step
 
 
@@ -104,14 +103,14 @@ def _either_way(hypothesis: Hypothesis) -> Hypothesis:
 
 
 def _contended(problem: Problem, evidence: Evidence, fits: list[Fit]) -> list[Fit]:
-    """`fits` with those that come near the best given their optional numbers first, best first.
+    """`fits`, best first, the best with its optional numbers; far from the noise all that come near it.
 
     Friction that pulls one way more than the other is not seen by its even part alone.
     """
     floor = float(problem.rows)
-    least = CONTENDER * (fits[0].total - floor) + floor
     if fits[0].total < FAR * floor:
-        return fits
+        return [_refined(problem, evidence, fits[0]), *fits[1:]]
+    least = CONTENDER * (fits[0].total - floor) + floor
     refined = [_refined(problem, evidence, one) for one in fits if one.total < least]
     return sorted([*refined, *fits[len(refined) :]], key=rank)
 

@@ -68,11 +68,12 @@ def placed(evidence: Evidence, best: Fit) -> Fit:
 
 
 def _fitted(problem: Problem, best: Fit, begun: list[_Begun]) -> list[Fit]:
-    """Fits from there; those that are behind after a few rounds are left."""
+    """Fits from there, all but the best ended after a few rounds."""
     first = [fit(problem, best.hypothesis, one.starts, one.theta, rounds=PLACE_STEPS) for one in begun]
     least = min((one.total for one in first), default=0.0)
     hopeful = sorted((one for one in first if one.total < BEHIND * least), key=rank)[:PLACES_FINISHED]
-    return [fit(problem, best.hypothesis, one.starts, one.theta) for one in hopeful]
+    finished = [fit(problem, best.hypothesis, one.starts, one.theta) for one in hopeful]
+    return finished + [one for one in first if one not in hopeful]
 
 
 def _width(best: Fit) -> int | None:

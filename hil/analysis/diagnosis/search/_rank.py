@@ -19,7 +19,6 @@ def rank(one: Fit) -> float:
 
     Far from the noise formulas differ, and a small advantage of a fault in a sensor says nothing.
     """
-    rows = sum(len(errors.rows) for errors in one.errors)
-    if one.total > FAR * rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids):
+    if one.total > FAR * one.rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids):
         return DOUBT * one.total + price(one)
     return one.total + price(one)

@@ -117,10 +117,9 @@ class Judged:
 
     def _signature(self, kept: Fit, gaps: dict[str, ChannelGap], by_place: GapMap) -> str:
         """How much stays that neither the model nor a proven noise accounts for, and what it looks like."""
-        ratios = {channel: g.gap / max(g.noise_floor, 1e-12) for channel, g in gaps.items()}
-        worst = max(ratios, key=lambda channel: ratios[channel])
+        worst = max(gaps, key=lambda channel: gaps[channel].noises)
         share = f"{100.0 * gaps[worst].gap:.3g} % of {worst}"
-        size = f"{share} stay unexplained, {ratios[worst]:.3g} times its noise"
+        size = f"{share} stay unexplained, {gaps[worst].noises:.3g} times its noise"
         tried = self.found.best.hypothesis.ids
         closest = f"; closest, and not close enough: {', '.join(tried)}" if tried else ""
         return f"{size}; {signature(self.problem, kept, by_place)}{closest}"
@@ -170,13 +169,12 @@ class Judged:
             if use.id == "parameter_mismatch" and not _within_tolerance(use, base)
         }
         updates = {}
-        given = kept.hypothesis.base.parameters
         if kept.hypothesis.far:
             wrong |= {*moved(kept)}  # under `start`
         for c, error in zip(kept.hypothesis.coordinates(), errors, strict=True):
             if c.term >= 0 or c.name in wrong:
                 continue
-            old, new = given[c.name], model.parameters[c.name]
+            old, new = base[c.name], model.parameters[c.name]
             if abs(np.log(new / old)) < 2.0 * error:
                 continue
             updates[c.name] = (old, new, new * float(error))

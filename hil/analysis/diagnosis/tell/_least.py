@@ -9,7 +9,6 @@ import numpy as np
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
-from hil.core.errors import BadInputError
 from hil.core.model import EffectUse
 
 
@@ -36,19 +35,3 @@ def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, fl
         readings = np.concatenate([t.samples[:, column] for t in traces if t.has[column]])
         unit = float(np.sqrt(np.mean(readings**2)))
     return size >= effect.least.amount * unit
-
-
-def checked_least(least: Mapping[str, float]) -> dict[str, float]:
-    """Smallest sizes that a user set.
-
-    Raises:
-        BadInputError: no such effect, or a size that is none.
-    """
-    for id_, size in least.items():
-        if id_ not in EFFECTS:
-            raise BadInputError(
-                f"unknown effect '{id_}'", where="--least", fix=f"effects: {', '.join(EFFECTS)}"
-            )
-        if not (np.isfinite(size) and size >= 0.0):
-            raise BadInputError(f"{id_}={size:g}", where="--least", fix="give a size from 0 up")
-    return dict(least)

@@ -61,7 +61,7 @@ def test_simulation_and_bench_agree_once_the_hidden_effect_is_named_and_added(tm
     assert [effect.use.id for effect in found.effects] == ["backlash"]
     # Steps from rest cross the gap once. From which place in it nobody can tell: the bench begins in the
     # middle, and so does what is told; that it could be another is in the error.
-    half_gap, error = found.effects[0].use.values["half_gap_rad"], found.effects[0].standard_error
+    half_gap, error = float(found.effects[0].use.values["half_gap_rad"]), found.effects[0].standard_error
     assert half_gap == pytest.approx(0.02, rel=0.1)
     assert abs(half_gap - 0.02) < 2.0 * error["half_gap_rad"]
     for name, after in found.gap_after.items():

@@ -2,9 +2,8 @@
 
 import pytest
 
-from hil.analysis.diagnosis.tell._least import checked_least, worth_naming
+from hil.analysis.diagnosis.tell._least import worth_naming
 from hil.core.channels import OUTPUTS
-from hil.core.errors import BadInputError
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import one_trace
 
@@ -31,9 +30,3 @@ def test_a_user_sets_another_size() -> None:
     skew = EffectUse("channel_skew", {"channel": OUTPUTS[2], "delay_s": 9.5e-6})
     assert worth_naming(skew, [one_trace()], {"channel_skew": 5e-6})
     assert not worth_naming(skew, [one_trace()], {"channel_skew": 1e-5})
-
-
-@pytest.mark.parametrize("least", [{"skew": 1.0}, {"channel_skew": -1.0}, {"channel_skew": float("nan")}])
-def test_sizes_that_are_none_are_refused(least: dict[str, float]) -> None:
-    with pytest.raises(BadInputError, match="least"):
-        checked_least(least)

@@ -1,0 +1,43 @@
+"""What a user knows or wants beside model and recordings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
+from hil.core.errors import BadInputError
+
+
+@dataclass(frozen=True)
+class Asked:
+    """`noise`: standard deviation of a sample that a channel's sensor is known to have, by channel.
+
+    `least`: smallest size worth a name, by effect, in the unit of its first number.
+    """
+
+    noise: dict[str, float]
+    least: dict[str, float]
+
+    @classmethod
+    def checked(cls, noise: Mapping[str, float], least: Mapping[str, float]) -> Asked:
+        """What was asked.
+
+        Raises:
+            BadInputError: no such channel or effect, or a number that is no noise or size.
+        """
+        _refuse(noise, OUTPUTS, ("--noise", "channel", "standard deviation"))
+        _refuse(least, tuple(EFFECTS), ("--least", "effect", "size"))
+        return cls(dict(noise), dict(least))
+
+
+def _refuse(given: Mapping[str, float], known: tuple[str, ...], words: tuple[str, str, str]) -> None:
+    option, what, number = words
+    for name, value in given.items():
+        if name not in known:
+            raise BadInputError(f"unknown {what} '{name}'", where=option, fix=f"{what}s: {', '.join(known)}")
+        if not (np.isfinite(value) and value >= 0.0):
+            raise BadInputError(f"{name}={value:g}", where=option, fix=f"give a {number} from 0 up")
