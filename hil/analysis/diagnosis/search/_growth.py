@@ -17,6 +17,7 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._hidden_speeds import with_hidden_speeds
 from hil.analysis.diagnosis.search._places import placed
 from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
@@ -181,7 +182,8 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
     firsts = [bent] if hypothesis.far else [bent, _nominal(hypothesis, bent)]
     tried = [t for theta in firsts for t in _sizes(hypothesis, theta)]
     first = cheapest(problem, hypothesis, tried, parent.starts)
-    return fit(problem, hypothesis, parent.starts, first, rounds=rounds)
+    starts = with_hidden_speeds(problem, hypothesis, first, parent.starts)
+    return fit(problem, hypothesis, starts, first, rounds=rounds)
 
 
 def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
@@ -228,7 +230,8 @@ def _opened(problem: Problem, best: Fit, id_: str, parameter: Parameter) -> Fit:
         other = theta.copy()
         other[own] = value if parameter.typical is not None else np.log(value)
         tried.append(other)
-    return fit(problem, hypothesis, best.starts, cheapest(problem, hypothesis, tried, best.starts))
+    first = cheapest(problem, hypothesis, tried, best.starts)
+    return fit(problem, hypothesis, with_hidden_speeds(problem, hypothesis, first, best.starts), first)
 
 
 def _polished(evidence: Evidence, best: Fit) -> Fit:

@@ -85,6 +85,10 @@ SIZES: Annotated[
     tuple[float, ...],
     Means("factor", "sizes of an effect that are tried, around what its probe says", "hidden"),
 ] = (0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0)
+HIDDEN_SPEEDS_RAD_S: Annotated[
+    tuple[float, ...],
+    Means("rad/s, rotor", "that a recording without a speed channel may begin at, either way", "hidden"),
+] = (5.0, 20.0, 50.0, 100.0, 200.0)
 WIDTHS: Annotated[
     tuple[float, ...], Means("factor", "widths of a play that are tried, each with its places", "hidden")
 ] = (0.5, 0.7, 0.85, 0.95, 1.05, 1.2, 1.4, 2.0)

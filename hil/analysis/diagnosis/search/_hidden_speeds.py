@@ -1,0 +1,40 @@
+"""Speeds at the start of recordings that have no speed channel.
+
+Without friction they make no difference to a shaft's torque: a fit leaves them at zero. With friction
+everything hangs on them, and from rest no small change tells a descent that the axle was turning.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._thresholds import HIDDEN_SPEEDS_RAD_S
+
+Array = npt.NDArray[np.float64]
+
+_MOTOR, _WHEEL = 0, 1  # of a recording's initial values
+
+
+def with_hidden_speeds(
+    problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
+) -> list[Array]:
+    """`starts`, recordings without a speed channel from the speed that suits them best at `theta`."""
+    return [
+        start if problem.traces[index].has[:2].any() else _suited(problem, hypothesis, theta, index, start)
+        for index, start in enumerate(starts)
+    ]
+
+
+def _suited(problem: Problem, hypothesis: Hypothesis, theta: Array, index: int, start: Array) -> Array:
+    slots, sensors = hypothesis.packed(theta)
+    speeds = np.array([*(-s for s in reversed(HIDDEN_SPEEDS_RAD_S)), *HIDDEN_SPEEDS_RAD_S])
+    tried = np.tile(start, (1 + len(speeds), 1))
+    tried[1:, _MOTOR] = speeds
+    tried[1:, _WHEEL] = speeds / hypothesis.base.parameters["gear_ratio"]
+    sets = len(tried)
+    shown = problem.outputs(index, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried)
+    costs = [float(np.sum(problem.errors(index, one) ** 2)) for one in shown]
+    return np.asarray(tried[int(np.argmin(costs))])
