@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 
-_PARTS = ("commands", "plant", "virtual_time", "check", "reports", "identification")
+_PARTS = ("commands", "plant", "virtual_time", "transports", "check", "reports", "identification")
 
 
 def main() -> None:

@@ -81,6 +81,8 @@ def open_can(settings: CanSettings) -> can.BusABC:
     try:
         if settings.interface == "socketcand":
             _look_for_server(settings)
+            # It warns of every piece of a message whose rest comes later.
+            logging.getLogger("can.interfaces.socketcand").setLevel(logging.ERROR)
         bus = _opened(settings)
     except Exception as error:  # an adapter's own software raises what it likes
         raise _not_opened(settings, error) from error

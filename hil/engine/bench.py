@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import gc
 import logging
 import time
 from collections.abc import Iterator
@@ -28,6 +27,7 @@ from hil.core.clock import Clock, WallClock
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model
 from hil.core.printable import printable
+from hil.core.real_time import undisturbed
 from hil.engine._bus_settings import can_settings
 from hil.engine._simulable import simulated
 from hil.engine.bench_tables import BenchFile
@@ -107,7 +107,7 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
             opened.callback(wires[name].close)
             _refuse_other_pace(name, getattr(adapter, "time_scale", scale), scale)
         if not file.simulation:
-            opened.enter_context(_short_collections())
+            opened.enter_context(undisturbed(collections=True))
         v = file.vehicle
         vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)
         loop = BusLoop(clock, list(wires.values()))
@@ -126,20 +126,6 @@ def _refuse_other_pace(name: str, theirs: float, ours: float) -> None:
             where=f"bus '{name}'",
             fix=f"write time_scale = {theirs:g} at the top of the bench file",
         )
-
-
-@contextlib.contextmanager
-def _short_collections() -> Iterator[None]:
-    """Where time passes by itself: what there is already is not looked through for garbage again and again.
-
-    That takes longer than a device waits for its host.
-    """
-    gc.collect()
-    gc.freeze()
-    try:
-        yield
-    finally:
-        gc.unfreeze()
 
 
 def _with_devices(file: BenchFile, connections: Connections, model: Model | None, opened: ExitStack) -> Bench:

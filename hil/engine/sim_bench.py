@@ -19,9 +19,9 @@ from hil.engine._simulable import dyno_of, rmcu_of, simulated
 from hil.engine.bench_tables import BenchFile
 from hil.engine.stopping import StopRequest
 from sim_backend.bench import DYNO_BUS, RMCU_BUS
-from sim_backend.serving import BenchServer, BusServer, Pace, UdpHub
+from sim_backend.serving import BenchServer, BusServer, Pace, SlcanPort, SocketcandPort, UdpHub
 
-TRANSPORTS = ("udp",)
+TRANSPORTS = ("udp", "slcan", "socketcand")
 FIRST_PORT = 47110
 _HIGHEST_PORT = 65535
 
@@ -63,6 +63,7 @@ class SimBenchRequest:
         hidden: effects in the served bench beside those of its model: "backlash=0.01" gives an effect's first
             number, "backlash.restitution=0.5" another.
         for_s: ends by itself after this many seconds of the wall clock.
+        transport: one of `TRANSPORTS`.
         port: first UDP or TCP port; 0 takes free ones.
         ready: called once, when hosts can connect.
     """
@@ -181,6 +182,10 @@ def _checked(request: SimBenchRequest) -> BenchFile:
 
 def _server(request: SimBenchRequest, port: int, bit_rate: int, name: str) -> BusServer:
     try:
+        if request.transport == "slcan":
+            return SlcanPort(bit_rate)
+        if request.transport == "socketcand":
+            return SocketcandPort(port, name)
         return UdpHub(port, bit_rate, request.time_scale)
     except OSError as error:
         raise BenchError(

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import gc
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from hil.core.conventions import TICK_S
 from hil.core.frames import FrameBlock
+from hil.core.real_time import undisturbed
 from sim_backend.bench import SimulatedBench
 
 # Below the 50 ms after which the RMCU takes its torque away: a pause of this process alone is not to look
@@ -93,7 +92,7 @@ class BenchServer:
 
     def serve(self, stop: Callable[[], bool], for_s: float = float("inf")) -> None:
         """Serve until `stop` says so, at most `for_s` of the wall clock."""
-        with _without_collections():
+        with undisturbed(collections=False):
             start_s = self._clock()
             first_s = self._world.now_s()
             origin_s = start_s - first_s / self._scale  # when bench time was 0
@@ -134,18 +133,3 @@ class BenchServer:
                 bus.give(block)
                 self.frames[name][0] += len(block)
         return left_out_s / self._scale
-
-
-@contextmanager
-def _without_collections() -> Iterator[None]:
-    """No pauses for garbage: what is there stays; what is added is freed by counting references."""
-    enabled = gc.isenabled()
-    gc.collect()
-    gc.freeze()
-    gc.disable()
-    try:
-        yield
-    finally:
-        gc.unfreeze()
-        if enabled:
-            gc.enable()

@@ -28,7 +28,7 @@ def command(
     for_s: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
     ] = None,
-    transport: Annotated[str, typer.Option(help="udp")] = "udp",
+    transport: Annotated[str, typer.Option(help="udp, slcan (over pseudo-terminals) or socketcand")] = "udp",
     port: Annotated[int, typer.Option(help="first port on 127.0.0.1; 0 takes free ones")] = 47110,
     bench_file: Annotated[
         Path | None,
