@@ -13,6 +13,7 @@ import numpy as np
 
 from hil.core.errors import BenchError, InterruptError
 from hil.core.model import load_model
+from hil.core.real_time import undisturbed
 from hil.core.recording import read_recording
 from hil.engine import RunRequest, run_plan
 from sim_backend.bench import SimulatedBench, SimulationSettings
@@ -46,6 +47,10 @@ def bench_in_real_time(name):
     epoch = time.time() - world.now_s()
 
     def serve():
+        with undisturbed(collections=True):  # as the run at the other end
+            look_and_send()
+
+    def look_and_send():
         last, beat = time.monotonic(), None
         while not stop.is_set():
             now = time.monotonic()
