@@ -1,14 +1,15 @@
 """Drivers: devices on their wires, in one loop, by one clock."""
 
+from drivers._waiting import StreamTiming
 from drivers.bus_health import BusHealth
 from drivers.can_adapter import CanSettings, open_can
 from drivers.device import Device, MotorControl, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
-from drivers.frame_source import Binding, FrameSource
+from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
 from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu
-from drivers.samples import SampleQueue, Samples, SampleSource, Stream
+from drivers.samples import Counting, SampleQueue, Samples, SampleSource, Stream
 from drivers.serial_line import SerialLine
 from drivers.table import Connections, DeviceTable, File, LoadTable, Name, VehicleParameters
 from drivers.wire import Wire
@@ -25,6 +26,8 @@ __all__ = [
     "BusLoop",
     "CanSettings",
     "Connections",
+    "CountedBy",
+    "Counting",
     "Device",
     "DeviceTable",
     "DynoDriver",
@@ -43,6 +46,7 @@ __all__ = [
     "Samples",
     "SerialLine",
     "Stream",
+    "StreamTiming",
     "VehicleParameters",
     "WheelLoad",
     "Wire",

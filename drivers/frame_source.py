@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from drivers.samples import Samples, Stream
+from drivers.samples import Counting, Samples, Stream
 from hil.core.compiled import compiled
 from hil.core.frames import FrameBlock, standard
 from hil.core.signals import Signal, double_of, single_of, swapped
 
+_NONE_YET = -1
 _SETTLED_S = 0.003  # frames older than this, before the newest of the slowest bus, have all arrived
 
 
@@ -25,19 +26,44 @@ class Binding:
     channel: str
 
 
-class FrameSource:
-    """Decodes the bound signals of every frame, in blocks.
+@dataclass(frozen=True)
+class CountedBy:
+    """The frame that counts the samples of all bound frames on its bus.
 
-    The streams are in the order in which the bindings name their frames first.
+    `counter` is its counter, an unsigned whole number that takes every value of its bits; None: the frame
+    comes once a sample and is counted. `opens`: it is the first of its sample on the bus, else the last.
     """
 
-    def __init__(self, bindings: Sequence[Binding], period_s: float) -> None:
+    bus: str
+    frame_id: int
+    name: str
+    counter: Signal | None = None
+    opens: bool = False
+
+
+class FrameSource:
+    """Decodes the bound signals of every frame, in blocks, and counts.
+
+    The streams are in the order in which the bindings name their frames first; a frame that only counts is
+    the last, without channels. Frames of a bus without `counted_by` have the times at which they came.
+    """
+
+    def __init__(
+        self, bindings: Sequence[Binding], period_s: float, counted_by: CountedBy | None = None
+    ) -> None:
         frames = list(dict.fromkeys((b.bus, b.frame_id) for b in bindings))
+        if counted_by and (counted_by.bus, counted_by.frame_id) not in frames:
+            frames.append((counted_by.bus, counted_by.frame_id))
         bound = [[b for b in bindings if (b.bus, b.frame_id) == frame] for frame in frames]
-        self.streams = tuple(_stream(signals, period_s) for signals in bound)
+        self.streams = _streams(frames, bound, period_s, counted_by)
         self._decoders = {
             bus: _Decoder(
-                [(s, b) for s, b in zip(self.streams, bound, strict=True) if b[0].bus == bus],
+                [
+                    (stream, frame_id, signals)
+                    for stream, (its_bus, frame_id), signals in zip(self.streams, frames, bound, strict=True)
+                    if its_bus == bus
+                ],
+                counted_by if counted_by and counted_by.bus == bus else None,
             )
             for bus, _ in frames
         }
@@ -54,72 +80,150 @@ class FrameSource:
         return waiting
 
 
-def _stream(bound: list[Binding], period_s: float) -> Stream:
-    first = bound[0]
+def _streams(
+    frames: list[tuple[str, int]], bound: list[list[Binding]], period_s: float, counted_by: CountedBy | None
+) -> tuple[Stream, ...]:
+    counting: Stream | None = None
+    if counted_by:
+        place = frames.index((counted_by.bus, counted_by.frame_id))
+        counter = counted_by.counter
+        by = f"{counter.length} bits in {counted_by.name}" if counter else f"{counted_by.name} frames"
+        own = Counting(by, 1 << counter.length if counter else 1)
+        counting = _stream(frames[place], bound[place], period_s, own, counted_by.name)
+    found = []
+    for frame, signals in zip(frames, bound, strict=True):
+        if counting is None or counted_by is None or frame[0] != counted_by.bus:
+            found.append(_stream(frame, signals, period_s, None))
+        elif frame[1] == counted_by.frame_id:
+            found.append(counting)
+        else:
+            by = counting.counting.by if counting.counting else ""
+            found.append(
+                _stream(frame, signals, period_s, Counting(by, follows=counting, opens=counted_by.opens))
+            )
+    return tuple(found)
+
+
+def _stream(
+    frame: tuple[str, int], bound: list[Binding], period_s: float, counting: Counting | None, name: str = ""
+) -> Stream:
+    bus, frame_id = frame
     return Stream(
-        label=f"frame 0x{first.frame_id:03X} ({first.channel})",
-        where=f"bus '{first.bus}'",
+        label=f"frame 0x{frame_id:03X} ({bound[0].channel if bound else name})",
+        where=f"bus '{bus}'",
         channels=tuple(b.channel for b in bound),
         units=tuple(b.signal.unit for b in bound),
         period_s=period_s,
         late_s=_SETTLED_S,
+        counting=counting,
     )
 
 
 class _Decoder:
-    """The bound signals of one bus."""
+    """The bound signals of one bus, and its count."""
 
-    def __init__(self, bound: list[tuple[Stream, list[Binding]]]) -> None:
-        self._streams = [stream for stream, _ in bound]
-        signals = [b.signal for _, bindings in bound for b in bindings]
-        self._ends = np.cumsum([len(bindings) for _, bindings in bound])
-        self._ids = np.array([bindings[0].frame_id for _, bindings in bound], np.int64)
-        self._places = np.array(
-            [(s.shift, s.length, s.signed, s.big_endian, s.is_float) for s in signals], np.int64
-        )
-        self._scales = np.array([[s.scale] for s in signals])
-        self._offsets = np.array([[s.offset] for s in signals])
+    def __init__(self, bound: list[tuple[Stream, int, list[Binding]]], counted_by: CountedBy | None) -> None:
+        self._streams = [stream for stream, _, _ in bound]
+        self._counted = counted_by is not None
+        signals = [b.signal for _, _, bindings in bound for b in bindings]
+        ends = np.cumsum([len(bindings) for _, _, bindings in bound]).tolist()
+        self._columns = [slice(first, end) for first, end in zip([0, *ends], ends, strict=False)]
+        self._ends = np.array(ends, np.int64)
+        self._ids = np.array([frame_id for _, frame_id, _ in bound], np.int64)
+        self._places = np.array([_place(s) for s in signals], np.int64).reshape(-1, 5)
+        self._scales = np.array([[s.scale] for s in signals]).reshape(-1, 1)
+        self._offsets = np.array([[s.offset] for s in signals]).reshape(-1, 1)
+        self._counter = np.full(6, -1, np.int64)  # which stream counts, -1: none; and where its counter lies
+        if counted_by:
+            self._counter[0] = self._ids.tolist().index(counted_by.frame_id)
+            if counted_by.counter:
+                self._counter[1:] = _place(counted_by.counter)
+        self._state = np.array([_NONE_YET, 0, 0], np.int64)
 
     def decode(self, block: FrameBlock) -> list[Samples]:
         """Samples of each stream that the block has frames of."""
-        counts = np.zeros(len(self._ids), np.int64)
-        times = np.empty((len(self._ids), len(block)))
-        numbers = np.zeros((len(self._places), len(block)))
+        streams, frames = len(self._ids), len(block)
+        counts = np.zeros(streams, np.int64)
+        times = np.empty((streams, frames))
+        numbers = np.zeros((len(self._places), frames))
+        marks = np.empty((streams if self._counted else 0, frames), np.int64)
         _read(
             block["id"], block["time_s"], block["data"], self._ids, self._ends, self._places,
-            counts, times, numbers,
+            self._counter, self._state, counts, times, numbers, marks,
         )  # fmt: skip
         # Scaled here and not in the compiled part, which may round differently from `Signal.decode`.
         values = (numbers * self._scales + self._offsets).T
-        found, first = [], 0
-        for index, stream in enumerate(self._streams):
-            count, end = int(counts[index]), int(self._ends[index])
+        found = []
+        for index, count in enumerate(counts.tolist()):
             if count:
-                found.append(Samples(stream, times[index, :count], values[:count, first:end]))
-            first = end
+                marked = marks[index, :count] if self._counted else None
+                columns = self._columns[index]
+                found.append(
+                    Samples(self._streams[index], times[index, :count], values[:count, columns], marked)
+                )
         return found
 
 
+def _place(signal: Signal) -> tuple[int, int, bool, bool, bool]:
+    return (signal.shift, signal.length, signal.signed, signal.big_endian, signal.is_float)
+
+
 @compiled
-def _read(ids, stamps, payloads, wanted, ends, places, counts, times, numbers):  # type: ignore[no-untyped-def]
-    """Sort frames by identifier and read the numbers in their signals, unscaled."""
+def _bits(payload, place):  # type: ignore[no-untyped-def]
+    word = swapped(payload) if place[3] else payload
+    return (word >> np.uint64(place[0])) & (~np.uint64(0) >> np.uint64(64 - place[1]))
+
+
+@compiled
+def _count(payload, counter, state):  # type: ignore[no-untyped-def]
+    """The count of a frame that counts, without turns; -1 if it is only a copy of the one before.
+
+    State: the newest count, frames of others since, and whether others ever came.
+    """
+    newest, others, ever = state
+    state[1] = 0
+    if counter[2] < 1:  # frames are counted; two with nothing between them are one that was sent again
+        if newest >= 0 and others == 0 and ever:
+            return -1
+        state[0] = max(newest, -1) + 1
+        return state[0]
+    turn = np.int64(1) << counter[2]
+    raw = np.int64(_bits(payload, counter[1:]))
+    if newest < 0:
+        state[0] = raw + turn  # what was overtaken by the first is no less than 0
+        return state[0]
+    ahead = (raw - newest) % turn
+    if ahead > turn // 2:
+        ahead -= turn
+    state[0] = max(newest, newest + ahead)
+    return newest + ahead
+
+
+@compiled
+def _read(ids, stamps, payloads, wanted, ends, places, counter, state, counts, times, numbers, marks):  # type: ignore[no-untyped-def]
+    """Sort frames by identifier, count, and read the numbers in their signals, unscaled."""
     for frame in range(ids.shape[0]):
         for stream in range(wanted.shape[0]):
             if ids[frame] != wanted[stream]:
                 continue
             at = counts[stream]
+            if counter[0] == stream:
+                mark = _count(payloads[frame], counter, state)
+                if mark < 0:
+                    continue
+                marks[stream, at] = mark
+            elif counter[0] >= 0:
+                state[1] += 1
+                state[2] = 1
+                marks[stream, at] = state[0]
             counts[stream] = at + 1
             times[stream, at] = stamps[frame]
             for entry in range(ends[stream - 1] if stream else 0, ends[stream]):
-                shift, length, signed, big_endian, is_float = places[entry]
-                word = payloads[frame]
-                if big_endian:
-                    word = swapped(word)
-                bits = (word >> np.uint64(shift)) & (~np.uint64(0) >> np.uint64(64 - length))
-                if is_float:
-                    numbers[entry, at] = single_of(bits) if length == 32 else double_of(bits)
+                bits, place = _bits(payloads[frame], places[entry]), places[entry]
+                if place[4]:
+                    numbers[entry, at] = single_of(bits) if place[1] == 32 else double_of(bits)
                 else:
                     raw = np.int64(bits)
-                    if signed and raw >> (length - 1):
-                        raw -= 1 << length
+                    if place[2] and raw >> (place[1] - 1):
+                        raw -= 1 << place[1]
                     numbers[entry, at] = np.float64(raw)

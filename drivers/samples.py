@@ -10,6 +10,24 @@ import numpy as np
 import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Counting:
+    """What tells the number of each sample of a stream.
+
+    Attributes:
+        by: in words, for reports: "8 bits in frame 0x111", "SYNC frames".
+        turn: how many values the counter takes before it begins again; 1: there is none, frames are counted.
+        follows: the stream whose frames count this one's samples too; None: its own do.
+        opens: with `follows`: whether its frame is the first of each sample, else the last.
+    """
+
+    by: str
+    turn: int = 1
+    follows: Stream | None = None
+    opens: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +42,7 @@ class Stream:
         period_s: distance of samples, seconds.
         silence_s: without a sample for longer than this the device is taken for dead (a bench fault).
         late_s: by how much a sample's time may lie before the moment at which it is handed out.
+        counting: what counts its samples; None: their times are the device's word.
     """
 
     label: str
@@ -33,19 +52,22 @@ class Stream:
     period_s: float
     silence_s: float = 0.1
     late_s: float = 0.02
+    counting: Counting | None = None
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Some samples of a stream, in order of time.
+    """Some samples of a stream, in the order in which they came.
 
-    `time_s`: shape (n,), seconds of the bench clock; `values`: shape (n, channels), NaN where the device
-    does not know.
+    `time_s`: shape (n,), seconds of the bench clock: when they were taken, or for a counted stream when they
+    arrived; `values`: shape (n, channels), NaN where the device does not know. `counts`, of a counted stream,
+    shape (n,): the count without turns; of one that follows another the newest count that had come before.
     """
 
     stream: Stream
     time_s: Array
     values: Array
+    counts: Numbers | None = None
 
 
 class SampleSource(Protocol):

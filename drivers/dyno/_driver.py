@@ -18,7 +18,7 @@ from drivers.dyno._node import (
     SWITCHED_ON,
     DynoNode,
 )
-from drivers.frame_source import FrameSource
+from drivers.frame_source import CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.table import VehicleParameters
 from drivers.wire import Wire
@@ -31,6 +31,7 @@ _HOST_SILENCE_MS = 200
 _NODE_HEARTBEAT_MS = 100
 _SYNC_PERIOD_US = 1000
 _SYNC_PRODUCER = 1 << 30
+SYNC = 0x80
 _STATE_TIMEOUT_S = 0.5
 _ACCELERATION_UNIT_RAD_S2 = 1e-4
 
@@ -62,7 +63,9 @@ class DynoDriver:
         self.right = DynoNode(network, wire.name, nodes.rear_right, "rear right", eds)
         self.rear = (self.left, self.right)
         self.idle = [DynoNode(network, wire.name, i, name, eds) for name, i in nodes.idle.items()]
-        source = FrameSource([*self.left.bindings("left"), *self.right.bindings("right")], TICK_S)
+        # Both measure at the SYNC, and send what they measured after it.
+        sync = CountedBy(wire.name, SYNC, "SYNC", opens=True)
+        source = FrameSource([*self.left.bindings("left"), *self.right.bindings("right")], TICK_S, sync)
         self.sources = (source,)
         loop.on_block(self._take_block)
         loop.on_block(source.take)
@@ -87,7 +90,7 @@ class DynoDriver:
             node.write(0x1016, 1, self._host << 16 | _HOST_SILENCE_MS, "watch on the host's heartbeat")
             self._write_vehicle(node)
         self.left.write(0x1006, 0, _SYNC_PERIOD_US, "SYNC period")
-        self.left.write(0x1005, 0, _SYNC_PRODUCER | 0x80, "SYNC producer")
+        self.left.write(0x1005, 0, _SYNC_PRODUCER | SYNC, "SYNC producer")
         for node in self.rear:
             node.nmt("OPERATIONAL")
         alive = self._loop.wait_for(lambda: all(n.last_seen_s > -np.inf for n in self.rear), _STATE_TIMEOUT_S)

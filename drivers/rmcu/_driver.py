@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from drivers.frame_source import Binding, FrameSource
+from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
@@ -22,17 +22,21 @@ from hil.core.printable import printable
 
 MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
 _COUNTER_VALUES = 16
+_SHORTEST_COUNTER = 3  # bits; a shorter one says less than the order of the frames
 _REPLY_TIMEOUT_S = 0.2
 _WRITE, _APPLY = 1, 2
 _NEEDED = {
     "RMCU_Request": Needed(
         ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
     ),
-    "RMCU_Status": Needed(("MotorSpeed", "MotorTorqueRef", "MotorTorque")),
+    "RMCU_Status": Needed(
+        ("MotorSpeed", "MotorTorqueRef", "MotorTorque"), whole=("Counter",), optional=("Counter",)
+    ),
     "RMCU_Control": Needed(
         ("DrivingTorqueRef", "DrivingTorqueEst", "State", "RequestFault"),
-        whole=("State", "RequestFault"),
+        whole=("State", "RequestFault", "Counter"),
         texts={"State": ("off",)},
+        optional=("Counter",),
     ),
     "RMCU_ParameterWrite": Needed(("Command", "Index", "Value"), whole=("Command", "Index")),
     "RMCU_ParameterReply": Needed(
@@ -44,12 +48,14 @@ _NEEDED = {
 
 # What the bench does not look at, but an RMCU's frames may hold: names for it can be given too.
 _ALSO = {
-    "RMCU_Control": ("Saturated", "ParametersValid", "Counter", "Crc"),
+    "RMCU_Control": ("Saturated", "ParametersValid", "Crc"),
     "RCS_Vehicle": ("Counter", "Valid", "Crc"),
 }
 
 #: Messages of an RMCU with their signals, by our names, which are those of benches/rmcu.dbc.
-RMCU_SIGNALS = {name: (*needed.signals, *_ALSO.get(name, ())) for name, needed in _NEEDED.items()}
+RMCU_SIGNALS = {
+    name: (*needed.signals, *needed.optional, *_ALSO.get(name, ())) for name, needed in _NEEDED.items()
+}
 
 
 def read_rmcu(dbc: Path, names: Names | None = None) -> Dbc:
@@ -86,7 +92,7 @@ class RmcuDriver:
         self.fault = ""
         self.torque_ref_nm = math.nan
         self.last_seen_s = -math.inf
-        source = FrameSource(self._bindings(), TICK_S)
+        source = FrameSource(self._bindings(), TICK_S, self._counted_by())
         self.sources = (source,)
         loop.on_frame(wire, self._reply.id, self._take_reply)
         loop.on_block(self._take_block)
@@ -103,6 +109,16 @@ class RmcuDriver:
             Binding(bus, control.id, control.signals["DrivingTorqueRef"], "driving_torque_ref_nm"),
             Binding(bus, control.id, control.signals["DrivingTorqueEst"], "driving_torque_est_nm"),
         ]
+
+    def _counted_by(self) -> CountedBy:
+        """What counts its samples: the status's own counter, else the control frame's, else the status."""
+        for message in ("RMCU_Status", "RMCU_Control"):
+            layout = self._layouts[message]
+            counter = layout.signals.get("Counter")
+            if counter is not None and counter.length >= _SHORTEST_COUNTER:
+                # The control frame follows the status of its sample.
+                return CountedBy(self._wire.name, layout.id, message, counter, opens=message == "RMCU_Status")
+        return CountedBy(self._wire.name, self._layouts["RMCU_Status"].id, "RMCU_Status", opens=True)
 
     def come_up(self) -> None:
         """Nothing to configure: it must have sent its status by now.

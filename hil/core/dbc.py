@@ -35,13 +35,15 @@ class Needed:
     """What a user of a DBC needs of one message.
 
     `whole` are counters and enumerations, which have no scaling; `texts` are values that a signal's value
-    table must name; `checksum` is the signal of the frame's CRC, which covers the first seven bytes.
+    table must name; `checksum` is the signal of the frame's CRC, which covers the first seven bytes;
+    `optional` signals are used if the message has them.
     """
 
     signals: tuple[str, ...]
     whole: tuple[str, ...] = ()
     texts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     checksum: str = ""
+    optional: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,8 @@ def _as_called(needed: Needed, names: Names, message: str) -> Needed:
         for signal, wanted in needed.texts.items()
     }
     checksum = names.signal(message, needed.checksum) if needed.checksum else ""
-    return Needed(called(needed.signals), called(needed.whole), texts, checksum)
+    optional = called(needed.optional)
+    return Needed(called(needed.signals), called(needed.whole), texts, checksum, optional)
 
 
 def _renamed(layout: FrameLayout, ours: Mapping[str, str]) -> FrameLayout:
@@ -182,6 +185,7 @@ def _mistakes(message: Message, needed: Needed) -> Iterator[str]:
             yield f" has no signal '{name}'"
             return
         used.append(present[name])
+    used += [present[name] for name in needed.optional if name in present]
     for signal in used:
         for mistake in _signal_mistakes(signal, message, signal.name in needed.whole):
             yield f", signal '{signal.name}' {mistake}"

@@ -40,6 +40,7 @@ class Recorder:
     def take(self, samples: Samples) -> None:
         """Record samples of any source."""
         if not self._begun:
+            self._assembler.learn(samples)
             return
         self._assembler.add(samples)
         if samples.stream is not self._base:
@@ -65,7 +66,8 @@ class Recorder:
         """Time in the recording, on its millisecond grid, of the next sample after a bench time."""
         if self.start_s is None:
             return 0.0
-        return max(0.0, round(clock_s - self.start_s, 3))
+        time_s = self._assembler.time_of(clock_s)
+        return max(0.0, round(clock_s - self.start_s if time_s is None else time_s, 3))
 
     def finish_rows(self) -> Recording:
         """Write what is left; the whole run's channels, for judging."""

@@ -1,0 +1,193 @@
+"""Samples of one stream that wait to stand in a row, each with its number and the time that this gives it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from drivers.frame_count import FrameCount
+from drivers.sample_clock import SampleClock
+from drivers.samples import Array, Numbers, Samples, Stream
+
+_OVERTAKEN_S = 0.1  # what is missing may have been overtaken: it is awaited for this long
+_NOTHING = np.zeros(0, np.int64)
+
+
+@dataclass(frozen=True)
+class StreamTiming:
+    """How a stream's samples lay in time.
+
+    `offset_s`, `drift_ppm`: its clock against the time base, for the time base against the bench's clock;
+    `latest_s`: by how much the latest frame came after its time; `lost`: numbers without a sample, of which
+    `left_out` came, but nobody could say which they were.
+    """
+
+    stream: Stream
+    offset_s: float
+    drift_ppm: float
+    latest_s: float
+    lost: int
+    left_out: int
+
+
+class Waiting:
+    """A stream's samples by number, in order, as far as they are certain.
+
+    Args:
+        stream: whose.
+        counted: number them even if nothing but their order counts them.
+        followed: the one whose frames count this one's samples.
+    """
+
+    def __init__(self, stream: Stream, *, counted: bool, followed: Waiting | None) -> None:
+        self.stream = stream
+        self._followed = followed
+        turn = stream.counting.turn if stream.counting else 1
+        self.clock = SampleClock(stream.period_s) if counted or stream.counting else None
+        self.count = FrameCount(turn, self.clock) if self.clock and followed is None else None
+        self.numbers: Numbers = _NOTHING
+        self.stamps: Array = np.zeros(0)
+        self._values: Array = np.zeros((0, len(stream.channels)))
+        self._new: list[Samples] = []
+        self._uncertain = (_NOTHING, np.zeros(0), self._values)  # counts, arrivals and values
+        self._came = 0
+        self._unwanted = 0  # of what is uncertain or new, the first are only learned from
+        self.first: int | None = None
+        self._written: int | None = None
+        self._kept = self.left_out = 0
+
+    @property
+    def newest_s(self) -> float:
+        """Time of the newest sample."""
+        return float(self.stamps[-1]) if len(self.stamps) else -np.inf
+
+    def extend(self, samples: Samples, *, wanted: bool) -> None:
+        """Take samples, to be kept or only to be learned from."""
+        if wanted or self.clock:
+            self._new.append(samples)
+            self._unwanted += 0 if wanted else len(samples.time_s)
+
+    def join(self, *, everything: bool = False) -> None:
+        """Give what has come its numbers and times."""
+        new, self._new = self._new, []
+        if self.clock is None:
+            if new:
+                self.stamps = np.concatenate([self.stamps, *(samples.time_s for samples in new)])
+                self._values = np.concatenate([self._values, *(samples.values for samples in new)])
+            return
+        counts, arrivals, values = self._uncertain
+        if new:
+            fresh = np.concatenate([self._counts(samples) for samples in new])
+            came = np.concatenate([samples.time_s for samples in new])
+            if self.count:
+                self.count.add(fresh, came)
+            counts, arrivals = np.concatenate([counts, fresh]), np.concatenate([arrivals, came])
+            values = np.concatenate([values, *(samples.values for samples in new)])
+        numbers, placed = self._numbered(counts, arrivals, everything)
+        end = len(numbers)
+        self._uncertain = counts[end:], arrivals[end:], values[end:]
+        wanted = np.arange(end) >= self._unwanted
+        self._unwanted = max(0, self._unwanted - end)
+        self.left_out += int(np.count_nonzero(wanted & ~placed))
+        self._keep(numbers[wanted & placed], values[:end][wanted & placed])
+        if len(self.numbers):
+            self.stamps = self.clock.times(self.numbers)
+
+    def _counts(self, samples: Samples) -> Numbers:
+        if samples.counts is not None:
+            return samples.counts
+        self._came += len(samples.time_s)
+        return np.arange(self._came - len(samples.time_s), self._came)
+
+    def _numbered(
+        self, counts: Numbers, arrivals: Array, everything: bool
+    ) -> tuple[Numbers, npt.NDArray[np.bool_]]:
+        assert self.clock is not None
+        if self.count:
+            return self.count.settle(everything=everything)
+        assert self._followed is not None
+        assert self._followed.count is not None
+        assert self.stream.counting is not None
+        numbers, placed = self._followed.count.follow(counts, opens=self.stream.counting.opens)
+        self.clock.learn(numbers[placed], arrivals[: len(numbers)][placed])
+        return numbers, placed
+
+    def _keep(self, numbers: Numbers, values: Array) -> None:
+        """Put them among those that wait, each number once; what has been written stays as it is."""
+        if not len(numbers):
+            return
+        if self.first is None:
+            self.first = int(numbers[0])
+        last = self._written if self._written is not None else self.first - 1
+        fresh = numbers > last
+        if not fresh.all():
+            numbers, values = numbers[fresh], values[fresh]
+        before = len(self.numbers)
+        numbers, values = np.concatenate([self.numbers, numbers]), np.concatenate([self._values, values])
+        if np.any(np.diff(numbers) <= 0):
+            numbers, first = np.unique(numbers, return_index=True)
+            values = values[first]
+        self._kept += len(numbers) - before
+        self.numbers, self._values = numbers, values
+
+    def certain(self) -> int:
+        """How many there are before one that may yet come."""
+        if len(self.numbers) < 2 or self.numbers[-1] - self.numbers[0] == len(self.numbers) - 1:
+            return len(self.numbers)
+        young = self.stamps[1:] > self.newest_s - _OVERTAKEN_S
+        missing = np.flatnonzero((np.diff(self.numbers) > 1) & young)
+        return int(missing[0]) + 1 if len(missing) else len(self.numbers)
+
+    def timing(self, base: Waiting) -> StreamTiming | None:
+        """How its samples lay in time; None if they were not counted, or none came."""
+        if self.clock is None or self.first is None or base.clock is None:
+            return None
+        newest = int(self.numbers[-1]) if len(self.numbers) else self._written
+        lost = (newest if newest is not None else self.first) - self.first + 1 - self._kept
+        figures = self.clock.against(None if self is base else base.clock)
+        return StreamTiming(
+            self.stream, figures.offset_s, figures.drift_ppm, self.clock.latest_s, lost, self.left_out
+        )
+
+    def nearest(self, stamps: Array, within_s: float) -> Array:
+        """For each stamp the sample nearest to it, (len(stamps), channels); NaN where none is near enough."""
+        if not len(self.stamps):
+            return np.full((len(stamps), self._values.shape[1]), np.nan)
+        at = _nearest(self.stamps, stamps)
+        found = self._values[at]
+        found[np.abs(self.stamps[at] - stamps) > within_s] = np.nan
+        return found
+
+    def placed(self, stamps: Array, within_s: float, reach_s: float) -> tuple[Array, int]:
+        """Each sample at the stamp nearest to it, NaN elsewhere; and how many came after their row.
+
+        Takes away what has been placed; what lies more than `reach_s` behind the last stamp goes on waiting.
+        """
+        found = np.full((len(stamps), self._values.shape[1]), np.nan)
+        due = int(np.searchsorted(self.stamps, stamps[-1] + reach_s, side="right"))
+        times = self.stamps[:due]
+        at = _nearest(stamps, times)
+        near = np.abs(stamps[at] - times) <= within_s
+        found[at[near]] = self._values[:due][near]
+        self._drop(due)
+        return found, int(np.sum(times[~near] < stamps[0]))
+
+    def forget(self, before_s: float) -> None:
+        """Let go of what no later row needs."""
+        self._drop(int(np.searchsorted(self.stamps, before_s)))
+
+    def _drop(self, count: int) -> None:
+        if self.clock and count:
+            self._written = int(self.numbers[count - 1])
+            self.numbers = self.numbers[count:]
+        self.stamps, self._values = self.stamps[count:], self._values[count:]
+
+
+def _nearest(places: Array, times: Array) -> Numbers:
+    """Index of the place nearest to each time; of two as near the earlier."""
+    after = np.clip(np.searchsorted(places, times), 0, len(places) - 1)
+    before = np.maximum(after - 1, 0)
+    closer = np.abs(places[before] - times) <= np.abs(places[after] - times)
+    return np.where(closer, before, after)

@@ -1,0 +1,153 @@
+"""When a device took its samples: a line through arrivals over sample numbers that no late frame bends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.int64]
+
+_STRETCH = 200  # samples of which the earliest arrival counts: the others were held up on their way
+_STRETCHES = 32  # stretches that the line goes through
+_FOR_SLOPE = 8  # stretches below which the device's clock is taken for as fast as the bench's
+_LARGEST_DRIFT = 1e-3  # quartz is off by a tenth of it at most
+_STEPPED = 15  # stretches in succession that lie aside before two clocks are said to have parted
+
+
+@dataclass(frozen=True)
+class ClockFigures:
+    """A device's clock against another: `offset_s` at its newest sample, positive if late."""
+
+    offset_s: float
+    drift_ppm: float
+
+
+class SampleClock:
+    """The time of each sample number, on the bench clock.
+
+    Frames come late, in bunches or after a pause, but none comes before it was sent. So of each stretch of
+    `_STRETCH` samples only the earliest arrival is looked at, and a line through the newest `_STRETCHES` of
+    these, by medians (H. Theil 1950, P. K. Sen 1968), gives a sample's time. What is constant in the way
+    from device to bench cannot be told from a clock that is off, and stays in the times.
+    """
+
+    def __init__(self, period_s: float) -> None:
+        self.period_s = period_s
+        self._origin: tuple[int, float] | None = None
+        self._stretches: list[tuple[int, float]] = []  # number and delay against the origin
+        self._open: tuple[Numbers, Array] = (np.zeros(0, np.int64), np.zeros(0))
+        self._slope, self._level_s = 0.0, 0.0  # delay = level + slope * (number - origin)
+        self.spread_s = 0.0
+        self.latest_s = 0.0
+
+    @property
+    def begun(self) -> bool:
+        """Whether it has seen anything."""
+        return self._origin is not None
+
+    def guess(self, numbers: Numbers, arrivals_s: Array) -> None:
+        """Begin with numbers that may yet turn out to lack some."""
+        self._origin = (int(numbers[0]), float(arrivals_s[0]))
+        self._level_s = float(np.min(self._delays(numbers, arrivals_s)[:_STRETCH]))
+
+    def learn(self, numbers: Numbers, arrivals_s: Array) -> None:
+        """Take the arrivals (s, bench clock) of samples, in any order."""
+        if not len(numbers):
+            return
+        if self._origin is None:
+            self._origin = (int(numbers[0]), float(arrivals_s[0]))
+        delays = self._delays(numbers, arrivals_s)
+        if self._stretches:
+            self.latest_s = max(self.latest_s, float(np.max(arrivals_s - self.times(numbers))))
+        places = np.concatenate([self._open[0], numbers])
+        delays = np.concatenate([self._open[1], delays])
+        whole = len(places) - len(places) % _STRETCH
+        for first in range(0, whole, _STRETCH):
+            at = first + int(np.argmin(delays[first : first + _STRETCH]))
+            self._stretches.append((int(places[at]), float(delays[at])))
+        self._open = (places[whole:], delays[whole:])
+        self._fit()
+
+    def times(self, numbers: Numbers) -> Array:
+        """Bench time of samples, s, shape as given."""
+        assert self._origin is not None
+        number, time_s = self._origin
+        since = (numbers - number).astype(np.float64)
+        return np.asarray(time_s + self._level_s + since * (self.period_s + self._slope))
+
+    def number_at(self, time_s: float) -> float:
+        """Sample number at a bench time; a fraction between two samples."""
+        assert self._origin is not None
+        number, origin_s = self._origin
+        return number + (time_s - origin_s - self._level_s) / (self.period_s + self._slope)
+
+    def against(self, base: SampleClock | None) -> ClockFigures:
+        """This clock against another (None: the bench's); whole sample times are for the count to tell."""
+        if self._origin is None:
+            return ClockFigures(0.0, 0.0)
+        if base is None:
+            return ClockFigures(0.0, self._whole_drift() * 1e6)
+        newest = self._stretches[-1][0] if self._stretches else self._origin[0]
+        aside = base.number_at(float(self.times(np.array([newest]))[0]))
+        offset_s = (aside - round(aside)) * base.period_s
+        return ClockFigures(offset_s, (self._whole_drift() - base._whole_drift()) * 1e6)
+
+    def parted_from(self, base: SampleClock | None) -> str:
+        """What to say if this clock and another (None: the bench's) have parted; else nothing."""
+        if len(self._stretches) < _STRETCHES:
+            return ""
+        drift = (self._slope - (base._slope if base else 0.0)) / self.period_s
+        if abs(drift) > _LARGEST_DRIFT and self.spread_s < self.period_s:
+            return f"its samples come {abs(drift) * 1e6:.0f} ppm too {'slow' if drift > 0 else 'fast'}"
+        if base is None:
+            return ""
+        aside = self._aside() - base._aside()
+        room_s = self.period_s + 2 * (self.spread_s + base.spread_s)
+        if np.all(aside > room_s) or np.all(aside < -room_s):
+            lie = f"{abs(float(np.median(aside))) * 1e3:.1f} ms {'later' if aside[0] > 0 else 'earlier'}"
+            return f"its samples come {lie} than their number says"
+        return ""
+
+    def _aside(self) -> Array:
+        """How far the newest stretches lie beside the line through those before, s."""
+        places, delays = self._newest()
+        beside = delays - self._slope * places
+        return np.asarray(beside[-_STEPPED:] - np.median(beside[:-_STEPPED]))
+
+    def _delays(self, numbers: Numbers, arrivals_s: Array) -> Array:
+        assert self._origin is not None
+        number, time_s = self._origin
+        return np.asarray((arrivals_s - time_s) - (numbers - number) * self.period_s)
+
+    def _newest(self) -> tuple[Array, Array]:
+        assert self._origin is not None
+        newest = self._stretches[-_STRETCHES:]
+        places = np.array([place - self._origin[0] for place, _ in newest], float)
+        return places, np.array([delay for _, delay in newest])
+
+    def _fit(self) -> None:
+        if not self._stretches:
+            self._level_s = float(np.min(self._open[1]))
+            return
+        places, delays = self._newest()
+        self._slope = _slope(places, delays) if len(places) >= _FOR_SLOPE else 0.0
+        beside = delays - self._slope * places
+        self._level_s = float(np.median(beside))
+        self.spread_s = float(np.max(beside)) - self._level_s
+
+    def _whole_drift(self) -> float:
+        """Of the whole run, as a share."""
+        if len(self._stretches) < _FOR_SLOPE:
+            return 0.0
+        some = self._stretches[:: len(self._stretches) // 200 + 1]
+        places, delays = np.array(some, float).T
+        return _slope(places, delays) / self.period_s
+
+
+def _slope(places: Array, delays: Array) -> float:
+    """Median of the slopes between all pairs."""
+    first, second = np.triu_indices(len(places), 1)
+    return float(np.median((delays[second] - delays[first]) / (places[second] - places[first])))
