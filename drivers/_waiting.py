@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-from drivers.frame_count import FrameCount
+from drivers.frame_count import DOUBTFUL, PLACED, Fates, FrameCount
 from drivers.sample_clock import SampleClock
 from drivers.samples import Array, Numbers, Samples, Stream
 
 _OVERTAKEN_S = 0.1  # what is missing may have been overtaken: it is awaited for this long
+_SURE = 3  # spreads of two clocks by which an offset must differ to be another
 _NOTHING = np.zeros(0, np.int64)
 
 
@@ -20,8 +20,8 @@ class StreamTiming:
     """How a stream's samples lay in time.
 
     `offset_s`, `drift_ppm`: its clock against the time base, for the time base against the bench's clock;
-    `latest_s`: by how much the latest frame came after its time; `lost`: numbers without a sample, of which
-    `left_out` came, but nobody could say which they were.
+    `latest_s`: by how much the latest frame came after its time; `lost`: samples of which no frame came;
+    `left_out`: frames that came, but nobody can say of which sample.
     """
 
     stream: Stream
@@ -56,7 +56,19 @@ class Waiting:
         self._unwanted = 0  # of what is uncertain or new, the first are only learned from
         self.first: int | None = None
         self._written: int | None = None
-        self._kept = self.left_out = 0
+        self._kept = self._left_out = 0
+        # Its number less that of the time base's sample of the same moment
+        self._ahead: int | None = None
+
+    @property
+    def count_of_all(self) -> FrameCount | None:
+        """What counts its samples, and maybe those of others."""
+        return self._followed.count if self._followed else self.count
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether something has come that has no number yet."""
+        return len(self._uncertain[0]) > 0
 
     @property
     def newest_s(self) -> float:
@@ -83,15 +95,16 @@ class Waiting:
             came = np.concatenate([samples.time_s for samples in new])
             if self.count:
                 self.count.add(fresh, came)
-            counts, arrivals = np.concatenate([counts, fresh]), np.concatenate([arrivals, came])
             values = np.concatenate([values, *(samples.values for samples in new)])
-        numbers, placed = self._numbered(counts, arrivals, everything)
+            counts, arrivals = np.concatenate([counts, fresh]), np.concatenate([arrivals, came])
+        numbers, fates = self._numbered(counts, arrivals, everything)
         end = len(numbers)
         self._uncertain = counts[end:], arrivals[end:], values[end:]
         wanted = np.arange(end) >= self._unwanted
         self._unwanted = max(0, self._unwanted - end)
-        self.left_out += int(np.count_nonzero(wanted & ~placed))
-        self._keep(numbers[wanted & placed], values[:end][wanted & placed])
+        self._left_out += int(np.count_nonzero(wanted & (fates == DOUBTFUL)))
+        kept = wanted & (fates == PLACED)
+        self._keep(numbers[kept], values[:end][kept])
         if len(self.numbers):
             self.stamps = self.clock.times(self.numbers)
 
@@ -101,18 +114,17 @@ class Waiting:
         self._came += len(samples.time_s)
         return np.arange(self._came - len(samples.time_s), self._came)
 
-    def _numbered(
-        self, counts: Numbers, arrivals: Array, everything: bool
-    ) -> tuple[Numbers, npt.NDArray[np.bool_]]:
+    def _numbered(self, counts: Numbers, arrivals: Array, everything: bool) -> tuple[Numbers, Fates]:
         assert self.clock is not None
         if self.count:
             return self.count.settle(everything=everything)
         assert self._followed is not None
         assert self._followed.count is not None
         assert self.stream.counting is not None
-        numbers, placed = self._followed.count.follow(counts, opens=self.stream.counting.opens)
+        numbers, fates = self._followed.count.follow(counts, opens=self.stream.counting.opens)
+        placed = fates == PLACED
         self.clock.learn(numbers[placed], arrivals[: len(numbers)][placed])
-        return numbers, placed
+        return numbers, fates
 
     def _keep(self, numbers: Numbers, values: Array) -> None:
         """Put them among those that wait, each number once; what has been written stays as it is."""
@@ -145,10 +157,11 @@ class Waiting:
         if self.clock is None or self.first is None or base.clock is None:
             return None
         newest = int(self.numbers[-1]) if len(self.numbers) else self._written
-        lost = (newest if newest is not None else self.first) - self.first + 1 - self._kept
+        numbers = (newest if newest is not None else self.first) - self.first + 1
+        lost = max(0, numbers - self._kept - self._left_out)
         figures = self.clock.against(None if self is base else base.clock)
         return StreamTiming(
-            self.stream, figures.offset_s, figures.drift_ppm, self.clock.latest_s, lost, self.left_out
+            self.stream, figures.offset_s, figures.drift_ppm, self.clock.latest_s, lost, self._left_out
         )
 
     def nearest(self, stamps: Array, within_s: float) -> Array:
@@ -158,6 +171,32 @@ class Waiting:
         at = _nearest(self.stamps, stamps)
         found = self._values[at]
         found[np.abs(self.stamps[at] - stamps) > within_s] = np.nan
+        return found
+
+    def paired(self, base: Waiting, count: int, within: float) -> Array:
+        """For each of the time base's first `count` samples the one of the same moment, or its neighbour.
+
+        Both count alike, so which belongs to which only changes as their clocks drift: an offset that is not
+        known to be another stays. NaN where none is nearer than `within` sample times.
+        """
+        if not len(self.numbers) or self.clock is None or base.clock is None:
+            return np.full((count, self._values.shape[1]), np.nan)
+        numbers = base.numbers[:count]
+        if self.count_of_all is base.count_of_all:
+            return self._numbered_as(numbers, within)
+        ahead = self.clock.numbers_at(base.stamps[:count]) - numbers
+        room = 0.5 + _SURE * (self.clock.spread_s + base.clock.spread_s) / self.stream.period_s
+        if self._ahead is None or np.max(np.abs(ahead - self._ahead)) > room:
+            wanted = numbers + np.rint(ahead).astype(np.int64)
+            self._ahead = int(wanted[-1] - numbers[-1])
+        else:
+            wanted = numbers + self._ahead
+        return self._numbered_as(wanted, within)
+
+    def _numbered_as(self, wanted: Numbers, within: float) -> Array:
+        at = _nearest(self.numbers, wanted)
+        found = self._values[at]
+        found[np.abs(self.numbers[at] - wanted) > within] = np.nan
         return found
 
     def placed(self, stamps: Array, within_s: float, reach_s: float) -> tuple[Array, int]:
@@ -185,7 +224,7 @@ class Waiting:
         self.stamps, self._values = self.stamps[count:], self._values[count:]
 
 
-def _nearest(places: Array, times: Array) -> Numbers:
+def _nearest(places: Array | Numbers, times: Array | Numbers) -> Numbers:
     """Index of the place nearest to each time; of two as near the earlier."""
     after = np.clip(np.searchsorted(places, times), 0, len(places) - 1)
     before = np.maximum(after - 1, 0)

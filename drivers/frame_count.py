@@ -11,8 +11,11 @@ _AWAITED_S = 0.2  # a frame that is late by more than a turn may be followed, fo
 _KEPT = 2000  # counted frames that followers may still be asked about
 _PROOF = 5  # frames at the end of a run that must agree on a loss
 _NOTHING = np.zeros(0, np.int64)
+_NO_FATES = np.zeros(0, np.int8)
 
-Mask = npt.NDArray[np.bool_]
+#: What becomes of a frame: it has a number of its own, it is a copy of another, nobody can say which it is.
+PLACED, COPY, DOUBTFUL = 0, 1, 2
+Fates = npt.NDArray[np.int8]
 
 
 class FrameCount:
@@ -41,28 +44,29 @@ class FrameCount:
         self._counts = np.concatenate([self._counts, counts])
         self._arrivals = np.concatenate([self._arrivals, arrivals_s])
 
-    def settle(self, *, everything: bool = False) -> tuple[Numbers, Mask]:
-        """Numbers of those frames, first come first, whose turn is certain, and which of them have a place.
+    def settle(self, *, everything: bool = False) -> tuple[Numbers, Fates]:
+        """Numbers of those frames, first come first, whose turn is certain, and what becomes of each.
 
         Args:
             everything: nothing more will come.
         """
         counts, arrivals = self._counts, self._arrivals
         if not len(counts):
-            return _NOTHING, np.zeros(0, bool)
+            return _NOTHING, _NO_FATES
         if not self._clock.begun:
             self._clock.guess(counts, arrivals)
-        turns, end, placed = self._turns(counts, arrivals, everything)
+        turns, end, fates = self._turns(counts, arrivals, everything)
         numbers = counts[:end] + self._behind + self.turn * turns[:end]
-        placed = placed[:end]
+        fates = fates[:end]
+        placed = fates == PLACED
         if end:
             self._behind += self.turn * int(turns[end - 1])
         self._counts, self._arrivals = counts[end:], arrivals[end:]
         self._clock.learn(numbers[placed], arrivals[:end][placed])
         self._note_risen(counts[:end][placed], numbers[placed])
-        return numbers, placed
+        return numbers, fates
 
-    def _turns(self, counts: Numbers, arrivals: Array, everything: bool) -> tuple[Numbers, int, Mask]:
+    def _turns(self, counts: Numbers, arrivals: Array, everything: bool) -> tuple[Numbers, int, Fates]:
         """Turns that each frame lacks, how many frames are certain, and which are of one turn only."""
         clock = self._clock
         late_s = arrivals - clock.times(counts + self._behind)
@@ -70,9 +74,9 @@ class FrameCount:
         behind = np.rint(late_s / turn_s).astype(np.int64)
         behind[late_s <= 0.5 * turn_s + 2 * clock.spread_s] = 0
         turns = np.minimum.accumulate(behind[::-1])[::-1]
-        placed = np.ones(len(turns), bool)
+        fates = np.zeros(len(turns), np.int8)
         if not turns[-1]:
-            return turns, len(turns), placed  # the newest is in time: nobody lacks anything
+            return turns, len(turns), fates  # the newest is in time: nobody lacks anything
         young = int(np.searchsorted(np.maximum.accumulate(arrivals), np.max(arrivals) - _AWAITED_S))
         waits = young + int(np.argmax(turns[young:] > 0))
         if everything:
@@ -81,8 +85,8 @@ class FrameCount:
             waits = len(turns)
         for first in np.flatnonzero(np.diff(turns[:waits], prepend=0)):
             in_time = int(np.argmax(behind[first:] == turns[first]))
-            placed[first : first + in_time] = False
-        return turns, waits, placed
+            fates[first : first + in_time] = DOUBTFUL
+        return turns, waits, fates
 
     def _note_risen(self, counts: Numbers, numbers: Numbers) -> None:
         """A frame that was overtaken, or came twice, says nothing of those around it."""
@@ -98,8 +102,8 @@ class FrameCount:
             np.concatenate([risen_numbers, numbers[rose]]),
         )
 
-    def follow(self, keys: Numbers, *, opens: bool) -> tuple[Numbers, Mask]:
-        """Numbers of frames that have no count of their own, and which of them have a place.
+    def follow(self, keys: Numbers, *, opens: bool) -> tuple[Numbers, Fates]:
+        """Numbers of frames that have no count of their own, and what becomes of each.
 
         Between two counted frames, one sample apart, lies one frame of each follower; between two that lie
         further apart all that the lost ones left, if none of the followers is missing, else nobody can say
@@ -114,7 +118,7 @@ class FrameCount:
         """
         risen_counts, numbers = self.risen
         if not len(keys) or not len(numbers):
-            return _NOTHING, np.zeros(0, bool)
+            return _NOTHING, _NO_FATES
         after = np.searchsorted(risen_counts, keys, side="right")
         end = int(np.searchsorted(after, len(numbers)))
         first, last = np.searchsorted(after, after[:end]), np.searchsorted(after, after[:end], side="right")
@@ -125,10 +129,11 @@ class FrameCount:
             found, turn_of = before + places - first, places - first
         else:
             found, turn_of = before + missing - (last - 1 - places), last - 1 - places
-        placed = (after[:end] > 0) & (turn_of < missing) & (last - first >= missing)
+        fates = np.where(turn_of < missing, PLACED, COPY).astype(np.int8)
+        fates[(after[:end] == 0) | (last - first < missing)] = DOUBTFUL
         if opens and len(keys) == end + 1 and keys[-1] == risen_counts[-1]:
-            return np.append(found, numbers[-1]), np.append(placed, True)
-        return found, placed
+            return np.append(found, numbers[-1]), np.append(fates, np.int8(PLACED))
+        return found, fates
 
     def forget(self) -> None:
         """Every follower has been asked."""

@@ -46,6 +46,7 @@ class SampleAssembler:
         self._base = self._waiting[streams[0]]
         self._slow = [w for w in self._waiting.values() if w.stream.period_s > _SLOWER * sample_time_s]
         self._even = [w for w in self._waiting.values() if w not in self._slow and w.stream.channels]
+        self._alike = [w for w in self._even if w.clock and w.stream.period_s == streams[0].period_s]
         self._begun = False
         self.late = 0
         measured = [channel for stream in streams for channel in stream.channels]
@@ -71,6 +72,13 @@ class SampleAssembler:
         if base.first is None or base.clock is None:
             return None
         return (base.clock.number_at(clock_s) - base.first) * self._sample_time_s
+
+    def bench_time_s(self, time_s: float) -> float | None:
+        """The bench clock's time at a `time_s`; None before the first row."""
+        base = self._base
+        if base.first is None or base.clock is None:
+            return None
+        return float(base.clock.times(np.array([base.first]))[0]) + time_s
 
     def timings(self) -> list[StreamTiming]:
         """How the samples of each counted stream lay in time; the time base first."""
@@ -110,7 +118,10 @@ class SampleAssembler:
             self.late += late if self._begun else 0
             columns |= dict(zip(waiting.stream.channels, values.T, strict=True))
         for waiting in self._even:
-            values = waiting.nearest(stamps, within_s)
+            if waiting in self._alike:
+                values = waiting.paired(base, count, _NEAREST_WITHIN)
+            else:
+                values = waiting.nearest(stamps, within_s)
             columns |= dict(zip(waiting.stream.channels, values.T, strict=True))
         for name, left, right, is_sum in _BOTH_SIDES:
             if name in self.names:
@@ -132,7 +143,10 @@ class SampleAssembler:
     def _complete(self) -> int:
         """How many rows can be written: what may still come is awaited, but not from a dead device."""
         newest_s = self._base.newest_s
-        until_s = [max(w.newest_s, newest_s - _GIVEN_UP_S) - w.stream.late_s for w in self._even]
+        given_up_s = newest_s - _GIVEN_UP_S
+        until_s = [
+            (w.newest_s if w.doubtful else max(w.newest_s, given_up_s)) - w.stream.late_s for w in self._even
+        ]
         # Between two samples of a slow stream nothing can be awaited but that the next one comes late.
         # The row that it is nearest to may be the one before it.
         until_s += [newest_s - w.stream.late_s - 0.5 * self._sample_time_s for w in self._slow]

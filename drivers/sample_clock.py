@@ -7,12 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.compiled import compiled
+
 Array = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.int64]
 
 _STRETCH = 200  # samples of which the earliest arrival counts: the others were held up on their way
 _STRETCHES = 32  # stretches that the line goes through
 _FOR_SLOPE = 8  # stretches below which the device's clock is taken for as fast as the bench's
+_PART = 25  # samples of a stretch that are looked at on their own while there are few stretches
 _LARGEST_DRIFT = 1e-3  # quartz is off by a tenth of it at most
 _STEPPED = 15  # stretches in succession that lie aside before two clocks are said to have parted
 
@@ -40,6 +43,7 @@ class SampleClock:
         self._stretches: list[tuple[int, float]] = []  # number and delay against the origin
         self._open: tuple[Numbers, Array] = (np.zeros(0, np.int64), np.zeros(0))
         self._slope, self._level_s = 0.0, 0.0  # delay = level + slope * (number - origin)
+        self._parts: list[float] = []  # least delays of the first parts
         self.spread_s = 0.0
         self.latest_s = 0.0
 
@@ -69,6 +73,9 @@ class SampleClock:
             at = first + int(np.argmin(delays[first : first + _STRETCH]))
             self._stretches.append((int(places[at]), float(delays[at])))
         self._open = (places[whole:], delays[whole:])
+        if len(self._stretches) <= _FOR_SLOPE:
+            parts = delays[: whole or len(delays)]
+            self._parts += [float(np.min(parts[at : at + _PART])) for at in range(0, len(parts), _PART)]
         self._fit()
 
     def times(self, numbers: Numbers) -> Array:
@@ -78,11 +85,15 @@ class SampleClock:
         since = (numbers - number).astype(np.float64)
         return np.asarray(time_s + self._level_s + since * (self.period_s + self._slope))
 
-    def number_at(self, time_s: float) -> float:
-        """Sample number at a bench time; a fraction between two samples."""
+    def numbers_at(self, times_s: Array) -> Array:
+        """Sample numbers at bench times, s, shape as given; fractions between two samples."""
         assert self._origin is not None
         number, origin_s = self._origin
-        return number + (time_s - origin_s - self._level_s) / (self.period_s + self._slope)
+        return np.asarray(number + (times_s - origin_s - self._level_s) / (self.period_s + self._slope))
+
+    def number_at(self, time_s: float) -> float:
+        """Sample number at one bench time."""
+        return float(self.numbers_at(np.array([time_s]))[0])
 
     def against(self, base: SampleClock | None) -> ClockFigures:
         """This clock against another (None: the bench's); whole sample times are for the count to tell."""
@@ -131,12 +142,12 @@ class SampleClock:
     def _fit(self) -> None:
         if not self._stretches:
             self._level_s = float(np.min(self._open[1]))
+            self.spread_s = float(_spread(np.array(self._parts)))
             return
         places, delays = self._newest()
-        self._slope = _slope(places, delays) if len(places) >= _FOR_SLOPE else 0.0
-        beside = delays - self._slope * places
-        self._level_s = float(np.median(beside))
-        self.spread_s = float(np.max(beside)) - self._level_s
+        self._slope, self._level_s, self.spread_s = _line(places, delays, len(places) >= _FOR_SLOPE)
+        if len(places) < _FOR_SLOPE:  # what is not known yet is not taken for little
+            self.spread_s = max(self.spread_s, _spread(np.array(self._parts)))
 
     def _whole_drift(self) -> float:
         """Of the whole run, as a share."""
@@ -144,10 +155,36 @@ class SampleClock:
             return 0.0
         some = self._stretches[:: len(self._stretches) // 200 + 1]
         places, delays = np.array(some, float).T
-        return _slope(places, delays) / self.period_s
+        return float(_slope(places, delays)) / self.period_s
 
 
-def _slope(places: Array, delays: Array) -> float:
+@compiled
+def _spread(least):  # type: ignore[no-untyped-def]
+    """By how much least delays vary; a few that were held up altogether do not count."""
+    ordered = np.sort(least)
+    return 2.0 * (ordered[9 * (len(ordered) - 1) // 10] - np.median(ordered))
+
+
+@compiled
+def _slope(places, delays):  # type: ignore[no-untyped-def]
     """Median of the slopes between all pairs."""
-    first, second = np.triu_indices(len(places), 1)
-    return float(np.median((delays[second] - delays[first]) / (places[second] - places[first])))
+    slopes = np.empty(len(places) * (len(places) - 1) // 2)
+    count = 0
+    for first in range(len(places)):
+        for second in range(first + 1, len(places)):
+            if places[second] != places[first]:
+                slopes[count] = (delays[second] - delays[first]) / (places[second] - places[first])
+                count += 1
+    return np.median(slopes[:count]) if count else 0.0
+
+
+@compiled
+def _line(places, delays, sloped):  # type: ignore[no-untyped-def]
+    """Slope, level at the origin and spread of a line through delays."""
+    slope = _slope(places, delays) if sloped else 0.0
+    beside = delays - slope * places
+    spread = _spread(beside)
+    if abs(slope) * (places[-1] - places[0]) < 2 * spread:
+        # The way to the bench varies by more than the clocks.
+        return 0.0, np.median(delays), _spread(delays)
+    return slope, np.median(beside), spread

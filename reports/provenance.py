@@ -70,6 +70,7 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
         facts += [
             Fact("Time on the bench", quantities.quantity(result.bench_time_s, "s", 1)),
             Fact("Real-time factor", quantities.number(result.real_time_factor, significant=3)),
+            Fact("Clocks", _clocks(result)),
         ]
     elif len(recording.channels.get("time_s", ())) > 1:
         span = float(recording.time_s[-1] - recording.time_s[0])
@@ -77,6 +78,20 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
         facts.append(Fact("Samples", quantities.number(float(len(recording.time_s)), 0)))
         facts.append(Fact("Sample time", quantities.nominal(float(f"{recording.sample_time_s:.4g}"), "s")))
     return tuple(fact for fact in facts if fact.value)
+
+
+def _clocks(result: RunResult) -> str:
+    """The worst of what is known of time: drift, offset, frames that came late or not at all."""
+    if not result.clocks:
+        return ""
+    drift = max((abs(clock.drift_ppm) for clock in result.clocks[1:]), default=0.0)
+    offset_s = max(abs(clock.offset_s) for clock in result.clocks)
+    latest_s = max(clock.latest_s for clock in result.clocks)
+    lost = sum(clock.lost + clock.left_out for clock in result.clocks)
+    return (
+        f"{quantities.quantity(drift, 'ppm', 1)} apart, {quantities.quantity(offset_s * 1e3, 'ms', 2)} within a row; "
+        f"latest frame {quantities.quantity(latest_s * 1e3, 'ms', 1)} after its time; {lost} samples lost"
+    )
 
 
 def simulated(recording: Recording) -> bool:

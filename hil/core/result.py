@@ -88,6 +88,23 @@ class Segment(_Frozen):
     reference_after: float = Field(0.0, description="value of the stepped quantity after the step")
 
 
+class StreamClock(_Frozen):
+    """How the samples of one stream lay in time; the first is the time base."""
+
+    stream: str
+    where: str
+    counted_by: str
+    offset_s: float = Field(
+        description="how much later than the time base's sample of the same row it was measured; 0 for the base"
+    )
+    drift_ppm: float = Field(
+        description="how much slower its clock is than the time base's; the base's own against the bench's clock"
+    )
+    latest_s: float = Field(description="by how much the latest frame came after its time")
+    lost: int = Field(description="samples of which no frame came")
+    left_out: int = Field(description="frames that came, but nobody can say of which sample")
+
+
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
@@ -99,5 +116,6 @@ class RunResult(_Frozen):
     safe_state: SafeState
     criteria: tuple[CriterionResult, ...] = ()
     segments: tuple[Segment, ...] = ()
+    clocks: tuple[StreamClock, ...] = ()
     files: dict[str, str] = {}
     reason: str = ""

@@ -10,8 +10,10 @@ import numpy.typing as npt
 
 from drivers import SampleAssembler, Samples, Stream
 from hil.core.channels import TIME
+from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock
 from hil.core.recording import Event, Recording, RecordingWriter
+from hil.core.result import StreamClock
 
 _FLUSH_S = 0.5
 
@@ -19,8 +21,8 @@ _FLUSH_S = 0.5
 class Recorder:
     """Writes raw frames as they come and rows of samples every half second.
 
-    The first stream is the time base. `start_s` is the bench time of its first sample; recording times count
-    from there.
+    The first stream is the time base. `start_s` is the bench time at which its first sample came; recording
+    times count samples from there, at the pace of the time base's own clock.
     """
 
     def __init__(self, path: Path, streams: Sequence[Stream], buses: list[str], sample_time_s: float) -> None:
@@ -31,6 +33,7 @@ class Recorder:
         self._flushed_s = -np.inf
         self.start_s: float | None = None
         self._begun = False
+        self._parted = False
         self.events: list[Event] = []
 
     def take_frames(self, bus: str, block: FrameBlock) -> None:
@@ -38,7 +41,11 @@ class Recorder:
         self.writer.add_frames(bus, block)
 
     def take(self, samples: Samples) -> None:
-        """Record samples of any source."""
+        """Record samples of any source; those before `begin` only tell how the devices' clocks go.
+
+        Raises:
+            BenchError: a device's count of samples and their arrival have parted; told once.
+        """
         if not self._begun:
             self._assembler.learn(samples)
             return
@@ -51,6 +58,7 @@ class Recorder:
         if latest_s - self._flushed_s > _FLUSH_S:
             self._flushed_s = latest_s
             self._write_rows()
+            self._look_at_clocks()
 
     def begin(self) -> None:
         """Keep samples from the next ones on: every device is giving its channels now."""
@@ -69,6 +77,35 @@ class Recorder:
         time_s = self._assembler.time_of(clock_s)
         return max(0.0, round(clock_s - self.start_s if time_s is None else time_s, 3))
 
+    def clocks(self) -> tuple[StreamClock, ...]:
+        """How the samples of each counted stream lay in time; the time base first."""
+        return tuple(
+            StreamClock(
+                stream=timing.stream.label,
+                where=timing.stream.where,
+                counted_by=timing.stream.counting.by if timing.stream.counting else "its own frames",
+                offset_s=round(timing.offset_s, 6),
+                drift_ppm=round(timing.drift_ppm, 1),
+                latest_s=round(timing.latest_s, 6),
+                lost=timing.lost,
+                left_out=timing.left_out,
+            )
+            for timing in self._assembler.timings()
+        )
+
+    def time_base(self) -> dict[str, str]:
+        """How raw frames, which keep their stamps, lie against the rows: a table for the recording."""
+        clocks = self._assembler.timings()
+        row_0_s = self._assembler.bench_time_s(0.0)
+        if not clocks or row_0_s is None:
+            return {}
+        return {
+            "time_s": "counts the samples of the time base",
+            "raw_frames": "stamps of the adapter on the bench clock",
+            "bench_clock_at_row_0_s": f"{row_0_s:.6f}",
+            "bench_clock_s_per_time_s": f"{1 + clocks[0].drift_ppm * 1e-6:.7f}",
+        }
+
     def finish_rows(self) -> Recording:
         """Write what is left; the whole run's channels, for judging."""
         self._write_rows(everything=True)
@@ -85,6 +122,15 @@ class Recorder:
         channels = {name: np.ascontiguousarray(rows[:, column]) for column, name in enumerate(names)}
         assert names[0] == TIME
         return Recording(channels, self.writer.path, events=list(self.events))
+
+    def _look_at_clocks(self) -> None:
+        if self._parted:
+            return
+        try:
+            self._assembler.look_for_parted_clocks()
+        except BenchError:
+            self._parted = True  # on the way to the safe state it is known
+            raise
 
     def _write_rows(self, *, everything: bool = False) -> None:
         rows = self._assembler.rows(everything=everything)

@@ -195,6 +195,7 @@ class _Run:
             safe_state=safe,
             criteria=criteria,
             segments=tuple(self._conductor.segments),
+            clocks=self._recorder.clocks(),
             reason=str(self._error) if self._error else "",
         )
         try:
@@ -229,6 +230,7 @@ class _Run:
         controllers = {
             f"controller/{name}.toml": text.encode() for name, text in self._conductor.controllers.items()
         }
+        writer.describe("time", self._recorder.time_base())
         writer.describe("hashes", hashes(self._inputs() | controllers | attachments))
         writer.close()
 

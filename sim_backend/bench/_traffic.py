@@ -12,6 +12,7 @@ from hil.core.signals import FrameLayout, Signal
 
 #: A frame with the column of a bench row that each of its signals shows.
 Shown = tuple[FrameLayout, dict[str, int]]
+COUNTER = "Counter"
 
 
 def frame_time_s(length: int, bit_rate: int) -> float:
@@ -39,8 +40,13 @@ class CyclicTraffic:
                     self._others.append((message, column, signal))
                     continue
                 low = -(1 << (signal.length - 1)) if signal.signed else 0
+                # A counter is not held at its end: its bits let it begin again.
+                ends = (-np.inf, np.inf) if name == COUNTER else (low, low + (1 << signal.length) - 1)
                 places.append((message, column, signal.shift, signal.length))
-                numbers.append((signal.scale, signal.offset, low, low + (1 << signal.length) - 1))
+                # A counter is not held at its end: its bits let it begin again.
+                numbers.append(
+                    (signal.scale, signal.offset, *((-np.inf, np.inf) if name == COUNTER else ends))
+                )
         self._places = np.array(places, np.int64).reshape(-1, 4)
         self._numbers = np.array(numbers, float).reshape(-1, 4)
 
@@ -57,7 +63,8 @@ class CyclicTraffic:
         payloads = np.zeros((len(rows), len(self._layouts)), np.uint64)
         _fill(rows, self._places, self._numbers, payloads)
         for message, column, signal in self._others:
-            payloads[:, message] |= signal.encode(rows[:, column])
+            values = rows[:, column] % (1 << signal.length) if signal.name == COUNTER else rows[:, column]
+            payloads[:, message] |= signal.encode(values)
         for column in self._crc:
             payloads[:, column] |= crc8_many(self._layouts[column].id, payloads[:, column]) << np.uint64(56)
         block["data"] = payloads

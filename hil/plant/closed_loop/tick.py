@@ -118,7 +118,7 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
     row[STATE] = code & 15
     row[FAULT] = (code >> 4) & 15
     row[PARAMETERS_VALID] = (code >> 8) & 1
-    row[COUNTER] = k % 16
+    row[COUNTER] = k  # its bits in a frame let it begin again
     row[ALWAYS_ONE] = 1.0
     row[STATUS_LEFT] = status[0]
     row[STATUS_RIGHT] = status[1]
