@@ -131,7 +131,7 @@ class Waiting:
         if not len(numbers):
             return
         if self.first is None:
-            self.first = int(numbers[0])
+            self.first = int(np.min(numbers))
         last = self._written if self._written is not None else self.first - 1
         fresh = numbers > last
         if not fresh.all():

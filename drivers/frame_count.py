@@ -9,6 +9,7 @@ from drivers.sample_clock import Array, Numbers, SampleClock
 
 _AWAITED_S = 0.2  # a frame that is late by more than a turn may be followed, for so long, by one that is not
 _KEPT = 2000  # counted frames that followers may still be asked about
+_WHOLE = 0.3  # sample times by which a gap may differ from a whole number of samples
 _PROOF = 5  # frames at the end of a run that must agree on a loss
 _NOTHING = np.zeros(0, np.int64)
 _NO_FATES = np.zeros(0, np.int8)
@@ -36,6 +37,9 @@ class FrameCount:
         self.turn, self._clock = turn, clock
         self._counts, self._arrivals = _NOTHING, np.zeros(0)
         self._behind = 0
+        self.stepped_s = (
+            0.0  # what a gap in time was more than whole samples: then none was lost, time passed
+        )
         # What followers are numbered by: counts that rose, and the samples' numbers
         self.risen: tuple[Numbers, Numbers] = (_NOTHING, _NOTHING)
 
@@ -84,8 +88,11 @@ class FrameCount:
                 turns[waits:] = turns[waits - 1] if waits else 0  # too few to speak of a loss
             waits = len(turns)
         for first in np.flatnonzero(np.diff(turns[:waits], prepend=0)):
-            in_time = int(np.argmax(behind[first:] == turns[first]))
-            fates[first : first + in_time] = DOUBTFUL
+            in_time = first + int(np.argmax(behind[first:] == turns[first]))
+            fates[first:in_time] = DOUBTFUL
+            rest_s = float(late_s[in_time] - turns[first] * turn_s)
+            if abs(rest_s) > _WHOLE * clock.period_s + 2 * clock.spread_s:
+                self.stepped_s = rest_s
         return turns, waits, fates
 
     def _note_risen(self, counts: Numbers, numbers: Numbers) -> None:

@@ -193,7 +193,7 @@ def _count(payload, counter, state):  # type: ignore[no-untyped-def]
         state[0] = raw + turn  # what was overtaken by the first is no less than 0
         return state[0]
     ahead = (raw - newest) % turn
-    if ahead > turn // 2:
+    if ahead > 3 * turn // 4:  # overtaken: less likely than many lost
         ahead -= turn
     state[0] = max(newest, newest + ahead)
     return newest + ahead

@@ -94,6 +94,8 @@ class SampleAssembler:
             if waiting.clock is None:
                 continue
             said = waiting.clock.parted_from(None if waiting is self._base else self._base.clock)
+            if waiting.count and waiting.count.stepped_s:
+                said = f"a gap is {waiting.count.stepped_s * 1e3:.1f} ms off a whole number of samples"
             if said:
                 raise BenchError(
                     f"{waiting.stream.label}: {said}",

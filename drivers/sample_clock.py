@@ -14,7 +14,8 @@ Numbers = npt.NDArray[np.int64]
 
 _STRETCH = 200  # samples of which the earliest arrival counts: the others were held up on their way
 _STRETCHES = 32  # stretches that the line goes through
-_FOR_SLOPE = 8  # stretches below which the device's clock is taken for as fast as the bench's
+_FEW = 8  # stretches below which their spread is not known yet
+_FOR_SLOPE = 4  # stretches below which the device's clock is taken for as fast as the bench's
 _PART = 25  # samples of a stretch that are looked at on their own while there are few stretches
 _LARGEST_DRIFT = 1e-3  # quartz is off by a tenth of it at most
 _STEPPED = 15  # stretches in succession that lie aside before two clocks are said to have parted
@@ -73,7 +74,7 @@ class SampleClock:
             at = first + int(np.argmin(delays[first : first + _STRETCH]))
             self._stretches.append((int(places[at]), float(delays[at])))
         self._open = (places[whole:], delays[whole:])
-        if len(self._stretches) <= _FOR_SLOPE:
+        if len(self._stretches) <= _FEW:
             parts = delays[: whole or len(delays)]
             self._parts += [float(np.min(parts[at : at + _PART])) for at in range(0, len(parts), _PART)]
         self._fit()
@@ -146,7 +147,7 @@ class SampleClock:
             return
         places, delays = self._newest()
         self._slope, self._level_s, self.spread_s = _line(places, delays, len(places) >= _FOR_SLOPE)
-        if len(places) < _FOR_SLOPE:  # what is not known yet is not taken for little
+        if len(places) < _FEW:  # what is not known yet is not taken for little
             self.spread_s = max(self.spread_s, _spread(np.array(self._parts)))
 
     def _whole_drift(self) -> float:

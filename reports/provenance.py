@@ -88,10 +88,10 @@ def _clocks(result: RunResult) -> str:
     offset_s = max(abs(clock.offset_s) for clock in result.clocks)
     latest_s = max(clock.latest_s for clock in result.clocks)
     lost = sum(clock.lost + clock.left_out for clock in result.clocks)
-    return (
-        f"{quantities.quantity(drift, 'ppm', 1)} apart, {quantities.quantity(offset_s * 1e3, 'ms', 2)} within a row; "
-        f"latest frame {quantities.quantity(latest_s * 1e3, 'ms', 1)} after its time; {lost} samples lost"
-    )
+    apart = f"{quantities.quantity(drift, 'ppm', 1)} apart"
+    within = f"{quantities.quantity(offset_s * 1e3, 'ms', 2)} within a row"
+    latest = f"latest frame {quantities.quantity(latest_s * 1e3, 'ms', 1)} after its time"
+    return f"{apart}, {within}, {latest}, {lost} samples lost"
 
 
 def simulated(recording: Recording) -> bool:

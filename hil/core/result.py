@@ -94,11 +94,9 @@ class StreamClock(_Frozen):
     stream: str
     where: str
     counted_by: str
-    offset_s: float = Field(
-        description="how much later than the time base's sample of the same row it was measured; 0 for the base"
-    )
+    offset_s: float = Field(description="how much later than the time base's sample of the same row it came")
     drift_ppm: float = Field(
-        description="how much slower its clock is than the time base's; the base's own against the bench's clock"
+        description="how much slower its clock is than the time base's; the base's: than the bench's"
     )
     latest_s: float = Field(description="by how much the latest frame came after its time")
     lost: int = Field(description="samples of which no frame came")

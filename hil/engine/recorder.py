@@ -84,8 +84,8 @@ class Recorder:
                 stream=timing.stream.label,
                 where=timing.stream.where,
                 counted_by=timing.stream.counting.by if timing.stream.counting else "its own frames",
-                offset_s=round(timing.offset_s, 6),
-                drift_ppm=round(timing.drift_ppm, 1),
+                offset_s=round(timing.offset_s, 6) + 0.0,
+                drift_ppm=round(timing.drift_ppm, 1) + 0.0,  # no -0.0
                 latest_s=round(timing.latest_s, 6),
                 lost=timing.lost,
                 left_out=timing.left_out,

@@ -32,7 +32,7 @@ class Wire:
     lost: set[tuple[int, int]] = field(default_factory=set)  # sample and identifier
     twice: set[tuple[int, int]] = field(default_factory=set)
 
-    def sent(self, samples: int, bits: int) -> FrameBlock:
+    def sent(self, samples: int, bits: int = 8) -> FrameBlock:
         """All frames, in the order in which they were sent, with the times at which they were on the bus."""
         frames = []
         for k in range(samples):
@@ -54,7 +54,8 @@ def in_bursts(block: FrameBlock, every_s: float, phase_s: float = 0.0) -> FrameB
 def held_up(block: FrameBlock, delays_s: np.ndarray) -> FrameBlock:
     """Each frame late by its delay; none overtakes another."""
     late = block.copy()
-    late["time_s"] = np.maximum.accumulate(block["time_s"] + delays_s)
+    before_s = block["time_s"][0] + np.max(delays_s[: len(delays_s) // 4])  # it was so already
+    late["time_s"] = np.maximum(np.maximum.accumulate(block["time_s"] + delays_s), before_s)
     return late
 
 
@@ -74,13 +75,13 @@ def dyno_source() -> FrameSource:
 
 
 def recorded(
-    rmcu: FrameBlock, dyno: FrameBlock, bits: int = 4
+    rmcu: FrameBlock, dyno: FrameBlock, bits: int = 8
 ) -> tuple[SampleAssembler, dict[str, np.ndarray]]:
     """Columns of the rows that the frames become; the first `BEGIN` samples are before the recording."""
     sources = [rmcu_source(bits), dyno_source()]
     assembler = SampleAssembler([stream for source in sources for stream in source.streams], PERIOD_S)
     chunks = []
-    ends = np.arange(5.0, max(rmcu["time_s"][-1], dyno["time_s"][-1]) + 0.02, 0.01)
+    ends = np.arange(5.0, max(np.max(rmcu["time_s"]), np.max(dyno["time_s"])) + 0.02, 0.01)
     at = [0, 0]
     for tick, end_s in enumerate(ends):
         for index, (bus, block) in enumerate((("rmcu", rmcu), ("dyno", dyno))):
