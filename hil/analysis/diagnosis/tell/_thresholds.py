@@ -33,6 +33,13 @@ OPEN_CONFIDENCE: Annotated[
 STEP_NM: Annotated[float, Means("N m", "the step whose overshoot is told", "consequences")] = 20.0
 
 DURATION_S: Annotated[float, Means("s", "of a separating test", "separating")] = 20.0
+TELLS: Annotated[
+    float, Means("noise levels, root of the sum of squares", "a test must tell two models by", "separating")
+] = 10.0
+NUMBERS_FREE: Annotated[
+    float, Means("of a number", "by which a fit of the test's recording may change it", "separating")
+] = 0.1
+NUMBERS_STEP: Annotated[float, Means("of a number", "of the finite differences there", "separating")] = 1e-3
 SETTLE_S: Annotated[float, Means("s", "a speed is held before it", "separating")] = 2.0
 FAST_RAD_S: Annotated[
     float, Means("rad/s, wheel side", "what every bench for an axle allows", "separating")

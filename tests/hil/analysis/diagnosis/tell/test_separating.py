@@ -41,6 +41,14 @@ def test_the_separating_test_is_a_plan_that_loads(tmp_path: Path) -> None:
     assert load_plan(tmp_path / "plan.yaml").name == "separate_actuator_lag_dead_time"
 
 
+def test_no_test_is_proposed_that_could_not_tell() -> None:
+    lag = MODEL.with_effects(EffectUse("actuator_lag", {"time_constant_s": 2e-4}))
+    later = MODEL.with_parameters(torque_delay=BASE["torque_delay"] + 2e-4, shaft_stiffness=6095.0)
+    words, text = separating_plan(lag, later, NOISE, 20.0, NAMES)
+    assert "no test of ours tells them apart" in words
+    assert text == ""
+
+
 @pytest.mark.parametrize(
     ("one", "other", "chosen"),
     [

@@ -1,0 +1,54 @@
+"""How far two models differ in a test beyond what their numbers and initial speeds could make up for.
+
+Two models that were fitted to the same recordings differ a little in every number, and so in every test. A
+test tells them apart by what is left of the difference once the numbers have been fitted anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.tell._thresholds import NUMBERS_FREE, NUMBERS_STEP
+from hil.core.model import Model, parameter_names
+
+Array = npt.NDArray[np.float64]
+
+
+def apart(one: Model, other: Model, played: Callable[[Model], Array], noise: Array) -> Array:
+    """What `one`, its numbers fitted anew, leaves of what `other` shows: (samples, channels), noise levels.
+
+    Args:
+        played: outputs of a model in the test, samples x channels.
+        noise: standard deviation of each channel per sample.
+    """
+    first, second = played(one) / noise, played(other) / noise
+    columns = [np.ravel((played(model) / noise - first) / NUMBERS_STEP) for model in _moved(one)]
+    starts = np.eye(first.shape[1])  # an initial speed that nobody knows shifts a channel
+    columns += [np.ravel(np.broadcast_to(channel, first.shape)) for channel in starts]
+    rows = np.nan_to_num(np.column_stack(columns))
+    free = np.array([NUMBERS_FREE] * (len(columns) - len(starts)) + [np.inf] * len(starts))
+    difference = np.ravel(np.nan_to_num(first - second))
+    size = np.linalg.norm(rows, axis=0)
+    kept = size > 0.0
+    scaled = rows[:, kept] / size[kept]
+    anchor = np.diag(1.0 / (free[kept] * size[kept]))
+    system = np.vstack([scaled, anchor])
+    right = np.concatenate([difference, np.zeros(len(anchor))])
+    made_up = scaled @ np.linalg.lstsq(system, right, rcond=None)[0]
+    return np.asarray((difference - made_up).reshape(first.shape))
+
+
+def _moved(one: Model) -> Iterator[Model]:
+    """The model with one number a little larger: of its base, of its effects."""
+    for name in parameter_names(one.kind):
+        if value := one.parameters[name]:
+            yield one.with_parameters(**{name: value * (1.0 + NUMBERS_STEP)})
+    for index, use in enumerate(one.effects):
+        for name, number in use.values.items():
+            if not isinstance(number, str) and number:
+                larger = replace(use, values={**use.values, name: number * (1.0 + NUMBERS_STEP)})
+                yield one.with_effects(*(larger if i == index else u for i, u in enumerate(one.effects)))
