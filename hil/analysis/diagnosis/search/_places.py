@@ -26,6 +26,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     PLACES_NM,
     PLACES_TRIED,
     PLACES_WORTH,
+    UNTOLD_WIDTH,
     WIDTHS,
 )
 from hil.core.effects import EFFECTS
@@ -63,8 +64,10 @@ def placed(evidence: Evidence, best: Fit) -> Fit:
         if rank(first) > (1.0 - AS_GOOD) * rank(best):
             break
         best = first
-    middle = [_begun(problem, best, index, width) for width in _from_the_middle(problem, best, index)]
-    return _told(problem, fits + _fitted(problem, best, middle))
+    if max(abs(one.theta[index] - best.theta[index]) for one in _as_good(fits)) > UNTOLD_WIDTH:
+        middle = [_begun(problem, best, index, width) for width in _from_the_middle(problem, best, index)]
+        fits += _fitted(problem, best, middle)
+    return _told(problem, fits)
 
 
 def _fitted(problem: Problem, best: Fit, begun: list[_Begun]) -> list[Fit]:
@@ -145,11 +148,15 @@ def _place(best: Fit, index: int, torque: float, width: float) -> float:
 
 def _told(problem: Problem, fits: list[Fit]) -> Fit:
     """Of the fits that are as good as the best, the one that begins at rest nearest to the middle."""
-    least = min(rank(one) for one in fits)
-    as_good = [one for one in fits if rank(one) < (1.0 + AS_GOOD) * least]
+    as_good = _as_good(fits)
     told = min(as_good, key=lambda one: _off_the_middle(problem, one))
     away = np.stack([one.theta - told.theta for one in as_good])
     return replace(told, scatter=np.sqrt(np.sum(away**2, axis=0) / max(len(as_good) - 1, 1)))
+
+
+def _as_good(fits: list[Fit]) -> list[Fit]:
+    least = min(rank(one) for one in fits)
+    return [one for one in fits if rank(one) < (1.0 + AS_GOOD) * least]
 
 
 def _off_the_middle(problem: Problem, one: Fit) -> float:

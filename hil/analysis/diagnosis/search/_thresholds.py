@@ -91,7 +91,7 @@ HIDDEN_SPEEDS_RAD_S: Annotated[
 ] = (5.0, 20.0, 50.0, 100.0, 200.0)
 WIDTHS: Annotated[
     tuple[float, ...], Means("factor", "widths of a play that are tried, each with its places", "hidden")
-] = (0.5, 0.7, 0.85, 0.95, 1.05, 1.2, 1.4, 2.0)
+] = (0.5, 0.7, 0.87, 1.15, 1.4, 2.0)
 PLACES_NM: Annotated[
     tuple[float, ...],
     Means("N m", "torques whose place in the play a recording may begin in", "hidden"),
@@ -99,13 +99,16 @@ PLACES_NM: Annotated[
 PLACES_WORTH: Annotated[
     float, Means("times what is left", "another width with its places must leave less to be fitted", "hidden")
 ] = 1.5
-PLACES_TRIED: Annotated[int, Means("widths", "are fitted at a time", "hidden")] = 6
+PLACES_TRIED: Annotated[int, Means("widths", "are fitted at a time", "hidden")] = 4
 PLACE_ROUNDS: Annotated[int, Means("times", "widths and places are looked for anew", "hidden")] = 3
 PLACE_STEPS: Annotated[
     int, Means("rounds", "after which other widths are left that are behind", "hidden")
 ] = 4
 BEHIND: Annotated[float, Means("times what the best leaves", "is behind then", "hidden")] = 1.1
-PLACES_FINISHED: Annotated[int, Means("widths", "are fitted to the end at a time", "hidden")] = 3
+PLACES_FINISHED: Annotated[int, Means("widths", "are fitted to the end at a time", "hidden")] = 1
+UNTOLD_WIDTH: Annotated[
+    float, Means("natural logarithm", "a width that may lie so far off is told from the middle", "hidden")
+] = 0.1
 AS_GOOD: Annotated[
     float, Means("of what is left", "two fits that differ by less explain the data as well", "hidden")
 ] = 0.02
