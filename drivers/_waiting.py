@@ -50,7 +50,7 @@ class Waiting:
         self.numbers: Numbers = _NOTHING
         self.stamps: Array = np.zeros(0)
         self._values: Array = np.zeros((0, len(stream.channels)))
-        self._new: list[Samples] = []
+        self.new: list[Samples] = []
         self._uncertain = (_NOTHING, np.zeros(0), self._values)  # counts, arrivals and values
         self._came = 0
         self._unwanted = 0  # of what is uncertain or new, the first are only learned from
@@ -75,36 +75,36 @@ class Waiting:
         """Time of the newest sample."""
         return float(self.stamps[-1]) if len(self.stamps) else -np.inf
 
-    def extend(self, samples: Samples, *, wanted: bool) -> None:
-        """Take samples, to be kept or only to be learned from."""
-        if wanted or self.clock:
-            self._new.append(samples)
-            self._unwanted += 0 if wanted else len(samples.time_s)
+    def learn(self, samples: Samples) -> None:
+        """Take samples that are not to be kept; before any that are."""
+        if self.clock:
+            self.new.append(samples)
+            self._unwanted += len(samples.time_s)
 
     def join(self, *, everything: bool = False) -> None:
         """Give what has come its numbers and times."""
-        new, self._new = self._new, []
+        new, self.new = self.new, []
         if self.clock is None:
             if new:
-                self.stamps = np.concatenate([self.stamps, *(samples.time_s for samples in new)])
-                self._values = np.concatenate([self._values, *(samples.values for samples in new)])
+                self.stamps = np.concatenate([self.stamps, *[samples.time_s for samples in new]])
+                self._values = np.concatenate([self._values, *[samples.values for samples in new]])
             return
         counts, arrivals, values = self._uncertain
         if new:
-            fresh = np.concatenate([self._counts(samples) for samples in new])
-            came = np.concatenate([samples.time_s for samples in new])
-            if self.count:
-                self.count.add(fresh, came)
-            values = np.concatenate([values, *(samples.values for samples in new)])
-            counts, arrivals = np.concatenate([counts, fresh]), np.concatenate([arrivals, came])
+            counts = np.concatenate([counts, *[self._counts(samples) for samples in new]])
+            arrivals = np.concatenate([arrivals, *[samples.time_s for samples in new]])
+            values = np.concatenate([values, *[samples.values for samples in new]])
         numbers, fates = self._numbered(counts, arrivals, everything)
         end = len(numbers)
         self._uncertain = counts[end:], arrivals[end:], values[end:]
-        wanted = np.arange(end) >= self._unwanted
-        self._unwanted = max(0, self._unwanted - end)
-        self._left_out += int(np.count_nonzero(wanted & (fates == DOUBTFUL)))
-        kept = wanted & (fates == PLACED)
-        self._keep(numbers[kept], values[:end][kept])
+        first = min(self._unwanted, end)
+        self._unwanted -= first
+        numbers, fates, values = numbers[first:], fates[first:], values[first:end]
+        if np.count_nonzero(fates):
+            self._left_out += int(np.count_nonzero(fates == DOUBTFUL))
+            kept = fates == PLACED
+            numbers, values = numbers[kept], values[kept]
+        self._keep(numbers, values)
         if len(self.numbers):
             self.stamps = self.clock.times(self.numbers)
 
@@ -117,13 +117,17 @@ class Waiting:
     def _numbered(self, counts: Numbers, arrivals: Array, everything: bool) -> tuple[Numbers, Fates]:
         assert self.clock is not None
         if self.count:
-            return self.count.settle(everything=everything)
+            return self.count.settle(counts, arrivals, everything=everything)
         assert self._followed is not None
         assert self._followed.count is not None
         assert self.stream.counting is not None
         numbers, fates = self._followed.count.follow(counts, opens=self.stream.counting.opens)
-        placed = fates == PLACED
-        self.clock.learn(numbers[placed], arrivals[: len(numbers)][placed])
+        arrivals = arrivals[: len(numbers)]
+        if np.count_nonzero(fates):
+            placed = fates == PLACED
+            self.clock.learn(numbers[placed], arrivals[placed])
+        else:
+            self.clock.learn(numbers, arrivals)
         return numbers, fates
 
     def _keep(self, numbers: Numbers, values: Array) -> None:
@@ -133,14 +137,19 @@ class Waiting:
         if self.first is None:
             self.first = int(np.min(numbers))
         last = self._written if self._written is not None else self.first - 1
-        fresh = numbers > last
-        if not fresh.all():
+        if numbers[0] <= last:
+            fresh = numbers > last
             numbers, values = numbers[fresh], values[fresh]
         before = len(self.numbers)
-        numbers, values = np.concatenate([self.numbers, numbers]), np.concatenate([self._values, values])
-        if np.any(np.diff(numbers) <= 0):
+        if before:
+            numbers = np.concatenate([self.numbers, numbers])
+            values = np.concatenate([self._values, values])
+        if np.any(numbers[1:] <= numbers[:-1]):
             numbers, first = np.unique(numbers, return_index=True)
             values = values[first]
+            if numbers[0] <= last:  # overtaken by what has been written
+                fresh = numbers > last
+                numbers, values = numbers[fresh], values[fresh]
         self._kept += len(numbers) - before
         self.numbers, self._values = numbers, values
 
@@ -194,6 +203,10 @@ class Waiting:
         return self._numbered_as(wanted, within)
 
     def _numbered_as(self, wanted: Numbers, within: float) -> Array:
+        first = int(wanted[0] - self.numbers[0])
+        last = first + len(wanted)
+        if first >= 0 and last <= len(self.numbers) and np.array_equal(self.numbers[first:last], wanted):
+            return self._values[first:last]
         at = _nearest(self.numbers, wanted)
         found = self._values[at]
         found[np.abs(self.numbers[at] - wanted) > within] = np.nan

@@ -6,9 +6,10 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.sample_clock import Array, Numbers, SampleClock
+from hil.core.compiled import compiled
 
 _AWAITED_S = 0.2  # a frame that is late by more than a turn may be followed, for so long, by one that is not
-_KEPT = 2000  # counted frames that followers may still be asked about
+_KEPT = 500  # counted frames that followers may still be asked about
 _WHOLE = 0.3  # sample times by which a gap may differ from a whole number of samples
 _PROOF = 5  # frames at the end of a run that must agree on a loss
 _NOTHING = np.zeros(0, np.int64)
@@ -35,7 +36,6 @@ class FrameCount:
 
     def __init__(self, turn: int, clock: SampleClock) -> None:
         self.turn, self._clock = turn, clock
-        self._counts, self._arrivals = _NOTHING, np.zeros(0)
         self._behind = 0
         self.stepped_s = (
             0.0  # what a gap in time was more than whole samples: then none was lost, time passed
@@ -43,18 +43,14 @@ class FrameCount:
         # What followers are numbered by: counts that rose, and the samples' numbers
         self.risen: tuple[Numbers, Numbers] = (_NOTHING, _NOTHING)
 
-    def add(self, counts: Numbers, arrivals_s: Array) -> None:
-        """Take frames as they came: counts without turns, and arrivals on the bench clock."""
-        self._counts = np.concatenate([self._counts, counts])
-        self._arrivals = np.concatenate([self._arrivals, arrivals_s])
-
-    def settle(self, *, everything: bool = False) -> tuple[Numbers, Fates]:
+    def settle(self, counts: Numbers, arrivals: Array, *, everything: bool = False) -> tuple[Numbers, Fates]:
         """Numbers of those frames, first come first, whose turn is certain, and what becomes of each.
 
         Args:
+            counts: without turns, as the frames came; those that were not certain before come again.
+            arrivals: of the frames, s, bench clock.
             everything: nothing more will come.
         """
-        counts, arrivals = self._counts, self._arrivals
         if not len(counts):
             return _NOTHING, _NO_FATES
         if not self._clock.begun:
@@ -65,9 +61,9 @@ class FrameCount:
         placed = fates == PLACED
         if end:
             self._behind += self.turn * int(turns[end - 1])
-        self._counts, self._arrivals = counts[end:], arrivals[end:]
-        self._clock.learn(numbers[placed], arrivals[:end][placed])
-        self._note_risen(counts[:end][placed], numbers[placed])
+        arrivals, counts = arrivals[:end], counts[:end]
+        self._clock.learn(numbers[placed], arrivals[placed])
+        self._note_risen(counts[placed], numbers[placed])
         return numbers, fates
 
     def _turns(self, counts: Numbers, arrivals: Array, everything: bool) -> tuple[Numbers, int, Fates]:
@@ -126,22 +122,36 @@ class FrameCount:
         risen_counts, numbers = self.risen
         if not len(keys) or not len(numbers):
             return _NOTHING, _NO_FATES
-        after = np.searchsorted(risen_counts, keys, side="right")
-        end = int(np.searchsorted(after, len(numbers)))
-        first, last = np.searchsorted(after, after[:end]), np.searchsorted(after, after[:end], side="right")
-        places = np.arange(end)
-        before = numbers[np.maximum(after[:end] - 1, 0)]
-        missing = numbers[after[:end]] - before
-        if opens:
-            found, turn_of = before + places - first, places - first
-        else:
-            found, turn_of = before + missing - (last - 1 - places), last - 1 - places
-        fates = np.where(turn_of < missing, PLACED, COPY).astype(np.int8)
-        fates[(after[:end] == 0) | (last - first < missing)] = DOUBTFUL
-        if opens and len(keys) == end + 1 and keys[-1] == risen_counts[-1]:
-            return np.append(found, numbers[-1]), np.append(fates, np.int8(PLACED))
-        return found, fates
+        found, fates = np.empty_like(keys), np.empty(len(keys), np.int8)
+        end = _follow(keys, risen_counts, numbers, opens, found, fates)
+        return found[:end], fates[:end]
 
     def forget(self) -> None:
         """Every follower has been asked."""
         self.risen = self.risen[0][-_KEPT:], self.risen[1][-_KEPT:]
+
+
+@compiled
+def _follow(keys, counts, numbers, opens, found, fates):  # type: ignore[no-untyped-def]
+    """Number frames between counted frames; how many of them are certain."""
+    after = first = 0
+    while first < len(keys):
+        while after < len(counts) and counts[after] <= keys[first]:
+            after += 1
+        end = first + 1
+        while end < len(keys) and (after == len(counts) or keys[end] < counts[after]):
+            end += 1
+        if after == len(counts):  # nobody knows yet how many belong here, but the first one does
+            if opens and end == first + 1 and keys[first] == counts[after - 1]:
+                found[first], fates[first] = numbers[after - 1], PLACED
+                return end
+            return first
+        missing = numbers[after] - numbers[after - 1] if after else 0
+        for place in range(first, end):
+            turn = place - first if opens else end - 1 - place
+            found[place] = numbers[after - 1] + turn if opens else numbers[after] - turn
+            fates[place] = PLACED if turn < missing else COPY
+            if end - first < missing or after == 0:
+                fates[place] = DOUBTFUL
+        first = end
+    return first

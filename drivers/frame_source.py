@@ -9,10 +9,11 @@ import numpy as np
 
 from drivers.samples import Counting, Samples, Stream
 from hil.core.compiled import compiled
-from hil.core.frames import FrameBlock, standard
+from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.signals import Signal, double_of, single_of, swapped
 
 _NONE_YET = -1
+_OTHER_KINDS = EXTENDED | ERROR_FRAME  # an extended frame of the same number is another message
 _SETTLED_S = 0.003  # frames older than this, before the newest of the slowest bus, have all arrived
 
 
@@ -72,7 +73,7 @@ class FrameSource:
     def take(self, bus: str, block: FrameBlock) -> None:
         """Take the frames of one bus."""
         if bus in self._decoders:
-            self._waiting += self._decoders[bus].decode(standard(block))
+            self._waiting += self._decoders[bus].decode(block)
 
     def samples(self) -> list[Samples]:
         """What has come since the last call."""
@@ -148,7 +149,7 @@ class _Decoder:
         numbers = np.zeros((len(self._places), frames))
         marks = np.empty((streams if self._counted else 0, frames), np.int64)
         _read(
-            block["id"], block["time_s"], block["data"], self._ids, self._ends, self._places,
+            block["id"], block["flags"], block["time_s"], block["data"], self._ids, self._ends, self._places,
             self._counter, self._state, counts, times, numbers, marks,
         )  # fmt: skip
         # Scaled here and not in the compiled part, which may round differently from `Signal.decode`.
@@ -200,9 +201,11 @@ def _count(payload, counter, state):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _read(ids, stamps, payloads, wanted, ends, places, counter, state, counts, times, numbers, marks):  # type: ignore[no-untyped-def]
+def _read(ids, flags, stamps, payloads, wanted, ends, places, counter, state, counts, times, numbers, marks):  # type: ignore[no-untyped-def]
     """Sort frames by identifier, count, and read the numbers in their signals, unscaled."""
     for frame in range(ids.shape[0]):
+        if flags[frame] & _OTHER_KINDS:
+            continue
         for stream in range(wanted.shape[0]):
             if ids[frame] != wanted[stream]:
                 continue

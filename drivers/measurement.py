@@ -55,11 +55,11 @@ class SampleAssembler:
 
     def learn(self, samples: Samples) -> None:
         """Take samples that no row needs, for the devices' clocks; not after `add`."""
-        self._waiting[samples.stream].extend(samples, wanted=False)
+        self._waiting[samples.stream].learn(samples)
 
     def add(self, samples: Samples) -> None:
         """Take samples of a stream."""
-        self._waiting[samples.stream].extend(samples, wanted=True)
+        self._waiting[samples.stream].new.append(samples)
 
     def time_of(self, clock_s: float) -> float | None:
         """What `time_s` is at a time of the bench clock, by the time base's clock; None before its first row.

@@ -41,8 +41,9 @@ class SampleClock:
     def __init__(self, period_s: float) -> None:
         self.period_s = period_s
         self._origin: tuple[int, float] | None = None
-        self._stretches: list[tuple[int, float]] = []  # number and delay against the origin
-        self._open: tuple[Numbers, Array] = (np.zeros(0, np.int64), np.zeros(0))
+        self._stretches: list[list[float]] = []  # place and delay, both against the origin
+        self._newest = np.zeros((0, 2))
+        self._open = np.array([0.0, np.inf, 0.0])  # samples of the stretch so far, its least delay and place
         self._slope, self._level_s = 0.0, 0.0  # delay = level + slope * (number - origin)
         self._parts: list[float] = []  # least delays of the first parts
         self.spread_s = 0.0
@@ -64,20 +65,22 @@ class SampleClock:
             return
         if self._origin is None:
             self._origin = (int(numbers[0]), float(arrivals_s[0]))
-        delays = self._delays(numbers, arrivals_s)
-        if self._stretches:
-            self.latest_s = max(self.latest_s, float(np.max(arrivals_s - self.times(numbers))))
-        places = np.concatenate([self._open[0], numbers])
-        delays = np.concatenate([self._open[1], delays])
-        whole = len(places) - len(places) % _STRETCH
-        for first in range(0, whole, _STRETCH):
-            at = first + int(np.argmin(delays[first : first + _STRETCH]))
-            self._stretches.append((int(places[at]), float(delays[at])))
-        self._open = (places[whole:], delays[whole:])
+        number, time_s = self._origin
         if len(self._stretches) <= _FEW:
-            parts = delays[: whole or len(delays)]
-            self._parts += [float(np.min(parts[at : at + _PART])) for at in range(0, len(parts), _PART)]
-        self._fit()
+            delays = self._delays(numbers, arrivals_s)
+            self._parts += [float(np.min(delays[at : at + _PART])) for at in range(0, len(delays), _PART)]
+        found = np.empty((len(numbers) // _STRETCH + 1, 2))
+        known = len(self._stretches) > 0
+        count, late_s = _least(
+            numbers, arrivals_s, number, time_s, self.period_s, self._slope, self._open, found
+        )
+        if known:
+            self.latest_s = max(self.latest_s, late_s - self._level_s)
+        if count:
+            self._stretches += found[:count].tolist()
+            self._newest = np.concatenate([self._newest, found[:count]])[-_STRETCHES:]
+        if count or len(self._stretches) < _FEW:
+            self._fit()
 
     def times(self, numbers: Numbers) -> Array:
         """Bench time of samples, s, shape as given."""
@@ -102,7 +105,7 @@ class SampleClock:
             return ClockFigures(0.0, 0.0)
         if base is None:
             return ClockFigures(0.0, self._whole_drift() * 1e6)
-        newest = self._stretches[-1][0] if self._stretches else self._origin[0]
+        newest = self._origin[0] + (round(self._stretches[-1][0]) if self._stretches else 0)
         aside = base.number_at(float(self.times(np.array([newest]))[0]))
         offset_s = (aside - round(aside)) * base.period_s
         return ClockFigures(offset_s, (self._whole_drift() - base._whole_drift()) * 1e6)
@@ -125,7 +128,7 @@ class SampleClock:
 
     def _aside(self) -> Array:
         """How far the newest stretches lie beside the line through those before, s."""
-        places, delays = self._newest()
+        places, delays = self._newest.T
         beside = delays - self._slope * places
         return np.asarray(beside[-_STEPPED:] - np.median(beside[:-_STEPPED]))
 
@@ -134,18 +137,12 @@ class SampleClock:
         number, time_s = self._origin
         return np.asarray((arrivals_s - time_s) - (numbers - number) * self.period_s)
 
-    def _newest(self) -> tuple[Array, Array]:
-        assert self._origin is not None
-        newest = self._stretches[-_STRETCHES:]
-        places = np.array([place - self._origin[0] for place, _ in newest], float)
-        return places, np.array([delay for _, delay in newest])
-
     def _fit(self) -> None:
         if not self._stretches:
-            self._level_s = float(np.min(self._open[1]))
+            self._level_s = float(self._open[1])
             self.spread_s = float(_spread(np.array(self._parts)))
             return
-        places, delays = self._newest()
+        places, delays = self._newest.T
         self._slope, self._level_s, self.spread_s = _line(places, delays, len(places) >= _FOR_SLOPE)
         if len(places) < _FEW:  # what is not known yet is not taken for little
             self.spread_s = max(self.spread_s, _spread(np.array(self._parts)))
@@ -157,6 +154,24 @@ class SampleClock:
         some = self._stretches[:: len(self._stretches) // 200 + 1]
         places, delays = np.array(some, float).T
         return float(_slope(places, delays)) / self.period_s
+
+
+@compiled
+def _least(numbers, arrivals, number, time_s, period_s, slope, state, found):  # type: ignore[no-untyped-def]
+    """Place and delay of the earliest sample of each stretch; how many are whole, and the longest delay."""
+    count, longest = 0, -np.inf
+    for i in range(len(numbers)):
+        place = np.float64(numbers[i] - number)
+        delay = (arrivals[i] - time_s) - place * period_s
+        longest = max(longest, delay - slope * place)
+        state[0] += 1
+        if delay < state[1]:
+            state[1], state[2] = delay, place
+        if state[0] == _STRETCH:
+            found[count, 0], found[count, 1] = state[2], state[1]
+            state[0], state[1] = 0.0, np.inf
+            count += 1
+    return count, longest
 
 
 @compiled

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -55,8 +55,7 @@ class Stream:
     counting: Counting | None = None
 
 
-@dataclass(frozen=True)
-class Samples:
+class Samples(NamedTuple):
     """Some samples of a stream, in the order in which they came.
 
     `time_s`: shape (n,), seconds of the bench clock: when they were taken, or for a counted stream when they

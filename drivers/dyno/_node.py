@@ -13,7 +13,7 @@ import numpy.typing as npt
 from drivers.dyno._canopen import LoopNetwork, LoopNode
 from drivers.frame_source import Binding
 from hil.core.errors import BenchError
-from hil.core.frames import newest
+from hil.core.frames import newest_of
 from hil.core.pdo import layout_of_pdo, read_eds
 from hil.core.signals import FrameLayout
 
@@ -143,11 +143,10 @@ class DynoNode:
 
     def take_block(self, block: npt.NDArray[np.void]) -> None:
         """Follow the newest PDOs of a block of this bus."""
-        status = newest(block, self._status.id)
+        status, values = newest_of(block, (self._status.id, self._values.id))
         if status is not None:
             self.last_seen_s = status[0]
             self.status = self._status.signals["Statusword"].raw(status[1])
-        values = newest(block, self._values.id)
         if values is not None:
             self.wheel_speed_rad_s = self._values.signals["Wheel speed"].value(values[1])
 

@@ -17,7 +17,7 @@ from hil.core.controller import Controller
 from hil.core.conventions import TICK_S
 from hil.core.dbc import Dbc, Names, Needed, read_dbc
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import newest
+from hil.core.frames import newest_of
 from hil.core.printable import printable
 
 MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
@@ -86,6 +86,7 @@ class RmcuDriver:
         self._reply = self._layouts["RMCU_ParameterReply"]
         self._state_names = self._names("RMCU_Control", "State")
         self._fault_names = self._names("RMCU_Control", "RequestFault")
+        self._shown = (self._layouts["RMCU_Control"].id, self._layouts["RMCU_Status"].id)
         self._counter = 0
         self._answer: int | None = None
         self.state = ""
@@ -217,8 +218,7 @@ class RmcuDriver:
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus != self._wire.name:
             return
-        control = newest(block, self._layouts["RMCU_Control"].id)
-        status = newest(block, self._layouts["RMCU_Status"].id)
+        control, status = newest_of(block, self._shown)
         if control is None or status is None:
             return
         signals = self._layouts["RMCU_Control"].signals

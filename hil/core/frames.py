@@ -36,8 +36,19 @@ def standard(block: FrameBlock) -> FrameBlock:
 
 def newest(block: FrameBlock, frame_id: int) -> tuple[float, int] | None:
     """Time and payload of the last received frame with this identifier; None if the block has none."""
+    return newest_of(block, (frame_id,))[0]
+
+
+def newest_of(block: FrameBlock, frame_ids: tuple[int, ...]) -> list[tuple[float, int] | None]:
+    """Time and payload of the last received frame with each of these identifiers; else None."""
     ids = block["id"].tolist()
-    for index in range(len(ids) - 1, -1, -1):
-        if ids[index] == frame_id and not block["flags"][index] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
-            return float(block["time_s"][index]), int(block["data"][index])
-    return None
+    found: list[tuple[float, int] | None] = []
+    for frame_id in frame_ids:
+        found.append(None)
+        for index in range(len(ids) - 1, -1, -1):
+            if ids[index] == frame_id:
+                frame = block[index]
+                if not frame["flags"] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
+                    found[-1] = float(frame["time_s"]), int(frame["data"])
+                    break
+    return found

@@ -16,6 +16,7 @@ from hil.core.recording import Event, Recording, RecordingWriter
 from hil.core.result import StreamClock
 
 _FLUSH_S = 0.5
+_LOOK_S = 2.0  # what clocks do shows in seconds
 
 
 class Recorder:
@@ -30,7 +31,7 @@ class Recorder:
         self.writer = RecordingWriter(path, self._assembler.names, buses)
         self._base = streams[0]
         self._chunks: list[npt.NDArray[np.float64]] = []
-        self._flushed_s = -np.inf
+        self._flushed_s = self._looked_s = -np.inf
         self.start_s: float | None = None
         self._begun = False
         self._parted = False
@@ -58,6 +59,8 @@ class Recorder:
         if latest_s - self._flushed_s > _FLUSH_S:
             self._flushed_s = latest_s
             self._write_rows()
+        if latest_s - self._looked_s > _LOOK_S:
+            self._looked_s = latest_s
             self._look_at_clocks()
 
     def begin(self) -> None:

@@ -175,7 +175,7 @@ def test_counted_frames_that_overtook_each_other_lie_where_they_were_measured(
     source.take("rmcu", block[block["id"] == CONTROL])
     (samples,) = source.samples()
     assembler = SampleAssembler([replace(stream)], PERIOD_S)
-    base = replace(samples, stream=next(iter(assembler._waiting)))
+    base = samples._replace(stream=next(iter(assembler._waiting)))
     assembler.add(base)
     rows = assembler.rows(everything=True)
     np.testing.assert_allclose(rows[:, 0], (rows[:, 1] - rows[0, 1]) * PERIOD_S, atol=1e-9)
