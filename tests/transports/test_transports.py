@@ -52,4 +52,4 @@ class TestSocketcand(TransportContract):
 
 def test_every_transport_has_its_contract():
     classes = TransportContract.__subclasses__()
-    assert {contract.interface for contract in classes} == FAR_ENDS.keys()
+    assert FAR_ENDS.keys() <= {contract.interface for contract in classes}
