@@ -147,7 +147,7 @@ def _not_opened(settings: CanSettings, error: Exception) -> BenchError:
     library = isinstance(error, OSError) and "library not found" in said
     if software and (isinstance(error, _NOT_THERE) or library):
         what, fix = f"cannot be opened: its driver is not installed ({said})", f"install {software}"
-    elif settings.interface == "socketcand":
+    elif settings.interface == "socketcand" and isinstance(error, OSError):
         address = f"{settings.options.get('host')}:{settings.options.get('port')}"
         what = f"cannot be opened: no socketcand answers at {printable(address, 80)} ({said})"
         fix = "start socketcand there, or correct host and port under options in the bench file"

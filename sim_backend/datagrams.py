@@ -64,6 +64,10 @@ class Outgoing:
             self._next = (self._next + len(part)) % _COUNTED
         return datagrams
 
+    def skip(self, frames: int) -> None:
+        """Leave out some frames; the other end counts them as lost."""
+        self._next = (self._next + frames) % _COUNTED
+
 
 class Incoming:
     """One direction of one connection, at its receiving end; `lost` counts frames that never came."""

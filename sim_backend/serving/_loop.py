@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import operator
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -12,10 +14,11 @@ from hil.core.frames import FrameBlock
 from hil.core.real_time import undisturbed
 from sim_backend.bench import SimulatedBench
 
-# Below the 50 ms after which the RMCU takes its torque away: a pause of this process alone is not to look
-# to the RMCU as if its host had fallen silent.
-_LONGEST_CATCH_UP_S = 0.03
+_LONGEST_CATCH_UP_S = 0.2  # hosts take a device that is silent for 0.1 s for dead
 _STALL_S = 0.005
+
+#: A host's frame: when it was sent in seconds since 1970 (None: the wire does not say), identifier, data.
+HostFrame = tuple[float | None, int, bytes]
 
 
 class BusServer(Protocol):
@@ -31,8 +34,8 @@ class BusServer(Protocol):
         """Frames that are known to have been lost on the way."""
         ...
 
-    def take(self) -> list[tuple[int, bytes]]:
-        """Frames of hosts since the last call: identifier and data. Never waits."""
+    def take(self) -> list[HostFrame]:
+        """Frames of hosts since the last call, in their order. Never waits."""
         ...
 
     def give(self, block: FrameBlock) -> None:
@@ -54,7 +57,7 @@ class Pace:
         largest_stall_s: latest of them.
         bench_time_s: seconds of bench time that passed.
         left_out_s: seconds of bench time by which the bench's clock was put back after stalls that were too
-            long to be caught up with.
+            long to be caught up with, whole milliseconds at a time.
     """
 
     turns: int = 0
@@ -118,14 +121,14 @@ class BenchServer:
         pace.turns += 1
         pace.stalls += late_s > _STALL_S
         pace.largest_stall_s = max(pace.largest_stall_s, late_s)
-        left_out_s = max(0.0, behind_s - _LONGEST_CATCH_UP_S)
+        left_out_s = TICK_S * max(0.0, math.ceil((behind_s - _LONGEST_CATCH_UP_S) / TICK_S))
         pace.left_out_s += left_out_s
         origin_s += left_out_s / self._scale
-        for name, bus in self.buses.items():
-            for frame_id, data in bus.take():
-                world.put(name, frame_id, data)
-                self.frames[name][1] += 1
-        world.sleep_until((self._clock() - origin_s) * self._scale)
+        until_s = max(world.now_s(), (self._clock() - origin_s) * self._scale)
+        for time_s, name, frame_id, data in self._heard(origin_s + epoch_s, until_s):
+            world.sleep_until(time_s)
+            world.put(name, frame_id, data)
+        world.sleep_until(until_s)
         for name, bus in self.buses.items():
             block = world.take(name)
             if len(block):
@@ -133,3 +136,21 @@ class BenchServer:
                 bus.give(block)
                 self.frames[name][0] += len(block)
         return left_out_s / self._scale
+
+    def _heard(self, zero_s: float, until_s: float) -> list[tuple[float, str, int, bytes]]:
+        """Frames of all hosts, each at the bench time at which it was sent.
+
+        After a pause they are not to reach the bench all at once: the RMCU would take that for silence of its
+        host. Where the wire does not say when they were sent, they are spread over the pause.
+        """
+        now_s, heard = self._world.now_s(), []
+        for name, bus in self.buses.items():
+            frames = bus.take()
+            self.frames[name][1] += len(frames)
+            for number, (sent_s, frame_id, data) in enumerate(frames):
+                if sent_s is None:
+                    time_s = now_s + (until_s - now_s) * number / len(frames)
+                else:
+                    time_s = min(max((sent_s - zero_s) * self._scale, now_s), until_s)
+                heard.append((time_s, name, frame_id, data))
+        return sorted(heard, key=operator.itemgetter(0))

@@ -49,19 +49,15 @@ class SlcanPort:
             "options": {"sleep_after_open": 0.0},
         }
 
-    def take(self) -> list[tuple[int, bytes]]:
-        """Frames of the host since the last call: identifier and data."""
+    def take(self) -> list[tuple[float | None, int, bytes]]:
+        """Frames of the host since the last call: identifier and data; when they were sent does not pass."""
         with contextlib.suppress(BlockingIOError):
             while data := os.read(self._ours, _READ):
                 self._heard += data
         *lines, self._heard = self._heard.split(_OK)
         self._heard = self._heard[-_LONGEST_LINE:]
-        frames = []
-        for line in lines:
-            frame = self._obey(line.decode("ascii", "replace"))
-            if frame is not None:
-                frames.append(frame)
-        return frames
+        obeyed = [self._obey(line.decode("ascii", "replace")) for line in lines]
+        return [(None, *frame) for frame in obeyed if frame is not None]
 
     def give(self, block: FrameBlock) -> None:
         """Frames of the bench to the host; their stamps do not pass."""

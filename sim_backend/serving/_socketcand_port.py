@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import socket
+import time
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,9 @@ _LOOPBACK = "127.0.0.1"
 _READ = 65536
 _MOST_WAITING = 1 << 20  # bytes
 _LONGEST_ORDER = 200
+_QUIET_S = (
+    0.1  # before the first frame: python-can takes what comes along with the last answer for the answer
+)
 
 
 class SocketcandPort:
@@ -46,13 +50,15 @@ class SocketcandPort:
         """Frames of the bench that a host did not fetch."""
         return self._lost_before + sum(host.lost for host in self._hosts)
 
-    def take(self) -> list[tuple[int, bytes]]:
-        """Frames of hosts since the last call: identifier and data."""
+    def take(self) -> list[tuple[float | None, int, bytes]]:
+        """Frames of hosts since the last call: identifier and data; when they were sent does not pass."""
         with contextlib.suppress(BlockingIOError):
             while True:
                 connection, _ = self._listening.accept()
                 self._hosts.append(_Host(connection, self._name))
-        frames = [frame for host in self._hosts for frame in host.take()]
+        frames: list[tuple[float | None, int, bytes]] = []
+        for host in self._hosts:
+            frames += [(None, *frame) for frame in host.take()]
         for host in [host for host in self._hosts if host.gone]:
             self._hosts.remove(host)
             self._lost_before += host.lost
@@ -82,7 +88,8 @@ class _Host:
         connection.setblocking(False)
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._heard, self._waiting = b"", b""
-        self._opened = self.raw = self.gone = False
+        self._opened = self.gone = False
+        self._raw_s = float("inf")
         self.lost = 0
         self.put(b"< hi >")
 
@@ -108,6 +115,11 @@ class _Host:
                 frames.append(frame)
         return frames
 
+    @property
+    def raw(self) -> bool:
+        """Whether it hears frames by now."""
+        return time.monotonic() >= self._raw_s
+
     def put(self, text: bytes, frames: int = 0) -> None:
         """Send, now or when it fetches."""
         if len(self._waiting) > _MOST_WAITING:
@@ -129,7 +141,7 @@ class _Host:
             self.put(b"< ok >" if self._opened else b"< error could not open bus >")
         elif words == ["rawmode"] and self._opened:
             self.put(b"< ok >")
-            self.raw = True
+            self._raw_s = time.monotonic() + _QUIET_S
         elif words == ["echo"]:
             self.put(b"< echo >")
         elif words:

@@ -12,7 +12,7 @@ import numpy as np
 from hil.core.frames import FrameBlock
 from sim_backend.datagrams import LARGEST, LOOPBACK, Incoming, Kind, Outgoing, Welcome, kind_of, signal
 
-_SILENT_S = 5.0  # hosts say hello every half a second
+_SILENT_S = 5.0  # hosts say hello every half a second; one that does not has left without a word, or is busy
 _BUFFER_BYTES = 4 << 20
 
 
@@ -56,9 +56,9 @@ class UdpHub:
         """Frames that hosts sent and that never came."""
         return self._lost_before + sum(host.incoming.lost for host in self._hosts.values())
 
-    def take(self) -> list[tuple[int, bytes]]:
-        """Frames of hosts since the last call: identifier and data."""
-        frames: list[tuple[int, bytes]] = []
+    def take(self) -> list[tuple[float | None, int, bytes]]:
+        """Frames of hosts since the last call: when they were sent, identifier and data."""
+        frames: list[tuple[float | None, int, bytes]] = []
         while True:
             try:
                 datagram, address = self._socket.recvfrom(LARGEST)
@@ -88,9 +88,6 @@ class UdpHub:
 
     def give(self, block: FrameBlock) -> None:
         """Frames of the bench to every host; stamps in seconds since 1970."""
-        now_s = time.monotonic()
-        for address in [a for a, host in self._hosts.items() if now_s - host.heard_s > _SILENT_S]:
-            self._forget(address)
         self._spread(block)
 
     def close(self) -> None:
@@ -100,8 +97,11 @@ class UdpHub:
         self._socket.close()
 
     def _spread(self, block: FrameBlock, besides: tuple[str, int] | None = None) -> None:
+        now_s = time.monotonic()
         for address, host in self._hosts.items():
-            if address != besides:
+            if now_s - host.heard_s > _SILENT_S:
+                host.outgoing.skip(len(block))  # it may be busy, and will know by the numbers what it missed
+            elif address != besides:
                 for datagram in host.outgoing.packed(block):
                     self._send(datagram, address)
 
@@ -115,10 +115,11 @@ class UdpHub:
             self._lost_before += host.incoming.lost
 
 
-def _plain(block: np.ndarray[Any, Any]) -> list[tuple[int, bytes]]:
+def _plain(block: np.ndarray[Any, Any]) -> list[tuple[float | None, int, bytes]]:
     return [
-        (identifier, data.to_bytes(8, "little")[:length])
-        for identifier, flags, length, data in zip(
+        (stamp, identifier, data.to_bytes(8, "little")[:length])
+        for stamp, identifier, flags, length, data in zip(
+            block["time_s"].tolist(),
             block["id"].tolist(),
             block["flags"].tolist(),
             block["length"].tolist(),

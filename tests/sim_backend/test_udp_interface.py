@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import socket
+import time
 
 import can
 import numpy as np
@@ -63,7 +64,9 @@ def test_frames_pass_both_ways_with_the_stamps_of_their_sender():
         assert isinstance(bus, LoopbackBus)
         assert bus.time_scale == 1.0
         bus.send(can.Message(arbitration_id=0x123, data=b"\x01\x02\x03", is_extended_id=False))
-        assert served.take() == [(0x123, b"\x01\x02\x03")]
+        ((sent_s, *frame),) = served.take()
+        assert frame == [0x123, b"\x01\x02\x03"]
+        assert sent_s == pytest.approx(time.time(), abs=60)
         served.give(block_of(0x10, 0x11))
         first = bus.recv(1.0)
         assert (first.arbitration_id, first.data, first.timestamp) == (0x10, b"\x01\xab", 1.7e9)
@@ -93,11 +96,26 @@ def test_lost_frames_are_counted_and_told_on_both_sides(caplog):
         bus.send_frame(1, b"")
         bus._outgoing.packed(block_of(2, 3, 4))
         bus.send_frame(5, b"")
-        assert [frame_id for frame_id, _ in served.take()] == [1, 5]
+        assert [frame_id for _, frame_id, _ in served.take()] == [1, 5]
         assert served.lost == 3
         bus.shutdown()
         served.take()
         assert served.lost == 3
+
+
+def test_a_host_that_was_busy_for_long_takes_part_again_and_knows_what_it_missed():
+    with hub() as served, served.connect() as bus:
+        served.give(block_of(1))
+        assert bus.recv(1.0).arbitration_id == 1
+        host = next(iter(served._hosts.values()))
+        host.heard_s -= 60.0
+        served.give(block_of(2, 3))
+        bus._hello_s -= 60.0
+        assert bus.recv(0) is None
+        served.take()
+        served.give(block_of(4))
+        assert bus.recv(1.0).arbitration_id == 4
+        assert bus.lost == 2
 
 
 def test_a_bench_that_ends_is_told():

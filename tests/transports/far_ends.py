@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 from collections.abc import Callable, Iterator
 from typing import Any, Protocol
 
@@ -43,10 +44,12 @@ class Served:
                                     options=table.get("options", {}))  # fmt: skip
 
     def put(self, block: FrameBlock) -> None:
+        while isinstance(self.server, SocketcandPort) and not all(host.raw for host in self.server._hosts):
+            time.sleep(0.01)
         self.server.give(block)
 
     def taken(self) -> list[tuple[int, bytes]]:
-        return self.server.take()
+        return [(frame_id, data) for _, frame_id, data in self.server.take()]
 
     def leave(self) -> None:
         self.server.close()
