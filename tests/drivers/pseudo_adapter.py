@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import pty
 import select
 from collections.abc import Iterator
+
+import pytest
 
 from drivers import CanSettings
 
@@ -52,3 +55,8 @@ def plugged_in() -> Iterator[PseudoAdapter]:
         yield adapter
     finally:
         adapter.unplug()
+
+
+def warnings_in(caplog: pytest.LogCaptureFixture) -> list[str]:
+    """What was worth a warning; a command that ran before may have asked for more."""
+    return [record.getMessage() for record in caplog.records if record.levelno >= logging.WARNING]
