@@ -39,6 +39,8 @@ def bench_in_real_time(name):
     """
     world = SimulatedBench(SimulationSettings(load_model(SIM.simulation.model), SIM.rmcu.dbc, SIM.dyno.eds))
     world.sleep_until(0.01)  # what is compiled is compiled before time counts
+    for bus in SIM.buses:
+        world.take(bus)
     ends = {
         bus: can.Bus(interface="virtual", channel=f"{name}/{bus}", preserve_timestamps=True)
         for bus in SIM.buses
