@@ -38,7 +38,7 @@ class Fit:
     angles: tuple[Array, ...] = field(default=(), repr=False)
     #: Standard errors of the coordinates where other weights than those of `cost` led to them.
     standard: Array | None = field(default=None, repr=False)
-    #: How far, root mean square, the coordinates of fits that are as good lie from these.
+    #: How far the coordinates of fits that are as good lie from these.
     scatter: Array | None = field(default=None, repr=False)
 
     @property

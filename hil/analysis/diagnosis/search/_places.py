@@ -64,10 +64,18 @@ def placed(evidence: Evidence, best: Fit) -> Fit:
         if rank(first) > (1.0 - AS_GOOD) * rank(best):
             break
         best = first
+    best = min(fits, key=rank)
     if max(abs(one.theta[index] - best.theta[index]) for one in _as_good(fits)) > UNTOLD_WIDTH:
         middle = [_begun(problem, best, index, width) for width in _from_the_middle(problem, best, index)]
         fits += _fitted(problem, best, middle)
-    return _told(problem, fits)
+        best = min(_as_good(fits), key=lambda one: _off_the_middle(problem, one))
+        return replace(best, scatter=np.max(_away(best, fits), axis=0))  # any of them, and those beyond
+    return replace(best, scatter=np.sqrt(np.mean(_away(best, fits) ** 2, axis=0)))
+
+
+def _away(best: Fit, fits: list[Fit]) -> Array:
+    """How far the coordinates of fits that are as good lie from those of `best`: fits x coordinates."""
+    return np.abs(np.stack([one.theta - best.theta for one in _as_good(fits)]))
 
 
 def _fitted(problem: Problem, best: Fit, begun: list[_Begun]) -> list[Fit]:
@@ -146,15 +154,8 @@ def _place(best: Fit, index: int, torque: float, width: float) -> float:
     return float(effect.law.begin(torque, chain_numbers(model), numbers))
 
 
-def _told(problem: Problem, fits: list[Fit]) -> Fit:
-    """Of the fits that are as good as the best, the one that begins at rest nearest to the middle."""
-    as_good = _as_good(fits)
-    told = min(as_good, key=lambda one: _off_the_middle(problem, one))
-    away = np.stack([one.theta - told.theta for one in as_good])
-    return replace(told, scatter=np.sqrt(np.sum(away**2, axis=0) / max(len(as_good) - 1, 1)))
-
-
 def _as_good(fits: list[Fit]) -> list[Fit]:
+    """Those that explain the data as well as the best."""
     least = min(rank(one) for one in fits)
     return [one for one in fits if rank(one) < (1.0 + AS_GOOD) * least]
 
