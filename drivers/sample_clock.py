@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -174,33 +175,38 @@ def _least(numbers, arrivals, number, time_s, period_s, slope, state, found):  #
     return count, longest
 
 
-@compiled
-def _spread(least):  # type: ignore[no-untyped-def]
+# By sorting: loading compiled medians would take longer than all fits of a run.
+def _median(values: Array) -> float:
+    ordered = np.sort(values)
+    return 0.5 * float(ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2])
+
+
+def _spread(least: Array) -> float:
     """By how much least delays vary; a few that were held up altogether do not count."""
     ordered = np.sort(least)
-    return 2.0 * (ordered[9 * (len(ordered) - 1) // 10] - np.median(ordered))
+    return 2.0 * (float(ordered[9 * (len(ordered) - 1) // 10]) - _median(ordered))
 
 
-@compiled
-def _slope(places, delays):  # type: ignore[no-untyped-def]
+@cache
+def _pairs(count: int) -> tuple[Numbers, Numbers]:
+    return np.triu_indices(count, 1)
+
+
+def _slope(places: Array, delays: Array) -> float:
     """Median of the slopes between all pairs."""
-    slopes = np.empty(len(places) * (len(places) - 1) // 2)
-    count = 0
-    for first in range(len(places)):
-        for second in range(first + 1, len(places)):
-            if places[second] != places[first]:
-                slopes[count] = (delays[second] - delays[first]) / (places[second] - places[first])
-                count += 1
-    return np.median(slopes[:count]) if count else 0.0
+    first, second = _pairs(len(places))
+    apart = places[second] - places[first]
+    if not apart.all():
+        first, second, apart = first[apart != 0], second[apart != 0], apart[apart != 0]
+    return _median((delays[second] - delays[first]) / apart) if len(apart) else 0.0
 
 
-@compiled
-def _line(places, delays, sloped):  # type: ignore[no-untyped-def]
+def _line(places: Array, delays: Array, sloped: bool) -> tuple[float, float, float]:
     """Slope, level at the origin and spread of a line through delays."""
     slope = _slope(places, delays) if sloped else 0.0
     beside = delays - slope * places
     spread = _spread(beside)
     if abs(slope) * (places[-1] - places[0]) < 2 * spread:
         # The way to the bench varies by more than the clocks.
-        return 0.0, np.median(delays), _spread(delays)
-    return slope, np.median(beside), spread
+        return 0.0, _median(delays), _spread(delays)
+    return slope, _median(beside), spread

@@ -41,14 +41,12 @@ def newest(block: FrameBlock, frame_id: int) -> tuple[float, int] | None:
 
 def newest_of(block: FrameBlock, frame_ids: tuple[int, ...]) -> list[tuple[float, int] | None]:
     """Time and payload of the last received frame with each of these identifiers; else None."""
-    ids = block["id"].tolist()
+    ids, flags = block["id"].tolist(), block["flags"]
     found: list[tuple[float, int] | None] = []
     for frame_id in frame_ids:
         found.append(None)
         for index in range(len(ids) - 1, -1, -1):
-            if ids[index] == frame_id:
-                frame = block[index]
-                if not frame["flags"] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
-                    found[-1] = float(frame["time_s"]), int(frame["data"])
-                    break
+            if ids[index] == frame_id and not flags[index] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
+                found[-1] = float(block["time_s"][index]), int(block["data"][index])
+                break
     return found
