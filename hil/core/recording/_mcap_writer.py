@@ -102,7 +102,9 @@ class RecordingWriter:
         if waiting:
             self._waiting[bus] = []
             block = joined(waiting)
-            self._add(self._frames[bus], float(block["time_s"][-1]), _schema.encode_frames(block))
+            # an adapter may hand out frames from before the clock began; MCAP knows no time before 0
+            logged_s = max(0.0, float(block["time_s"][-1]))
+            self._add(self._frames[bus], logged_s, _schema.encode_frames(block))
 
     def add_rows(self, rows: npt.NDArray[np.float64]) -> None:
         """Add decoded samples (samples x channels; the first column is `time_s`)."""

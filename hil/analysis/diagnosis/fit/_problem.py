@@ -33,6 +33,7 @@ Array = npt.NDArray[np.float64]
 #: Free initial values of each recording: motor speed, wheel speed, shaft torque, and where it begins in
 #: mid-motion vehicle less wheel speed and the tyre's own twist.
 STARTS = 5
+MOTOR, WHEEL, SHAFT = range(3)  # of these the first
 
 
 @dataclass(frozen=True)

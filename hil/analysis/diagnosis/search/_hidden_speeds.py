@@ -10,12 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import MOTOR, WHEEL, Problem
 from hil.analysis.diagnosis.search._thresholds import HIDDEN_SPEEDS_RAD_S
 
 Array = npt.NDArray[np.float64]
-
-_MOTOR, _WHEEL = 0, 1  # of a recording's initial values
 
 
 def with_hidden_speeds(
@@ -32,8 +30,8 @@ def _suited(problem: Problem, hypothesis: Hypothesis, theta: Array, index: int, 
     slots, sensors = hypothesis.packed(theta)
     speeds = np.array([*(-s for s in reversed(HIDDEN_SPEEDS_RAD_S)), *HIDDEN_SPEEDS_RAD_S])
     tried = np.tile(start, (1 + len(speeds), 1))
-    tried[1:, _MOTOR] = speeds
-    tried[1:, _WHEEL] = speeds / hypothesis.base.parameters["gear_ratio"]
+    tried[1:, MOTOR] = speeds
+    tried[1:, WHEEL] = speeds / hypothesis.base.parameters["gear_ratio"]
     sets = len(tried)
     shown = problem.outputs(index, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried)
     costs = [float(np.sum(problem.errors(index, one) ** 2)) for one in shown]

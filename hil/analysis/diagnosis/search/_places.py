@@ -14,14 +14,16 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import SHAFT, Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
     AS_GOOD,
     BEHIND,
+    MOST_OF_PLAY,
     PLACE_ROUNDS,
     PLACE_STEPS,
+    PLACES_FINE,
     PLACES_FINISHED,
     PLACES_NM,
     PLACES_TRIED,
@@ -33,10 +35,6 @@ from hil.core.effects import EFFECTS
 from hil.plant import chain_numbers
 
 Array = npt.NDArray[np.float64]
-
-_FINE = 81  # places between which a way to a flank is looked up
-_ALL = 0.9  # of a play: a way from its middle leaves some of it
-_SHAFT = 2  # of a recording's initial values: the torque whose place in the play is taken
 
 
 @dataclass(frozen=True)
@@ -110,10 +108,10 @@ def _begun(problem: Problem, best: Fit, index: int, width: float) -> _Begun:
     slots, sensors = best.hypothesis.packed(theta)
     total, starts = best.prior, []
     for trace, start in enumerate(best.starts):
-        places = [start[_SHAFT], *PLACES_NM, *_same_ways(best, index, width, float(start[_SHAFT]))]
+        places = [start[SHAFT], *PLACES_NM, *_same_ways(best, index, width, float(start[SHAFT]))]
         sets = len(places)
         tried = np.tile(start, (sets, 1))
-        tried[:, _SHAFT] = places
+        tried[:, SHAFT] = places
         shown = problem.outputs(trace, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried)
         costs = np.array([np.sum(problem.errors(trace, one) ** 2) for one in shown])
         costs += tried**2 @ problem.start_precision(trace)
@@ -125,16 +123,16 @@ def _begun(problem: Problem, best: Fit, index: int, width: float) -> _Begun:
 def _same_ways(best: Fit, index: int, width: float, torque: float) -> list[float]:
     """Torques whose places in the other width are as far from one flank, or the other, as before."""
     gap, now = _gap(best, index), _place(best, index, torque, 1.0)
-    torques = np.linspace(PLACES_NM[0], PLACES_NM[-1], _FINE)
+    torques = np.linspace(PLACES_NM[0], PLACES_NM[-1], PLACES_FINE)
     places = [_place(best, index, t, width) for t in torques]
     return [float(np.interp(now + side * (width - 1.0) * gap, places, torques)) for side in (-1.0, 1.0)]
 
 
 def _from_the_middle(problem: Problem, best: Fit, index: int) -> list[float]:
     """Widths with which a recording that begins at rest has the same way to a flank from the middle."""
-    torques = [float(s[_SHAFT]) for s, rests in zip(best.starts, problem.resting, strict=True) if rests]
+    torques = [float(s[SHAFT]) for s, rests in zip(best.starts, problem.resting, strict=True) if rests]
     shares = [_place(best, index, torque, 1.0) / _gap(best, index) for torque in torques]
-    return [1.0 + way for share in shares for way in (-share, share) if way > -_ALL]
+    return [1.0 + way for share in shares for way in (-share, share) if way > -MOST_OF_PLAY]
 
 
 def _gap(best: Fit, index: int) -> float:
@@ -162,5 +160,5 @@ def _as_good(fits: list[Fit]) -> list[Fit]:
 
 def _off_the_middle(problem: Problem, one: Fit) -> float:
     """How far off the middle of the play those recordings begin that begin at rest; else what is left."""
-    resting = [start[_SHAFT] ** 2 for start, rests in zip(one.starts, problem.resting, strict=True) if rests]
+    resting = [start[SHAFT] ** 2 for start, rests in zip(one.starts, problem.resting, strict=True) if rests]
     return float(sum(resting)) if resting else rank(one)

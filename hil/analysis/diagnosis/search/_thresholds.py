@@ -106,6 +106,10 @@ PLACE_STEPS: Annotated[
 ] = 4
 BEHIND: Annotated[float, Means("times what the best leaves", "is behind then", "hidden")] = 1.1
 PLACES_FINISHED: Annotated[int, Means("widths", "are fitted to the end at a time", "hidden")] = 1
+PLACES_FINE: Annotated[int, Means("places", "between which a way to a flank is looked up", "hidden")] = 81
+MOST_OF_PLAY: Annotated[
+    float, Means("of a play", "that a way from its middle must leave, less than all of it", "hidden")
+] = 0.9
 UNTOLD_WIDTH: Annotated[
     float, Means("natural logarithm", "a width that may lie so far off is told from the middle", "hidden")
 ] = 0.1

@@ -42,6 +42,16 @@ def write(path, samples=3000):
     return rows
 
 
+def test_frames_from_before_the_clock_began_keep_their_stamps(tmp_path):
+    writer = RecordingWriter(tmp_path / "early.mcap", NAMES, ["rmcu"])
+    early = frames(10)
+    early["time_s"] -= 0.36
+    writer.add_frames("rmcu", early)
+    writer.add_rows(np.zeros((1, len(NAMES))))
+    writer.close()
+    np.testing.assert_array_equal(read_frames(tmp_path / "early.mcap")["rmcu"], early)
+
+
 def test_everything_comes_back(tmp_path):
     rows = write(tmp_path / "r.mcap")
     read = read_recording(tmp_path / "r.mcap")
