@@ -138,6 +138,16 @@ class Problem:
             total += (starts[index] ** 2) @ self.start_precision(index)
         return total
 
+    def cheapest_start(self, trace: int, point: tuple[Array, Array], tried: Array) -> tuple[Array, float]:
+        """Of the initial values `tried` (n x STARTS) of a recording those that cost least, and that cost."""
+        slots, sensors = point
+        sets = len(tried)
+        shown = self.outputs(trace, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried)
+        costs = np.array([np.sum(self.errors(trace, one) ** 2) for one in shown])
+        costs += tried**2 @ self.start_precision(trace)
+        least = int(np.argmin(costs))
+        return tried[least], float(costs[least])
+
     def linearised(self, hypothesis: Hypothesis, theta: Array, starts: list[Array]) -> Linearised:
         """Errors and their derivatives at `theta` and `starts`, by finite differences."""
         coordinates = hypothesis.coordinates()

@@ -27,12 +27,8 @@ def with_hidden_speeds(
 
 
 def _suited(problem: Problem, hypothesis: Hypothesis, theta: Array, index: int, start: Array) -> Array:
-    slots, sensors = hypothesis.packed(theta)
     speeds = np.array([*(-s for s in reversed(HIDDEN_SPEEDS_RAD_S)), *HIDDEN_SPEEDS_RAD_S])
     tried = np.tile(start, (1 + len(speeds), 1))
     tried[1:, MOTOR] = speeds
     tried[1:, WHEEL] = speeds / hypothesis.base.parameters["gear_ratio"]
-    sets = len(tried)
-    shown = problem.outputs(index, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried)
-    costs = [float(np.sum(problem.errors(index, one) ** 2)) for one in shown]
-    return np.asarray(tried[int(np.argmin(costs))])
+    return problem.cheapest_start(index, hypothesis.packed(theta), tried)[0]

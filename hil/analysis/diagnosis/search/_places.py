@@ -19,12 +19,10 @@ from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
     AS_GOOD,
-    BEHIND,
     MOST_OF_PLAY,
     PLACE_ROUNDS,
     PLACE_STEPS,
     PLACES_FINE,
-    PLACES_FINISHED,
     PLACES_NM,
     PLACES_TRIED,
     PLACES_WORTH,
@@ -79,10 +77,8 @@ def _away(best: Fit, fits: list[Fit]) -> Array:
 def _fitted(problem: Problem, best: Fit, begun: list[_Begun]) -> list[Fit]:
     """Fits from there, all but the best ended after a few rounds."""
     first = [fit(problem, best.hypothesis, one.starts, one.theta, rounds=PLACE_STEPS) for one in begun]
-    least = min((one.total for one in first), default=0.0)
-    hopeful = sorted((one for one in first if one.total < BEHIND * least), key=rank)[:PLACES_FINISHED]
-    finished = [fit(problem, best.hypothesis, one.starts, one.theta) for one in hopeful]
-    return finished + [one for one in first if one not in hopeful]
+    ranked = sorted(first, key=rank)
+    return [fit(problem, best.hypothesis, one.starts, one.theta) for one in ranked[:1]] + ranked[1:]
 
 
 def _width(best: Fit) -> int | None:
@@ -105,18 +101,15 @@ def _begun(problem: Problem, best: Fit, index: int, width: float) -> _Begun:
     """`best` with its width times `width`, every recording begun where that suits it best."""
     theta = best.theta.copy()
     theta[index] += np.log(width)
-    slots, sensors = best.hypothesis.packed(theta)
+    point = best.hypothesis.packed(theta)
     total, starts = best.prior, []
     for trace, start in enumerate(best.starts):
         places = [start[SHAFT], *PLACES_NM, *_same_ways(best, index, width, float(start[SHAFT]))]
-        sets = len(places)
-        tried = np.tile(start, (sets, 1))
+        tried = np.tile(start, (len(places), 1))
         tried[:, SHAFT] = places
-        shown = problem.outputs(trace, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried)
-        costs = np.array([np.sum(problem.errors(trace, one) ** 2) for one in shown])
-        costs += tried**2 @ problem.start_precision(trace)
-        total += float(costs.min())
-        starts.append(tried[int(np.argmin(costs))])
+        cheapest, cost = problem.cheapest_start(trace, point, tried)
+        total += cost
+        starts.append(cheapest)
     return _Begun(theta, starts, total)
 
 

@@ -104,8 +104,6 @@ PLACE_ROUNDS: Annotated[int, Means("times", "widths and places are looked for an
 PLACE_STEPS: Annotated[
     int, Means("rounds", "after which other widths are left that are behind", "hidden")
 ] = 4
-BEHIND: Annotated[float, Means("times what the best leaves", "is behind then", "hidden")] = 1.1
-PLACES_FINISHED: Annotated[int, Means("widths", "are fitted to the end at a time", "hidden")] = 1
 PLACES_FINE: Annotated[int, Means("places", "between which a way to a flank is looked up", "hidden")] = 81
 MOST_OF_PLAY: Annotated[
     float, Means("of a play", "that a way from its middle must leave, less than all of it", "hidden")
