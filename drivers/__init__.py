@@ -2,9 +2,11 @@
 
 from drivers._waiting import StreamTiming
 from drivers.bus_health import BusHealth
+from drivers.bus_load import bits_on_the_wire
 from drivers.can_adapter import CanSettings, open_can
 from drivers.device import Device, MotorControl, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
+from drivers.examination import Examinable, Examined, Finding
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
@@ -33,7 +35,10 @@ __all__ = [
     "DynoDriver",
     "DynoNodes",
     "DynoTable",
+    "Examinable",
+    "Examined",
     "File",
+    "Finding",
     "FrameSource",
     "LoadTable",
     "MotorControl",
@@ -50,6 +55,7 @@ __all__ = [
     "VehicleParameters",
     "WheelLoad",
     "Wire",
+    "bits_on_the_wire",
     "open_can",
     "parameters_of",
     "read_dyno",

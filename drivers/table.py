@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Self
@@ -90,6 +90,10 @@ class DeviceTable(BaseModel):
     def identifiers(self) -> Mapping[int, str]:
         """CAN identifiers that the device sends or hears on its bus, with words for each."""
         return {}
+
+    def asked_by_hosts(self) -> Collection[int]:
+        """Those of `identifiers` that only a host sends: who sends them drives this bench."""
+        return ()
 
     def beside(self, directory: Path) -> Self:
         """The table with its paths relative to a directory made absolute."""

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.dyno._canopen import LoopNetwork
+from drivers.dyno._examination import examine
 from drivers.dyno._node import (
     ENABLED,
     FAULT,
@@ -18,6 +19,7 @@ from drivers.dyno._node import (
     SWITCHED_ON,
     DynoNode,
 )
+from drivers.examination import Examined
 from drivers.frame_source import CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.table import VehicleParameters
@@ -177,6 +179,10 @@ class DynoDriver:
 
     def close(self) -> None:
         """Nothing of its own is open."""
+
+    def examine(self, *, ask: bool) -> Examined:
+        """Who is there, and what each says of itself; reads objects, writes none."""
+        return examine(self._loop, self._wire, self.rear, self.idle, ask=ask)
 
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus == self._wire.name:

@@ -98,7 +98,17 @@ class DynoNode:
     @property
     def state(self) -> str:
         """State of the drive in the words of CiA 402."""
-        return _STATE_NAMES.get(self.status & STATE_MASK, f"0x{self.status:04X}")
+        return self.state_of(self.status)
+
+    @staticmethod
+    def state_of(status: int) -> str:
+        """What a statusword says, in the words of CiA 402."""
+        return _STATE_NAMES.get(status & STATE_MASK, f"0x{status:04X}")
+
+    @property
+    def nmt_state(self) -> str:
+        """What its last heartbeat said, in words."""
+        return str(self._node.nmt.state).lower()
 
     def in_state(self, bits: int) -> bool:
         """Whether the drive says now that it is in this state."""
@@ -124,6 +134,34 @@ class DynoNode:
         sent = float(np.float32(value)) if isinstance(answer, float) else value
         if answer != sent:
             raise BenchError(f"{what} reads back as {answer:g}, {value:g} was written", where=self._where)
+
+    def read(self, index: int, subindex: int = 0) -> Any:
+        """An object's value by SDO; None if the EDS or the node does not have it.
+
+        Raises:
+            BenchError: no answer.
+        """
+        entry = self._entry(index, subindex)
+        if entry is None:
+            return None
+        try:
+            return entry.raw
+        except canopen.SdoAbortedError:
+            return None
+        except canopen.SdoCommunicationError as error:
+            raise BenchError(
+                f"no answer while object 0x{index:04X} was read",
+                where=self._where,
+                fix="is it powered and on this bus?",
+            ) from error
+
+    def _entry(self, index: int, subindex: int) -> Any | None:
+        if index not in self._node.object_dictionary:
+            return None
+        described = self._node.object_dictionary[index]
+        if not hasattr(described, "subindices"):
+            return self._node.sdo[index] if subindex == 0 else None
+        return self._node.sdo[index][subindex] if subindex in described.subindices else None
 
     def set_speed(self, speed_rad_s: float) -> None:
         """Remember the speed that the next command carries."""

@@ -69,3 +69,8 @@ class DynoTable(LoadTable):
         for key, node in self.nodes.items():
             taken |= identifiers_of(node, key)
         return taken
+
+    def asked_by_hosts(self) -> tuple[int, ...]:
+        """The host's heartbeat, NMT, commands and SDO requests."""
+        rear = (self.rear_left, self.rear_right)
+        return (0x000, 0x700 + self.host_node, *(base + node for base in (0x200, 0x600) for node in rear))

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from drivers.examination import Examined, Finding
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.rmcu._parameters import parameters_of
@@ -24,7 +25,9 @@ MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
 _COUNTER_VALUES = 16
 _SHORTEST_COUNTER = 3  # bits; a shorter one says less than the order of the frames
 _REPLY_TIMEOUT_S = 0.2
-_WRITE, _APPLY = 1, 2
+_SILENT_S = 0.2
+_READ, _WRITE, _APPLY = 0, 1, 2
+_FIRST_PARAMETER = 1
 _NEEDED = {
     "RMCU_Request": Needed(
         ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
@@ -139,6 +142,30 @@ class RmcuDriver:
 
     def close(self) -> None:
         """Nothing of its own is open."""
+
+    def examine(self, *, ask: bool) -> Examined:
+        """State, and whether it hears what is sent to it; reads a parameter, writes none."""
+        where = f"RMCU (bus '{self._wire.name}')"
+        if self._loop.clock.now_s() - self.last_seen_s > _SILENT_S:
+            shown = " and ".join(f"0x{number:03X}" for number in sorted(self._shown))
+            stopped = "has stopped sending its" if self.state else "sends no"
+            fix = "switch it on; check its bus in the bench file, and that the DBC is the one of its software"
+            return Examined(findings=[Finding("fault", f"{stopped} status (frames {shown})", where, fix)])
+        found = Examined(answers=True, facts={"state": self.state})
+        if self.state == "fault":
+            found.facts["fault"] = self.fault
+            fix = "a run begins with a request for off, which ends it; if it comes back, mend its cause"
+            found.findings.append(Finding("hint", f"is in fault: {self.fault}", where, fix))
+        if ask:
+            try:
+                self._transact(_READ, _FIRST_PARAMETER, 0.0, "number 1")
+                found.facts["answers parameter reads"] = "yes"
+            except BenchError:
+                found.facts["answers parameter reads"] = "no"
+                what = "sends its status, but does not answer when a parameter is read"
+                fix = "may the adapter send (listen-only)? Is RMCU_ParameterWrite of the DBC this RMCU's?"
+                found.findings.append(Finding("fault", what, where, fix))
+        return found
 
     def requests(self, mode: str, values_nm: npt.NDArray[np.float64]) -> list[bytes]:
         """Payloads of consecutive request frames (N m), with counter and CRC, to be sent one each tick."""

@@ -66,6 +66,11 @@ class RmcuTable(DeviceTable):
         layouts = read_rmcu(self.dbc, self.names).layouts
         return {layout.id: f"'{layout.name}'" for layout in layouts.values()}
 
+    def asked_by_hosts(self) -> tuple[int, ...]:
+        """Requests and parameters."""
+        layouts = read_rmcu(self.dbc, self.names).layouts
+        return layouts["RMCU_Request"].id, layouts["RMCU_ParameterWrite"].id
+
 
 def _unknown(key: str, given: Iterable[str], known: Iterable[str]) -> Iterator[str]:
     choices = list(known)

@@ -37,6 +37,7 @@ _COMMANDS = {
     "simulate": "Replay a recording's torque through a model.",
     "export": "Write a recording as CSV, Parquet or MDF4.",
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
+    "doctor": "What of a bench is there, what is wrong with it, and what to do.",
     "schema": "JSON schema of plan files, for editors.",
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import can
 
@@ -23,8 +24,28 @@ _LINUX_SETS_IT = (
 )
 
 
-def can_settings(name: str, bus: Bus) -> CanSettings:
+#: How an interface is told to listen only: not even to acknowledge. SocketCAN's is set by `ip link`.
+_LISTENING: dict[str, dict[str, Any]] = {
+    "kvaser": {"driver_mode": False},
+    "nixnet": {"listen_only": True},
+    "pcan": {"state": can.BusState.PASSIVE},
+    "seeedstudio": {"operation_mode": "silent"},
+    "slcan": {"listen_only": True},
+    "systec": {"state": can.BusState.PASSIVE},
+    "vector": {"listen_only": True},
+}
+
+
+def listens_only(bus: Bus) -> bool:
+    """Whether the adapter can be told to listen only."""
+    return bus.interface in _LISTENING
+
+
+def can_settings(name: str, bus: Bus, *, listen_only: bool = False) -> CanSettings:
     """What opens the bus.
+
+    Args:
+        listen_only: that the adapter acknowledges nothing, if it can be told so.
 
     Raises:
         ValueError: no such bit timing can be made.
@@ -37,7 +58,7 @@ def can_settings(name: str, bus: Bus) -> CanSettings:
         fd=bus.fd,
         data_bit_rate=bus.data_bit_rate,
         timing=_timing(bus, bus.timing) if bus.timing else None,
-        options=bus.options,
+        options={**bus.options, **(_LISTENING.get(bus.interface, {}) if listen_only else {})},
     )
 
 

@@ -85,9 +85,6 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
         BadInputError: a file that the bench file names cannot be used, or devices that do not go together.
         BenchError: a bus or a port cannot be opened.
     """
-    scale = file.time_scale
-    clock: Clock = WallClock(scale)
-    offset_s = time.time() - clock.now_s() / scale
     if model is not None and not file.simulation:
         raise BadInputError(
             "--model goes with a simulated bench only", where=str(file.source), fix="leave --model out"
@@ -95,28 +92,60 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
     with ExitStack() as opened:
         if file.simulation:
             model = model or load_model(file.simulation.model)
-            world = simulated(file, model)
-            attach(file.name, world)
-            opened.callback(detach, file.name)
-            clock, offset_s = world, 0.0
-        wires: dict[str, Wire] = {}
-        for name, bus in file.buses.items():
-            adapter = open_can(can_settings(name, bus))
-            health = BusHealth(name, bus.interface, adapter)
-            wires[name] = Wire(name, adapter, clock, epoch_offset_s=offset_s, time_scale=scale, health=health)
-            opened.callback(wires[name].close)
-            _refuse_other_pace(name, getattr(adapter, "time_scale", scale), scale)
+        clock, offset_s = bench_clock(file, model, opened)
+        wires = {name: open_wire(file, name, clock, offset_s, opened) for name in file.buses}
         if not file.simulation:
             opened.enter_context(undisturbed(collections=True))
-        v = file.vehicle
-        vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)
-        loop = BusLoop(clock, list(wires.values()))
+        connections = connections_of(file, BusLoop(clock, list(wires.values())))
         for wire in wires.values():
-            loop.on_drained(wire.check)
-        connections = Connections(loop, wires, vehicle, simulated=file.simulation is not None)
+            connections.loop.on_drained(wire.check)
         bench = _with_devices(file, connections, model, opened)
         _refuse_channels(bench)
         yield bench
+
+
+def bench_clock(file: BenchFile, model: Model | None, opened: ExitStack) -> tuple[Clock, float]:
+    """The clock of a bench, and the time since 1970 at which it began, in wall-clock seconds.
+
+    With `model` the clock is that of a simulated bench, which can be reached from now on until `opened` is
+    closed.
+    """
+    if model is not None:
+        world = simulated(file, model)
+        attach(file.name, world)
+        opened.callback(detach, file.name)
+        return world, 0.0
+    clock = WallClock(file.time_scale)
+    return clock, time.time() - clock.now_s() / file.time_scale
+
+
+def open_wire(
+    file: BenchFile, name: str, clock: Clock, offset_s: float, opened: ExitStack, *, listen_only: bool = False
+) -> Wire:
+    """Open a bus of the bench file; it is closed with `opened`.
+
+    Args:
+        listen_only: where the adapter can, it does not even acknowledge frames.
+
+    Raises:
+        BadInputError: the bench at the other end goes at another pace.
+        BenchError: it cannot be opened.
+    """
+    bus, scale = file.buses[name], file.time_scale
+    adapter = open_can(can_settings(name, bus, listen_only=listen_only))
+    health = BusHealth(name, bus.interface, adapter)
+    wire = Wire(name, adapter, clock, epoch_offset_s=offset_s, time_scale=scale, health=health)
+    opened.callback(wire.close)
+    _refuse_other_pace(name, getattr(adapter, "time_scale", scale), scale)
+    return wire
+
+
+def connections_of(file: BenchFile, loop: BusLoop) -> Connections:
+    """What the devices of a bench file are opened with; the wires are those of the loop."""
+    v = file.vehicle
+    vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)
+    wires = {wire.name: wire for wire in loop.wires}
+    return Connections(loop, wires, vehicle, simulated=file.simulation is not None)
 
 
 def _refuse_other_pace(name: str, theirs: float, ours: float) -> None:
