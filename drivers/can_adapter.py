@@ -39,6 +39,8 @@ _SOFTWARE = {
     "usb2can": "the USB2CAN driver and the Python package 'pywin32', which are for Windows",
     "vector": "Vector's XL driver library, which is for Windows",
 }
+_OWN_MESSAGES = "receive_own_messages"
+_ECHOING = {"socketcan", "hil-udp"}  # more can, if the bench file's options say so: kvaser, pcan, vector
 _NOT_THERE = (ImportError, NameError, AttributeError, NotImplementedError)  # what a missing driver looks like
 
 
@@ -67,6 +69,11 @@ class CanSettings:
     options: Mapping[str, Any] = field(default_factory=dict)
 
     @property
+    def echoing(self) -> bool:
+        """Whether own frames come back, with the time at which they were on the bus."""
+        return bool(self.options.get(_OWN_MESSAGES, self.interface in _ECHOING))
+
+    @property
     def where(self) -> str:
         """For messages."""
         return f"bus '{self.name}' ({self.interface} {printable(self.channel, 80)})"
@@ -93,6 +100,8 @@ def open_can(settings: CanSettings) -> can.BusABC:
 
 def _opened(settings: CanSettings) -> can.BusABC:
     arguments: dict[str, Any] = {"bitrate": settings.bit_rate, **settings.options}
+    if settings.echoing:
+        arguments[_OWN_MESSAGES] = True
     if settings.fd:
         arguments["fd"] = True
     if settings.data_bit_rate is not None:

@@ -45,6 +45,7 @@ class BusLoop:
         self.wires = wires
         self.stop_requested = False
         self.shielded = False
+        self.tick_s = clock.now_s()  # when the present tick was meant
         self._anchor_s, self._since_anchor = clock.now_s(), 0  # a sum of ticks would drift
         self._ticks = 0
         self._duties: list[_Duty] = []
@@ -55,9 +56,14 @@ class BusLoop:
         self._served: list[Callable[[], None]] = []
         self._drained: list[Callable[[], None]] = []
 
-    def every(self, period_s: float, duty: Callable[[], None]) -> None:
-        """Call `duty` every `period_s` of the clock, from now on."""
-        self._duties.append(_Duty(period_s, self.clock.now_s(), duty))
+    def every(
+        self,
+        period_s: float,
+        duty: Callable[[], None],
+        done: Callable[[float], None] | None = None,
+    ) -> None:
+        """Call `duty` every `period_s` of the clock, from now on; then `done` with the time it was meant."""
+        self._duties.append(_Duty(period_s, self.clock.now_s(), duty, done))
         self._next_duty_s = -np.inf
 
     def on_frame(self, wire: Wire, frame_id: int, callback: FrameCallback) -> None:
@@ -83,16 +89,23 @@ class BusLoop:
         """Call `callback()` each time that every wire and port has been looked at."""
         self._drained.append(callback)
 
-    def step(self) -> None:
-        """Wait for the next tick; do what is due.
+    def step(self, at_tick: Callable[[], None] | None = None) -> None:
+        """Wait for the next tick; do what is due, `at_tick` before anything that could hold it up.
 
         Raises:
             InterruptError: the operator asked to stop.
             BenchError: a bus failed.
         """
-        self._wait_for_tick()
+        self._wait_for_tick(at_tick)
         if self._ticks % _DRAIN_EVERY == 0:
             self.drain()
+
+    def resume(self) -> None:
+        """Count ticks from now if some have passed unserved: what comes next is not to catch up with them."""
+        now_s = self.clock.now_s()
+        if now_s - self.tick_s > TICK_S:
+            self._anchor_s, self._since_anchor = now_s, 0
+            self.tick_s = now_s
 
     def run_for(self, duration_s: float) -> None:
         """Step for a while."""
@@ -125,19 +138,19 @@ class BusLoop:
                 callback(wire.name, block)
             self._dispatch(wire.name, block)
 
-    def _wait_for_tick(self) -> None:
+    def _wait_for_tick(self, at_tick: Callable[[], None] | None = None) -> None:
         if self.stop_requested and not self.shielded:
             self.stop_requested = False
             raise InterruptError("stopped by the operator")
         self._since_anchor += 1
-        next_s = self._anchor_s + self._since_anchor * TICK_S
+        self.tick_s = next_s = self._anchor_s + self._since_anchor * TICK_S
         self.clock.sleep_until(next_s)
         now_s = self.clock.now_s()
+        if at_tick is not None:
+            at_tick()
         if now_s - next_s > 10 * TICK_S:
-            self._anchor_s, self._since_anchor = (
-                now_s,
-                0,
-            )  # do not chase lost time: devices time out by themselves
+            # do not chase lost time: devices time out by themselves
+            self._anchor_s, self._since_anchor = now_s, 0
         self._ticks += 1
         if now_s >= self._next_duty_s:
             self._do_duties(now_s)
@@ -145,7 +158,7 @@ class BusLoop:
     def _do_duties(self, now_s: float) -> None:
         self._next_duty_s = np.inf
         try:
-            _each([partial(duty.run_if_due, now_s) for duty in self._duties])
+            _each([partial(duty.run_if_due, now_s, self.tick_s) for duty in self._duties])
         finally:
             nearest_s = min((duty.due_s for duty in self._duties), default=np.inf) - 0.5 * TICK_S
             self._next_duty_s = min(self._next_duty_s, nearest_s)
@@ -177,10 +190,19 @@ def _each(works: Iterable[Callable[[], None]]) -> None:
 
 
 class _Duty:
-    def __init__(self, period_s: float, now_s: float, run: Callable[[], None]) -> None:
-        self._period_s, self.due_s, self._run = period_s, now_s, run
+    def __init__(
+        self,
+        period_s: float,
+        now_s: float,
+        run: Callable[[], None],
+        done: Callable[[float], None] | None,
+    ) -> None:
+        self._period_s, self.due_s, self._run, self._done = period_s, now_s, run, done
 
-    def run_if_due(self, now_s: float) -> None:
+    def run_if_due(self, now_s: float, tick_s: float) -> None:
         if now_s >= self.due_s - 0.5 * TICK_S:
+            meant_s = tick_s if self.due_s < tick_s + 0.5 * TICK_S else self.due_s  # a duty falls on a tick
             self.due_s = max(self.due_s + self._period_s, now_s)
             self._run()
+            if self._done is not None:
+                self._done(meant_s)

@@ -10,6 +10,7 @@ import can
 import numpy as np
 
 from drivers.bus_health import BusHealth
+from drivers.echoes import Echoes
 from hil.core.clock import Clock
 from hil.core.errors import BenchError
 from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
@@ -56,6 +57,7 @@ class Wire:
         epoch_offset_s: time stamps of messages (since 1970) minus clock time, in wall-clock seconds.
         time_scale: seconds of the clock in a second of the time stamps.
         health: looks at error frames and at what the adapter says of itself.
+        echoing: whether the bus gives own frames back; they are no received frames, see `echoes`.
     """
 
     def __init__(
@@ -67,8 +69,10 @@ class Wire:
         epoch_offset_s: float = 0.0,
         time_scale: float = 1.0,
         health: BusHealth | None = None,
+        echoing: bool = False,
     ) -> None:
         self.name = name
+        self.echoes = Echoes() if echoing else None
         self._bus = bus
         self._clock = clock
         self._epoch_offset_s, self._time_scale = epoch_offset_s, time_scale
@@ -90,9 +94,18 @@ class Wire:
             self._put(frame_id, data)
         except (can.CanError, OSError) as error:
             raise self._failed("sending", error) from error
-        self._sent.append(
-            (self._clock.now_s(), frame_id, SENT_BY_HOST, len(data), int.from_bytes(data, "little"))
-        )
+        payload = int.from_bytes(data, "little")
+        self._sent.append((self._clock.now_s(), frame_id, SENT_BY_HOST, len(data), payload))
+        if self.echoes:
+            self.echoes.expect(frame_id, payload)
+
+    @property
+    def last_sent(self) -> tuple[float, int, int] | None:
+        """Time on the clock (s), identifier and payload of the newest frame that no `drain` has taken yet."""
+        if not self._sent:
+            return None
+        time_s, frame_id, _, _, payload = self._sent[-1]
+        return time_s, frame_id, payload
 
     def drain(self) -> FrameBlock:
         """Every frame that came since the last call, and those sent, in order of time."""
@@ -143,7 +156,7 @@ class Wire:
         block: FrameBlock = self._take_stamped()
         if len(block):
             block["time_s"] = (block["time_s"] - self._epoch_offset_s) * self._time_scale
-        return block
+        return self.echoes.others(block) if self.echoes else block
 
     def _take_one_by_one(self) -> FrameBlock:
         frames = []
@@ -159,9 +172,14 @@ class Wire:
                 continue
             flags = EXTENDED * message.is_extended_id | ERROR_FRAME * message.is_error_frame
             payload = int.from_bytes(data, "little")
-            frames.append(
-                (self._bench_time(message.timestamp), message.arbitration_id, flags, len(data), payload)
-            )
+            stamp_s = self._bench_time(message.timestamp)
+            if (
+                not message.is_rx
+                and self.echoes
+                and self.echoes.take(stamp_s, message.arbitration_id, payload)
+            ):
+                continue
+            frames.append((stamp_s, message.arbitration_id, flags, len(data), payload))
         return np.array(frames, FRAME) if frames else empty_block()
 
     def _bench_time(self, stamp: float) -> float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hil.core.recording import Recording
-from hil.core.result import RunResult
+from hil.core.result import Lateness, PeriodicRequests, RunResult
 from reports import quantities
 
 _CONTROLLER = "controller/"
@@ -71,6 +71,7 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
             Fact("Time on the bench", quantities.quantity(result.bench_time_s, "s", 1)),
             Fact("Real-time factor", quantities.number(result.real_time_factor, significant=3)),
             Fact("Clocks", _clocks(result)),
+            *timing_facts(result),
         ]
     elif len(recording.channels.get("time_s", ())) > 1:
         span = float(recording.time_s[-1] - recording.time_s[0])
@@ -92,6 +93,36 @@ def _clocks(result: RunResult) -> str:
     within = f"{quantities.quantity(offset_s * 1e3, 'ms', 2)} within a row"
     latest = f"latest frame {quantities.quantity(latest_s * 1e3, 'ms', 1)} after its time"
     return f"{apart}, {within}, {latest}, {lost} samples lost"
+
+
+def timing_facts(result: RunResult) -> list[Fact]:
+    """How well periodic requests kept their time, each a line; and whether the loop stood still."""
+    timing = result.timing
+    if timing is None:
+        return []
+    if timing.clock == "virtual":
+        return [Fact("Timing of requests", "virtual time: each exactly when it was meant")]
+    facts = [Fact(f"Timing, {r.device} {r.request}", _request(r)) for r in timing.requests]
+    if timing.pauses:
+        longest = quantities.quantity(timing.longest_pause_s, "s", 3)
+        facts.append(Fact("Own loop stood still", f"{timing.pauses} times, the longest {longest}"))
+    return facts
+
+
+def _request(request: PeriodicRequests) -> str:
+    """Late by how much when sent, and when seen on the bus."""
+    parts = [
+        f"{request.count} every {quantities.quantity(request.period_s * 1e3, 'ms', 0)}",
+        f"sent {_late(request.sent)}",
+        f"on the bus {_late(request.seen)}" if request.seen else "",
+        f"{request.missed} cycles missed",
+    ]
+    return ", ".join(part for part in parts if part)
+
+
+def _late(late: Lateness) -> str:
+    figures = ((late.p50_ms, "p50"), (late.p99_ms, "p99"), (late.max_ms, "largest"))
+    return " ".join(f"{name} {quantities.quantity(value, 'ms', 2)}" for value, name in figures) + " late"
 
 
 def simulated(recording: Recording) -> bool:

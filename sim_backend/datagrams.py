@@ -33,6 +33,7 @@ class Kind(IntEnum):
     WELCOME = 2  # the hub's answer
     FRAMES = 3
     BYE = 4  # either side leaves
+    ECHO = 5  # a host takes part, or still does, and wants its own frames back
 
 
 @dataclass(frozen=True)

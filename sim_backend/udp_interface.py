@@ -16,7 +16,7 @@ from typing import Any
 import can
 import numpy as np
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, FrameBlock, empty_block, joined
+from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
 from sim_backend.datagrams import (
     LARGEST,
     Incoming,
@@ -43,11 +43,16 @@ class LoopbackBus(can.BusABC):
     Frames carry the stamps of the sending side. `lost` counts frames that were sent to this host and never
     came; `time_scale` is what the bench says of itself: seconds of bench time in a second.
 
+    With `receive_own_messages` own frames come back with the time at which they were on the bus.
+
     Beside python-can's interface it has `recv_epoch_block`, which gives all waiting frames with stamps since
     1970, and `send_frame`, which needs no message object.
     """
 
-    def __init__(self, channel: str, bitrate: int | None = None, **kwargs: Any) -> None:
+    def __init__(
+        self, channel: str, bitrate: int | None = None, receive_own_messages: bool = False, **kwargs: Any
+    ) -> None:
+        self._hello = signal(Kind.ECHO if receive_own_messages else Kind.HELLO)
         try:
             address = address_of(str(channel))
         except ValueError as error:
@@ -104,7 +109,7 @@ class LoopbackBus(can.BusABC):
         """
         if time.monotonic() - self._hello_s > _HELLO_EVERY_S:
             self._hello_s = time.monotonic()
-            self._put(signal(Kind.HELLO))
+            self._put(self._hello)
         blocks = []
         while (datagram := self._next()) is not None:
             kind = kind_of(datagram)
@@ -144,7 +149,7 @@ class LoopbackBus(can.BusABC):
         end_s = time.monotonic() + _WELCOME_WITHIN_S
         while time.monotonic() < end_s:
             with contextlib.suppress(ConnectionRefusedError):
-                self._socket.send(signal(Kind.HELLO))
+                self._socket.send(self._hello)
             select.select([self._socket], [], [], _ASK_EVERY_S)
             with contextlib.suppress(BlockingIOError, ConnectionRefusedError):
                 while True:
@@ -175,5 +180,6 @@ def _message(frame: np.void) -> can.Message:
         arbitration_id=int(frame["id"]),
         is_extended_id=bool(frame["flags"] & EXTENDED),
         is_error_frame=bool(frame["flags"] & ERROR_FRAME),
+        is_rx=not frame["flags"] & SENT_BY_HOST,
         data=int(frame["data"]).to_bytes(8, "little")[:length],
     )

@@ -12,6 +12,7 @@ from hil.cli._interrupts import INTERRUPTS
 from hil.cli._output import Show, console, count_in_words, print_criteria, print_json, progress
 from hil.cli._place import Place, results_in
 from hil.cli._streams import complain
+from hil.cli._timing import times_in_words, timing_in_words
 from hil.core.errors import BenchError, HilError, InterruptError
 from hil.core.files import write_atomically
 from hil.core.model import load_model
@@ -157,9 +158,11 @@ def _print(result: RunResult, folder: Path) -> None:
     page.print(
         f"\n{result.plan} on {result.bench}: [bold]{result.verdict.upper()}[/], "
         f"{count_in_words(result.criteria)}   safe state {result.safe_state.replace('_', ' ')}   "
-        f"{result.bench_time_s:.0f} s of bench time, {result.real_time_factor:.0f} x real time",
+        f"{result.bench_time_s:.0f} s of bench time, {times_in_words(result.real_time_factor)} x real time",
         highlight=False,
     )
+    for line in timing_in_words(result.timing):
+        page.print(line, highlight=False)
     shown = "html" if "html" in result.files else "recording"
     page.print(f"{'report' if shown == 'html' else shown}: {folder / result.files[shown]}", highlight=False)
 

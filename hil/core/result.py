@@ -103,6 +103,40 @@ class StreamClock(_Frozen):
     left_out: int = Field(description="frames that came, but nobody can say of which sample")
 
 
+class Lateness(_Frozen):
+    """How much later than meant, ms of the bench clock: median, 99th percentile and largest."""
+
+    p50_ms: float
+    p99_ms: float
+    max_ms: float
+
+
+class PeriodicRequests(_Frozen):
+    """How well a request that devices expect again and again kept its time."""
+
+    request: str
+    device: str
+    period_s: float
+    count: int
+    missed: int = Field(
+        description="cycles in which none was sent: it came a cycle late or more, or not at all"
+    )
+    sent: Lateness
+    seen: Lateness | None = Field(None, description="on the bus; null where the adapter does not say")
+    unseen: int = Field(
+        0, description="requests that the adapter did not show on the bus, where it shows any"
+    )
+
+
+class Timing(_Frozen):
+    """How well the bench's own loop kept time; in virtual time it cannot but be exact, and has no entries."""
+
+    clock: Literal["wall", "virtual"]
+    requests: tuple[PeriodicRequests, ...] = ()
+    pauses: int = Field(0, description="how often the loop stood still for longer than the bench allows for")
+    longest_pause_s: float = 0.0
+
+
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
@@ -115,5 +149,6 @@ class RunResult(_Frozen):
     criteria: tuple[CriterionResult, ...] = ()
     segments: tuple[Segment, ...] = ()
     clocks: tuple[StreamClock, ...] = ()
+    timing: Timing | None = None
     files: dict[str, str] = {}
     reason: str = ""

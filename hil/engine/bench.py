@@ -31,6 +31,7 @@ from hil.core.real_time import undisturbed
 from hil.engine._bus_settings import can_settings
 from hil.engine._simulable import simulated
 from hil.engine.bench_tables import BenchFile
+from hil.engine.request_timing import Periodic, RequestTiming
 from sim_backend.can_interface import attach, detach
 
 _LOG = logging.getLogger(__name__)
@@ -67,11 +68,25 @@ class Bench:
         """What is sampled; the first is the time base of a recording."""
         return [stream for source in self.sources for stream in source.streams]
 
-    def start_heartbeats(self) -> None:
+    def start_heartbeats(self, timing: RequestTiming | None = None) -> None:
         """Let every device that watches the host know from now on that it lives."""
-        for device in self.devices:
-            if device.heartbeat_s is not None:
-                self.loop.every(device.heartbeat_s, device.beat)
+        for key, device in self._by_key():
+            period_s = device.heartbeat_s
+            if period_s is not None:
+                noted = timing.of(device, self._bus_of(key), "heartbeat", period_s) if timing else None
+                self.loop.every(period_s, device.beat, noted.noted if noted else None)
+
+    def torque_requests(self, timing: RequestTiming, period_s: float) -> Periodic:
+        """What notes the cycles of torque requests."""
+        return timing.of(self.rmcu, self._bus_of("rmcu"), "torque request", period_s)
+
+    def _by_key(self) -> list[tuple[str, Device]]:
+        further = [(f"devices.{name}", device) for name, device in self.further.items()]
+        return [("rmcu", self.rmcu), ("dyno", self.dyno), *further]
+
+    def _bus_of(self, key: str) -> str | None:
+        """The CAN bus that a device is on; None if its table names none."""
+        return getattr(self.file.device_tables.get(key), "bus", None)
 
 
 @contextlib.contextmanager
@@ -132,9 +147,18 @@ def open_wire(
         BenchError: it cannot be opened.
     """
     bus, scale = file.buses[name], file.time_scale
-    adapter = open_can(can_settings(name, bus, listen_only=listen_only))
+    settings = can_settings(name, bus, listen_only=listen_only)
+    adapter = open_can(settings)
     health = BusHealth(name, bus.interface, adapter)
-    wire = Wire(name, adapter, clock, epoch_offset_s=offset_s, time_scale=scale, health=health)
+    wire = Wire(
+        name,
+        adapter,
+        clock,
+        epoch_offset_s=offset_s,
+        time_scale=scale,
+        health=health,
+        echoing=settings.echoing,
+    )
     opened.callback(wire.close)
     _refuse_other_pace(name, getattr(adapter, "time_scale", scale), scale)
     return wire

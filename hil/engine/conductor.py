@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from functools import partial
 from pathlib import Path
 from typing import Literal, TypeVar
 
@@ -15,12 +16,14 @@ from drivers import TICK_S
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
+from hil.core.real_time import without_collections
 from hil.core.recording import SEGMENT
 from hil.core.result import RunResult, Segment
 from hil.engine.bench import Bench
 from hil.engine.border import Analyse, analysed_here
 from hil.engine.preflight import Rehearsal
 from hil.engine.recorder import Recorder
+from hil.engine.request_timing import Periodic
 from test_plans import Array, PlannedSegment, Quantity, Work
 
 T = TypeVar("T")
@@ -41,9 +44,10 @@ class BenchConductor:
         out: Path,
         ask: Callable[[str], str],
         analyse: Analyse = analysed_here,
+        noted: Periodic | None = None,
     ) -> None:
         self._bench, self._recorder, self._out = bench, recorder, out
-        self._ask, self._analyse = ask, analyse
+        self._ask, self._analyse, self._noted = ask, analyse, noted
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
         self._speed_m_s = 0.0
@@ -99,26 +103,40 @@ class BenchConductor:
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
         """Request the samples one each tick, then take the torque away and switch it off."""
         self._check.play(quantity, samples_nm, segment)
-        rmcu, loop = self._bench.rmcu, self._bench.loop
+        loop = self._bench.loop
         tail = np.linspace(samples_nm[-1], 0.0, round(RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
+        payloads = self._bench.rmcu.requests(quantity, np.concatenate([samples_nm, tail]))
         if segment:
             self._begin(segment, loop.clock.now_s(), len(samples_nm))
         sent = 0
         try:
-            for payload in rmcu.requests(quantity, np.concatenate([samples_nm, tail])):
-                rmcu.send(payload)
-                loop.step()
-                if rmcu.state == "fault":
-                    raise BenchError(
-                        f"the RMCU went to fault: {rmcu.fault}",
-                        where="RMCU",
-                        fix="see the recording's events",
-                    )
-                sent += 1
+            with contextlib.nullcontext() if self._bench.simulated else without_collections():
+                for _ in self._sent(payloads):
+                    sent += 1
         finally:
+            if self._noted:
+                self._noted.rest()
             if segment:
                 self._end(loop.clock.now_s(), complete=sent >= len(samples_nm))
         self._switch_off()
+
+    def _sent(self, payloads: list[bytes]) -> Iterator[None]:
+        """Send one each tick, before anything that could hold it up; each time that its tick has passed."""
+        rmcu, loop = self._bench.rmcu, self._bench.loop
+        loop.resume()
+        self._send(payloads[0], loop.clock.now_s())
+        for payload in [*payloads[1:], None]:
+            loop.step(None if payload is None else partial(self._send, payload))
+            if rmcu.state == "fault":
+                raise BenchError(
+                    f"the RMCU went to fault: {rmcu.fault}", where="RMCU", fix="see the recording's events"
+                )
+            yield
+
+    def _send(self, payload: bytes, meant_s: float | None = None) -> None:
+        self._bench.rmcu.send(payload)
+        if self._noted:
+            self._noted.noted(self._bench.loop.tick_s if meant_s is None else meant_s)
 
     def coast(self, duration_s: float) -> None:
         """No motor torque for a while."""

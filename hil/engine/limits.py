@@ -12,6 +12,12 @@ from hil.core.compiled import compiled
 from hil.core.errors import BenchError
 from hil.engine.bench_tables import Limits
 
+_PAUSE_S = 0.03  # wires are looked at every 10 ms
+#: Longer than this nobody watches the bench: RMCU and dynos have long gone to safety by themselves.
+LONGEST_PAUSE_S = 0.5
+_MATTERS_S = 0.045  # an RMCU takes a host that is silent for 50 ms for gone
+_MAY_BE_BLAMED_S = 0.5  # devices tell within this time what they made of a host that was silent
+
 
 def limits_of_channels(limits: Limits) -> dict[str, float]:
     """Largest magnitude of each watched channel; a side's share of the shaft torque is half."""
@@ -51,17 +57,38 @@ def ranges_of(limits: Limits) -> list[Range]:
     return found
 
 
+@dataclass
+class OwnPauses:
+    """How often and for how long (s) the loop that watches stood still itself, and when that last ended."""
+
+    count: int = 0
+    longest_s: float = 0.0
+    last_s: float = 0.0
+    ended_s: float = -np.inf
+
+    def blamed_at(self, now_s: float) -> str:
+        """What to say of a failure that comes so soon after a pause that the pause may be its cause."""
+        if now_s - self.ended_s > _MAY_BE_BLAMED_S or self.last_s < _MATTERS_S:
+            return ""
+        return f"own loop stood still for {self.last_s:.2g} s just before"
+
+
 class LimitWatch:
     """Trips when a channel stays out of its range for longer than the persistence, or a stream falls silent.
 
     The persistence counts in samples of the channel's own stream, at least one: a single odd sample never
     trips. A value that the device does not know (NaN) is not known to be within the range.
+
+    Silence counts only while somebody listened: a time in which this loop itself stood still is no silence
+    of a device. It is kept in `pauses`, and is a fault of the bench only beyond `LONGEST_PAUSE_S`.
     """
 
     def __init__(self, streams: Sequence[Stream], limits: Limits) -> None:
         ranges = ranges_of(limits)
         self._watched = {stream: _Watched(stream, ranges) for stream in streams}
         self._seen_s = dict.fromkeys(streams, -np.inf)
+        self._looked_s = np.inf
+        self.pauses = OwnPauses()
         self.active = False
 
     @property
@@ -91,15 +118,31 @@ class LimitWatch:
         """Call when every source has been asked.
 
         Raises:
-            BenchError: samples stopped coming.
+            BenchError: samples stopped coming, or this loop stood still for too long.
         """
+        pause_s, self._looked_s = now_s - self._looked_s, now_s
         if not self.active:
             return
+        if pause_s > _PAUSE_S:
+            self._stood_still(pause_s, now_s)
         for stream, seen_s in self._seen_s.items():
             if now_s - seen_s > stream.silence_s:
                 raise BenchError(
                     f"{stream.label} has stopped coming", where=stream.where, fix="is the device powered?"
                 )
+
+    def _stood_still(self, pause_s: float, now_s: float) -> None:
+        pauses = self.pauses
+        pauses.count += 1
+        pauses.longest_s = max(pauses.longest_s, pause_s)
+        pauses.last_s, pauses.ended_s = pause_s, now_s
+        self._seen_s = {stream: min(seen_s + pause_s, now_s) for stream, seen_s in self._seen_s.items()}
+        if pause_s > LONGEST_PAUSE_S:
+            raise BenchError(
+                f"own loop stood still for {pause_s:.2g} s, more than {LONGEST_PAUSE_S:g} s",
+                where="this computer",
+                fix="let no other program keep it busy, and record to a disk that keeps up",
+            )
 
 
 class _Watched:

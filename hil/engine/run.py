@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
 from hil.core.files import make_directory
 from hil.core.model import model_to_toml
 from hil.core.recording import Recording
-from hil.core.result import CriterionResult, RunResult, SafeState, verdict_of
+from hil.core.result import CriterionResult, RunResult, SafeState, Timing, verdict_of
 from hil.engine.bench import Bench, open_bench
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.conductor import BenchConductor
@@ -21,6 +21,7 @@ from hil.engine.limits import LimitWatch
 from hil.engine.preflight import preflight
 from hil.engine.provenance import hashes, versions
 from hil.engine.recorder import Recorder
+from hil.engine.request_timing import COLLECT_S, RequestTiming
 from hil.engine.safety import reach_safe_state
 from test_plans import estimate_duration_s, judge
 
@@ -65,7 +66,16 @@ class _Run:
         self._recorder = Recorder(request.out / RECORDING, bench.streams, buses, TICK_S)
         self._watch = LimitWatch(bench.streams, request.bench.limits)
         self._store_inputs()
-        self._conductor = BenchConductor(bench, self._recorder, request.out, self._prompt, request.analyse)
+        # In virtual time nothing can be late.
+        self._timing = (
+            None
+            if bench.simulated
+            else RequestTiming(bench.loop.clock, bench.loop.wires, self._recorder.writer.add_requests)
+        )
+        noted = bench.torque_requests(self._timing, TICK_S) if self._timing else None
+        self._conductor = BenchConductor(
+            bench, self._recorder, request.out, self._prompt, request.analyse, noted
+        )
         bench.loop.on_block(self._recorder.take_frames)
         bench.loop.on_drained(self._take_samples)
         started = time.perf_counter()
@@ -99,7 +109,7 @@ class _Run:
         bench = self._bench
         self._begin_s = bench.loop.clock.now_s()
         bench.loop.run_for(_LISTEN_S)
-        bench.start_heartbeats()
+        bench.start_heartbeats(self._timing)
         bench.rmcu.come_up()
         bench.dyno.come_up()
         for device in bench.further.values():
@@ -115,6 +125,8 @@ class _Run:
         self._watch.active = True
         bench.loop.every(0.05, self._supervise)
         bench.loop.every(_PROGRESS_S, self._show_progress)
+        if self._timing:
+            bench.loop.every(COLLECT_S, self._timing.collect)
         self._expected_s = estimate_duration_s(self._request.plan)
         self._recorder.event(bench.loop.clock.now_s(), "arm", "drives enabled")
 
@@ -144,7 +156,12 @@ class _Run:
             for samples in source.samples():
                 self._recorder.take(samples)
                 self._watch.take(samples, now_s)
-        self._watch.look_for_silence(now_s)
+        pauses = self._watch.pauses.count
+        try:
+            self._watch.look_for_silence(now_s)
+        finally:
+            if self._watch.pauses.count > pauses:
+                self._try_event("pause", f"own loop stood still for {self._watch.pauses.last_s:.2g} s")
 
     def _note_fault(self, error: Exception) -> None:
         """A fault of ours, or of a device's code: where it happened stands in the recording."""
@@ -162,6 +179,10 @@ class _Run:
 
     def _fail(self, error: HilError) -> None:
         if self._error is None:
+            if isinstance(error, BenchError) and "own loop" not in error.what:
+                pause = self._watch.pauses.blamed_at(self._bench.loop.clock.now_s())
+                if pause:
+                    error = BenchError(f"{error.what} ({pause})", where=error.where, fix=error.fix)
             self._error = error
             kind = "interrupt" if isinstance(error, InterruptError) else "failure"
             self._try_event(kind, str(error).replace("\n", " "))
@@ -196,6 +217,7 @@ class _Run:
             criteria=criteria,
             segments=tuple(self._conductor.segments),
             clocks=self._recorder.clocks(),
+            timing=self._timed(),
             reason=str(self._error) if self._error else "",
         )
         try:
@@ -204,6 +226,20 @@ class _Run:
             self._error = self._error or error
         largest = dict(self._watch.largest)
         return RunOutcome(result, request.out / RECORDING, self._error, largest, tuple(self._conductor.made))
+
+    def _timed(self) -> Timing:
+        """How well the loop kept time; what is left of it is recorded."""
+        if self._timing is None:
+            return Timing(clock="virtual")
+        with contextlib.suppress(HilError):  # a full disk is already being reported
+            self._timing.collect(everything=True)
+        pauses = self._watch.pauses
+        return Timing(
+            clock="wall",
+            requests=self._timing.results(),
+            pauses=pauses.count,
+            longest_pause_s=round(pauses.longest_s, 3),
+        )
 
     def _judged(self, recording: Recording) -> tuple[CriterionResult, ...]:
         try:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.frames import FrameBlock
+from hil.core.frames import SENT_BY_HOST, FrameBlock
 from sim_backend.datagrams import LARGEST, LOOPBACK, Incoming, Kind, Outgoing, Welcome, kind_of, signal
 
 _SILENT_S = 5.0  # hosts say hello every half a second; one that does not has left without a word, or is busy
@@ -20,10 +20,11 @@ class _Host:
     def __init__(self) -> None:
         self.outgoing, self.incoming = Outgoing(), Incoming()
         self.heard_s = time.monotonic()
+        self.wants_echo = False
 
 
 class UdpHub:
-    """One bus; hosts hear the bench and each other.
+    """One bus; hosts hear the bench and each other, and themselves if they ask for it.
 
     Args:
         port: 0 takes a free one.
@@ -73,8 +74,9 @@ class UdpHub:
     def _heard(self, datagram: bytes, address: tuple[str, int]) -> FrameBlock | None:
         """The frames of a host that takes part."""
         kind = kind_of(datagram)
-        if kind is Kind.HELLO:
-            self._hosts.setdefault(address, _Host()).heard_s = time.monotonic()
+        if kind is Kind.HELLO or kind is Kind.ECHO:
+            host = self._hosts.setdefault(address, _Host())
+            host.heard_s, host.wants_echo = time.monotonic(), kind is Kind.ECHO
             self._send(self._welcome, address)
         elif kind is Kind.BYE:
             self._forget(address)
@@ -83,6 +85,8 @@ class UdpHub:
             host.heard_s = time.monotonic()
             block = host.incoming.frames(datagram)
             self._spread(block, besides=address)
+            if host.wants_echo and len(block):
+                self._echo(block, host, address)
             return block
         return None
 
@@ -104,6 +108,14 @@ class UdpHub:
             elif address != besides:
                 for datagram in host.outgoing.packed(block):
                     self._send(datagram, address)
+
+    def _echo(self, block: FrameBlock, host: _Host, address: tuple[str, int]) -> None:
+        """A host's frames as they were on the bus: at the time at which they came."""
+        shown = block.copy()
+        shown["flags"] |= SENT_BY_HOST
+        shown["time_s"] = time.time()
+        for datagram in host.outgoing.packed(shown):
+            self._send(datagram, address)
 
     def _send(self, datagram: bytes, address: tuple[str, int]) -> None:
         with contextlib.suppress(OSError):  # the host misses it by its number

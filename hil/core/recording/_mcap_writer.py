@@ -19,6 +19,7 @@ from hil.core.recording._mcap_file import McapFile
 CHANNELS_TOPIC = "/channels"
 EVENTS_TOPIC = "/events"
 FRAMES_TOPIC = "/can/"
+REQUESTS_TOPIC = "/requests"
 _MESSAGE_S = 0.045
 _ROWS_AT_ONCE = 8192
 _CHUNK_BYTES = 256 * 1024  # about a second of a bench
@@ -84,8 +85,10 @@ class RecordingWriter:
         channels = writer.schema(_schema.CHANNELS_TYPE, "protobuf", _schema.channels_schema(channel_names))
         frames = writer.schema(_schema.FRAMES_TYPE, "protobuf", _schema.frames_schema())
         events = writer.schema("hil.Event", "jsonschema", json.dumps(_EVENT_SCHEMA).encode())
+        requests = writer.schema(_schema.REQUESTS_TYPE, "protobuf", _schema.requests_schema())
         self._channels = writer.channel(CHANNELS_TOPIC, "protobuf", channels)
         self._events = writer.channel(EVENTS_TOPIC, "json", events)
+        self._requests = writer.channel(REQUESTS_TOPIC, "protobuf", requests)
         self._frames = {bus: writer.channel(FRAMES_TOPIC + bus, "protobuf", frames) for bus in buses}
 
     def add_frames(self, bus: str, block: FrameBlock) -> None:
@@ -127,6 +130,10 @@ class RecordingWriter:
         """Add one event of the run."""
         message = json.dumps({"time_s": round(time_s, 6), "kind": kind, "text": text}).encode()
         self._add(self._events, time_s, message)
+
+    def add_requests(self, request: str, logged_s: float, times_s: npt.NDArray[np.float64]) -> None:
+        """Add when some periodic requests were meant, sent and seen on the bus, s, shape (3, n)."""
+        self._add(self._requests, logged_s, _schema.encode_requests(request, times_s))
 
     def attach(self, name: str, content: bytes, media_type: str = "text/plain") -> None:
         """Store a file with the data."""

@@ -23,6 +23,7 @@ _Type: TypeAlias = "descriptor_pb2.FieldDescriptorProto._Type.ValueType"
 _Label: TypeAlias = "descriptor_pb2.FieldDescriptorProto._Label.ValueType"
 CHANNELS_TYPE = "hil.Channels"
 FRAMES_TYPE = "hil.CanFrames"
+REQUESTS_TYPE = "hil.Requests"
 
 
 def channels_schema(names: list[str]) -> bytes:
@@ -43,6 +44,19 @@ def frames_schema() -> bytes:
             ("data", _Field.TYPE_FIXED64, _Field.LABEL_REPEATED),
         ],
     )
+
+
+def requests_schema() -> bytes:
+    """FileDescriptorSet of some periodic requests: when each was meant, sent and seen on the bus."""
+    times = [(name, _Field.TYPE_DOUBLE, _Field.LABEL_REPEATED) for name in ("meant_s", "sent_s", "seen_s")]
+    return _file("Requests", [("request", _Field.TYPE_STRING, _Field.LABEL_OPTIONAL), *times])
+
+
+def encode_requests(request: str, times_s: npt.NDArray[np.float64]) -> bytes:
+    """One Requests message; `times_s` meant, sent and seen (NaN: not seen), shape (3, n)."""
+    columns = [request.encode(), *(np.ascontiguousarray(row, "<f8").tobytes() for row in times_s)]
+    parts = [bytes([number << 3 | 2]) + _varint(len(c)) + c for number, c in enumerate(columns, 1)]
+    return b"".join(parts)
 
 
 def channel_names(name: str, encoding: str, schema: bytes) -> list[str]:

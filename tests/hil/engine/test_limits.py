@@ -64,16 +64,68 @@ def test_a_channel_may_have_a_limit_beside_that_of_the_axle() -> None:
         watched.take(Samples(FAST, np.arange(20, dtype=np.float64), backwards), 0.0)
 
 
+def listen(watched: LimitWatch, from_s: float, to_s: float) -> None:
+    """Look every 10 ms, as the loop does."""
+    for now_s in np.arange(from_s, to_s, 0.01):
+        watched.look_for_silence(float(now_s))
+
+
+def fast_goes_on(watched: LimitWatch, from_s: float, to_s: float) -> None:
+    for now_s in np.arange(from_s, to_s, 0.05):
+        watched.take(Samples(FAST, np.zeros(1), np.zeros((1, 2))), float(now_s))
+        listen(watched, float(now_s), float(now_s) + 0.05)
+
+
 def test_each_stream_has_its_own_silence() -> None:
     watched = watch()
     fast = Samples(FAST, np.zeros(1), np.zeros((1, 2)))
     watched.take(fast, 1.0)
     watched.take(temperatures(300.0), 1.0)
-    watched.look_for_silence(1.09)
+    listen(watched, 1.0, 1.095)
     with pytest.raises(BenchError, match=r"bus 'rmcu': status has stopped coming"):
-        watched.look_for_silence(1.2)
-    watched.take(fast, 1.49)
-    watched.look_for_silence(1.499)
-    watched.take(fast, 1.58)
+        listen(watched, 1.095, 1.2)
+    fast_goes_on(watched, 1.2, 1.45)
     with pytest.raises(BenchError, match=r"device 'oil': reading has stopped coming"):
-        watched.look_for_silence(1.6)
+        fast_goes_on(watched, 1.45, 1.7)
+
+
+def heard() -> LimitWatch:
+    """Every stream came at 1 s."""
+    watched = watch()
+    watched.take(Samples(FAST, np.zeros(1), np.zeros((1, 2))), 1.0)
+    watched.take(temperatures(300.0), 1.0)
+    watched.look_for_silence(1.0)
+    return watched
+
+
+def test_a_pause_of_the_own_loop_is_no_silence_of_a_device() -> None:
+    watched = watch()
+    fast = Samples(FAST, np.zeros(1), np.zeros((1, 2)))
+    watched.take(fast, 1.0)
+    watched.take(temperatures(300.0), 1.0)
+    listen(watched, 1.0, 1.05)
+    watched.look_for_silence(1.35)
+    assert (watched.pauses.count, round(watched.pauses.longest_s, 1)) == (1, 0.3)
+    assert watched.pauses.blamed_at(1.4) == "own loop stood still for 0.3 s just before"
+    assert watched.pauses.blamed_at(2.0) == ""
+    listen(watched, 1.36, 1.4)
+    with pytest.raises(BenchError, match="status has stopped coming"):  # what was silent before goes on to be
+        listen(watched, 1.4, 1.5)
+
+
+def test_a_pause_beyond_the_bound_is_a_fault_of_this_computer() -> None:
+    watched = heard()
+    with pytest.raises(BenchError, match=r"this computer: own loop stood still for 0.7 s, more than 0.5 s"):
+        watched.look_for_silence(1.7)
+
+
+def test_before_it_is_active_nothing_is_a_pause() -> None:
+    watched = heard()
+    watched.active = False
+    watched.look_for_silence(1.0)
+    watched.look_for_silence(5.0)
+    watched.take(Samples(FAST, np.zeros(1), np.zeros((1, 2))), 5.0)
+    watched.take(temperatures(300.0), 5.0)
+    watched.active = True
+    watched.look_for_silence(5.01)
+    assert watched.pauses.count == 0

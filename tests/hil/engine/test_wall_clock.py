@@ -5,11 +5,15 @@ in-process virtual buses.
 """
 
 import contextlib
+import gc
+import subprocess
+import sys
 import threading
 import time
 
 import can
 import numpy as np
+from mcap.reader import make_reader
 
 from hil.core.errors import BenchError, InterruptError
 from hil.core.model import load_model
@@ -147,3 +151,30 @@ def test_an_interrupt_does_not_wait_for_an_answer_of_the_operator(tmp_path):
     never.set()
     assert isinstance(outcome.error, InterruptError)
     assert outcome.result.safe_state == "confirmed"
+
+
+def test_nothing_is_compiled_or_loaded_once_the_drives_are_enabled():
+    """In a process of its own: in this one other tests have made all ready."""
+    command = [sys.executable, "-m", "tests.hil.engine.ready_when_armed"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""
+
+
+def test_each_request_is_timed_and_nothing_collected_while_they_are_sent(tmp_path):
+    collected = []
+    with bench_in_real_time("timed") as (bench, _, _):
+        request = RunRequest(plan(STEPS, CRITERIA), bench, tmp_path)
+        request.progress = lambda share, text: collected.append((text, gc.isenabled()))
+        outcome = run_plan(request)
+    timing = outcome.result.timing
+    assert timing.clock == "wall"
+    by_name = {request.request: request for request in timing.requests}
+    assert 0 < by_name["torque request"].count <= 1200
+    assert by_name["torque request"].sent.max_ms >= by_name["torque request"].sent.p50_ms >= 0
+    assert by_name["heartbeat"].period_s == 0.05
+    assert ("coming up", True) in collected
+    assert ("s", False) in collected
+    with outcome.recording.open("rb") as file:
+        stored = [message.data for *_, message in make_reader(file).iter_messages(topics=["/requests"])]
+    torque = [data for data in stored if data[2:].startswith(b"RMCU: torque request")]
+    assert sum(len(data) for data in torque) >= by_name["torque request"].count * 24

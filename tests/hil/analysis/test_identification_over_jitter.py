@@ -1,0 +1,62 @@
+"""Identification uses what the axle was asked for and did, not when that was meant, nor stamps of frames."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hil.engine import RunRequest, run_plan
+from sim_backend.bench import SimulatedBench
+from test_plans import load_plan
+from tests.benches_for_tests import sim_bench
+from tests.late_stamps import late_bench
+
+_LATEST_MS = 4
+
+
+def identified(bench: Any, out: Path) -> dict[str, tuple[float, float]]:
+    """Parameters of the fitted chain with their standard errors."""
+    commissioning = load_plan("commissioning")
+    until = [step.kind for step in commissioning.steps].index("identify") + 1
+    asked = commissioning.model_copy(update={"steps": commissioning.steps[:until], "criteria": ()})
+    outcome = run_plan(RunRequest(asked, bench, out))
+    assert outcome.error is None
+    found = tomllib.loads((out / "physical.toml").read_text())
+    errors = found["meta"]["standard_errors"]
+    return {name: (value, errors[name]) for name, value in found["parameters"].items()}
+
+
+def jitter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every request reaches the RMCU 0 to 4 ms late from here on, in order."""
+    random = np.random.default_rng(7)
+    put = SimulatedBench.put
+
+    def late(self: SimulatedBench, bus: str, frame_id: int, data: bytes) -> None:
+        put(self, bus, frame_id, data)
+        if bus == "rmcu" and frame_id == self._request_id:
+            due = self._inbox.pop()[0]
+            before = self._inbox[-1][0] if self._inbox else 0
+            self._inbox.append(
+                (max(before, due + int(random.integers(0, _LATEST_MS + 1))), bus, frame_id, data)
+            )
+
+    monkeypatch.setattr(SimulatedBench, "put", late)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("late", ["bursts", "outliers"])
+def test_late_requests_and_late_stamps_give_the_same_axle(
+    late: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    true = identified(sim_bench("still"), tmp_path / "true")
+    jitter(monkeypatch)
+    found = identified(late_bench("jitter", late), tmp_path / "late")
+    for name, (value, error) in true.items():
+        apart = abs(found[name][0] - value) / math.hypot(error, found[name][1])
+        print(f"{name}: {value:.6g} {found[name][0]:.6g}, {apart:.2f} standard errors apart")
+        assert apart <= 2, (name, found[name], value)
