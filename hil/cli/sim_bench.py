@@ -24,6 +24,7 @@ def carry_out(
     for_s: float | None,
     transport: str,
     port: int,
+    interfaces: tuple[str, ...],
     bench_file: Path | None,
     as_json: bool,
 ) -> int:
@@ -54,6 +55,7 @@ def carry_out(
         for_s=float("inf") if for_s is None else for_s,
         transport=transport,
         port=port,
+        interfaces=interfaces,
         ready=ready,
         stop=stop,
     )

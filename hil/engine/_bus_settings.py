@@ -18,6 +18,7 @@ _DATA_RATE = _FD - {"socketcan"}
 _FD_BY_TIMING = {"pcan", "slcan"}  # the rate of the data phase reaches them in `timing` only
 _COUNTED = {"cantact", "ixxat", "kvaser"}
 _NAMED = {"robotell", "seeedstudio", "serial", "slcan", "socketcan", "socketcand"}
+_NO_HARDWARE = ("vcan", "simcan")  # interfaces so named reach no hardware, and may go slower than real time
 _OWN = {name for name, (module, _) in can.interfaces.BACKENDS.items() if module.startswith("can.")}
 _LINUX_SETS_IT = (
     "Linux sets it: ip link set {channel} type can bitrate ... sample-point ... dbitrate ... fd on"
@@ -68,6 +69,8 @@ def slows_down(bus: Bus) -> bool:
         return str(bus.channel).startswith("/dev/pts/")
     if bus.interface == "socketcand":
         return bus.options.get("host") in ("127.0.0.1", "localhost")
+    if bus.interface == "socketcan":
+        return str(bus.channel).startswith(_NO_HARDWARE)
     return bus.interface == "hil-udp"
 
 

@@ -131,6 +131,10 @@ class LimitWatch:
                     f"{stream.label} has stopped coming", where=stream.where, fix="is the device powered?"
                 )
 
+    def standing_still(self, now_s: float) -> bool:
+        """Whether this loop has just stood still, and has not looked at what came meanwhile."""
+        return now_s - self._looked_s > _PAUSE_S
+
     def _stood_still(self, pause_s: float, now_s: float) -> None:
         pauses = self.pauses
         pauses.count += 1

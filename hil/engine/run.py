@@ -27,6 +27,7 @@ from test_plans import estimate_duration_s, judge
 
 _PROGRESS_S = 0.5
 _LISTEN_S = 0.2
+_REPEAT_S = 0.02
 
 
 def run_plan(request: RunRequest) -> RunOutcome:
@@ -63,7 +64,9 @@ class _Run:
     def carry_out(self) -> RunOutcome:
         request, bench = self._request, self._bench
         buses = [wire.name for wire in bench.loop.wires]
-        self._recorder = Recorder(request.out / RECORDING, bench.streams, buses, TICK_S)
+        self._recorder = Recorder(
+            request.out / RECORDING, bench.streams, buses, TICK_S, promptly=not bench.simulated
+        )
         self._watch = LimitWatch(bench.streams, request.bench.limits)
         self._store_inputs()
         # In virtual time nothing can be late.
@@ -121,6 +124,7 @@ class _Run:
         self._armed = True  # from here on the safe state is owed, whatever happens
         ramp = self._request.bench.dyno.speed_ramp_m_s2 / self._request.bench.vehicle.wheel_radius_m
         bench.rmcu.make_safe()
+        self._leave_old_fault()
         bench.dyno.enable(ramp)
         self._watch.active = True
         bench.loop.every(0.05, self._supervise)
@@ -129,6 +133,15 @@ class _Run:
             bench.loop.every(COLLECT_S, self._timing.collect)
         self._expected_s = estimate_duration_s(self._request.plan)
         self._recorder.event(bench.loop.clock.now_s(), "arm", "drives enabled")
+
+    def _leave_old_fault(self) -> None:
+        """A run that was killed leaves the RMCU in fault, with a count of requests that ours do not go on."""
+        bench = self._bench
+        tries = round(bench.rmcu.safe_within_s / _REPEAT_S)
+        while bench.rmcu.state == "fault" and tries:
+            bench.loop.wait_for(bench.rmcu.is_safe, _REPEAT_S)
+            bench.rmcu.make_safe()
+            tries -= 1
 
     def _steps(self) -> None:
         plan, conductor = self._request.plan, self._conductor
@@ -144,6 +157,8 @@ class _Run:
             step.carry_out(conductor)
 
     def _supervise(self) -> None:
+        if self._watch.standing_still(self._bench.loop.clock.now_s()):
+            return  # what came meanwhile is to be looked at first
         for device in self._bench.devices:
             troubles = device.troubles()
             if troubles and not self._bench.loop.shielded:

@@ -19,9 +19,17 @@ from hil.engine._simulable import dyno_of, rmcu_of, simulated
 from hil.engine.bench_tables import BenchFile
 from hil.engine.stopping import StopRequest
 from sim_backend.bench import DYNO_BUS, RMCU_BUS
-from sim_backend.serving import BenchServer, BusServer, Pace, SlcanPort, SocketcandPort, UdpHub
+from sim_backend.serving import (
+    BenchServer,
+    BusServer,
+    Pace,
+    SlcanPort,
+    SocketcandPort,
+    SocketcanPort,
+    UdpHub,
+)
 
-TRANSPORTS = ("udp", "slcan", "socketcand")
+TRANSPORTS = ("udp", "slcan", "socketcand", "socketcan")
 FIRST_PORT = 47110
 _HIGHEST_PORT = 65535
 
@@ -65,6 +73,8 @@ class SimBenchRequest:
         for_s: ends by itself after this many seconds of the wall clock.
         transport: one of `TRANSPORTS`.
         port: first UDP or TCP port; 0 takes free ones.
+        interfaces: of SocketCAN, for the RMCU's bus and the dynos': "can1:can0" serves at can1 those who open
+            can0, another controller on the same bus; "vcan0" serves its own.
         ready: called once, when hosts can connect.
     """
 
@@ -75,6 +85,7 @@ class SimBenchRequest:
     for_s: float = float("inf")
     transport: str = "udp"
     port: int = FIRST_PORT
+    interfaces: tuple[str, ...] = ()
     ready: Callable[[Serving], None] = lambda serving: None
     stop: StopRequest = field(default_factory=StopRequest)
 
@@ -95,7 +106,7 @@ def serve(request: SimBenchRequest) -> Served:
         servers: dict[str, BusServer] = {}
         for number, (role, name) in enumerate(roles.items()):
             port = request.port + number if request.port else 0
-            servers[role] = _server(request, port, bench.buses[name].bit_rate, name)
+            servers[role] = _server(request, number, port, bench.buses[name].bit_rate, name)
             opened.callback(servers[role].close)
         server = BenchServer(world, servers, request.time_scale)
         tables = {
@@ -173,6 +184,12 @@ def _checked(request: SimBenchRequest) -> BenchFile:
         raise BadInputError(
             f"--port is {request.port}", fix=f"give 1 to {_HIGHEST_PORT - 1}, or 0 for free ones"
         )
+    wanted = 2 if request.transport == "socketcan" else 0
+    if len(request.interfaces) != wanted:
+        raise BadInputError(
+            f"--interface is given {len(request.interfaces)} times, {wanted} are needed",
+            fix="'--transport socketcan --interface vcan0 --interface vcan1': RMCU's bus, then the dynos'",
+        )
     if request.seed is None:
         return bench
     if request.seed < 0:
@@ -180,7 +197,9 @@ def _checked(request: SimBenchRequest) -> BenchFile:
     return bench.model_copy(update={"simulation": bench.simulation.model_copy(update={"seed": request.seed})})
 
 
-def _server(request: SimBenchRequest, port: int, bit_rate: int, name: str) -> BusServer:
+def _server(request: SimBenchRequest, number: int, port: int, bit_rate: int, name: str) -> BusServer:
+    if request.transport == "socketcan":
+        return _at_interface(request.interfaces[number], bit_rate, name)
     try:
         if request.transport == "slcan":
             return SlcanPort(bit_rate)
@@ -192,6 +211,18 @@ def _server(request: SimBenchRequest, port: int, bit_rate: int, name: str) -> Bu
             f"port {port} cannot be taken: {error.strerror}",
             where=f"bus '{name}'",
             fix="is another simulated bench running? Name another port with --port, or 0 for free ones",
+        ) from error
+
+
+def _at_interface(interface: str, bit_rate: int, name: str) -> SocketcanPort:
+    ours, _, hosts = interface.partition(":")
+    try:
+        return SocketcanPort(ours, hosts or ours, bit_rate)
+    except OSError as error:
+        raise BenchError(
+            f"the interface '{printable(ours, 20)}' cannot be used: {error.strerror}",
+            where=f"bus '{name}'",
+            fix="'ip link show type can' and 'ip link show type vcan' list what there is",
         ) from error
 
 

@@ -9,7 +9,7 @@ import typer
 
 from hil.cli._lean_imports import import_python_can
 
-SEVERAL = ("--hide",)
+SEVERAL = ("--hide", "--interface")
 
 
 def command(
@@ -28,8 +28,17 @@ def command(
     for_s: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
     ] = None,
-    transport: Annotated[str, typer.Option(help="udp, slcan (over pseudo-terminals) or socketcand")] = "udp",
+    transport: Annotated[
+        str, typer.Option(help="udp, slcan (pseudo-terminals), socketcand or socketcan")
+    ] = "udp",
     port: Annotated[int, typer.Option(help="first port on 127.0.0.1; 0 takes free ones")] = 47110,
+    interface: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[:HOSTS]",
+            help="of SocketCAN, of the RMCU's bus and then the dynos': vcan0, or can1:can0 for hosts at can0",
+        ),
+    ] = None,
     bench_file: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="write the bench file that connects to it here, too"),
@@ -48,5 +57,6 @@ def command(
 
     return carry_out(
         bench=bench, time_scale=time_scale, seed=seed, hide=tuple(hide or ()), for_s=for_s,
-        transport=transport, port=port, bench_file=bench_file, as_json=as_json,
+        transport=transport, port=port, interfaces=tuple(interface or ()), bench_file=bench_file,
+        as_json=as_json,
     )  # fmt: skip

@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError
 from hil.core.recording._evidence import sidecar
 from hil.core.recording._formats import READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_reader import read_frames
-from hil.core.recording._mcap_writer import RecordingWriter
+from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._run import RUN, SEGMENT, run_of
 from hil.core.recording._table import Event, Recording, checked
 
@@ -90,6 +90,7 @@ def write_recording(recording: Recording, path: Path) -> None:
 
 
 __all__ = [
+    "CHUNK_BYTES",
     "RUN",
     "SEGMENT",
     "Event",

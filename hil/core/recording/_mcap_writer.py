@@ -22,7 +22,7 @@ FRAMES_TOPIC = "/can/"
 REQUESTS_TOPIC = "/requests"
 _MESSAGE_S = 0.045
 _ROWS_AT_ONCE = 8192
-_CHUNK_BYTES = 256 * 1024  # about a second of a bench
+CHUNK_BYTES = 256 * 1024  # about a second of a bench
 _EVENT_SCHEMA = {
     "type": "object",
     "properties": {"time_s": {"type": "number"}, "kind": {"type": "string"}, "text": {"type": "string"}},
@@ -67,7 +67,7 @@ class RecordingWriter:
     """
 
     def __init__(
-        self, path: Path, channel_names: list[str], buses: list[str], *, chunk_bytes: int = _CHUNK_BYTES
+        self, path: Path, channel_names: list[str], buses: list[str], *, chunk_bytes: int = CHUNK_BYTES
     ) -> None:
         self.path = path
         self._samples = 0

@@ -28,7 +28,7 @@ def identified(bench: Any, out: Path) -> dict[str, tuple[float, float]]:
     assert outcome.error is None
     found = tomllib.loads((out / "physical.toml").read_text())
     errors = found["meta"]["standard_errors"]
-    return {name: (value, errors[name]) for name, value in found["parameters"].items()}
+    return {name: (found["parameters"][name], error) for name, error in errors.items()}
 
 
 def jitter(monkeypatch: pytest.MonkeyPatch) -> None:
