@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from drivers.samples import SampleSource
 from hil.core.controller import Controller
+from hil.core.signals import Payloads
 
 
 @runtime_checkable
@@ -82,12 +83,19 @@ class MotorControl(Device, Protocol):
         """Why it is in fault."""
         ...
 
-    def requests(self, mode: str, values_nm: npt.NDArray[np.float64]) -> list[bytes]:
+    def requests(self, mode: str, values_nm: npt.NDArray[np.float64]) -> Payloads:
         """Payloads for samples of torque (N m), shape (n,), to be sent one each tick."""
         ...
 
-    def send(self, payload: bytes) -> None:
+    def send(self, payload: int) -> None:
         """Send one payload made by `requests`."""
+        ...
+
+    def send_ahead(self, payloads: Payloads, times_s: npt.NDArray[np.float64]) -> bool:
+        """Hand over payloads made by `requests`, each with its time (s) on the bench clock, in order.
+
+        False if its wire takes nothing ahead of time; then each is sent when its time has come.
+        """
         ...
 
     def write_controller(self, controller: Controller) -> None:

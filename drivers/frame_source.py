@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from drivers.samples import Counting, Samples, Stream
-from hil.core.compiled import compiled
+from hil.core.compiled import compiled, compiled_exactly
 from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
-from hil.core.signals import Signal, double_of, single_of, swapped
+from hil.core.signals import Signal, bits_at, number_at
 
 _NONE_YET = -1
 _OTHER_KINDS = EXTENDED | ERROR_FRAME  # an extended frame of the same number is another message
@@ -131,14 +131,13 @@ class _Decoder:
         self._columns = [slice(first, end) for first, end in zip([0, *ends], ends, strict=False)]
         self._ends = np.array(ends, np.int64)
         self._ids = np.array([frame_id for _, frame_id, _ in bound], np.int64)
-        self._places = np.array([_place(s) for s in signals], np.int64).reshape(-1, 5)
-        self._scales = np.array([[s.scale] for s in signals]).reshape(-1, 1)
-        self._offsets = np.array([[s.offset] for s in signals]).reshape(-1, 1)
+        self._places = np.array([s.place for s in signals], np.int64).reshape(-1, 5)
+        self._scales = np.array([(s.scale, s.offset) for s in signals]).reshape(-1, 2)
         self._counter = np.full(6, -1, np.int64)  # which stream counts, -1: none; and where its counter lies
         if counted_by:
             self._counter[0] = self._ids.tolist().index(counted_by.frame_id)
             if counted_by.counter:
-                self._counter[1:] = _place(counted_by.counter)
+                self._counter[1:] = counted_by.counter.place
         self._state = np.array([_NONE_YET, 0, 0], np.int64)
 
     def decode(self, block: FrameBlock) -> list[Samples]:
@@ -146,14 +145,13 @@ class _Decoder:
         streams, frames = len(self._ids), len(block)
         counts = np.zeros(streams, np.int64)
         times = np.empty((streams, frames))
-        numbers = np.zeros((len(self._places), frames))
+        numbers = np.empty((len(self._places), frames))
         marks = np.empty((streams if self._counted else 0, frames), np.int64)
         _read(
             block["id"], block["flags"], block["time_s"], block["data"], self._ids, self._ends, self._places,
-            self._counter, self._state, counts, times, numbers, marks,
+            self._scales, self._counter, self._state, counts, times, numbers, marks,
         )  # fmt: skip
-        # Scaled here and not in the compiled part, which may round differently from `Signal.decode`.
-        values = (numbers * self._scales + self._offsets).T
+        values = numbers.T
         found = []
         for index, count in enumerate(counts.tolist()):
             if count:
@@ -163,16 +161,6 @@ class _Decoder:
                     Samples(self._streams[index], times[index, :count], values[:count, columns], marked)
                 )
         return found
-
-
-def _place(signal: Signal) -> tuple[int, int, bool, bool, bool]:
-    return (signal.shift, signal.length, signal.signed, signal.big_endian, signal.is_float)
-
-
-@compiled
-def _bits(payload, place):  # type: ignore[no-untyped-def]
-    word = swapped(payload) if place[3] else payload
-    return (word >> np.uint64(place[0])) & (~np.uint64(0) >> np.uint64(64 - place[1]))
 
 
 @compiled
@@ -189,7 +177,7 @@ def _count(payload, counter, state):  # type: ignore[no-untyped-def]
         state[0] = max(newest, -1) + 1
         return state[0]
     turn = np.int64(1) << counter[2]
-    raw = np.int64(_bits(payload, counter[1:]))
+    raw = bits_at(payload, counter[1:])
     if newest < 0:
         state[0] = raw + turn  # what was overtaken by the first is no less than 0
         return state[0]
@@ -200,9 +188,11 @@ def _count(payload, counter, state):  # type: ignore[no-untyped-def]
     return newest + ahead
 
 
-@compiled
-def _read(ids, flags, stamps, payloads, wanted, ends, places, counter, state, counts, times, numbers, marks):  # type: ignore[no-untyped-def]
-    """Sort frames by identifier, count, and read the numbers in their signals, unscaled."""
+@compiled_exactly
+def _read(  # type: ignore[no-untyped-def]
+    ids, flags, stamps, payloads, wanted, ends, places, scales, counter, state, counts, times, values, marks
+):
+    """Sort frames by identifier, count, and read their signals, rounded as `Signal.decode` does."""
     for frame in range(ids.shape[0]):
         if flags[frame] & _OTHER_KINDS:
             continue
@@ -222,11 +212,5 @@ def _read(ids, flags, stamps, payloads, wanted, ends, places, counter, state, co
             counts[stream] = at + 1
             times[stream, at] = stamps[frame]
             for entry in range(ends[stream - 1] if stream else 0, ends[stream]):
-                bits, place = _bits(payloads[frame], places[entry]), places[entry]
-                if place[4]:
-                    numbers[entry, at] = single_of(bits) if place[1] == 32 else double_of(bits)
-                else:
-                    raw = np.int64(bits)
-                    if place[2] and raw >> (place[1] - 1):
-                        raw -= 1 << place[1]
-                    numbers[entry, at] = np.float64(raw)
+                number = number_at(payloads[frame], places[entry])
+                values[entry, at] = number * scales[entry, 0] + scales[entry, 1]

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import math
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from drivers.wire import Wire
 from hil.core.clock import Clock
+from hil.core.compiled import compiled
 from hil.core.conventions import TICK_S
 from hil.core.errors import InterruptError
 from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 
 _DRAIN_EVERY = 10
 _STANDARD_IDS = 2048
+_OTHERS = SENT_BY_HOST | EXTENDED | ERROR_FRAME
 
 FrameCallback = Callable[[int, bytes, float], None]
 BlockCallback = Callable[[str, FrameBlock], None]
@@ -96,9 +100,7 @@ class BusLoop:
             InterruptError: the operator asked to stop.
             BenchError: a bus failed.
         """
-        self._wait_for_tick(at_tick)
-        if self._ticks % _DRAIN_EVERY == 0:
-            self.drain()
+        self._pass(1, at_tick)
 
     def resume(self) -> None:
         """Count ticks from now if some have passed unserved: what comes next is not to catch up with them."""
@@ -109,15 +111,46 @@ class BusLoop:
 
     def run_for(self, duration_s: float) -> None:
         """Step for a while."""
-        for _ in range(round(duration_s / TICK_S)):
-            self.step()
+        left = round(duration_s / TICK_S)
+        while left:
+            ticks = min(self._undisturbed(), left)
+            self._pass(ticks)
+            left -= ticks
+
+    def each_tick(
+        self,
+        count: int,
+        send: Callable[[int], None],
+        ahead: Callable[[int, npt.NDArray[np.float64]], bool],
+    ) -> Iterator[int]:
+        """Call `send(k)` first thing in each of `count` ticks; yields how many have passed.
+
+        In virtual time `ahead(k, times_s)` may take those from `k` on up to the next look at the buses at
+        once, each with the time of its tick; it says whether it does.
+        """
+        if not self.clock.virtual:
+            self.resume()
+            send(0)
+            for passed in range(1, count + 1):
+                self.step(partial(send, passed) if passed < count else None)
+                yield passed
+            return
+        passed = 0
+        while passed < count:
+            ticks = min(self._undisturbed(), count - passed)
+            if not ahead(passed, self._next_ticks(ticks)):
+                ticks = 1
+                send(passed)
+            self._pass(ticks)
+            passed += ticks
+            yield passed
 
     def wait_for(self, condition: Callable[[], bool], timeout_s: float) -> bool:
         """Step until `condition` holds; False if it does not within `timeout_s`."""
         for _ in range(max(1, round(timeout_s / TICK_S))):
             if condition():
                 return True
-            self._wait_for_tick()
+            self._wait_for_tick(1)
             self.drain()
         return condition()
 
@@ -138,11 +171,32 @@ class BusLoop:
                 callback(wire.name, block)
             self._dispatch(wire.name, block)
 
-    def _wait_for_tick(self, at_tick: Callable[[], None] | None = None) -> None:
+    def _pass(self, ticks: int, at_tick: Callable[[], None] | None = None) -> None:
+        self._wait_for_tick(ticks, at_tick)
+        if self._ticks % _DRAIN_EVERY == 0:
+            self.drain()
+
+    def _undisturbed(self) -> int:
+        """Ticks that may pass at once: up to the next look at the buses or the next duty, it included."""
+        if not self.clock.virtual:
+            return 1
+        to_duty = (self._next_duty_s - self._anchor_s) / TICK_S - self._since_anchor
+        to_drain = _DRAIN_EVERY - self._ticks % _DRAIN_EVERY
+        return to_drain if to_duty > to_drain else math.ceil(max(1.0, to_duty))
+
+    def _next_ticks(self, count: int) -> npt.NDArray[np.float64]:
+        """Times of ticks, seconds: now, and those that follow."""
+        times = np.arange(self._since_anchor, self._since_anchor + count, dtype=np.float64)
+        times *= TICK_S
+        times += self._anchor_s
+        times[0] = self.clock.now_s()
+        return times
+
+    def _wait_for_tick(self, ticks: int, at_tick: Callable[[], None] | None = None) -> None:
         if self.stop_requested and not self.shielded:
             self.stop_requested = False
             raise InterruptError("stopped by the operator")
-        self._since_anchor += 1
+        self._since_anchor += ticks
         self.tick_s = next_s = self._anchor_s + self._since_anchor * TICK_S
         self.clock.sleep_until(next_s)
         now_s = self.clock.now_s()
@@ -151,7 +205,7 @@ class BusLoop:
         if now_s - next_s > 10 * TICK_S:
             # do not chase lost time: devices time out by themselves
             self._anchor_s, self._since_anchor = now_s, 0
-        self._ticks += 1
+        self._ticks += ticks
         if now_s >= self._next_duty_s:
             self._do_duties(now_s)
 
@@ -164,17 +218,22 @@ class BusLoop:
             self._next_duty_s = min(self._next_duty_s, nearest_s)
 
     def _dispatch(self, name: str, block: FrameBlock) -> None:
-        ids = block["id"]
-        mask = self._wanted[name][ids % _STANDARD_IDS]
-        if not np.count_nonzero(mask):
-            return
-        for frame in block[mask]:
-            if frame["flags"] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
-                continue
-            callback = self._callbacks[name].get(int(frame["id"]))
-            if callback is not None:
-                data = int(frame["data"]).to_bytes(8, "little")[: int(frame["length"])]
-                callback(int(frame["id"]), data, float(frame["time_s"]))
+        found = np.empty(len(block), np.int64)
+        count = _find(block["id"], block["flags"], self._wanted[name], found)
+        for frame in block[found[:count]] if count else ():
+            data = int(frame["data"]).to_bytes(8, "little")[: int(frame["length"])]
+            self._callbacks[name][int(frame["id"])](int(frame["id"]), data, float(frame["time_s"]))
+
+
+@compiled
+def _find(ids, flags, wanted, found):  # type: ignore[no-untyped-def]
+    """Places of the received standard frames whose identifiers are wanted; how many."""
+    count = 0
+    for place in range(len(ids)):
+        if not flags[place] & _OTHERS and wanted[ids[place]]:
+            found[count] = place
+            count += 1
+    return count
 
 
 def _each(works: Iterable[Callable[[], None]]) -> None:

@@ -8,13 +8,25 @@ from typing import Any
 
 import can
 import numpy as np
+import numpy.typing as npt
 
 from drivers.bus_health import BusHealth
 from drivers.echoes import Echoes
 from hil.core.clock import Clock
 from hil.core.errors import BenchError
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
+from hil.core.frames import (
+    ERROR_FRAME,
+    EXTENDED,
+    FRAME,
+    SENT_BY_HOST,
+    FrameBlock,
+    empty_block,
+    frames,
+    inserted,
+    joined,
+)
 from hil.core.printable import printable
+from hil.core.signals import Payloads
 
 _LOG = logging.getLogger(__name__)
 
@@ -80,9 +92,11 @@ class Wire:
         self._stamped = False
         self._left_out: set[str] = set()
         self._sent: list[tuple[float, int, int, int, int]] = []
+        self._sent_ahead: list[FrameBlock] = []
         self._take: Any = getattr(bus, "recv_block", self._take_one_by_one)
         self._take_stamped: Any = getattr(bus, "recv_epoch_block", None)
         self._put: Any = getattr(bus, "send_frame", self._put_message)
+        self._put_ahead: Any = getattr(bus, "send_ahead", None)
 
     def send(self, frame_id: int, data: bytes) -> None:
         """Put one standard data frame on the bus.
@@ -107,20 +121,37 @@ class Wire:
         time_s, frame_id, _, _, payload = self._sent[-1]
         return time_s, frame_id, payload
 
+    @property
+    def takes_ahead(self) -> bool:
+        """Whether frames can be handed over before their time."""
+        return self._put_ahead is not None
+
+    def send_ahead(
+        self, frame_id: int, payloads: Payloads, length: int, times_s: npt.NDArray[np.float64]
+    ) -> None:
+        """Put standard data frames on a bus that `takes_ahead`, each at its time, s of the clock."""
+        self._put_ahead(frame_id, payloads, length, times_s)
+        self._sent_ahead.append(frames(frame_id, payloads, length, times_s, flags=SENT_BY_HOST))
+
     def drain(self) -> FrameBlock:
-        """Every frame that came since the last call, and those sent, in order of time."""
+        """Every frame that came since the last call, in that order, and between them those sent."""
         try:
             block: FrameBlock = self._take_block() if self._take_stamped is not None else self._take()
         except (can.CanError, OSError) as error:
             raise self._failed("receiving", error) from error
+        sent = self._taken_sent()
+        return block if sent is None else inserted(sent, block) if len(block) else sent
+
+    def _taken_sent(self) -> FrameBlock | None:
+        """What was sent since the last call, in order of time."""
+        blocks, self._sent_ahead = self._sent_ahead, []
         if self._sent:
-            sent = np.array(self._sent, FRAME)
+            blocks.append(np.array(self._sent, FRAME))
             self._sent = []
-            if not len(block):
-                return sent
-            block = joined([sent, block])
-            block = block[np.argsort(block["time_s"], kind="stable")]
-        return block
+        if len(blocks) < 2:
+            return blocks[0] if blocks else None
+        sent = joined(blocks)
+        return sent[np.argsort(sent["time_s"], kind="stable")]
 
     @property
     def remarks(self) -> list[str]:
@@ -159,7 +190,7 @@ class Wire:
         return self.echoes.others(block) if self.echoes else block
 
     def _take_one_by_one(self) -> FrameBlock:
-        frames = []
+        found = []
         while (message := self._bus.recv(0)) is not None:
             data = message.data
             if message.is_error_frame:
@@ -179,8 +210,8 @@ class Wire:
                 and self.echoes.take(stamp_s, message.arbitration_id, payload)
             ):
                 continue
-            frames.append((stamp_s, message.arbitration_id, flags, len(data), payload))
-        return np.array(frames, FRAME) if frames else empty_block()
+            found.append((stamp_s, message.arbitration_id, flags, len(data), payload))
+        return np.array(found, FRAME) if found else empty_block()
 
     def _bench_time(self, stamp: float) -> float:
         if not self._stamped:

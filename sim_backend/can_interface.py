@@ -6,6 +6,7 @@ from typing import Any
 
 import can
 import numpy as np
+import numpy.typing as npt
 
 from hil.core.frames import FrameBlock
 from sim_backend.bench import DYNO_BUS, RMCU_BUS, SimulatedBench
@@ -31,8 +32,8 @@ def attached(name: str) -> SimulatedBench:
 class SimulatedBus(can.BusABC):
     """One bus of a simulated bench. Waiting for a frame makes the bench's virtual time pass.
 
-    Beside python-can's interface it has `recv_block`, which gives all waiting frames, and `send_frame`,
-    which needs no message object; message by message gives the same frames.
+    Beside python-can's interface it has `recv_block`, which gives all waiting frames, `send_frame`, which
+    needs no message object, and `send_ahead`; message by message gives the same frames.
     """
 
     def __init__(self, channel: str, **kwargs: Any) -> None:
@@ -58,6 +59,16 @@ class SimulatedBus(can.BusABC):
     def send_frame(self, frame_id: int, data: bytes) -> None:
         """Put a standard data frame on the bus."""
         self._bench.put(self._bus, frame_id, data)
+
+    def send_ahead(
+        self,
+        frame_id: int,
+        payloads: npt.NDArray[np.uint64],
+        length: int,
+        times_s: npt.NDArray[np.float64],
+    ) -> None:
+        """Put standard data frames on the bus, each at its time, s of the bench's clock, in order."""
+        self._bench.put_ahead(self._bus, frame_id, payloads, length, times_s)
 
     def recv_block(self) -> FrameBlock:
         """All frames that arrived until now."""

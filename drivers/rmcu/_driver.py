@@ -20,6 +20,7 @@ from hil.core.dbc import Dbc, Names, Needed, read_dbc
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import newest_of
 from hil.core.printable import printable
+from hil.core.signals import Payloads
 
 MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
 _COUNTER_VALUES = 16
@@ -167,18 +168,23 @@ class RmcuDriver:
                 found.findings.append(Finding("fault", what, where, fix))
         return found
 
-    def requests(self, mode: str, values_nm: npt.NDArray[np.float64]) -> list[bytes]:
+    def requests(self, mode: str, values_nm: npt.NDArray[np.float64]) -> Payloads:
         """Payloads of consecutive request frames (N m), with counter and CRC, to be sent one each tick."""
         counters = (self._counter + np.arange(len(values_nm))) % _COUNTER_VALUES
         self._counter = (self._counter + len(values_nm)) % _COUNTER_VALUES
         payloads = self._request.encode(Counter=counters, Mode=MODES[mode], TorqueRequest=values_nm)
         payloads |= self._request.signals["Crc"].encode(crc8_many(self._request.id, payloads))
-        raw = np.ascontiguousarray(payloads, "<u8").tobytes()
-        return [raw[i : i + self._request.length] for i in range(0, len(raw), 8)]
+        return payloads
 
-    def send(self, payload: bytes) -> None:
+    def send(self, payload: int) -> None:
         """Send one payload made by `requests`."""
-        self._wire.send(self._request.id, payload)
+        self._wire.send(self._request.id, int(payload).to_bytes(8, "little")[: self._request.length])
+
+    def send_ahead(self, payloads: Payloads, times_s: npt.NDArray[np.float64]) -> bool:
+        """Hand over payloads made by `requests`, each with its time; False if the wire takes none ahead."""
+        if self._wire.takes_ahead:
+            self._wire.send_ahead(self._request.id, payloads, self._request.length, times_s)
+        return self._wire.takes_ahead
 
     def make_safe(self) -> None:
         """Ask for torque off, now."""

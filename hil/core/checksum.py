@@ -34,17 +34,23 @@ def crc8(frame_id: int, payload: int) -> int:
 
 def crc8_many(frame_id: int, payloads: npt.NDArray[np.uint64]) -> npt.NDArray[np.uint64]:
     """`crc8` of many payloads."""
-    return np.asarray(_crc_of_each(frame_id, payloads, _ARRAY))
+    return np.asarray(_crc_of_each(frame_id, payloads))
 
 
 @compiled
-def _crc_of_each(frame_id, payloads, table):  # type: ignore[no-untyped-def]
+def crc8_of(frame_id, payload):  # type: ignore[no-untyped-def]
+    """`crc8`, for compiled code."""
+    crc = _ARRAY[_START ^ (frame_id & 0xFF)]
+    word = np.uint64(payload)
+    for _ in range(7):
+        crc = _ARRAY[crc ^ np.uint8(word & np.uint64(0xFF))]
+        word >>= np.uint64(8)
+    return np.uint64(crc ^ np.uint8(_FINAL))
+
+
+@compiled
+def _crc_of_each(frame_id, payloads):  # type: ignore[no-untyped-def]
     found = np.empty(payloads.shape[0], np.uint64)
     for i in range(payloads.shape[0]):
-        crc = table[_START ^ (frame_id & 0xFF)]
-        word = payloads[i]
-        for _ in range(7):
-            crc = table[crc ^ np.uint8(word & np.uint64(0xFF))]
-            word >>= np.uint64(8)
-        found[i] = crc ^ np.uint8(_FINAL)
+        found[i] = crc8_of(frame_id, payloads[i])
     return found

@@ -9,6 +9,11 @@ from typing import Protocol
 class Clock(Protocol):
     """What the engine and the drivers know of time."""
 
+    @property
+    def virtual(self) -> bool:
+        """Whether waiting only means computing, so that several ticks may pass in one call."""
+        ...
+
     def now_s(self) -> float:
         """Seconds since the bench was opened."""
         ...
@@ -25,6 +30,8 @@ class WallClock:
         scale: seconds of this clock in a second of real time; less than 1 for a simulated bench in a process
             of its own that cannot keep up.
     """
+
+    virtual = False
 
     def __init__(self, scale: float = 1.0) -> None:
         self._start, self._scale = time.monotonic(), scale

@@ -39,6 +39,11 @@ def compiled(function: _F) -> Any:
     return _cached(function)
 
 
+def compiled_exactly(function: _F) -> Any:
+    """Compile `function` with numba so that it rounds as Python does."""
+    return _cached(function, fastmath=False)
+
+
 def inlined(function: _F) -> Any:
     """Compile `function` into each of its callers."""
     return _cached(function, inline="always")
@@ -56,7 +61,7 @@ def depends_on(digest: str) -> None:
 
 
 def _cached(function: _F, **options: Any) -> Any:
-    dispatcher = njit(error_model="numpy", fastmath=FAST, **options)(function)
+    dispatcher = njit(**{"error_model": "numpy", "fastmath": FAST, **options})(function)
     dispatcher._cache = _Cache(function)
     return dispatcher
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.compiled import compiled
+
 #: time_s: seconds on the bench clock · id: CAN identifier · flags: see below · length: bytes used of data
 #: data: the payload as a little-endian 64-bit number (byte 0 of the frame is the lowest)
 FRAME = np.dtype([("time_s", "<f8"), ("id", "<u4"), ("flags", "u1"), ("length", "u1"), ("data", "<u8")])
@@ -28,6 +30,48 @@ def joined(blocks: list[FrameBlock]) -> FrameBlock:
     return np.frombuffer(bytearray().join([block.tobytes() for block in blocks]), FRAME)
 
 
+def frames(
+    frame_id: int,
+    payloads: int | npt.NDArray[np.uint64],
+    length: int,
+    times_s: float | npt.NDArray[np.float64],
+    *,
+    flags: int = 0,
+) -> FrameBlock:
+    """Frames of one identifier, each with its payload and time (s); of one length."""
+    block = np.empty(np.size(payloads), FRAME)
+    block["time_s"], block["data"] = times_s, payloads
+    block["id"], block["flags"], block["length"] = frame_id, flags, length
+    return block
+
+
+def inserted(sent: FrameBlock, came: FrameBlock) -> FrameBlock:
+    """Frames that came, in the order in which they came, and between them those sent, by their time.
+
+    A frame that was sent stands before the first one that, by its stamp or that of one before it, was later.
+    """
+    both = np.empty(len(sent) + len(came), FRAME)
+    _insert(_bytes(sent), sent["time_s"], _bytes(came), came["time_s"], _bytes(both))
+    return both
+
+
+def _bytes(block: FrameBlock) -> npt.NDArray[np.uint8]:
+    return np.ndarray((len(block), FRAME.itemsize), np.uint8, np.ascontiguousarray(block))
+
+
+@compiled
+def _insert(sent, sent_s, came, came_s, both):  # type: ignore[no-untyped-def]
+    latest_s, done = -np.inf, 0
+    for i in range(len(came)):
+        latest_s = max(latest_s, came_s[i])
+        while done < len(sent) and sent_s[done] <= latest_s:
+            both[i + done] = sent[done]
+            done += 1
+        both[i + done] = came[i]
+    for rest in range(done, len(sent)):
+        both[len(came) + rest] = sent[rest]
+
+
 def standard(block: FrameBlock) -> FrameBlock:
     """The data frames with an 11-bit identifier: an extended one of the same number is another message."""
     other = block["flags"] & (EXTENDED | ERROR_FRAME)
@@ -41,12 +85,19 @@ def newest(block: FrameBlock, frame_id: int) -> tuple[float, int] | None:
 
 def newest_of(block: FrameBlock, frame_ids: tuple[int, ...]) -> list[tuple[float, int] | None]:
     """Time and payload of the last received frame with each of these identifiers; else None."""
-    ids, flags = block["id"].tolist(), block["flags"]
-    found: list[tuple[float, int] | None] = []
-    for frame_id in frame_ids:
-        found.append(None)
-        for index in range(len(ids) - 1, -1, -1):
-            if ids[index] == frame_id and not flags[index] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
-                found[-1] = float(block["time_s"][index]), int(block["data"][index])
+    places = _last(block["id"], block["flags"], frame_ids)
+    return [
+        (float(block["time_s"][place]), int(block["data"][place])) if place >= 0 else None for place in places
+    ]
+
+
+@compiled
+def _last(ids, flags, wanted):  # type: ignore[no-untyped-def]
+    """Where the last received frame with each identifier stands, -1: nowhere."""
+    found = [-1 for _ in wanted]
+    for entry in range(len(wanted)):
+        for place in range(len(ids) - 1, -1, -1):
+            if ids[place] == wanted[entry] and not flags[place] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
+                found[entry] = place
                 break
     return found

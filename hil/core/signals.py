@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
+from hil.core.compiled import compiled, compiled_exactly
 from hil.core.printable import printable
 
 if TYPE_CHECKING:
@@ -45,8 +45,13 @@ class Signal:
         """Smallest and largest physical value that fits."""
         if self.is_float:
             return (-np.inf, np.inf)
-        ends = [count * self.scale + self.offset for count in self._counts]
+        ends = [count * self.scale + self.offset for count in self.counts]
         return (min(ends), max(ends))
+
+    @property
+    def place(self) -> tuple[int, int, bool, bool, bool]:
+        """Where and how its number lies, for compiled code."""
+        return (self.shift, self.length, self.signed, self.big_endian, self.is_float)
 
     def raw(self, payload: int) -> int:
         """Unsigned raw value in one payload."""
@@ -87,22 +92,52 @@ class Signal:
             words = numbers.view(bits).astype(np.uint64) << np.uint64(self.shift)
         else:
             words = np.empty(len(physical), np.uint64)
-            low, high = self._counts
+            low, high = self.counts
             _pack(physical, self.scale, self.offset, low, high, self.shift, self.length, words)
         return words.byteswap() if self.big_endian else words
 
     @cached_property
-    def _counts(self) -> tuple[float, float]:
+    def counts(self) -> tuple[float, float]:
+        """Smallest and largest number that fits, unscaled; of a float its bits', which limit nothing."""
+        if self.is_float:
+            return -np.inf, np.inf
         low = -(1 << (self.length - 1)) if self.signed else 0
         return float(low), float(low + (1 << self.length) - 1)
 
 
-@compiled
+@compiled_exactly
 def _pack(values, scale, offset, low, high, shift, length, words):  # type: ignore[no-untyped-def]
     mask = ~np.uint64(0) >> np.uint64(64 - length)
     for i in range(values.shape[0]):
-        count = min(max(np.rint((values[i] - offset) / scale), low), high)
-        words[i] = (np.uint64(np.int64(count)) & mask) << np.uint64(shift)
+        count = _count_of(values[i], scale, offset, low, high)
+        words[i] = (np.uint64(count) & mask) << np.uint64(shift)
+
+
+@compiled_exactly
+def _count_of(value, scale, offset, low, high):  # type: ignore[no-untyped-def]
+    return np.int64(min(max(np.rint((value - offset) / scale), low), high))
+
+
+@compiled_exactly
+def payload_with(value, place, scale, offset, low, high):  # type: ignore[no-untyped-def]
+    """A payload with only one signal set, as `Signal.encode` does; `place`, `low`, `high`: of the signal."""
+    if place[4]:
+        number = (value - offset) / scale
+        word = _bits_of_single(number) if place[1] == 32 else _bits_of_double(number)
+    else:
+        word = np.uint64(_count_of(value, scale, offset, low, high))
+    word = (word & (~np.uint64(0) >> np.uint64(64 - place[1]))) << np.uint64(place[0])
+    return swapped(word) if place[3] else word
+
+
+@compiled
+def _bits_of_single(number):  # type: ignore[no-untyped-def]
+    return np.uint64(np.float32(number).view(np.uint32))
+
+
+@compiled
+def _bits_of_double(number):  # type: ignore[no-untyped-def]
+    return np.float64(number).view(np.uint64)
 
 
 @compiled
@@ -113,6 +148,24 @@ def swapped(word):  # type: ignore[no-untyped-def]
         turned = (turned << np.uint64(8)) | (word & np.uint64(0xFF))
         word >>= np.uint64(8)
     return turned
+
+
+@compiled
+def bits_at(payload, place):  # type: ignore[no-untyped-def]
+    """The bits of a signal, unsigned, for compiled code; `place`: see `Signal.place`."""
+    word = swapped(payload) if place[3] else payload
+    return np.int64((word >> np.uint64(place[0])) & (~np.uint64(0) >> np.uint64(64 - place[1])))
+
+
+@compiled
+def number_at(payload, place):  # type: ignore[no-untyped-def]
+    """The number in a signal, unscaled, for compiled code."""
+    bits = bits_at(payload, place)
+    if place[4]:
+        return single_of(bits) if place[1] == 32 else double_of(bits)
+    if place[2] and bits >> (place[1] - 1):
+        bits -= 1 << place[1]
+    return np.float64(bits)
 
 
 # One `view` a function: numba compiles no more.

@@ -6,7 +6,6 @@ import contextlib
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from functools import partial
 from pathlib import Path
 from typing import Literal, TypeVar
 
@@ -19,6 +18,7 @@ from hil.core.files import write_atomically
 from hil.core.real_time import without_collections
 from hil.core.recording import SEGMENT
 from hil.core.result import RunResult, Segment
+from hil.core.signals import Payloads
 from hil.engine.bench import Bench
 from hil.engine.border import Analyse, analysed_here
 from hil.engine.preflight import Rehearsal
@@ -111,8 +111,8 @@ class BenchConductor:
         sent = 0
         try:
             with contextlib.nullcontext() if self._bench.simulated else without_collections():
-                for _ in self._sent(payloads):
-                    sent += 1
+                for passed in self._played(payloads):
+                    sent = passed
         finally:
             if self._noted:
                 self._noted.rest()
@@ -120,23 +120,25 @@ class BenchConductor:
                 self._end(loop.clock.now_s(), complete=sent >= len(samples_nm))
         self._switch_off()
 
-    def _sent(self, payloads: list[bytes]) -> Iterator[None]:
-        """Send one each tick, before anything that could hold it up; each time that its tick has passed."""
+    def _played(self, payloads: Payloads) -> Iterator[int]:
+        """Send one each tick, before anything that could hold it up; yields how many ticks have passed."""
         rmcu, loop = self._bench.rmcu, self._bench.loop
-        loop.resume()
-        self._send(payloads[0], loop.clock.now_s())
-        for payload in [*payloads[1:], None]:
-            loop.step(None if payload is None else partial(self._send, payload))
+
+        def send(index: int) -> None:
+            meant_s = loop.tick_s if index else loop.clock.now_s()
+            rmcu.send(int(payloads[index]))
+            if self._noted:
+                self._noted.noted(meant_s)
+
+        def ahead(index: int, times_s: Array) -> bool:
+            return rmcu.send_ahead(payloads[index : index + len(times_s)], times_s)
+
+        for passed in loop.each_tick(len(payloads), send, ahead):
             if rmcu.state == "fault":
                 raise BenchError(
                     f"the RMCU went to fault: {rmcu.fault}", where="RMCU", fix="see the recording's events"
                 )
-            yield
-
-    def _send(self, payload: bytes, meant_s: float | None = None) -> None:
-        self._bench.rmcu.send(payload)
-        if self._noted:
-            self._noted.noted(self._bench.loop.tick_s if meant_s is None else meant_s)
+            yield passed
 
     def coast(self, duration_s: float) -> None:
         """No motor torque for a while."""

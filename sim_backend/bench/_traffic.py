@@ -5,14 +5,16 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.checksum import crc8_many
-from hil.core.compiled import compiled
-from hil.core.frames import FRAME, FrameBlock
-from hil.core.signals import FrameLayout, Signal
+from hil.core.checksum import crc8_of
+from hil.core.compiled import compiled_exactly
+from hil.core.conventions import TICK_S
+from hil.core.frames import FRAME, FrameBlock, frames
+from hil.core.signals import FrameLayout, payload_with
 
 #: A frame with the column of a bench row that each of its signals shows.
 Shown = tuple[FrameLayout, dict[str, int]]
 COUNTER = "Counter"
+_NO_CHECKSUM = -1
 
 
 def frame_time_s(length: int, bit_rate: int) -> float:
@@ -25,29 +27,24 @@ class CyclicTraffic:
     """All frames that appear once a sample on one bus, in their order; `crc` frames end in a checksum."""
 
     def __init__(self, shown: list[Shown], bit_rate: int, crc: tuple[int, ...] = ()) -> None:
-        self._layouts = [layout for layout, _ in shown]
-        self._crc = [column for column, layout in enumerate(self._layouts) if layout.id in crc]
-        self._ends_s = np.cumsum([frame_time_s(layout.length, bit_rate) for layout in self._layouts])
-        self._still = np.zeros(len(shown), FRAME)  # what is the same in every sample
-        self._still["id"] = [layout.id for layout in self._layouts]
-        self._still["length"] = [layout.length for layout in self._layouts]
-        places, numbers = [], []
-        self._others: list[tuple[int, int, Signal]] = []  # signals that the compiled loop does not know
-        for message, (layout, columns) in enumerate(shown):
-            for name, column in columns.items():
+        layouts = [layout for layout, _ in shown]
+        self._ends_s = np.cumsum([frame_time_s(layout.length, bit_rate) for layout in layouts])
+        still = np.zeros((1, len(shown)), FRAME)  # what is the same in every sample
+        still["id"] = [layout.id for layout in layouts]
+        still["length"] = [layout.length for layout in layouts]
+        self._still = still.tobytes()
+        self._checked = np.array([i if i in crc else _NO_CHECKSUM for i in still["id"][0].tolist()], np.int64)
+        columns, places, numbers = [], [], []
+        for message, (layout, signals) in enumerate(shown):
+            for name, column in signals.items():
                 signal = layout.signals[name]
-                if signal.is_float or signal.big_endian:
-                    self._others.append((message, column, signal))
-                    continue
-                low = -(1 << (signal.length - 1)) if signal.signed else 0
                 # A counter is not held at its end: its bits let it begin again.
-                ends = (-np.inf, np.inf) if name == COUNTER else (low, low + (1 << signal.length) - 1)
-                places.append((message, column, signal.shift, signal.length))
-                # A counter is not held at its end: its bits let it begin again.
-                numbers.append(
-                    (signal.scale, signal.offset, *((-np.inf, np.inf) if name == COUNTER else ends))
-                )
-        self._places = np.array(places, np.int64).reshape(-1, 4)
+                ends = (-np.inf, np.inf) if name == COUNTER else signal.counts
+                columns.append((message, column))
+                places.append(signal.place)
+                numbers.append((signal.scale, signal.offset, *ends))
+        self._columns = np.array(columns, np.int64).reshape(-1, 2)
+        self._places = np.array(places, np.int64).reshape(-1, 5)
         self._numbers = np.array(numbers, float).reshape(-1, 4)
 
     @property
@@ -55,36 +52,32 @@ class CyclicTraffic:
         """How long the frames of one sample take on the wire."""
         return float(self._ends_s[-1])
 
-    def block(self, rows: npt.NDArray[np.float64], start_s: npt.NDArray[np.float64]) -> FrameBlock:
-        """Frames of the samples that began at `start_s`, in order of time."""
-        block = np.empty((len(rows), len(self._layouts)), FRAME)
-        block[:] = self._still
-        block["time_s"] = start_s[:, None] + self._ends_s
-        payloads = np.zeros((len(rows), len(self._layouts)), np.uint64)
-        _fill(rows, self._places, self._numbers, payloads)
-        for message, column, signal in self._others:
-            values = rows[:, column] % (1 << signal.length) if signal.name == COUNTER else rows[:, column]
-            payloads[:, message] |= signal.encode(values)
-        for column in self._crc:
-            payloads[:, column] |= crc8_many(self._layouts[column].id, payloads[:, column]) << np.uint64(56)
-        block["data"] = payloads
-        return block.reshape(-1)
+    def block(self, rows: npt.NDArray[np.float64], first: int) -> FrameBlock:
+        """Frames of sample `first` and those that follow it, in order of time; one row of the bench each."""
+        block = np.frombuffer(bytearray(self._still * len(rows)), FRAME)
+        _fill(
+            rows, first, TICK_S, self._ends_s, self._checked, self._columns, self._places, self._numbers,
+            block["time_s"].reshape(len(rows), -1), block["data"].reshape(len(rows), -1),
+        )  # fmt: skip
+        return block
 
 
-@compiled
-def _fill(rows, places, numbers, payloads):  # type: ignore[no-untyped-def]
-    for entry in range(places.shape[0]):
-        message, column, shift, length = places[entry]
-        scale, offset, low, high = numbers[entry]
-        mask = ~np.uint64(0) >> np.uint64(64 - length)
-        for i in range(rows.shape[0]):
-            count = min(max(np.rint((rows[i, column] - offset) / scale), low), high)
-            payloads[i, message] |= (np.uint64(np.int64(count)) & mask) << np.uint64(shift)
+@compiled_exactly
+def _fill(rows, first, tick_s, ends_s, checked, columns, places, numbers, times_s, payloads):  # type: ignore[no-untyped-def]
+    for i in range(rows.shape[0]):
+        for message in range(ends_s.shape[0]):
+            times_s[i, message] = (first + i) * tick_s + ends_s[message]
+            payloads[i, message] = 0
+        for entry in range(columns.shape[0]):
+            message, column = columns[entry]
+            scale, offset, low, high = numbers[entry]
+            payloads[i, message] |= payload_with(rows[i, column], places[entry], scale, offset, low, high)
+        for message in range(ends_s.shape[0]):
+            if checked[message] != _NO_CHECKSUM:
+                word = payloads[i, message]
+                payloads[i, message] = word | crc8_of(checked[message], word) << np.uint64(56)
 
 
 def single(frame_id: int, data: bytes, time_s: float) -> FrameBlock:
     """A block of one frame."""
-    block = np.zeros(1, FRAME)
-    block["time_s"], block["id"], block["length"] = time_s, frame_id, len(data)
-    block["data"] = int.from_bytes(data, "little")
-    return block
+    return frames(frame_id, int.from_bytes(data, "little"), len(data), time_s)

@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from hil.core.conventions import TICK_S
 from hil.core.dbc import Names, read_dbc
@@ -28,6 +29,8 @@ RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
 _NOISE_BLOCK = 1000
 _LARGEST_BATCH = 4096
 _NODES_EVERY = 10  # samples between looks at heartbeats: no more are computed at once
+_NO_SAMPLES, _NO_REQUESTS = np.zeros(0, np.int64), np.zeros(0, np.uint64)
+_HEARTBEATS = range(0x701, 0x780)
 _SYNC = FrameLayout("SYNC", 0x80, 0, {})
 
 
@@ -48,6 +51,8 @@ class SimulatedBench:
     `take` is called for its bus. What passes unseen is computed when somebody looks, several samples at once.
     """
 
+    virtual = True
+
     def __init__(self, settings: SimulationSettings) -> None:
         if settings.model.kind == "transfer_function":
             raise BadInputError(
@@ -61,13 +66,11 @@ class SimulatedBench:
         self._due = 0  # samples whose time has come
         self._now_s = 0.0
         self._pending: dict[str, list[FrameBlock]] = {RMCU_BUS: [], DYNO_BUS: []}
-        self._inbox: deque[tuple[int, str, int, bytes]] = deque()  # each with the sample that it comes before
+        # bus, identifier, payload and length, each with the sample that it comes before
+        self._inbox: deque[tuple[int, str, int, int, int]] = deque()
         self._breaks: deque[int] = deque()  # samples before which more comes than a torque request
-        self._asked = (
-            np.zeros(_NODES_EVERY, np.int64),
-            np.zeros(_NODES_EVERY),
-            np.zeros(_NODES_EVERY, np.int64),
-        )
+        self._modes, self._codes = np.zeros(_NODES_EVERY, np.int64), np.zeros(_NODES_EVERY, np.int64)
+        self._requests = np.zeros(_NODES_EVERY)
         self._rows = np.zeros((_LARGEST_BATCH, T.COLUMNS))
         self._first_row = 0
         self._make_state()
@@ -109,9 +112,24 @@ class SimulatedBench:
 
     def put(self, bus: str, frame_id: int, data: bytes) -> None:
         """A host's frame: it reaches the nodes at the next sample."""
-        self._inbox.append((self._due, bus, frame_id, data))
+        self._inbox.append((self._due, bus, frame_id, int.from_bytes(data, "little"), len(data)))
         if frame_id != self._request_id or bus != RMCU_BUS:
             self._breaks.append(self._due)
+
+    def put_ahead(
+        self,
+        bus: str,
+        frame_id: int,
+        payloads: npt.NDArray[np.uint64],
+        length: int,
+        times_s: npt.NDArray[np.float64],
+    ) -> None:
+        """A host's frames of one identifier, each at a time that is now or will come, in order."""
+        samples = ((times_s + 1e-9) / TICK_S).astype(np.int64).tolist()
+        for sample, payload in zip(samples, payloads.tolist(), strict=True):
+            self._inbox.append((sample, bus, frame_id, payload, length))
+        if frame_id != self._request_id or bus != RMCU_BUS:
+            self._breaks.extend(samples)
 
     def take(self, bus: str) -> FrameBlock:
         """All frames that have appeared on `bus` until now and were not taken yet, in order of time."""
@@ -159,6 +177,7 @@ class SimulatedBench:
         for node in self._dynos:
             for subindex, value in enumerate(vehicle, 1):
                 node.preset(0x2000, subindex, value)
+        self._dyno_traffics: dict[tuple[bool, ...], CyclicTraffic] = {}  # by who is operational
         self._rmcu_traffic = self._traffic_of_rmcu()
         self._dyno_traffic = self._traffic_of_dynos()
         self._refuse_slow_buses()
@@ -201,15 +220,9 @@ class SimulatedBench:
 
     def _advance(self, first: int, end: int) -> None:
         """Samples `first` to before `end`; between them nothing but torque requests may come."""
-        modes, requests, codes = (values[: end - first] for values in self._asked)
-        rmcu = self._rmcu
-        for k in range(first, end):
-            if k > first:
-                self._deliver(k)
-            time_s = k * TICK_S
-            rmcu.vehicle_speed_is_fresh(time_s)
-            rmcu.supervise(time_s)
-            modes[k - first], requests[k - first], codes[k - first] = rmcu.mode, rmcu.request, rmcu.code
+        samples = slice(end - first)
+        modes, requests, codes = self._modes[samples], self._requests[samples], self._codes[samples]
+        self._rmcu.follow(first, *self._requests_until(end), modes, requests, codes)
         if first % _NODES_EVERY == 0:
             for node in self._dynos:
                 node.pass_time(first * TICK_S)
@@ -236,18 +249,31 @@ class SimulatedBench:
             self._rows[first - self._first_row :],
         )
 
+    def _requests_until(self, end: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.uint64]]:
+        """The samples before which torque requests come, and these."""
+        inbox, came = self._inbox, []
+        while inbox and inbox[0][0] < end:
+            came.append(inbox.popleft())
+        if not came or self._is_deaf(RMCU_BUS):
+            return _NO_SAMPLES, _NO_REQUESTS
+        return np.array([c[0] for c in came], np.int64), np.array([c[3] for c in came], np.uint64)
+
     def _deliver(self, sample: int) -> None:
         """What hosts sent before `sample`."""
         inbox, time_s = self._inbox, sample * TICK_S
         while inbox and inbox[0][0] <= sample:
-            _, bus, frame_id, data = inbox.popleft()
+            _, bus, frame_id, payload, length = inbox.popleft()
             if self._is_deaf(bus):
                 continue
             if bus == RMCU_BUS:
-                self._rmcu.receive(frame_id, int.from_bytes(data, "little"), time_s)
+                self._rmcu.receive(frame_id, payload, time_s)
+            elif frame_id in _HEARTBEATS:  # they change nothing of what is sent
+                for node in self._dynos:
+                    node.receive(frame_id, payload.to_bytes(8, "little")[:length], time_s)
             else:
                 self._show_measured()
                 self._emit()  # what the nodes send may change from here on
+                data = payload.to_bytes(8, "little")[:length]
                 for node in self._dynos:
                     node.receive(frame_id, data, time_s)
                 self._take_vehicle_model()
@@ -280,7 +306,7 @@ class SimulatedBench:
         self._emit()
         self.faults.add(fault)
         if fault is Fault.RMCU_SILENT:
-            self._rmcu.mode, self._rmcu.request = 0, 0.0
+            self._rmcu.lose_power()
         if fault is Fault.DYNO_SILENT:
             self._dynos[0].switch_off()
         self._rmcu_traffic, self._dyno_traffic = self._traffic_of_rmcu(), self._traffic_of_dynos()
@@ -309,10 +335,9 @@ class SimulatedBench:
         if count == 0:
             return
         rows = self._rows[:count]
-        start_s = np.arange(self._first_row, self._samples, dtype=np.float64) * TICK_S
-        self._pending[RMCU_BUS].append(self._rmcu_traffic.block(rows, start_s))
+        self._pending[RMCU_BUS].append(self._rmcu_traffic.block(rows, self._first_row))
         if self._dyno_traffic:
-            self._pending[DYNO_BUS].append(self._dyno_traffic.block(rows, start_s))
+            self._pending[DYNO_BUS].append(self._dyno_traffic.block(rows, self._first_row))
         self._first_row = self._samples
 
     def _traffic_of_rmcu(self) -> CyclicTraffic:
@@ -347,6 +372,11 @@ class SimulatedBench:
         return self._traffic_with(self._dynos[0].operational, self._dynos[1].operational)
 
     def _traffic_with(self, *operational: bool) -> CyclicTraffic:
+        if operational not in self._dyno_traffics:
+            self._dyno_traffics[operational] = self._made_traffic(operational)
+        return self._dyno_traffics[operational]
+
+    def _made_traffic(self, operational: tuple[bool, ...]) -> CyclicTraffic:
         shown: list[Shown] = [(_SYNC, {})]
         for side, node in enumerate(self._dynos[:2]):
             if operational[side]:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from hil.core.checksum import crc8
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.conventions import TICK_S
 from hil.core.dbc import Dbc, Needed
 from hil.plant.controller import memory as M
 from hil.plant.controller import parameters
+from sim_backend.rmcu import _requests as R
 
-REQUEST_TIMEOUT_S = 0.05
-_COUNTER_VALUES = 16
-_NONE, _TIMEOUT, _COUNTER, _CRC, _VEHICLE_SPEED, _PARAMETERS = range(6)
 _READ, _WRITE, _APPLY = range(3)
 
 # What the emulated RMCU and the dyno controller on its bus put into frames or take from them.
@@ -47,8 +48,8 @@ NEEDED = {
 class RmcuNode:
     """Receives frames and decides on the mode; the control law runs compiled.
 
-    `mode` and `request` are what the control law uses in the next sample; `status` and `control` are the
-    layouts of the frames that show the outcome. Parameters in `held` are used in place of those written.
+    `status` and `control` are the layouts of the frames that show the outcome. Parameters in `held` are used
+    in place of those written.
     """
 
     def __init__(
@@ -56,12 +57,19 @@ class RmcuNode:
     ) -> None:
         self._held = dict(held or {})
         self.memory = M.Memory()
-        self.mode = M.OFF
-        self.request = 0.0
         self._send = send
         self._request = dbc.layouts["RMCU_Request"]
         signals = self._request.signals
-        self._read = signals["Crc"], signals["Counter"], signals["Mode"], signals["TorqueRequest"]
+        torque = signals["TorqueRequest"]
+        places = [signals[name].place for name in ("Crc", "Counter", "Mode")]
+        self._reading = (
+            self._request.id,
+            np.array([*places, torque.place], np.int64),
+            torque.scale,
+            torque.offset,
+        )
+        self._whole = np.array([M.OFF, R.NONE, 0, -1], np.int64)
+        self._real = np.array([0.0, -1.0, -1.0])
         self._write = dbc.layouts["RMCU_ParameterWrite"]
         self._reply = dbc.layouts["RMCU_ParameterReply"]
         self.status = dbc.layouts["RMCU_Status"]
@@ -69,11 +77,21 @@ class RmcuNode:
         names = dbc.texts.get(("RMCU_ParameterWrite", "Index"), {})
         self._names = {index: name for name, index in names.items() if index > 0}
         self._stored: dict[str, float] = {}
-        self._valid = False
-        self._fault = _NONE
-        self._counter: int | None = None
-        self._last_request_s = -1.0
-        self._last_vehicle_s = -1.0
+
+    @property
+    def mode(self) -> int:
+        """Mode of the control law in the next sample."""
+        return int(self._whole[R.MODE])
+
+    @property
+    def request(self) -> float:
+        """Torque that the control law is asked for in the next sample, N m."""
+        return float(self._real[R.REQUEST])
+
+    @property
+    def code(self) -> int:
+        """State, request fault and parameter validity in one number: state | fault << 4 | valid << 8."""
+        return int(self._whole[R.MODE] | self._whole[R.CAUSE] << 4 | self._whole[R.VALID] << 8)
 
     @property
     def identifiers(self) -> tuple[int, ...]:
@@ -83,59 +101,38 @@ class RmcuNode:
     def receive(self, frame_id: int, payload: int, time_s: float) -> None:
         """Take one frame from the bus."""
         if frame_id == self._request.id:
-            self._take_request(payload, time_s)
+            R.take_request(np.uint64(payload), time_s, *self._reading, self._whole, self._real)
         elif frame_id == self._write.id:
             self._serve(payload)
 
     def supervise(self, time_s: float) -> None:
         """Drop to fault, torque zero, when what the mode needs has become old."""
-        if self.mode in (M.OFF, M.FAULT):
-            return
-        if time_s - self._last_request_s > REQUEST_TIMEOUT_S:
-            self._fail(_TIMEOUT)
-        elif self.mode == M.DRIVING_FORCE and time_s - self._last_vehicle_s > REQUEST_TIMEOUT_S:
-            self._fail(_VEHICLE_SPEED)
+        R.supervise(time_s, self._whole, self._real)
 
-    @property
-    def code(self) -> int:
-        """State, request fault and parameter validity in one number: state | fault << 4 | valid << 8."""
-        return self.mode | self._fault << 4 | int(self._valid) << 8
+    def follow(
+        self,
+        first: int,
+        samples: npt.NDArray[np.int64],
+        payloads: npt.NDArray[np.uint64],
+        modes: npt.NDArray[np.int64],
+        requests: npt.NDArray[np.float64],
+        codes: npt.NDArray[np.int64],
+    ) -> None:
+        """Fill in mode, torque request (N m) and code of sample `first` and those that follow it.
 
-    def _take_request(self, payload: int, time_s: float) -> None:
-        crc, count, mode, request = self._read
-        if crc.raw(payload) != crc8(self._request.id, payload):
-            self._fault = _CRC if self._fault == _NONE else self._fault
-            return
-        counter = count.raw(payload)
-        expected = None if self._counter is None else (self._counter + 1) % _COUNTER_VALUES
-        self._counter = counter
-        if expected is not None and counter != expected:
-            self._fault = _COUNTER if self._fault == _NONE else self._fault
-            return
-        self._last_request_s = time_s
-        self._change_mode(mode.raw(payload), time_s)
-        self.request = request.value(payload) if self.mode in (1, 2) else 0.0
+        `payloads`: request frames that come meanwhile, each with the sample before which it comes.
+        """
+        R.follow(
+            first, TICK_S, samples, payloads, *self._reading, self._whole, self._real, modes, requests, codes
+        )
 
-    def _change_mode(self, wanted: int, time_s: float) -> None:
-        if wanted == M.OFF:
-            self.mode, self._fault = M.OFF, _NONE
-        elif self.mode == M.FAULT or wanted > M.DRIVING_FORCE:
-            return  # a fault stays until the bench has asked for 'off'
-        elif wanted == M.DRIVING_FORCE and not self._valid:
-            self._fail(_PARAMETERS)
-        elif wanted == M.DRIVING_FORCE and time_s - self._last_vehicle_s > REQUEST_TIMEOUT_S:
-            self._fail(_VEHICLE_SPEED)
-        else:
-            self.mode = wanted
-            if self._fault in (_CRC, _COUNTER):
-                self._fault = _NONE
-
-    def _fail(self, fault: int) -> None:
-        self.mode, self.request, self._fault = M.FAULT, 0.0, fault
+    def lose_power(self) -> None:
+        """Off, without a torque request."""
+        self._whole[R.MODE], self._real[R.REQUEST] = M.OFF, 0.0
 
     def vehicle_speed_is_fresh(self, time_s: float) -> None:
         """The dyno controller's cyclic vehicle speed arrived at `time_s`."""
-        self._last_vehicle_s = time_s
+        self._real[R.VEHICLE_S] = time_s
 
     def _serve(self, payload: int) -> None:
         signals = self._write.signals
@@ -159,12 +156,12 @@ class RmcuNode:
         if not parameters.in_range(name, value):
             return parameters.OUT_OF_RANGE
         self._stored[name] = value
-        self._valid = False
+        self._whole[R.VALID] = 0
         return parameters.OK
 
     def _apply(self) -> int:
         if self.mode != M.OFF:
             return parameters.NOT_OFF
         result = parameters.build(self._stored | self._held, self.memory)
-        self._valid = result == parameters.OK
+        self._whole[R.VALID] = result == parameters.OK
         return result

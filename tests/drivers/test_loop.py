@@ -13,7 +13,9 @@ from hil.core.errors import BenchError
 
 
 class CountingClock:
-    """Time that passes only while somebody waits for it."""
+    """Time that passes only while somebody waits for it, tick by tick."""
+
+    virtual = False
 
     def __init__(self) -> None:
         self.time_s = 0.0

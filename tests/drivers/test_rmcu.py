@@ -54,9 +54,11 @@ def test_a_silent_rmcu_is_named():
 
 def test_counters_go_on_from_block_to_block():
     with running("counters") as bench:
-        payloads = bench.rmcu.requests("motor_torque", np.zeros(10))
-        payloads += bench.rmcu.requests("off", np.zeros(10))
-        counters = [payload[0] & 15 for payload in payloads]
+        payloads = [
+            *bench.rmcu.requests("motor_torque", np.zeros(10)),
+            *bench.rmcu.requests("off", np.zeros(10)),
+        ]
+        counters = [int(payload) & 15 for payload in payloads]
         assert counters == [(counters[0] + i) % 16 for i in range(20)]
 
 

@@ -36,14 +36,16 @@ def jitter(monkeypatch: pytest.MonkeyPatch) -> None:
     random = np.random.default_rng(7)
     put = SimulatedBench.put
 
+    latest_s: dict[SimulatedBench, float] = {}
+
     def late(self: SimulatedBench, bus: str, frame_id: int, data: bytes) -> None:
-        put(self, bus, frame_id, data)
-        if bus == "rmcu" and frame_id == self._request_id:
-            due = self._inbox.pop()[0]
-            before = self._inbox[-1][0] if self._inbox else 0
-            self._inbox.append(
-                (max(before, due + int(random.integers(0, _LATEST_MS + 1))), bus, frame_id, data)
-            )
+        if bus != "rmcu" or frame_id != self._request_id:
+            put(self, bus, frame_id, data)
+            return
+        due_s = self.now_s() + 1e-3 * int(random.integers(0, _LATEST_MS + 1))
+        latest_s[self] = max(due_s, latest_s.get(self, 0.0))
+        payload = np.array([int.from_bytes(data, "little")], np.uint64)
+        self.put_ahead(bus, frame_id, payload, len(data), np.array([latest_s[self]]))
 
     monkeypatch.setattr(SimulatedBench, "put", late)
 

@@ -17,6 +17,8 @@ PERIOD_S = 0.001
 class AtHand:
     """A clock that is set by hand."""
 
+    virtual = False
+
     def __init__(self) -> None:
         self.time_s = 0.0
 

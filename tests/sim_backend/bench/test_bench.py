@@ -82,6 +82,29 @@ def drive(bench):
     return seen
 
 
+@pytest.mark.parametrize("count", [1, 7, 10, 333])
+def test_requests_handed_over_ahead_are_those_sent_one_each_tick(count: int) -> None:
+    torque_nm = 10 * np.sin(np.arange(count) * 0.01)
+
+    def frames_of(name: str, ahead: bool) -> list[tuple[str, bytes]]:
+        seen = []
+        with running(name) as bench:
+            bench.loop.on_block(lambda bus, block: seen.append((bus, block.tobytes())))
+            bench.dyno.enable(10.0)
+            bench.loop.run_for(0.0037)  # in mid-stretch
+            if ahead:
+                assert list(bench.rmcu.play("motor_torque", torque_nm))[-1] == count
+            else:
+                for payload in bench.rmcu.requests("motor_torque", torque_nm):
+                    bench.rmcu.send(payload)
+                    bench.loop.step()
+            for _ in range(100):  # past the RMCU's time-out
+                bench.loop.step()
+        return seen
+
+    assert frames_of("ahead", True) == frames_of("each", False)
+
+
 def test_the_same_seed_gives_the_same_bytes_and_another_seed_others():
     with running("a") as bench:
         first = drive(bench)
