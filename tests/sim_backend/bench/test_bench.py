@@ -92,12 +92,13 @@ def test_requests_handed_over_ahead_are_those_sent_one_each_tick(count: int) -> 
             bench.loop.on_block(lambda bus, block: seen.append((bus, block.tobytes())))
             bench.dyno.enable(10.0)
             bench.loop.run_for(0.0037)  # in mid-stretch
-            if ahead:
-                assert list(bench.rmcu.play("motor_torque", torque_nm))[-1] == count
-            else:
-                for payload in bench.rmcu.requests("motor_torque", torque_nm):
-                    bench.rmcu.send(payload)
-                    bench.loop.step()
+            payloads, rmcu = bench.rmcu.requests("motor_torque", torque_nm), bench.rmcu
+            ticks = bench.loop.each_tick(
+                count,
+                lambda k: rmcu.send(payloads[k]),
+                lambda k, times_s: ahead and rmcu.send_ahead(payloads[k : k + len(times_s)], times_s),
+            )
+            assert list(ticks)[-1] == count
             for _ in range(100):  # past the RMCU's time-out
                 bench.loop.step()
         return seen
