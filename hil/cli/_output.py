@@ -7,7 +7,7 @@ import json
 import logging
 import math
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from rich.console import Console
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from hil.core.recording import Recording
 
 logger = logging.getLogger(__name__)
+
+_COMPILING = "compiling for this machine, once: a minute or two"
+_COMPILER = "hil.core.compiled"  # named here, for importing it takes longer than most commands
 
 _STYLE: dict[CriterionVerdict, str] = {
     "pass": "green",
@@ -103,7 +106,26 @@ def _bar(description: str, log: Show) -> Iterator[Show]:
             log(text, share)
             bar.update(task, total=None if share is None else 1.0, completed=share or 0.0, now=text)
 
-        yield show
+        waits = _Waits(lambda: bar.update(task, now=_COMPILING))
+        compiler = logging.getLogger(_COMPILER)
+        compiler.addHandler(waits)
+        try:
+            yield show
+        finally:
+            compiler.removeHandler(waits)
+
+
+class _Waits(logging.Handler):
+    """Says why nothing moves for a while: the simulation is being compiled."""
+
+    def __init__(self, say: Callable[[], None]) -> None:
+        super().__init__(logging.INFO)
+        self._say = say
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Whatever is compiled."""
+        del record
+        self._say()
 
 
 def print_criteria(page: Console, criteria: tuple[CriterionResult, ...]) -> None:
