@@ -11,6 +11,8 @@ from hil.core.compiled import compiled
 #: data: the payload as a little-endian 64-bit number (byte 0 of the frame is the lowest)
 FRAME = np.dtype([("time_s", "<f8"), ("id", "<u4"), ("flags", "u1"), ("length", "u1"), ("data", "<u8")])
 
+_OPAQUE = np.dtype((np.void, FRAME.itemsize))  # numpy takes structured values out field by field
+
 EXTENDED = 1
 SENT_BY_HOST = 2
 ERROR_FRAME = 4
@@ -50,26 +52,22 @@ def inserted(sent: FrameBlock, came: FrameBlock) -> FrameBlock:
 
     A frame that was sent stands before the first one that, by its stamp or that of one before it, was later.
     """
-    both = np.empty(len(sent) + len(came), FRAME)
-    _insert(_bytes(sent), sent["time_s"], _bytes(came), came["time_s"], _bytes(both))
-    return both
-
-
-def _bytes(block: FrameBlock) -> npt.NDArray[np.uint8]:
-    return np.ndarray((len(block), FRAME.itemsize), np.uint8, np.ascontiguousarray(block))
+    order = np.empty(len(sent) + len(came), np.int64)
+    _merge(sent["time_s"], came["time_s"], order)
+    return np.ndarray(len(order), FRAME, joined([sent, came]).view(_OPAQUE).take(order))
 
 
 @compiled
-def _insert(sent, sent_s, came, came_s, both):  # type: ignore[no-untyped-def]
+def _merge(sent_s, came_s, order):  # type: ignore[no-untyped-def]
     latest_s, done = -np.inf, 0
-    for i in range(len(came)):
-        latest_s = max(latest_s, came_s[i])
-        while done < len(sent) and sent_s[done] <= latest_s:
-            both[i + done] = sent[done]
+    for place in range(len(came_s)):
+        latest_s = max(latest_s, came_s[place])
+        while done < len(sent_s) and sent_s[done] <= latest_s:
+            order[place + done] = done
             done += 1
-        both[i + done] = came[i]
-    for rest in range(done, len(sent)):
-        both[len(came) + rest] = sent[rest]
+        order[place + done] = len(sent_s) + place
+    for rest in range(done, len(sent_s)):
+        order[len(came_s) + rest] = rest
 
 
 def standard(block: FrameBlock) -> FrameBlock:
