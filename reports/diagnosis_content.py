@@ -43,7 +43,7 @@ _FIGURES = {
 def headline(found: Diagnosis) -> str:
     """The verdict in one line."""
     if found.unfinished:
-        return "Unfinished: the search was interrupted"
+        return f"Unfinished: {found.unfinished}"
     names = ", ".join(EFFECTS[e.use.id].title.lower() for e in found.effects)
     return _HEADLINES[found.verdict].format(names=names)
 

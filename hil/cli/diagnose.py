@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from hil.analysis.diagnosis import LEAST_SAMPLES, Diagnosis, diagnose
+from hil.analysis.diagnosis import INTERRUPTED, LEAST_SAMPLES, Diagnosis, diagnose
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_numbers import named_numbers
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
@@ -30,6 +30,7 @@ def carry_out(
     holdout: list[Path] | None,
     noise: list[str] | None,
     least: list[str] | None,
+    at_most: float,
     overwrite: bool,
     json_: bool,
 ) -> int:
@@ -42,8 +43,11 @@ def carry_out(
         with progress("diagnosis") as show:
             read = _read(recordings, show)
             held = _read(holdout or [], show)
-            found = diagnose(base, read, held, noise=known, least=smallest, show=show)
-            if found.unfinished:
+            found = diagnose(
+                base, read, held, noise=known, least=smallest, at_most_s=60.0 * at_most, show=show
+            )
+            interrupted = found.unfinished == INTERRUPTED
+            if interrupted:
                 INTERRUPTS.answered()
             show("writing the report")
             files = output_files(found, model.name)
@@ -52,7 +56,7 @@ def carry_out(
         print_json(_summary(found, files))
     else:
         print(text_of(found, out))
-    return EXIT_CODE if found.unfinished else 0
+    return EXIT_CODE if interrupted else 0
 
 
 def _summary(found: Diagnosis, files: Iterable[str]) -> dict[str, Any]:
@@ -107,7 +111,7 @@ def output_files(found: Diagnosis, title: str) -> dict[str, bytes]:
 
 def text_of(found: Diagnosis, out: Path) -> str:
     """What a person reads."""
-    unfinished = " (unfinished: interrupted, this is what was known by then)" if found.unfinished else ""
+    unfinished = f" (unfinished: {found.unfinished}; what was known by then)" if found.unfinished else ""
     lines = [f"verdict: {found.verdict}{unfinished}"]
     for e in found.effects:
         values = ", ".join(

@@ -7,6 +7,7 @@ from hil.analysis.diagnosis.data._thresholds import LEAST_SAMPLES
 from hil.analysis.diagnosis.data._trace import unbroken
 from hil.analysis.diagnosis.search._thresholds import BOOTSTRAP_DRAWS
 from hil.analysis.diagnosis.tell._result import (
+    INTERRUPTED,
     Alternative,
     Considered,
     Diagnosis,
@@ -19,6 +20,7 @@ __all__ = [
     "BANDS_HZ",
     "BOOTSTRAP_DRAWS",
     "CONDITIONS",
+    "INTERRUPTED",
     "LEAST_SAMPLES",
     "Alternative",
     "ChannelGap",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -16,22 +17,30 @@ from hil.core.errors import BadInputError
 class Asked:
     """`noise`: standard deviation of a sample that a channel's sensor is known to have, by channel.
 
-    `least`: smallest size worth a name, by effect, in the unit of its first number.
+    `least`: smallest size worth a name, by effect, in the unit of its first number. `at_most_s`: processor
+    time that the search may take, s.
     """
 
     noise: dict[str, float]
     least: dict[str, float]
+    at_most_s: float = math.inf
 
     @classmethod
-    def checked(cls, noise: Mapping[str, float], least: Mapping[str, float]) -> Asked:
+    def checked(
+        cls, noise: Mapping[str, float], least: Mapping[str, float], at_most_s: float = math.inf
+    ) -> Asked:
         """What was asked.
 
         Raises:
-            BadInputError: no such channel or effect, or a number that is no noise or size.
+            BadInputError: no such channel or effect, or a number that is no noise, size or time.
         """
+        if not at_most_s > 0.0:
+            raise BadInputError(
+                f"{at_most_s / 60.0:g} is no time to search in", where="--at-most", fix="give minutes above 0"
+            )
         _refuse(noise, OUTPUTS, ("--noise", "channel", "standard deviation"))
         _refuse(least, tuple(EFFECTS), ("--least", "effect", "size"))
-        return cls(dict(noise), dict(least))
+        return cls(dict(noise), dict(least), at_most_s)
 
 
 def _refuse(given: Mapping[str, float], known: tuple[str, ...], words: tuple[str, str, str]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -10,19 +11,21 @@ from hil.analysis.diagnosis._asked import Asked
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
 from hil.analysis.diagnosis.data._sanity import examined
 from hil.analysis.diagnosis.data._thresholds import COARSE_SAMPLE_S
+from hil.analysis.diagnosis.fit._allowance import UNBOUNDED, Allowance, OutOfTimeError
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, untold
-from hil.analysis.diagnosis.fit._problem import problem_of
+from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._from_base import search_from_base
-from hil.analysis.diagnosis.search._search import Found
+from hil.analysis.diagnosis.search._search import Found, begun, so_far
 from hil.analysis.diagnosis.tell._confidence import drop_of
 from hil.analysis.diagnosis.tell._judged import Judged
-from hil.analysis.diagnosis.tell._result import Diagnosis, Verdict
+from hil.analysis.diagnosis.tell._result import INTERRUPTED, OUT_OF_TIME, Diagnosis, Verdict
 from hil.analysis.diagnosis.tell._verdict import verdict_of
 from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.errors import BadInputError
-from hil.core.model import Model
+from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 
 
@@ -33,6 +36,7 @@ def diagnose(
     *,
     noise: Mapping[str, float] | None = None,
     least: Mapping[str, float] | None = None,
+    at_most_s: float = math.inf,
     show: Callable[[str], None] = lambda text: None,
 ) -> Diagnosis:
     """Say which effects `model` lacks to explain `recordings`, and by how much they close the gap.
@@ -42,10 +46,11 @@ def diagnose(
         holdout: recordings that no fit sees, only the final figures.
         noise: standard deviation of a sample that a channel's sensor is known to have, by channel.
         least: smallest size of an effect that is worth a name, by effect; others have sizes of their own.
+        at_most_s: processor time of the search, s; what it knows by then is told as `unfinished`.
         show: told what is going on.
 
-    An interrupt (KeyboardInterrupt) ends the search, and what is known by then is told as `unfinished`;
-    before anything is known, and while it is told, it is raised.
+    An interrupt (KeyboardInterrupt) ends the search likewise; before anything is known, and while it is
+    told, it is raised.
 
     Raises:
         BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
@@ -58,7 +63,7 @@ def diagnose(
             fix="give the chain that `hil identify` writes as physical.toml",
         )
     refuse_same_data(recordings, holdout)
-    asked = Asked.checked(noise or {}, least or {})
+    asked = Asked.checked(noise or {}, least or {}, at_most_s)
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
         return _diagnosed(model, recordings, holdout, asked, show)
 
@@ -84,16 +89,19 @@ def _diagnosed(
     ]
     rounded = grids(traces, noise)
     ratio = model.parameters["gear_ratio"]
-    problem = problem_of(traces, coarse_noise(noise, rounded), ratio, floor=noise, stated=asked.noise)
-    hypothesis = Hypothesis(model, held=untold(traces))
-    known: list[Found] = []
-    unfinished = False
-    try:
-        found = search_from_base(problem, hypothesis, show, rounded, known)
-    except KeyboardInterrupt:
-        if not known:
-            raise
-        found, unfinished = min(known, key=lambda one: one.evidence.left(one.best)), True
+    allowance = Allowance(asked.at_most_s)
+    problem = problem_of(
+        traces,
+        coarse_noise(noise, rounded),
+        ratio,
+        floor=noise,
+        stated=asked.noise,
+        allowance=allowance,
+    )
+    found, unfinished = _searched(problem, Hypothesis(model, held=untold(traces)), rounded, show)
+    allowance.lift()
+    if unfinished == OUT_OF_TIME:
+        unfinished = f"{asked.at_most_s / 60.0:.3g} min of processor time were up (--at-most)"
     problem = problem.with_angles(found.best.angles)
     show("judging")
     verdict: Verdict = "unknown" if unfinished else verdict_of(found, bool(rounded))
@@ -104,6 +112,23 @@ def _diagnosed(
             verdict = "none" if found.evidence.closed(found.base) else "unknown"
     if verdict == "named":
         found.best = reweighted(problem, found.best)
-    judged = Judged(problem, found, verdict, held, by_chance, asked.least)
-    told = judged.diagnosis(rounded, notes, time.perf_counter() - began)
-    return replace(told, unfinished=unfinished)
+    judged = Judged(problem, found, verdict, held, by_chance, asked.least, unfinished)
+    return judged.diagnosis(rounded, notes, time.perf_counter() - began)
+
+
+def _searched(
+    problem: Problem, hypothesis: Hypothesis, rounded: list[EffectUse], show: Callable[[str], None]
+) -> tuple[Found, str]:
+    """What is found, and why the search ended before it was through, if it did."""
+    known: list[Found] = []
+    try:
+        return search_from_base(problem, hypothesis, show, rounded, known), ""
+    except KeyboardInterrupt:
+        if not known:
+            raise
+        return so_far(known), INTERRUPTED
+    except OutOfTimeError:
+        if not known:  # nothing was fitted yet: the model as it came
+            free = replace(problem, allowance=UNBOUNDED)
+            known.append(begun(free, fit(free, hypothesis, rounds=0), rounded))
+        return so_far(known), OUT_OF_TIME

@@ -40,6 +40,14 @@ def command(
             help="Smallest size of an effect that is worth a name, in its own unit; repeatable.",
         ),
     ] = None,
+    at_most: Annotated[
+        float,
+        typer.Option(
+            "--at-most",
+            metavar="MINUTES",
+            help="Processor time of the search; then what is known so far is told, as unfinished.",
+        ),
+    ] = 5.0,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an earlier diagnosis in --out.")
     ] = False,
@@ -58,6 +66,7 @@ def command(
         holdout=holdout,
         noise=noise,
         least=least,
+        at_most=at_most,
         overwrite=overwrite,
         json_=json_,
     )

@@ -48,7 +48,11 @@ def _coarser(problem: Problem, seconds: float) -> Problem | None:
     if block <= finest.block or min(len(t.samples) for t in problem.traces) < COARSE_BLOCKS * block:
         return None
     return problem_of(
-        _with_block(problem.traces, block), problem.noise, problem.gear_ratio, floor=problem.floor
+        _with_block(problem.traces, block),
+        problem.noise,
+        problem.gear_ratio,
+        floor=problem.floor,
+        allowance=problem.allowance,
     )
 
 

@@ -13,6 +13,7 @@ from scipy.signal import lfilter
 from hil.analysis.diagnosis.data._proven import proven_noise
 from hil.analysis.diagnosis.data._thresholds import LITTLE_TORQUE
 from hil.analysis.diagnosis.data._trace import Trace
+from hil.analysis.diagnosis.fit._allowance import UNBOUNDED, Allowance
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._normal import Normal, normal_equations
@@ -55,7 +56,8 @@ class Problem:
     it. `misfit` is the variance of an error, in noise variances, that weighs what is known beforehand of a
     model's numbers: beside errors a thousand times the noise it would say nothing, and what the recordings
     do not tell would run away. `proven` is the largest power, (3,), that noise may have in the weighed
-    errors of each channel. A problem never changes: other angles make another one.
+    errors of each channel. Every simulation asks `allowance` first. A problem never changes: other
+    angles make another one.
     """
 
     traces: tuple[Trace, ...]
@@ -68,6 +70,7 @@ class Problem:
     proven: Array
     whitening: Array | None = None
     misfit: float = 1.0
+    allowance: Allowance = UNBOUNDED
 
     @cached_property
     def channels(self) -> int:
@@ -108,7 +111,12 @@ class Problem:
         return starts
 
     def outputs(self, trace: int, slots: Array, sensors: Array, starts: Array) -> Array:
-        """Simulated channels of one recording for many sets: sets x blocks x 3."""
+        """Simulated channels of one recording for many sets: sets x blocks x 3.
+
+        Raises:
+            OutOfTimeError: the search has used up its allowance.
+        """
+        self.allowance.check()
         t = self.traces[trace]
         simulated = simulate_many(slots, t.torque, t.dt, starts, sensors, t.block, self.angles[trace])
         return np.asarray(simulated)
@@ -213,6 +221,7 @@ def problem_of(
     *,
     floor: Array | None = None,
     stated: Mapping[str, float] | None = None,
+    allowance: Allowance = UNBOUNDED,
 ) -> Problem:
     """Recordings weighed by `noise`, with the angles that their speeds give.
 
@@ -233,6 +242,7 @@ def problem_of(
         tuple(map(read_only, weights)),
         tuple(_rests(t, noise, floor) for t in traces),
         read_only(proven_noise(traces, noise, stated)),
+        allowance=allowance,
     )
 
 

@@ -55,14 +55,15 @@ class Step:
 
 
 def grow(
-    evidence: Evidence, parent: Fit, scores: list[Score] | None = None, beside: Sequence[Fit] = ()
-) -> Step:
-    """`parent` with each promising further effect.
+    evidence: Evidence, step: Step, scores: list[Score] | None = None, beside: Sequence[Fit] = ()
+) -> None:
+    """Try the parent of `step` with each promising further effect; it gets what is found as that is known.
 
     Args:
         scores: of `screen`, where these are known already.
         beside: fits with one effect more that other numbers led to, to be fitted on from where they are.
     """
+    parent = step.parent
     if adds_ripple(parent.hypothesis):
         problem = evidence.problem.with_angles(parent.angles)
     else:
@@ -73,14 +74,14 @@ def grow(
         if not parent.hypothesis.far:  # far numbers say nothing of what is missing
             scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
         scores = _better(scores, _followed(problem, parent, scores))
-    step = Step(parent, scores, [_freed(problem, parent, one) for one in beside])
+    step.scores += scores
+    step.fits += [_freed(problem, parent, one) for one in beside]
     if not scores or scores[0].gain >= max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
-        step.fits += _race(problem, parent, scores)
+        _race(problem, step)
     step.fits.sort(key=lambda f: f.total + price(f))
     if step.fits:
         step.fits[:] = _contended(problem, evidence, step.fits)
         step.fits[0] = _polished(evidence, aligned(problem, step.fits[0]))
-    return step
 
 
 def _freed(problem: Problem, parent: Fit, other: Fit) -> Fit:
@@ -143,21 +144,16 @@ def _better(scores: list[Score], others: list[Score]) -> list[Score]:
     return sorted(best.values(), key=lambda s: -s.gain)
 
 
-def _race(problem: Problem, parent: Fit, scores: list[Score]) -> list[Fit]:
-    """Fits of the promising effects, best first; the hopeless are given up after a few rounds."""
-    chosen = _chosen(scores)
-    if not chosen:
-        return []
-    fits = [grown(problem, parent, score.use, RACE_ROUNDS) for score in chosen]
+def _race(problem: Problem, step: Step) -> None:
+    """Fit the promising effects beside what `step` has; the hopeless are given up after a few rounds."""
+    first = len(step.fits)
+    for score in _chosen(step.scores):
+        step.fits.append(grown(problem, step.parent, score.use, RACE_ROUNDS))
     floor = float(problem.rows)
-    best = min(f.total for f in fits)
-    finished = []
-    for one in fits:
+    best = min((f.total for f in step.fits[first:]), default=floor)
+    for index, one in enumerate(step.fits[first:], first):
         if one.rounds >= RACE_ROUNDS and one.total - floor < OUT_OF_RACE * (best - floor) + RACE_SLACK:
-            finished.append(fit(problem, one.hypothesis, one.starts, one.theta))
-        else:
-            finished.append(one)
-    return sorted(finished, key=lambda f: f.total + price(f))
+            step.fits[index] = fit(problem, one.hypothesis, one.starts, one.theta)
 
 
 def _chosen(scores: list[Score]) -> list[Score]:

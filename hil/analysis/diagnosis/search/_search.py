@@ -86,6 +86,14 @@ def finished(found: Found, show: Callable[[str], None]) -> Found:
     return _needed(found.evidence.problem, found)
 
 
+def so_far(known: Sequence[Found]) -> Found:
+    """Of searches that were ended from outside the one that explains most, what it tried best first."""
+    found = min(known, key=lambda one: one.evidence.left(one.best))
+    for step in found.steps:
+        step.fits.sort(key=rank)
+    return found
+
+
 def advanced(
     found: Found,
     show: Callable[[str], None],
@@ -110,8 +118,12 @@ def advanced(
         show(f"looking for effect {number + 1} beside {' or '.join(f.hypothesis.ids[-1] for f in parents)}")
     else:
         show(f"looking for effect 1 of at most {MOST_EFFECTS}")
-    steps = [grow(found.evidence, parent, scores, beside) for parent in parents]
-    found.steps += sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
+    before, steps = list(found.steps), []
+    for parent in parents:
+        steps.append(Step(parent, [], []))
+        found.steps = [*before, *steps]  # what is known by then if the search is ended from outside
+        grow(found.evidence, steps[-1], scores, beside)
+    found.steps = before + sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
     found.frontier = frontier = _distinct([one for s in steps for one in s.fits])
     found.effects += 1
     if not frontier:

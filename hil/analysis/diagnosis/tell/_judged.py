@@ -44,6 +44,8 @@ class Judged:
     by_chance: float | None = None
     #: Smallest sizes worth naming that a user set, by effect.
     least: Mapping[str, float] = field(default_factory=dict)
+    #: Why the search ended before it was through, if it did.
+    unfinished: str = ""
 
     def diagnosis(self, rounded: list[EffectUse], notes: list[str], seconds: float) -> Diagnosis:
         base, best = self.found.base, self.found.best
@@ -95,6 +97,7 @@ class Judged:
             consequences=consequences(base.hypothesis.base, model),
             start=self._start(kept, floor),
             open_channels=self._open(kept),
+            unfinished=self.unfinished,
             worse=tuple(made_worse(map_before, map_after)),
         )
 
@@ -121,6 +124,9 @@ class Judged:
         share = f"{100.0 * gaps[worst].gap:.3g} % of {worst}"
         size = f"{share} stay unexplained, {gaps[worst].noises:.3g} times its noise"
         tried = self.found.best.hypothesis.ids
+        if not tried and self.unfinished:
+            fits = [f for step in self.found.steps[:1] for f in step.fits[:1]]
+            tried = fits[0].hypothesis.ids if fits else ()
         closest = f"; closest, and not close enough: {', '.join(tried)}" if tried else ""
         return f"{size}; {signature(self.problem, kept, by_place)}{closest}"
 

@@ -16,6 +16,9 @@ from hil.core.model import EffectUse, Model
 Array = npt.NDArray[np.float64]
 Verdict = Literal["named", "none", "unknown"]
 
+#: Why a search ended before it was through.
+INTERRUPTED, OUT_OF_TIME = "interrupted", "out of time"
+
 
 @dataclass(frozen=True)
 class NamedEffect:
@@ -118,8 +121,8 @@ class Diagnosis:
     start: Start | None = None
     #: Channels whose gap stays above what is proven to be noise.
     open_channels: tuple[str, ...] = ()
-    #: The search was interrupted: this is what was known by then.
-    unfinished: bool = False
+    #: Why the search ended before it was through, if it did: this is what was known by then.
+    unfinished: str = ""
     #: Where the model given back is further off than the one that came, in words.
     worse: tuple[str, ...] = ()
 
@@ -127,7 +130,7 @@ class Diagnosis:
         """The content of `diagnosis.json`."""
         return {
             "verdict": self.verdict,
-            **({"unfinished": True} if self.unfinished else {}),
+            **({"unfinished": self.unfinished} if self.unfinished else {}),
             "effects": [_effect(e) for e in self.effects],
             **({"start": self.start.as_json()} if self.start is not None else {}),
             "parameter_updates": {

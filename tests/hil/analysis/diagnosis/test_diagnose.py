@@ -135,9 +135,19 @@ def test_an_interrupted_search_tells_what_is_known() -> None:
 
     data = recordings(Truth({"torque_delay": 0.011}), 2, short=True, only=SOME)
     found = diagnose(MODEL, data, show=interrupted)
-    assert (found.verdict, names(found), found.unfinished) == ("unknown", [], True)
-    assert found.as_json()["unfinished"] is True
+    assert (found.verdict, names(found), found.unfinished) == ("unknown", [], "interrupted")
+    assert found.as_json()["unfinished"] == "interrupted"
     assert "stay unexplained" in found.signature
+
+
+@pytest.mark.parametrize("seconds", [1e-9, 0.3])
+def test_a_search_that_takes_too_long_ends_with_what_is_known(seconds: float) -> None:
+    data = recordings(Truth({"gap": 0.02}), 2, short=True, only=SOME)
+    found = diagnose(MODEL, data, at_most_s=seconds)
+    assert (found.verdict, names(found)) == ("unknown", [])
+    assert found.unfinished == found.as_json()["unfinished"]
+    assert "of processor time were up" in found.unfinished
+    assert all(gap.gap > 0.0 for gap in found.gap_after.values())
 
 
 def test_an_interrupt_before_anything_is_known_ends_the_diagnosis() -> None:
