@@ -17,6 +17,7 @@ from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
+from hil.analysis.diagnosis.search._foretold import left_out
 from hil.analysis.diagnosis.search._from_base import search_from_base
 from hil.analysis.diagnosis.search._search import Found, begun, so_far
 from hil.analysis.diagnosis.tell._confidence import drop_of
@@ -102,7 +103,8 @@ def _diagnosed(
     allowance.lift()
     if unfinished == OUT_OF_TIME:
         unfinished = f"{asked.at_most_s / 60.0:.3g} min of processor time were up (--at-most)"
-    problem = problem.with_angles(found.best.angles)
+    problem = replace(problem, traces=found.evidence.problem.traces, angles=found.best.angles)
+    notes += left_out(problem)
     show("judging")
     verdict: Verdict = "unknown" if unfinished else verdict_of(found, bool(rounded))
     by_chance = None

@@ -31,6 +31,7 @@ from hil.analysis.diagnosis.data._thresholds import (
     SLOW_LINES,
 )
 from hil.analysis.diagnosis.data._trace import Trace, blocks
+from hil.core.errors import BadInputError
 
 _REQUEST = 6  # column of it among the signals
 
@@ -144,9 +145,12 @@ def _spectra(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence
     length = max(2, min(round(SEGMENT_S / period), shortest, 2 * total // LEAST_SEGMENTS))
     window = np.hanning(length + 1)[:-1]
     cut = []
-    for one_signals in signals:
+    for trace, one_signals in zip(traces, signals, strict=True):
         starts = np.arange(0, len(one_signals) - length + 1, max(1, length // 2))
-        cut += [one_signals[s : s + length] for s in starts]
+        counts = trace.judged_blocks
+        cut += [one_signals[s : s + length] for s in starts if counts[s : s + length].all()]
+    if not cut:
+        raise BadInputError("no stretch of 2 s is left to judge errors in", fix="record longer")
     spectra = np.fft.rfft(np.stack(cut) * window[:, None], axis=1)
     twice = np.full(spectra.shape[1], 2.0)
     twice[0] = 1.0

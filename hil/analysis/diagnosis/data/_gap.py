@@ -57,7 +57,7 @@ def channel_gaps(traces: Sequence[Trace], floor: Array, simulated: Sequence[Arra
     gaps = {}
     for column, channel in enumerate(OUTPUTS):
         pairs = [
-            (t.samples[:, column], s[:, column])
+            (t.samples[t.judged_samples, column], s[t.judged_samples, column])
             for t, s in zip(traces, simulated, strict=True)
             if t.has[column]
         ]
@@ -76,10 +76,12 @@ def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -
     bands = np.full((len(traces), 3, len(BANDS_HZ)), np.nan)
     sums, counts = np.zeros((len(CONDITIONS), 3)), np.zeros(len(CONDITIONS))
     for row, (trace, values) in enumerate(zip(traces, simulated, strict=True)):
-        error = (trace.samples - values) / noise
-        masks = conditions_of(trace.samples, trace.torque, trace.dt)
+        counted = trace.judged_samples
+        error = np.where(counted[:, None], (trace.samples - values) / noise, 0.0)
+        masks = conditions_of(trace.samples, trace.torque, trace.dt) * counted
+        whole = np.sqrt(len(counted) / max(int(np.count_nonzero(counted)), 1))
         for column in np.flatnonzero(trace.has):
-            bands[row, column] = _band_ratios(error[:, column], trace.dt)
+            bands[row, column] = whole * _band_ratios(error[:, column], trace.dt)
             sums[:, column] += masks @ error[:, column] ** 2
         counts += masks.sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):

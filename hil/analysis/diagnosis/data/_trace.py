@@ -29,6 +29,7 @@ from hil.core.recording import Recording
 from hil.plant import SENSOR_GAIN, SENSOR_OFFSET
 
 Array = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -38,6 +39,7 @@ class Trace:
     `measured` is blocks x 3 in the order of `OUTPUTS` (NaN where a channel is missing), each the mean of
     `block` samples; `samples` is the same at full rate; `start` is motor speed, wheel speed (rad/s) and
     shaft torque (N m) at the first sample, NaN where not measured. `source` is the file, for messages.
+    `judged` says of each block whether errors count there; everywhere if None.
     """
 
     name: str
@@ -50,6 +52,7 @@ class Trace:
     notes: tuple[str, ...]
     first_wheel_angle_rad: float = 0.0
     source: str = ""
+    judged: Flags | None = None
 
     def angles(self, gear_ratio: float, sensors: Array | None = None) -> Array:
         """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
@@ -73,9 +76,20 @@ class Trace:
         return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]), dtype=float)
 
     @property
-    def has(self) -> npt.NDArray[np.bool_]:
+    def has(self) -> Flags:
         """Which of the three channels were measured."""
         return np.asarray(np.isfinite(self.measured[0]))
+
+    @property
+    def judged_blocks(self) -> Flags:
+        """Of each block whether errors count there."""
+        return np.ones(len(self.measured), bool) if self.judged is None else self.judged
+
+    @property
+    def judged_samples(self) -> Flags:
+        """The same of each sample; what does not fill a block counts as the last block does."""
+        every = np.repeat(self.judged_blocks, self.block)
+        return np.pad(every, (0, len(self.samples) - len(every)), mode="edge")
 
     @property
     def block_time_s(self) -> Array:

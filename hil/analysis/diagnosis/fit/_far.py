@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data._trace import Trace, blocks
+from hil.analysis.diagnosis.data._trace import Flags, Trace, blocks
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
@@ -57,4 +57,13 @@ def _coarser(problem: Problem, seconds: float) -> Problem | None:
 
 
 def _with_block(traces: Sequence[Trace], block: int) -> list[Trace]:
-    return [replace(t, block=block, measured=blocks(t.samples, block)) for t in traces]
+    return [
+        replace(t, block=block, measured=blocks(t.samples, block), judged=_judged(t, block)) for t in traces
+    ]
+
+
+def _judged(trace: Trace, block: int) -> Flags | None:
+    """Blocks of another length in which every sample counts."""
+    if trace.judged is None:
+        return None
+    return np.asarray(blocks(trace.judged_samples[:, None].astype(float), block)[:, 0] == 1.0)

@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 
 from hil.analysis.diagnosis.data._proven import proven_noise
 from hil.analysis.diagnosis.data._thresholds import LITTLE_TORQUE
-from hil.analysis.diagnosis.data._trace import Trace
+from hil.analysis.diagnosis.data._trace import Flags, Trace
 from hil.analysis.diagnosis.fit._allowance import UNBOUNDED, Allowance
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._errors import Errors
@@ -80,7 +80,17 @@ class Problem:
     @cached_property
     def rows(self) -> int:
         """How many errors there are: what their squares sum up to where there is nothing but noise."""
-        return int(sum(np.count_nonzero(t.has) * len(t.measured) for t in self.traces))
+        return int(sum(np.count_nonzero(t.has) * np.count_nonzero(t.judged_blocks) for t in self.traces))
+
+    @cached_property
+    def partial(self) -> bool:
+        """Whether there are stretches in which errors do not count."""
+        return any(t.judged is not None for t in self.traces)
+
+    def judging(self, judged: Sequence[Flags]) -> Problem:
+        """The same, errors counting only in these blocks of each recording."""
+        traces = (replace(t, judged=flags) for t, flags in zip(self.traces, judged, strict=True))
+        return replace(self, traces=tuple(traces))
 
     def whitened(self, whitening: Array) -> Problem:
         """The same, errors filtered by `whitening` (3 x order + 1)."""
@@ -122,12 +132,31 @@ class Problem:
         return np.asarray(simulated)
 
     def errors(self, trace: int, simulated: Array) -> Array:
-        """Weighted measured minus simulated, blocks x 3, 0 where not measured."""
+        """Weighted measured minus simulated, blocks x 3, 0 where not measured or not judged."""
         weights = self.weights[trace]
         difference = np.where(weights > 0, self.traces[trace].measured - simulated, 0.0)
         error = np.nan_to_num(difference * weights, nan=HUGE, posinf=HUGE, neginf=-HUGE)
         error = np.clip(error, -HUGE, HUGE)
-        return self._whitened(error)
+        return self._counted(trace, self._whitened(error))
+
+    def changes(self, trace: int, simulated: Array) -> Array:
+        """Weighted change of the channels of one recording from the first of `simulated` to each other.
+
+        Args:
+            simulated: sets x blocks x 3.
+
+        Returns:
+            (sets - 1) x blocks x 3, 0 where errors do not count.
+        """
+        change = (simulated[1:] - simulated[0]) * self.weights[trace]
+        if self.whitening is not None:
+            change = np.stack([self._whitened(one) for one in change])
+        return self._counted(trace, change)
+
+    def _counted(self, trace: int, values: Array) -> Array:
+        """Values (... x blocks x 3), 0 where errors do not count."""
+        judged = self.traces[trace].judged
+        return values if judged is None else np.where(judged[:, None], values, 0.0)
 
     def _whitened(self, error: Array) -> Array:
         """Errors (blocks x 3) through each channel's whitening filter, if there is one."""
@@ -176,11 +205,7 @@ class Problem:
             tried[len(points) :] += np.diag(steps)
             simulated = self.outputs(index, slots, sensors, tried)
             error = self.errors(index, simulated[0]).ravel()
-            weights = self.weights[index]
-            change = (simulated[1:] - simulated[0]) * weights
-            if self.whitening is not None:
-                change = np.stack([self._whitened(one) for one in change])
-            change = change.reshape(len(slots) - 1, -1)
+            change = self.changes(index, simulated).reshape(len(slots) - 1, -1)
             # a diverged simulation: no derivative that could be followed
             change[~(np.abs(change).max(axis=1) < DIVERGED)] = 0.0
             shared = (change[: len(coordinates)] / signed[:, None]).T

@@ -28,7 +28,7 @@ def settled_starts(
                 index, np.tile(slots, (sets, 1)), np.tile(sensors, (sets, 1, 1)), tried
             )
             error = problem.errors(index, simulated[0]).ravel()
-            change = ((simulated[1:] - simulated[0]) * problem.weights[index]).reshape(STARTS, -1).T / steps
+            change = problem.changes(index, simulated).reshape(STARTS, -1).T / steps
             if not (np.isfinite(change).all() and np.any(change)):
                 break
             start = start + np.linalg.lstsq(change, error, rcond=1e-8)[0]

@@ -11,6 +11,8 @@ from hil.analysis.diagnosis.data._coherence import Split, split
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._thresholds import (
+    ALL_BUT,
+    ALL_BUT_NOISES,
     NEARLY_ALL,
     NOTHING,
     SIGMAS,
@@ -18,6 +20,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     SMALLISH,
     WHITE_AT_LEAST,
 )
+from hil.core.effects import EFFECTS
 
 Array = npt.NDArray[np.float64]
 
@@ -63,9 +66,18 @@ class Evidence:
         if self.closed(one):
             return True
         worst = self.worst(one)
-        return bool(one.hypothesis.terms) and (
-            worst < SMALL or (worst < SMALLISH and self.share(one) > NEARLY_ALL)
+        return self.all_but(one) or (
+            bool(one.hypothesis.terms)
+            and (worst < SMALL or (worst < SMALLISH and self.share(one) > NEARLY_ALL))
         )
+
+    def all_but(self, one: Fit) -> bool:
+        """Whether an effect of many laws closes so much of so large a gap that time steps decide the rest.
+
+        Contact comes and goes between samples, which a fit that moves by samples misses a little.
+        """
+        many = any(EFFECTS[id_].many_laws for id_ in one.hypothesis.ids)
+        return many and self.share(one) > ALL_BUT and self.worst(one) < ALL_BUT_NOISES
 
     def colouring(self, one: Fit) -> Array:
         """Standard deviation of each channel's noise over that of its white part, shape (3,).

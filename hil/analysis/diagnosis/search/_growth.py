@@ -17,6 +17,7 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._foretold import where_foretold
 from hil.analysis.diagnosis.search._hidden_speeds import with_hidden_speeds
 from hil.analysis.diagnosis.search._places import placed
 from hil.analysis.diagnosis.search._rank import price, rank
@@ -26,6 +27,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     FAR,
     HOPE,
     LEAST_EVIDENCE,
+    NEARLY,
     OPTIONAL_LEAVES,
     OTHER_SIZES,
     OUT_OF_RACE,
@@ -39,6 +41,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     WORTH_POLISH,
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
+from hil.analysis.diagnosis.search._width import width_of, with_likely_width
 from hil.core.effects import EFFECTS, Parameter
 from hil.core.model import EffectUse
 
@@ -47,11 +50,16 @@ Array = npt.NDArray[np.float64]
 
 @dataclass
 class Step:
-    """One step: what was tried on top of `parent`, best first."""
+    """One step: what was tried on top of `parent`, best first.
+
+    `foretold` is set where a promising effect makes parts of the recordings chaotic, and nothing else was
+    tried then: the problem judged elsewhere alone, and the effect fitted there.
+    """
 
     parent: Fit
     scores: list[Score]
     fits: list[Fit]
+    foretold: tuple[Problem, Fit] | None = None
 
 
 def grow(
@@ -70,12 +78,17 @@ def grow(
         problem = evidence.problem.following(parent.hypothesis, parent.theta)
     blocks = problem.rows / max(problem.channels, 1)
     scores = screen(problem, parent) if scores is None else scores
-    if not scores or scores[0].gain < PLAIN * evidence.left(parent) * blocks:
+    if not problem.partial:
+        step.foretold = _foretold(problem, parent, scores)
+        if step.foretold:
+            return
+    step.fits += [_freed(problem, parent, one) for one in beside]
+    found = any(evidence.share(one) > NEARLY for one in step.fits)
+    if not found and (not scores or scores[0].gain < PLAIN * evidence.left(parent) * blocks):
         if not parent.hypothesis.far:  # far numbers say nothing of what is missing
             scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
         scores = _better(scores, _followed(problem, parent, scores))
     step.scores += scores
-    step.fits += [_freed(problem, parent, one) for one in beside]
     if not scores or scores[0].gain >= max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
         _race(problem, step)
     step.fits.sort(key=lambda f: f.total + price(f))
@@ -110,6 +123,8 @@ def _contended(problem: Problem, evidence: Evidence, fits: list[Fit]) -> list[Fi
     Friction that pulls one way more than the other is not seen by its even part alone.
     """
     floor = float(problem.rows)
+    if evidence.all_but(fits[0]):
+        return fits
     if fits[0].total < FAR * floor:
         return [_refined(problem, evidence, fits[0]), *fits[1:]]
     least = CONTENDER * (fits[0].total - floor) + floor
@@ -144,13 +159,40 @@ def _better(scores: list[Score], others: list[Score]) -> list[Score]:
     return sorted(best.values(), key=lambda s: -s.gain)
 
 
+def _foretold(problem: Problem, parent: Fit, scores: list[Score]) -> tuple[Problem, Fit] | None:
+    """Where the promising effects foretell the motion: the first that does not everywhere, fitted there."""
+    for score in _chosen(scores):
+        hypothesis = parent.hypothesis.with_term(score.use)
+        theta = _with_width(problem, parent, hypothesis)
+        if theta is None:
+            continue
+        one = fit(problem, hypothesis, parent.starts, theta, rounds=0)
+        if found := where_foretold(problem, parent, one):
+            return found
+    return None
+
+
+def _with_width(problem: Problem, parent: Fit, hypothesis: Hypothesis) -> Array | None:
+    """Coordinates with the likeliest width, where the newest effect of `hypothesis` is a play."""
+    index = width_of(hypothesis)
+    if index is None:
+        return None
+    bent = carried(parent, hypothesis)
+    theta = bent if hypothesis.far else _nominal(hypothesis, bent)
+    return with_likely_width(problem, hypothesis, theta, parent.starts, index)
+
+
 def _race(problem: Problem, step: Step) -> None:
     """Fit the promising effects beside what `step` has; the hopeless are given up after a few rounds."""
     first = len(step.fits)
+    known = {one.hypothesis.keys[-1] for one in step.fits} if problem.partial else set()
     for score in _chosen(step.scores):
+        if score.key in known:
+            continue  # fitted already, with more care
         step.fits.append(grown(problem, step.parent, score.use, RACE_ROUNDS))
     floor = float(problem.rows)
-    best = min((f.total for f in step.fits[first:]), default=floor)
+    against = step.fits if problem.partial else step.fits[first:]
+    best = min((f.total for f in against), default=floor)
     for index, one in enumerate(step.fits[first:], first):
         if one.rounds >= RACE_ROUNDS and one.total - floor < OUT_OF_RACE * (best - floor) + RACE_SLACK:
             step.fits[index] = fit(problem, one.hypothesis, one.starts, one.theta)
@@ -177,6 +219,9 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
     bent = carried(parent, hypothesis)
     firsts = [bent] if hypothesis.far else [bent, _nominal(hypothesis, bent)]
     tried = [t for theta in firsts for t in _sizes(hypothesis, theta)]
+    likely = _with_width(problem, parent, hypothesis)
+    if likely is not None:
+        tried.append(likely)
     first = cheapest(problem, hypothesis, tried, parent.starts)
     starts = with_hidden_speeds(problem, hypothesis, first, parent.starts)
     return fit(problem, hypothesis, starts, first, rounds=rounds)
@@ -235,12 +280,14 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
     effect = EFFECTS[best.hypothesis.ids[-1]]
     if not effect.abrupt or evidence.share(best) < WORTH_POLISH:
         return best
-    if not evidence.settled(best) and not best.hypothesis.far:  # far numbers have no nominal ones
+    if (
+        not evidence.all_but(best) and not evidence.settled(best) and not best.hypothesis.far
+    ):  # far numbers have no nominal ones
         own = next(
             i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
         )
         best = _from_sizes(evidence, best, _nominal(best.hypothesis, best.theta), own, OTHER_SIZES)
-    return placed(evidence, best)
+    return best if evidence.problem.partial else placed(evidence, best)
 
 
 def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:

@@ -23,12 +23,14 @@ from hil.analysis.diagnosis.search._thresholds import (
     PLACE_ROUNDS,
     PLACE_STEPS,
     PLACES_FINE,
+    PLACES_MIDDLING,
     PLACES_NM,
     PLACES_TRIED,
     PLACES_WORTH,
     UNTOLD_WIDTH,
     WIDTHS,
 )
+from hil.analysis.diagnosis.search._width import width_of, window_errors
 from hil.core.effects import EFFECTS
 from hil.plant import chain_numbers
 
@@ -49,7 +51,7 @@ def placed(evidence: Evidence, best: Fit) -> Fit:
 
     `best` itself where its newest effect does not remember a place.
     """
-    index = _width(best)
+    index = width_of(best.hypothesis)
     if index is None:
         return best
     problem = evidence.problem.with_angles(best.angles)
@@ -81,20 +83,23 @@ def _fitted(problem: Problem, best: Fit, begun: list[_Begun]) -> list[Fit]:
     return [fit(problem, best.hypothesis, one.starts, one.theta) for one in ranked[:1]] + ranked[1:]
 
 
-def _width(best: Fit) -> int | None:
-    """Which coordinate is the width of a play that the newest effect remembers a place in."""
-    effect = EFFECTS[best.hypothesis.ids[-1]]
-    rough = {p.name for p in effect.parameters if p.rough}
-    newest = len(best.hypothesis.terms) - 1
-    found = [i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == newest and c.name in rough]
-    return found[0] if found and effect.law.begin is not None else None
-
-
 def _promising(problem: Problem, best: Fit, index: int) -> list[_Begun]:
     """Other widths with their best places, most promising first."""
-    begun = [_begun(problem, best, index, width) for width in WIDTHS]
+    own = _middling(problem, best, index, 1.0)
+    likely = [width for width in WIDTHS if _middling(problem, best, index, width) < PLACES_MIDDLING * own]
+    begun = [_begun(problem, best, index, width) for width in likely]
     worth = [one for one in begun if one.total < PLACES_WORTH * best.total]
     return sorted(worth, key=lambda one: one.total)[:PLACES_TRIED]
+
+
+def _middling(problem: Problem, best: Fit, index: int, width: float) -> float:
+    """What `best` with its width times `width` leaves in half of all windows.
+
+    Where a play forgets how it began, no place makes a wrong width right.
+    """
+    theta = best.theta.copy()
+    theta[index] += np.log(width)
+    return float(np.median(window_errors(problem, best.hypothesis, theta, best.starts)))
 
 
 def _begun(problem: Problem, best: Fit, index: int, width: float) -> _Begun:

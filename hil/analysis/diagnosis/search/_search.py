@@ -123,6 +123,9 @@ def advanced(
         steps.append(Step(parent, [], []))
         found.steps = [*before, *steps]  # what is known by then if the search is ended from outside
         grow(found.evidence, steps[-1], scores, beside)
+        if chaotic := steps[-1].foretold:
+            show("looking at what can be foretold alone")
+            return advanced(_begin_again(found, chaotic[0]), show, beside=[chaotic[1]] * (number == 0))
     found.steps = before + sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
     found.frontier = frontier = _distinct([one for s in steps for one in s.fits])
     found.effects += 1
@@ -135,6 +138,15 @@ def advanced(
             enough = RIVAL * found.evidence.left(found.best)
             found.frontier = [f for f in frontier if found.evidence.left(f) <= enough]
     return True
+
+
+def _begin_again(found: Found, problem: Problem) -> Found:
+    """The same search, nothing looked for yet, errors counting where `problem` says."""
+    base = found.base
+    found.base = found.best = fit(problem, base.hypothesis, base.starts, base.theta)
+    found.evidence = Evidence(problem, found.base, found.evidence.rounding)
+    found.steps, found.frontier, found.effects = [], [found.base], 0
+    return found
 
 
 def _distinct(fits: list[Fit]) -> list[Fit]:

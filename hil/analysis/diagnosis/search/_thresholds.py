@@ -53,6 +53,18 @@ NEARLY_ALL: Annotated[
     float, Means("of the whole gap", "once it is closed a little more may be left", "evidence")
 ] = 0.99
 
+ALL_BUT: Annotated[
+    float,
+    Means(
+        "of the whole gap",
+        "once contact or friction close it no further effect is missing; steps of time leave 1e-5 to 7e-5 of "
+        "a hidden play of 0.01 and 0.02 rad",
+        "foretold",
+    ),
+] = 0.9998
+ALL_BUT_NOISES: Annotated[
+    float, Means("gap over noise floor", "if it leaves no more in any channel", "foretold")
+] = 4.0
 LEAST_EVIDENCE: Annotated[
     float, Means("squared error, noise variances", "a name must take off more, after deflation", "blind")
 ] = 30.0
@@ -99,6 +111,14 @@ PLACES_NM: Annotated[
 PLACES_WORTH: Annotated[
     float, Means("times what is left", "another width with its places must leave less to be fitted", "hidden")
 ] = 1.5
+PLACES_MIDDLING: Annotated[
+    float,
+    Means(
+        "times what is left",
+        "another width that leaves more in half of all windows is wrong in any place",
+        "width",
+    ),
+] = 3.0
 PLACES_TRIED: Annotated[int, Means("widths", "are fitted at a time", "hidden")] = 4
 PLACE_ROUNDS: Annotated[int, Means("times", "widths and places are looked for anew", "hidden")] = 3
 PLACE_STEPS: Annotated[
@@ -114,6 +134,55 @@ UNTOLD_WIDTH: Annotated[
 AS_GOOD: Annotated[
     float, Means("of what is left", "two fits that differ by less explain the data as well", "hidden")
 ] = 0.02
+WIDTH_GRID: Annotated[
+    tuple[float, ...], Means("factor", "widths that are tried around what a probe of a play says", "width")
+] = (0.15, 0.2, 0.25, 0.33, 0.42, 0.53, 0.67, 0.83, 1.0, 1.2, 1.5, 1.9, 2.4, 3.0, 4.0, 5.0, 7.0)
+WIDTH_FINE: Annotated[
+    float, Means("natural logarithm", "how well the likeliest width is looked for", "width")
+] = 2e-3
+WINDOW_OF_ERRORS_S: Annotated[
+    float, Means("s", "of errors that say together whether a width is right there", "width")
+] = 0.25
+PUSH: Annotated[
+    float,
+    Means("of the largest torque", "a torque that is so far off shows where motion is chaotic", "foretold"),
+] = 1e-3
+PARTED_S: Annotated[float, Means("s", "of recording that says how far two simulations part", "foretold")] = (
+    0.25
+)
+CHAOTIC: Annotated[
+    float,
+    Means(
+        "times what it does to the plain model",
+        "where the motion is moved more it is chaotic: a play of 0.02 rad moves it 1 to 50 times as much "
+        "where it forgets, a thousand times where it does not",
+        "foretold",
+    ),
+] = 60.0
+MUCH_APART: Annotated[
+    float,
+    Means(
+        "times what it does to the plain model",
+        "where anything is chaotic, errors count only where the motion is moved less",
+        "foretold",
+    ),
+] = 15.0
+MOST_APART: Annotated[
+    float,
+    Means("noise levels", "how an axle began in its play is not forgotten where it shows more", "foretold"),
+] = 1.0
+UNFORETOLD: Annotated[float, Means("of the recordings", "less of it is borne: all is judged", "foretold")] = (
+    0.01
+)
+LEAST_FORETOLD: Annotated[
+    float, Means("of the recordings", "must be foretold: of less nothing is concluded", "foretold")
+] = 0.4
+FORETOLD_ROUNDS: Annotated[
+    int, Means("times", "an effect is fitted and what it foretells looked for anew", "foretold")
+] = 5
+FORETOLD_SAME: Annotated[
+    float, Means("natural logarithm, or number", "the last round moves every number less", "foretold")
+] = 3e-3
 OTHER_SIZES: Annotated[
     tuple[float, ...],
     Means("factor", "sizes of an abrupt effect that are fitted from: it has false minima", "hidden"),

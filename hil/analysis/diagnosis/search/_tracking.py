@@ -179,7 +179,7 @@ def _windows(problem: Problem, model: Model, position: int, index: int, start: A
         problem.angles[index],
     )
     error = problem.errors(index, around[0])
-    ripple = (around[1:] - around[0]) * problem.weights[index]
+    ripple = problem.changes(index, around)
     # Where a simulation diverges nothing is known of a phase, and NaN would spread over the whole walk.
     ripple[~(np.abs(ripple) < RIPPLE_DIVERGED)] = 0.0
     period = trace.dt * trace.block

@@ -80,7 +80,7 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
     densities = []
     for trace, errors in zip(problem.traces, fit.errors, strict=True):
         e = errors.channels
-        power += np.sum(e**2, axis=0) - len(e) * trace.has
+        power += np.sum(e**2, axis=0) - np.count_nonzero(trace.judged_blocks) * trace.has
         densities.append(_density(e, trace.dt * trace.block, frequency, "constant"))
     column = int(np.argmax(power))
     density = np.mean([d[:, column] for d in densities], axis=0)

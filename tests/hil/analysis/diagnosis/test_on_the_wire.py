@@ -3,6 +3,7 @@
 import pytest
 
 from hil.analysis.diagnosis import diagnose
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, load_model
 from hil.core.recording import driven_by_torque, read_recording, write_recording
 from hil.engine import RunRequest, run_plan
@@ -43,6 +44,29 @@ def test_the_identification_plan_agrees_with_its_own_model_in_every_format(tmp_p
         assert found.verdict == "none", ending
         for after in found.gap_after.values():
             assert after.gap == pytest.approx(after.noise_floor, rel=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("effect", "number", "value"),
+    [
+        ("backlash", "half_gap_rad", 0.02),  # at its end either chirp bounces through it chaotically
+        ("backlash", "half_gap_rad", 0.01),
+        ("dead_time", "extra_delay_s", 0.002),
+        ("coulomb_friction", "torque_nm", 1.0),
+    ],
+)
+def test_what_the_bench_hides_is_named_from_the_identification_plan(effect, number, value, tmp_path):
+    use = EffectUse(effect, EFFECTS[effect].completed({number: value}))
+    hidden = MODEL.with_effects(*MODEL.effects, use)
+    outcome = run_plan(RunRequest(load_plan("identification"), sim_bench(effect), tmp_path, hidden))
+    found = diagnose(MODEL, driven_by_torque(read_recording(outcome.recording)), at_most_s=300.0)
+    assert (found.verdict, found.unfinished) == ("named", "")
+    assert [one.use.id for one in found.effects] == [effect]
+    # The bench moves in steps of 0.1 ms, a fit in those of a sample: that is more than the noise's error
+    assert float(found.effects[0].use.values[number]) == pytest.approx(value, rel=3e-3)
+    for channel, after in found.gap_after.items():
+        assert after.gap < 0.02 * found.gap_before[channel].gap
 
 
 @pytest.mark.slow

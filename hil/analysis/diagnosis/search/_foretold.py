@@ -1,0 +1,130 @@
+"""Stretches of recordings in which a model foretells the motion, and those in which none could.
+
+An axle that bounces through a wide play is chaotic (E. Lorenz, J. Atmos. Sci. 20, 1963): two simulations that
+begin as near to each other as any measurement can tell soon have nothing in common, and neither has the right
+model with the measurement. A least squares descent finds no way there, and what is left says nothing of the
+model. Elsewhere the same play forgets how it began. So a simulation is held against another whose torque is a
+thousandth off: where they part far more than those of the plain model, errors do not count.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.data._trace import Flags
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import SHAFT, Problem
+from hil.analysis.diagnosis.search._thresholds import (
+    CHAOTIC,
+    FORETOLD_ROUNDS,
+    FORETOLD_SAME,
+    LEAST_FORETOLD,
+    MOST_APART,
+    MUCH_APART,
+    PARTED_S,
+    PLACES_NM,
+    PUSH,
+    UNFORETOLD,
+)
+
+Array = npt.NDArray[np.float64]
+
+
+def foretold_where(problem: Problem, base: Fit, one: Fit) -> list[Flags] | None:
+    """Of each recording the blocks that `one` foretells; None where it does so nearly everywhere.
+
+    Args:
+        base: the model without what is in question; how far apart its simulations come is the measure.
+    """
+    plain = float(np.median(np.concatenate(_parted(problem, base))))
+    parted = _parted(problem, one)
+    if _share([w > CHAOTIC * plain for w in parted]) < UNFORETOLD:
+        return None
+    apart = [w > MUCH_APART * plain for w in parted]
+    begun = [w > MOST_APART for w in _parted_from_start(problem, one)]
+    flags = []
+    for trace, pushed, first in zip(problem.traces, apart, begun, strict=True):
+        wide = np.convolve(pushed | first, np.ones(5), "same") > 0.0
+        length = len(trace.measured)
+        each = np.repeat(wide, _blocks_of_window(problem))[:length]
+        flags.append(~np.pad(each, (0, length - len(each)), mode="edge"))
+    return flags
+
+
+def where_foretold(problem: Problem, base: Fit, one: Fit) -> tuple[Problem, Fit] | None:
+    """`one` fitted where it foretells the motion, and the problem judged there alone.
+
+    None where it does so nearly everywhere; or so rarely that nothing could be said of the rest.
+    """
+    judged, before = None, one
+    for _ in range(FORETOLD_ROUNDS):
+        flags = foretold_where(problem, base, one)
+        if flags is None or _share(flags) < LEAST_FORETOLD:
+            break
+        judged = problem.judging(flags)
+        before, one = one, fit(judged, one.hypothesis, one.starts, one.theta)
+        if np.max(np.abs(one.theta - before.theta)) < FORETOLD_SAME:
+            break
+    return None if judged is None else (judged, one)
+
+
+def left_out(problem: Problem) -> list[str]:
+    """In words the stretches in which errors do not count."""
+    words = []
+    for trace in problem.traces:
+        if trace.judged is None or trace.judged.all():
+            continue
+        share = 100.0 * (1.0 - float(np.mean(trace.judged)))
+        words.append(
+            f"{trace.name}: {share:.3g} % of it are not judged: no model foretells the motion there "
+            "(with a torque that is a thousandth off it is another)"
+        )
+    return words
+
+
+def _share(flags: Sequence[Flags]) -> float:
+    return float(np.mean(np.concatenate(flags)))
+
+
+def _blocks_of_window(problem: Problem) -> int:
+    return max(1, round(PARTED_S / (problem.traces[0].dt * problem.traces[0].block)))
+
+
+def _parted(problem: Problem, one: Fit) -> list[Array]:
+    """How far a simulation and one with a torque that is a little off come apart: windows of a recording."""
+    rng = np.random.default_rng(0)
+    pushed = [
+        replace(t, torque=t.torque + PUSH * float(np.max(np.abs(t.torque))) * rng.normal(size=len(t.torque)))
+        for t in problem.traces
+    ]
+    other = replace(problem, traces=tuple(pushed))
+    slots, sensors = one.hypothesis.packed(one.theta)
+    found = []
+    for index, start in enumerate(one.starts):
+        shown = [p.outputs(index, slots[None], sensors[None], start[None])[0] for p in (problem, other)]
+        found.append(_in_windows(problem, problem.changes(index, np.stack(shown))))
+    return found
+
+
+def _parted_from_start(problem: Problem, one: Fit) -> list[Array]:
+    """The same of simulations that begin elsewhere in a play."""
+    slots, sensors = one.hypothesis.packed(one.theta)
+    found = []
+    for index, start in enumerate(one.starts):
+        tried = np.tile(start, (3, 1))
+        tried[1:, SHAFT] += PLACES_NM[0], PLACES_NM[-1]
+        shown = problem.outputs(index, np.tile(slots, (3, 1)), np.tile(sensors, (3, 1, 1)), tried)
+        found.append(_in_windows(problem, problem.changes(index, shown)))
+    return found
+
+
+def _in_windows(problem: Problem, changes: Array) -> Array:
+    """Rms of changes (sets x blocks x 3) in each window, of the set and channel that changes most."""
+    length = min(_blocks_of_window(problem), changes.shape[1])
+    count = changes.shape[1] // length
+    parts = np.nan_to_num(changes[:, : count * length], nan=np.inf).reshape(len(changes), count, length, -1)
+    return np.asarray(np.sqrt(np.mean(parts**2, axis=2)).max(axis=(0, 2)))

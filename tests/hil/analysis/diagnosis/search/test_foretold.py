@@ -1,0 +1,45 @@
+"""Stretches that no model foretells are found, and do not count."""
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._foretold import foretold_where, left_out, where_foretold
+from tests.hil.analysis.diagnosis.one_recording import MODEL
+from tests.hil.analysis.diagnosis.played import SECONDS, supposed, with_play
+
+
+def fitted(half_gap_rad: float) -> tuple[Problem, Fit, Fit]:
+    """A recording, its base model fitted, and the true one from nearby as it is."""
+    problem = with_play(half_gap_rad)
+    base = fit(problem, Hypothesis(MODEL))
+    return problem, base, fit(problem, supposed(1.01 * half_gap_rad), base.starts, rounds=0)
+
+
+def test_a_small_play_is_foretold_throughout() -> None:
+    assert foretold_where(*fitted(0.01)) is None
+    assert where_foretold(*fitted(0.01)) is None
+
+
+def test_where_a_wide_play_bounces_nobody_foretells_it() -> None:
+    flags = foretold_where(*fitted(0.03))
+    assert flags is not None
+    time = np.linspace(0.0, SECONDS, len(flags[0]))
+    assert flags[0][(time > 2.0) & (time < 8.0)].all()
+    assert not flags[0][(time > 14.0) & (time < 15.0)].any()
+
+
+def test_elsewhere_it_is_fitted_and_judged() -> None:
+    problem, base, near = fitted(0.03)
+    found = where_foretold(problem, base, near)
+    assert found is not None
+    judged, one = found
+    assert judged.partial
+    assert 0.5 * problem.rows < judged.rows < 0.95 * problem.rows
+    assert np.exp(one.theta[-1]) == pytest.approx(0.03, rel=0.003)
+    assert Evidence(judged, fit(judged, base.hypothesis)).share(one) > 0.99
+    assert left_out(problem) == []
+    assert "no model foretells" in left_out(judged)[0]
