@@ -6,7 +6,7 @@ from drivers.bus_load import bits_on_the_wire
 from drivers.can_adapter import CanSettings, open_can
 from drivers.device import Device, MotorControl, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
-from drivers.examination import Examinable, Examined, Finding
+from drivers.examination import Examinable, Examined, Finding, Identifies
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
@@ -40,6 +40,7 @@ __all__ = [
     "File",
     "Finding",
     "FrameSource",
+    "Identifies",
     "LoadTable",
     "MotorControl",
     "Name",

@@ -59,3 +59,16 @@ class Examinable(Protocol):
             BenchError: its bus fails.
         """
         ...
+
+
+@runtime_checkable
+class Identifies(Protocol):
+    """A device that says what it is: software, calibration, serial number. A `Device` need not be one."""
+
+    def identify(self) -> dict[str, str]:
+        """What it is, by name: "software", or "rear left: software" for a part of it.
+
+        Asked before it comes up; reads only; may wait, by stepping the loop. What it does not say is left
+        out.
+        """
+        ...

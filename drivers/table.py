@@ -69,6 +69,9 @@ class DeviceTable(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True)
 
     kind: str
+    expects: dict[str, str] = Field(
+        {}, description="what the device must say that it is: software, calibration, serial number"
+    )
 
     def open(self, name: str, connections: Connections) -> Device:
         """Make the device; `name` is that of its table.

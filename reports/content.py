@@ -10,6 +10,7 @@ from hil.core.channels import TIME
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from reports import provenance, quantities
+from reports.bench_state import identification_facts
 from reports.criteria import CriteriaTable, CriterionRow, count_by_verdict, criteria_table
 from reports.figure import Section
 from reports.labels import channel_label, channel_unit
@@ -85,6 +86,7 @@ class Content:
     dut: tuple[Fact, ...]
     versions: tuple[Fact, ...]
     calibration: tuple[Fact, ...]
+    identification: tuple[Fact, ...]
     files: tuple[StoredFile, ...]
     source: str
     sha256: str
@@ -115,6 +117,7 @@ def content(recording: Recording, result: RunResult | None) -> Content:
     title = run.get("title") or plan or recording.source.stem
     started = run.get("started_at", "")
     calibration, files = provenance.calibration_facts(recording), provenance.stored_files(recording)
+    identification = identification_facts(recording, result)
     marks = (plan or recording.source.name, started, f"SHA-256 {sha256[:12]}" if sha256 else "")
     return Content(
         title=title,
@@ -124,8 +127,9 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         dut=provenance.dut_facts(recording),
         versions=provenance.table(recording, "versions"),
         calibration=calibration,
+        identification=identification,
         files=files,
-        warnings=_warnings(calibration, files),
+        warnings=_warnings(calibration, identification, files),
         damage=tuple(recording.damage),
         source=recording.source.name,
         sha256=sha256,
@@ -192,12 +196,19 @@ def _as_sentences(text: str) -> list[str]:
     return [line[0].upper() + line[1:] + ("" if line[-1] in ".!?" else ".") for line in lines]
 
 
-def _warnings(calibration: tuple[Fact, ...], files: tuple[StoredFile, ...]) -> tuple[str, ...]:
+def _warnings(
+    calibration: tuple[Fact, ...], identification: tuple[Fact, ...], files: tuple[StoredFile, ...]
+) -> tuple[str, ...]:
     """What a signer must know before the numbers."""
     expired = [
         f"{fact.name}: calibration valid until {fact.value}." for fact in calibration if fact.state == "bad"
     ]
-    return (*expired, *(f"{file.name}: its hash {file.check}." for file in files if file.state == "bad"))
+    others = [f"{fact.name}: {fact.value}." for fact in identification if fact.state == "bad"]
+    return (
+        *expired,
+        *others,
+        *(f"{file.name}: its hash {file.check}." for file in files if file.state == "bad"),
+    )
 
 
 def _segments(result: RunResult | None) -> tuple[SegmentRow, ...]:

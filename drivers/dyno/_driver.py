@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.dyno._canopen import LoopNetwork
-from drivers.dyno._examination import examine
+from drivers.dyno._examination import examine, identify
 from drivers.dyno._node import (
     ENABLED,
     FAULT,
@@ -179,6 +179,10 @@ class DynoDriver:
 
     def close(self) -> None:
         """Nothing of its own is open."""
+
+    def identify(self) -> dict[str, str]:
+        """Name, versions and serial number of each node that answers, as far as the EDS has them."""
+        return identify([*self.rear, *self.idle])
 
     def examine(self, *, ask: bool) -> Examined:
         """Who is there, and what each says of itself; reads objects, writes none."""

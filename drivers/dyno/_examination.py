@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Collection, Sequence
 
 from drivers.dyno._node import ENABLED, FAULT, STATE_MASK, DynoNode
@@ -10,6 +11,7 @@ from drivers.loop import BusLoop
 from drivers.wire import Wire
 from hil.core.errors import BenchError
 from hil.core.frames import SENT_BY_HOST, FrameBlock, standard
+from hil.core.printable import printable
 
 _HIGHEST_NODE = 127
 _ANSWERS_WITHIN_S = 0.3
@@ -17,6 +19,16 @@ _HEARTBEATS_WITHIN_S = 1.2
 _READ_DEVICE_TYPE = bytes((0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0))  # SDO upload of 0x1000
 _BETWEEN_REQUESTS_S = 0.001
 _DRIVE_PROFILE = 402
+# Index, subindex, what it is and how it is shown (CiA 301): texts, and the identity object
+_IDENTITY = (
+    (0x1008, 0, "name", ""),
+    (0x1009, 0, "hardware", ""),
+    (0x100A, 0, "software", ""),
+    (0x1018, 1, "vendor", "#010x"),
+    (0x1018, 2, "product", "#010x"),
+    (0x1018, 3, "revision", "#010x"),
+    (0x1018, 4, "serial", "d"),
+)
 
 
 def examine(
@@ -35,6 +47,18 @@ def examine(
         strangers = _strangers(loop, wire, {node.id for node in (*used, *idle)}, ask=ask)
         for node in missing:
             found.findings.append(_missing(node, wire.name, strangers, used=node in used))
+    return found
+
+
+def identify(nodes: Sequence[DynoNode]) -> dict[str, str]:
+    """What each node says that it is; of one that does not answer nothing."""
+    found = {}
+    for node in nodes:
+        with contextlib.suppress(BenchError):
+            for index, subindex, name, shown in _IDENTITY:
+                value = node.read(index, subindex)
+                if value not in (None, ""):
+                    found[f"{node.name}: {name}"] = printable(format(value, shown), 80)
     return found
 
 

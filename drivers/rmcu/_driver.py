@@ -29,6 +29,9 @@ _REPLY_TIMEOUT_S = 0.2
 _SILENT_S = 0.2
 _READ, _WRITE, _APPLY = 0, 1, 2
 _FIRST_PARAMETER = 1
+_VERSION = ("SoftwareMajor", "SoftwareMinor", "SoftwarePatch")
+_IDENTIFICATION = (*_VERSION, "HardwareRevision", "CalibrationId")
+_IDENTIFIES_WITHIN_S = 1.2
 _NEEDED = {
     "RMCU_Request": Needed(
         ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
@@ -42,6 +45,7 @@ _NEEDED = {
         texts={"State": ("off",)},
         optional=("Counter",),
     ),
+    "RMCU_Identification": Needed((), whole=_IDENTIFICATION, optional=_IDENTIFICATION, may_miss=True),
     "RMCU_ParameterWrite": Needed(("Command", "Index", "Value"), whole=("Command", "Index")),
     "RMCU_ParameterReply": Needed(
         ("Command", "Result", "Index", "Value"), whole=("Command", "Result", "Index")
@@ -97,6 +101,9 @@ class RmcuDriver:
         self.fault = ""
         self.torque_ref_nm = math.nan
         self.last_seen_s = -math.inf
+        self._identification: int | None = None
+        if "RMCU_Identification" in self._layouts:
+            loop.on_frame(wire, self._layouts["RMCU_Identification"].id, self._take_identification)
         source = FrameSource(self._bindings(), TICK_S, self._counted_by())
         self.sources = (source,)
         loop.on_frame(wire, self._reply.id, self._take_reply)
@@ -143,6 +150,27 @@ class RmcuDriver:
 
     def close(self) -> None:
         """Nothing of its own is open."""
+
+    def identify(self) -> dict[str, str]:
+        """Software, hardware revision and checksum of the calibration, if its DBC has a message for them."""
+        layout = self._layouts.get("RMCU_Identification")
+        heard = self._loop.clock.now_s() - self.last_seen_s < _SILENT_S
+        if layout is None or not heard:
+            return {}
+        self._loop.wait_for(lambda: self._identification is not None, _IDENTIFIES_WITHIN_S)
+        if self._identification is None:
+            return {}
+        raw = {
+            name: layout.signals[name].raw(self._identification)
+            for name in _IDENTIFICATION
+            if name in layout.signals
+        }
+        found = {"software": ".".join(str(raw[name]) for name in _VERSION if name in raw)}
+        if "HardwareRevision" in raw:
+            found["hardware"] = str(raw["HardwareRevision"])
+        if "CalibrationId" in raw:
+            found["calibration"] = f"{raw['CalibrationId']:0{layout.signals['CalibrationId'].length // 4}X}"
+        return {name: value for name, value in found.items() if value}
 
     def examine(self, *, ask: bool) -> Examined:
         """State, and whether it hears what is sent to it; reads a parameter, writes none."""
@@ -247,6 +275,10 @@ class RmcuDriver:
     def _take_reply(self, frame_id: int, data: bytes, time_s: float) -> None:
         del frame_id, time_s
         self._answer = int.from_bytes(data, "little")
+
+    def _take_identification(self, frame_id: int, data: bytes, time_s: float) -> None:
+        del frame_id, time_s
+        self._identification = int.from_bytes(data, "little")
 
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus != self._wire.name:

@@ -16,7 +16,8 @@ from rich.table import Table
 
 from hil.cli._log import LOG
 from hil.cli._streams import complain
-from hil.core.result import CriterionResult, CriterionVerdict
+from hil.core.printable import printable
+from hil.core.result import CriterionResult, CriterionVerdict, Identity
 
 if TYPE_CHECKING:
     from hil.core.recording import Recording
@@ -142,6 +143,16 @@ def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
     parts = [f"{passed} of {len(judged)} criteria passed"] if judged else ["nothing was judged"]
     informational = sum(c.verdict == "informational" for c in criteria)
     return ", ".join([*parts, f"{informational} informational"] if informational else parts)
+
+
+def told_identities(identities: Iterable[Identity]) -> str:
+    """Software and calibration of each device, on a line: "rmcu software 1.0.0, calibration 0DA2024A"."""
+    said: dict[str, dict[str, None]] = {}
+    for identity in identities:
+        name = identity.name.rpartition(": ")[2]
+        if name in ("software", "calibration") and identity.value:
+            said.setdefault(identity.device, {})[f"{name} {printable(identity.value, 60)}"] = None
+    return "; ".join(f"{device} {', '.join(values)}" for device, values in said.items())
 
 
 def _table(criteria: tuple[CriterionResult, ...]) -> Table:

@@ -9,7 +9,15 @@ from pathlib import Path
 from typing import TypeVar
 
 from hil.cli._interrupts import INTERRUPTS
-from hil.cli._output import Show, console, count_in_words, print_criteria, print_json, progress
+from hil.cli._output import (
+    Show,
+    console,
+    count_in_words,
+    print_criteria,
+    print_json,
+    progress,
+    told_identities,
+)
 from hil.cli._place import Place, results_in
 from hil.cli._streams import complain
 from hil.cli._timing import times_in_words, timing_in_words
@@ -163,6 +171,9 @@ def _print(result: RunResult, folder: Path) -> None:
     )
     for line in timing_in_words(result.timing):
         page.print(line, highlight=False)
+    said = told_identities(result.identities)
+    if said:
+        page.print(f"identification: {said}", highlight=False, markup=False, soft_wrap=True)
     shown = "html" if "html" in result.files else "recording"
     page.print(f"{'report' if shown == 'html' else shown}: {folder / result.files[shown]}", highlight=False)
 

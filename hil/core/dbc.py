@@ -36,7 +36,7 @@ class Needed:
 
     `whole` are counters and enumerations, which have no scaling; `texts` are values that a signal's value
     table must name; `checksum` is the signal of the frame's CRC, which covers the first seven bytes;
-    `optional` signals are used if the message has them.
+    `optional` signals are used if the message has them; `may_miss`: the file need not have the message.
     """
 
     signals: tuple[str, ...]
@@ -44,6 +44,7 @@ class Needed:
     texts: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     checksum: str = ""
     optional: tuple[str, ...] = ()
+    may_miss: bool = False
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,8 @@ def read_dbc(path: Path, needed: Mapping[str, Needed], names: Names | None = Non
         try:
             message = database.get_message_by_name(name)
         except KeyError:
+            if parts.may_miss and ours not in names.messages:
+                continue
             raise BadInputError(
                 f"has no message '{name}'", where=str(path), fix="use the RMCU's DBC"
             ) from None
@@ -135,7 +138,7 @@ def _as_called(needed: Needed, names: Names, message: str) -> Needed:
     }
     checksum = names.signal(message, needed.checksum) if needed.checksum else ""
     optional = called(needed.optional)
-    return Needed(called(needed.signals), called(needed.whole), texts, checksum, optional)
+    return Needed(called(needed.signals), called(needed.whole), texts, checksum, optional, needed.may_miss)
 
 
 def _renamed(layout: FrameLayout, ours: Mapping[str, str]) -> FrameLayout:

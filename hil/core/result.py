@@ -137,6 +137,20 @@ class Timing(_Frozen):
     longest_pause_s: float = 0.0
 
 
+class Identity(_Frozen):
+    """What a device says that it is; `expected` is what the bench file wants, '' if it does not say."""
+
+    device: str
+    name: str
+    value: str = Field(description="'' if the device does not say")
+    expected: str = ""
+
+    @property
+    def matches(self) -> bool:
+        """Whether it is what the bench file wants, if it wants anything."""
+        return self.expected in ("", self.value)
+
+
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
@@ -150,5 +164,6 @@ class RunResult(_Frozen):
     segments: tuple[Segment, ...] = ()
     clocks: tuple[StreamClock, ...] = ()
     timing: Timing | None = None
+    identities: tuple[Identity, ...] = ()
     files: dict[str, str] = {}
     reason: str = ""

@@ -13,10 +13,11 @@ from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
 from hil.core.files import make_directory
 from hil.core.model import model_to_toml
 from hil.core.recording import Recording
-from hil.core.result import CriterionResult, RunResult, SafeState, Timing, verdict_of
+from hil.core.result import CriterionResult, Identity, RunResult, SafeState, Timing, verdict_of
 from hil.engine.bench import Bench, open_bench
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.conductor import BenchConductor
+from hil.engine.identification import identities_of, refuse_others
 from hil.engine.limits import LimitWatch
 from hil.engine.preflight import preflight
 from hil.engine.provenance import hashes, versions
@@ -59,6 +60,7 @@ class _Run:
         self._error: HilError | None = None
         self._unsafe: list[str] = []
         self._armed = False
+        self._identities: tuple[Identity, ...] = ()
         self._started_at = datetime.datetime.now(datetime.UTC)
 
     def carry_out(self) -> RunOutcome:
@@ -111,13 +113,14 @@ class _Run:
     def _come_up(self) -> None:
         bench = self._bench
         self._begin_s = bench.loop.clock.now_s()
-        bench.loop.run_for(_LISTEN_S)
+        self._identify()
         bench.start_heartbeats(self._timing)
         bench.rmcu.come_up()
         bench.dyno.come_up()
         for device in bench.further.values():
             self._armed = True  # what a further device does once it is up, only the device knows
             device.come_up()
+        refuse_others(self._identities)
         self._recorder.begin()
         bench.loop.run_for(_LISTEN_S)
         self._recorder.event(bench.loop.clock.now_s(), "preflight", f"{self._names} answer")
@@ -142,6 +145,19 @@ class _Run:
             bench.loop.wait_for(bench.rmcu.is_safe, _REPEAT_S)
             bench.rmcu.make_safe()
             tries -= 1
+
+    def _identify(self) -> None:
+        """Listen, and ask the devices meanwhile what they are: asking makes no run longer."""
+        bench, tables = self._bench, self._request.bench.device_tables
+        bench.loop.run_for(_LISTEN_S / 2)
+        asked = zip(tables.items(), bench.devices, strict=True)
+        found = [identities_of(key, table, device) for (key, table), device in asked]
+        self._identities = tuple(identity for several in found for identity in several)
+        bench.loop.wait_for(
+            lambda: bench.loop.clock.now_s() > self._begin_s + _LISTEN_S - 0.5 * TICK_S, _LISTEN_S
+        )
+        said = {f"{i.device}: {i.name}": i.value for i in self._identities if i.value}
+        self._recorder.writer.describe("identification", said)
 
     def _steps(self) -> None:
         plan, conductor = self._request.plan, self._conductor
@@ -233,6 +249,7 @@ class _Run:
             segments=tuple(self._conductor.segments),
             clocks=self._recorder.clocks(),
             timing=self._timed(),
+            identities=self._identities,
             reason=str(self._error) if self._error else "",
         )
         try:

@@ -224,6 +224,8 @@ class SimulatedBench:
         modes, requests, codes = self._modes[samples], self._requests[samples], self._codes[samples]
         self._rmcu.follow(first, *self._requests_until(end), modes, requests, codes)
         if first % _NODES_EVERY == 0:
+            if Fault.RMCU_SILENT not in self.faults:
+                rmcu.pass_time(first * TICK_S)
             for node in self._dynos:
                 node.pass_time(first * TICK_S)
             self._status[0] = self._dynos[0].power.statusword

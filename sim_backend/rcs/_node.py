@@ -24,6 +24,7 @@ _EMCY_HEARTBEAT_LOST = 0x8130
 _SYNC_ID, _SYNC_PRODUCER = 0x80, 1 << 30
 _SYNC_PERIODS_US = (0, 1000)  # the bench has one sample time
 _HIGHEST_NODE_ID = 127
+_FIRST_SERIAL = 1000
 _PDO_PARAMETERS = range(0x1400, 0x1C00)  # they can be read and written back; what is mapped stays
 # Vehicle model (0x2000) by subindex: what a vehicle can have
 _VEHICLE_RANGES = {
@@ -121,11 +122,19 @@ class DynoNode:
         self._node: Any = ServedNode(node_id, self._dictionary)
         self._node.associate_network(self._network)
         self._node.add_write_callback(self._written)
+        self._give_serial_number()
         self._node.nmt.send_command(0)  # boots: boot-up message, then pre-operational
         self._node.nmt.send_command(128)
         self._host_heard_s = float("inf")
         self._host_heartbeat, self._host_limit_s = -1, float("inf")
         self._follow()
+
+    def _give_serial_number(self) -> None:
+        """Each node has another, in the identity object (CiA 301) if the EDS has it; its EDS says 0."""
+        identity = self._dictionary.get(0x1018)
+        if identity is not None and 4 in getattr(identity, "subindices", {}):
+            serial = identity[4].encode_raw(_FIRST_SERIAL + self.id)
+            self._node.data_store.setdefault(0x1018, {})[4] = serial
 
     @property
     def operational(self) -> bool:

@@ -15,6 +15,17 @@ from sim_backend.rmcu import _requests as R
 
 _READ, _WRITE, _APPLY = range(3)
 
+_IDENTIFY_EVERY_S = 0.1
+#: What the emulated firmware says that it is; signals that the DBC has not are left out.
+IDENTITY = {
+    "SoftwareMajor": 1,
+    "SoftwareMinor": 0,
+    "SoftwarePatch": 0,
+    "HardwareRevision": 1,
+    "CalibrationId": 0x0DA2024A,
+}
+IDENTIFICATION = tuple(IDENTITY)
+
 # What the emulated RMCU and the dyno controller on its bus put into frames or take from them.
 NEEDED = {
     "RMCU_Request": Needed(
@@ -35,6 +46,7 @@ NEEDED = {
         whole=("State", "RequestFault", "Saturated", "ParametersValid", "Counter", "Crc"),
         checksum="Crc",
     ),
+    "RMCU_Identification": Needed((), whole=IDENTIFICATION, optional=IDENTIFICATION, may_miss=True),
     "RMCU_ParameterWrite": Needed(("Command", "Index", "Value"), whole=("Command", "Index")),
     "RMCU_ParameterReply": Needed(
         ("Command", "Result", "Index", "Value"), whole=("Command", "Result", "Index")
@@ -77,6 +89,8 @@ class RmcuNode:
         names = dbc.texts.get(("RMCU_ParameterWrite", "Index"), {})
         self._names = {index: name for name, index in names.items() if index > 0}
         self._stored: dict[str, float] = {}
+        self._identification = dbc.layouts.get("RMCU_Identification")
+        self._identify_s = 0.0
 
     @property
     def mode(self) -> int:
@@ -104,6 +118,16 @@ class RmcuNode:
             R.take_request(np.uint64(payload), time_s, *self._reading, self._whole, self._real)
         elif frame_id == self._write.id:
             self._serve(payload)
+
+    def pass_time(self, time_s: float) -> None:
+        """Say which software and calibration this is, when it is time to."""
+        layout = self._identification
+        if layout is None or time_s < self._identify_s:
+            return
+        self._identify_s = time_s + _IDENTIFY_EVERY_S
+        known = {name: float(IDENTITY[name]) for name in IDENTITY if name in layout.signals}
+        payload = int(layout.encode(**known)[0])
+        self._send(layout.id, payload.to_bytes(8, "little")[: layout.length])
 
     def supervise(self, time_s: float) -> None:
         """Drop to fault, torque zero, when what the mode needs has become old."""

@@ -19,6 +19,7 @@ from hil.engine.doctor._buses import Tally, findings_of_bus, findings_of_link, k
 from hil.engine.doctor._clocks import Listener
 from hil.engine.doctor._dates import findings_of_dates
 from hil.engine.doctor.examination import BusFacts, DeviceFacts, Examination
+from hil.engine.identification import identities_of, told, what_to_do
 from hil.engine.provenance import versions
 from hil.engine.stopping import StopRequest
 
@@ -190,3 +191,12 @@ class _Visit:
                 continue
             facts.answers, facts.facts = examined.answers, examined.facts
             self._add(*examined.findings)
+            if examined.answers and self._found.asked:
+                self._identify(key, device, facts)
+
+    def _identify(self, key: str, device: Device, facts: DeviceFacts) -> None:
+        for identity in identities_of(key, self._file.device_tables[key], device):
+            if identity.value:
+                facts.facts[identity.name] = identity.value
+            if not identity.matches:
+                self._add(Finding("fault", told(identity), device.name, what_to_do(identity)))
