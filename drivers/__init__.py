@@ -8,6 +8,7 @@ from drivers.device import Device, MotorControl, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
 from drivers.examination import Examinable, Examined, Finding, Identifies
 from drivers.frame_source import Binding, CountedBy, FrameSource
+from drivers.listening_wire import ListeningWire
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
 from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu
@@ -41,6 +42,7 @@ __all__ = [
     "Finding",
     "FrameSource",
     "Identifies",
+    "ListeningWire",
     "LoadTable",
     "MotorControl",
     "Name",

@@ -38,6 +38,7 @@ _COMMANDS = {
     "export": "Write a recording as CSV, Parquet or MDF4.",
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
     "doctor": "What of a bench is there, what is wrong with it, and what to do.",
+    "monitor": "Decoded channels and bus load live, touching nothing.",
     "schema": "JSON schema of plan files, for editors.",
 }
 

@@ -14,6 +14,7 @@ from drivers import (
     BusLoop,
     Connections,
     Device,
+    ListeningWire,
     MotorControl,
     SampleSource,
     Stream,
@@ -140,7 +141,7 @@ def open_wire(
     """Open a bus of the bench file; it is closed with `opened`.
 
     Args:
-        listen_only: where the adapter can, it does not even acknowledge frames.
+        listen_only: nothing can be sent; where the adapter can, it does not even acknowledge frames.
 
     Raises:
         BadInputError: the bench at the other end goes at another pace.
@@ -150,7 +151,8 @@ def open_wire(
     settings = can_settings(name, bus, listen_only=listen_only)
     adapter = open_can(settings)
     health = BusHealth(name, bus.interface, adapter)
-    wire = Wire(
+    kind = ListeningWire if listen_only else Wire
+    wire = kind(
         name,
         adapter,
         clock,

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 
-import numpy as np
-
-from drivers import Finding, Wire, bits_on_the_wire
+from drivers import Finding, Wire
 from drivers.linux_links import Link, link_of
-from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
-from hil.engine.bench_tables import BenchFile, Bus
+from hil.engine.bench_tables import Bus
+from hil.engine.bus_tally import Tally
 from hil.engine.doctor.examination import BusFacts
 
 _FULL = 0.8  # above this share of the time frames with high identifiers begin to wait for long
@@ -18,54 +16,6 @@ _RATE_FIX = (
     "compare the bit rate of all nodes; check the cable and its terminators (120 ohm at both ends), and "
     "that the devices are powered"
 )
-
-
-class Tally:
-    """Counts what is heard on one bus."""
-
-    def __init__(self) -> None:
-        self._counts: dict[tuple[int, bool], int] = {}
-        self._bits = 0
-        self.errors = 0
-        self.sent_by_hosts: set[int] = set()
-
-    def take(self, block: FrameBlock) -> None:
-        """Count the frames of one bus."""
-        self._bits += int(bits_on_the_wire(block).sum())
-        errors = block["flags"] & ERROR_FRAME != 0
-        self.errors += int(np.count_nonzero(errors))
-        others = block[~errors & (block["flags"] & SENT_BY_HOST == 0)]
-        numbers, counts = np.unique(others["id"] << 1 | others["flags"] & EXTENDED, return_counts=True)
-        for number, count in zip(numbers.tolist(), counts.tolist(), strict=True):
-            key = (number >> 1, bool(number & 1))
-            self._counts[key] = self._counts.get(key, 0) + count
-
-    @property
-    def frames(self) -> int:
-        """Data frames of others so far."""
-        return sum(self._counts.values())
-
-    @property
-    def standard_ids(self) -> set[int]:
-        """Identifiers of 11 bits that others sent."""
-        return {number for number, extended in self._counts if not extended}
-
-    def describe(self, facts: BusFacts, known: Collection[int], duration_s: float) -> None:
-        """Fill in what was heard in `duration_s` seconds."""
-        facts.load = round(self._bits / facts.bit_rate / duration_s, 4)
-        facts.frames_s = round(self.frames / duration_s, 1)
-        facts.error_frames = self.errors
-        facts.unknown = {
-            f"0x{number:08X}" if extended else f"0x{number:03X}": round(count / duration_s, 1)
-            for (number, extended), count in sorted(self._counts.items())
-            if extended or number not in known
-        }
-
-
-def known_identifiers(file: BenchFile, bus: str) -> set[int]:
-    """What the devices of a bench file send or hear on a bus."""
-    tables = [table for table in file.device_tables.values() if getattr(table, "bus", None) == bus]
-    return {number for table in tables for number in table.identifiers()}
 
 
 def findings_of_bus(name: str, facts: BusFacts, tally: Tally, wire: Wire) -> Iterator[Finding]:

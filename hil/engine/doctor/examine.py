@@ -15,7 +15,8 @@ from hil.core.model import load_model
 from hil.core.real_time import undisturbed
 from hil.engine.bench import bench_clock, connections_of, open_wire
 from hil.engine.bench_tables import BenchFile
-from hil.engine.doctor._buses import Tally, findings_of_bus, findings_of_link, known_identifiers
+from hil.engine.bus_tally import Tally, known_identifiers
+from hil.engine.doctor._buses import findings_of_bus, findings_of_link
 from hil.engine.doctor._clocks import Listener
 from hil.engine.doctor._dates import findings_of_dates
 from hil.engine.doctor.examination import BusFacts, DeviceFacts, Examination
@@ -157,7 +158,9 @@ class _Visit:
         for wire in wires:
             facts, tally = self._found.buses[wire.name], self._tallies[wire.name]
             known = known_identifiers(self._file, wire.name)
-            tally.describe(facts, known, duration_s)
+            facts.load = round(tally.load(facts.bit_rate, duration_s), 4)
+            facts.frames_s = round(tally.frames / duration_s, 1)
+            facts.error_frames, facts.unknown = tally.errors, tally.unknown(known, duration_s)
             self._add(*findings_of_bus(wire.name, facts, tally, wire))
             try:
                 wire.check()

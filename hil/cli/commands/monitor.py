@@ -1,0 +1,36 @@
+"""`hil monitor`: channels and bus load live, touching nothing."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+
+def command(
+    bench: Annotated[str, typer.Argument(help="bench file, or the name of a shipped bench")],
+    for_s: Annotated[
+        float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
+    ] = None,
+    every_s: Annotated[
+        float | None,
+        typer.Option(
+            "--every", metavar="SECONDS", help="between two looks; default 0.2 on a terminal, else 1"
+        ),
+    ] = None,
+    as_json: Annotated[
+        bool,
+        typer.Option("--json", help="print one JSON object of the whole time, nothing else"),
+    ] = False,
+) -> int:
+    """Show decoded channels and bus load live; no frame is sent, not even a heartbeat.
+
+    On a terminal a table that renews itself, else a line at each look. Exit code: 0 its time (--for) is over,
+    2 bad input or a simulated bench, 3 no bus can be opened or one fails, 130 ended by Ctrl-C.
+    """
+    import_python_can()
+    from hil.cli.monitor import carry_out
+
+    return carry_out(bench=bench, for_s=for_s, every_s=every_s, as_json=as_json)
