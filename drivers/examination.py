@@ -34,11 +34,14 @@ class Examined:
         answers: whether it is there at all.
         facts: what it says of itself, by name: "state", "software", "rear left: vendor".
         findings: what is wrong.
+        readings: what its sensors read now, by channel, in the channel's unit; those that it sends by itself
+            need not be among them.
     """
 
     answers: bool = False
     facts: dict[str, str] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
+    readings: dict[str, float] = field(default_factory=dict)
 
 
 @runtime_checkable

@@ -1,9 +1,10 @@
-"""In what state the bench was: which software and calibration its devices said that they run."""
+"""In what state the bench was: software and calibration of its devices, sensors at rest."""
 
 from __future__ import annotations
 
 from hil.core.recording import Recording
-from hil.core.result import Identity, RunResult
+from hil.core.result import Identity, RunResult, Zero
+from reports import quantities
 from reports.provenance import Fact
 
 TABLE = "identification"
@@ -40,3 +41,30 @@ def _state(identities: list[Identity]) -> str:
     if not all(identity.matches for identity in identities):
         return "bad"
     return "good" if any(identity.expected for identity in identities) else ""
+
+
+def zero_facts(result: RunResult | None) -> tuple[Fact, ...]:
+    """What each sensor read at rest before and after the run, beside what the bench file allows."""
+    zeros = result.zeros if result is not None else ()
+    return tuple(Fact(zero.channel, _readings(zero), _zero_state(zero)) for zero in zeros)
+
+
+def _readings(zero: Zero) -> str:
+    if zero.before is None:
+        return f"not read: {zero.reason}"
+    unit = zero.unit
+    offset = f"{quantities.quantity(zero.before, unit, 3)} before ({_allowed(zero.within, unit)})"
+    if zero.after is None or zero.drift is None:
+        return f"{offset}; not read after: {zero.reason}"
+    drift = f"drift {quantities.quantity(zero.drift, unit, 3)} ({_allowed(zero.drift_within, unit)})"
+    return f"{offset}, {quantities.quantity(zero.after, unit, 3)} after: {drift}"
+
+
+def _allowed(limit: float | None, unit: str) -> str:
+    return "no limit stated" if limit is None else f"limit {quantities.nominal(limit)} {unit}"
+
+
+def _zero_state(zero: Zero) -> str:
+    if not (zero.offset_fits and zero.drift_fits):
+        return "bad"
+    return "good" if zero.within is not None or zero.drift_within is not None else ""

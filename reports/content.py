@@ -10,7 +10,7 @@ from hil.core.channels import TIME
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from reports import provenance, quantities
-from reports.bench_state import identification_facts
+from reports.bench_state import identification_facts, zero_facts
 from reports.criteria import CriteriaTable, CriterionRow, count_by_verdict, criteria_table
 from reports.figure import Section
 from reports.labels import channel_label, channel_unit
@@ -87,6 +87,7 @@ class Content:
     versions: tuple[Fact, ...]
     calibration: tuple[Fact, ...]
     identification: tuple[Fact, ...]
+    zeros: tuple[Fact, ...]
     files: tuple[StoredFile, ...]
     source: str
     sha256: str
@@ -118,6 +119,7 @@ def content(recording: Recording, result: RunResult | None) -> Content:
     started = run.get("started_at", "")
     calibration, files = provenance.calibration_facts(recording), provenance.stored_files(recording)
     identification = identification_facts(recording, result)
+    zeros = zero_facts(result)
     marks = (plan or recording.source.name, started, f"SHA-256 {sha256[:12]}" if sha256 else "")
     return Content(
         title=title,
@@ -128,8 +130,9 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         versions=provenance.table(recording, "versions"),
         calibration=calibration,
         identification=identification,
+        zeros=zeros,
         files=files,
-        warnings=_warnings(calibration, identification, files),
+        warnings=_warnings(calibration, (*identification, *zeros), files),
         damage=tuple(recording.damage),
         source=recording.source.name,
         sha256=sha256,
@@ -197,13 +200,13 @@ def _as_sentences(text: str) -> list[str]:
 
 
 def _warnings(
-    calibration: tuple[Fact, ...], identification: tuple[Fact, ...], files: tuple[StoredFile, ...]
+    calibration: tuple[Fact, ...], state: tuple[Fact, ...], files: tuple[StoredFile, ...]
 ) -> tuple[str, ...]:
     """What a signer must know before the numbers."""
     expired = [
         f"{fact.name}: calibration valid until {fact.value}." for fact in calibration if fact.state == "bad"
     ]
-    others = [f"{fact.name}: {fact.value}." for fact in identification if fact.state == "bad"]
+    others = [f"{fact.name}: {fact.value}." for fact in state if fact.state == "bad"]
     return (
         *expired,
         *others,

@@ -19,6 +19,9 @@ _HEARTBEATS_WITHIN_S = 1.2
 _READ_DEVICE_TYPE = bytes((0x40, 0x00, 0x10, 0x00, 0, 0, 0, 0))  # SDO upload of 0x1000
 _BETWEEN_REQUESTS_S = 0.001
 _DRIVE_PROFILE = 402
+_SIDES = ("left", "right")
+_READINGS = 10
+_MEASURED = {"Wheel speed": "wheel_speed_{}_rad_s", "Shaft torque": "shaft_torque_{}_nm"}
 # Index, subindex, what it is and how it is shown (CiA 301): texts, and the identity object
 _IDENTITY = (
     (0x1008, 0, "name", ""),
@@ -43,11 +46,28 @@ def examine(
         found.answers |= there and node in used
         if not there:
             missing.append(node)
+        elif ask and node in used:
+            found.readings |= _measured(node, _SIDES[used.index(node)])
     if missing:
         strangers = _strangers(loop, wire, {node.id for node in (*used, *idle)}, ask=ask)
         for node in missing:
             found.findings.append(_missing(node, wire.name, strangers, used=node in used))
     return found
+
+
+def _measured(node: DynoNode, side: str) -> dict[str, float]:
+    """Means of what its sensors read, by channel; before a run has started them they send nothing."""
+    readings = {}
+    with contextlib.suppress(BenchError):
+        for name, channel in (
+            ("Wheel speed", f"wheel_speed_{side}_rad_s"),
+            ("Shaft torque", f"shaft_torque_{side}_nm"),
+        ):
+            values = [node.measured(name) for _ in range(_READINGS)]
+            known = [value for value in values if value is not None]
+            if known:
+                readings[channel.format(side)] = sum(known) / len(known)
+    return readings
 
 
 def identify(nodes: Sequence[DynoNode]) -> dict[str, str]:

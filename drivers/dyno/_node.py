@@ -155,6 +155,18 @@ class DynoNode:
                 fix="is it powered and on this bus?",
             ) from error
 
+    def measured(self, name: str) -> float | None:
+        """What it measures now of an object that its values PDO maps; None if it cannot be read by SDO.
+
+        Raises:
+            BenchError: no answer.
+        """
+        variable = self._node.object_dictionary.names.get(name)
+        if variable is None or hasattr(variable, "subindices"):
+            return None
+        raw = self.read(variable.index)
+        return None if raw is None else float(raw) * float(variable.factor)
+
     def _entry(self, index: int, subindex: int) -> Any | None:
         if index not in self._node.object_dictionary:
             return None

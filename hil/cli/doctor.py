@@ -46,6 +46,9 @@ def _tell(found: Examination) -> None:
     if found.clocks:
         page.print()
         page.print(_clocks(found))
+    if found.zeros:
+        page.print()
+        page.print(_zeros(found))
     if found.calibration:
         dates = ", ".join(f"{printable(name)} {until}" for name, until in found.calibration.items())
         page.print(f"\ncalibrated until: {dates}", highlight=False, markup=False, soft_wrap=True)
@@ -115,4 +118,13 @@ def _clocks(found: Examination) -> Table:
     for clock in found.clocks:
         times = f"{clock.drift_ppm:.0f}", f"{clock.offset_s * 1e3:.2f}", f"{clock.latest_s * 1e3:.1f}"
         table.add_row(clock.stream, clock.counted_by, *times, str(clock.lost))
+    return table
+
+
+def _zeros(found: Examination) -> Table:
+    table = _table("sensor at rest", "reads", "limit", "unit", right=("reads", "limit"))
+    for zero in found.zeros:
+        reads = "not read" if zero.before is None else f"{zero.before:.4g}"
+        limit = "not stated" if zero.within is None else f"{zero.within:g}"
+        table.add_row(printable(zero.channel), reads, limit, zero.unit)
     return table

@@ -151,6 +151,35 @@ class Identity(_Frozen):
         return self.expected in ("", self.value)
 
 
+class Zero(_Frozen):
+    """What a sensor read at rest, before the drives were enabled and after they were off again."""
+
+    channel: str
+    unit: str
+    before: float | None = None
+    after: float | None = None
+    within: float | None = Field(
+        None, description="largest magnitude before; null: the bench file states none"
+    )
+    drift_within: float | None = Field(None, description="largest change; null: none is stated")
+    reason: str = Field("", description="why something is missing")
+
+    @property
+    def drift(self) -> float | None:
+        """After less before; None if one is missing."""
+        return None if self.before is None or self.after is None else self.after - self.before
+
+    @property
+    def offset_fits(self) -> bool:
+        """Whether it reads what the bench file allows; what is not known does not."""
+        return self.within is None or (self.before is not None and abs(self.before) <= self.within)
+
+    @property
+    def drift_fits(self) -> bool:
+        """Whether it has changed by what the bench file allows; what is not known does not contradict."""
+        return self.drift_within is None or self.drift is None or abs(self.drift) <= self.drift_within
+
+
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
@@ -165,5 +194,6 @@ class RunResult(_Frozen):
     clocks: tuple[StreamClock, ...] = ()
     timing: Timing | None = None
     identities: tuple[Identity, ...] = ()
+    zeros: tuple[Zero, ...] = ()
     files: dict[str, str] = {}
     reason: str = ""

@@ -16,7 +16,7 @@ from hil.engine._bus_settings import adapter_mistakes, slows_down
 from hil.engine._simulable import check_simulable, rmcu_of
 from hil.engine.bench_tables import BenchFile
 from hil.plant.controller import in_range
-from sim_backend.bench import DYNO_BUS, RMCU_BUS
+from sim_backend.bench import DYNO_BUS, RMCU_BUS, SENSED_CHANNELS
 
 SIMULATED = "hil-sim"
 
@@ -51,6 +51,7 @@ def contradictions(bench: BenchFile) -> list[str]:
         *_of_uses(bench),
         *_of_interfaces(bench),
         *_of_simulation(bench),
+        *_of_sensors(bench),
         *_of_time_scale(bench),
     ]
 
@@ -106,6 +107,15 @@ def _of_simulation(bench: BenchFile) -> Iterator[str]:
             if not isinstance(table, kind):
                 known = kind.model_fields["kind"].default
                 yield f"{key}.kind = '{printable(table.kind)}': the simulated bench has only '{known}'"
+
+
+def _of_sensors(bench: BenchFile) -> Iterator[str]:
+    """Sensors that the simulated bench does not have."""
+    for name in bench.simulation.sensors if bench.simulation else ():
+        if name not in SENSED_CHANNELS:
+            near = difflib.get_close_matches(name, SENSED_CHANNELS, 1)
+            hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(SENSED_CHANNELS)}"
+            yield f"simulation.sensors.{printable(name, 60)}: the simulated bench has no such sensor; {hint}"
 
 
 def _of_time_scale(bench: BenchFile) -> Iterator[str]:

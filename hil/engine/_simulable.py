@@ -7,7 +7,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.printable import printable
 from hil.engine.bench_tables import BenchFile
-from sim_backend.bench import Noise, SimulatedBench, SimulationSettings, check_device_files
+from sim_backend.bench import Noise, SensorFault, SimulatedBench, SimulationSettings, check_device_files
 
 
 def rmcu_of(bench: BenchFile) -> RmcuTable:
@@ -64,6 +64,10 @@ def simulated(bench: BenchFile, model: Model) -> SimulatedBench:
             wheel_radius_m=bench.vehicle.wheel_radius_m,
             seed=bench.simulation.seed,
             held=bench.simulation.rmcu,
+            sensors={
+                name: SensorFault(table.gain, table.offset)
+                for name, table in bench.simulation.sensors.items()
+            },
             noise=Noise(noise.motor_speed_rad_s, noise.wheel_speed_rad_s, noise.shaft_torque_nm),
         )
     )

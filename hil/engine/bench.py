@@ -234,10 +234,12 @@ def _refuse_channels(bench: Bench) -> None:
                     fix="every channel has one source; leave a device out, or call one otherwise",
                 )
             seen[channel] = stream.where
-    for channel in bench.file.limits.channels:
+    limited = {f"limits.channels.{name}": name for name in bench.file.limits.channels}
+    limited |= {f"zero.{name}": name for name in bench.file.zero}
+    for key, channel in limited.items():
         if channel not in seen:
             raise BadInputError(
-                f"limits.channels.{printable(channel, 60)}: no device gives this channel",
+                f"{printable(key, 80)}: no device gives this channel",
                 where=where,
                 fix=f"there are: {', '.join(list(seen)[1:])}",
             )

@@ -138,6 +138,19 @@ class Limits(_Table):
     channels: dict[str, ChannelLimit] = Field({}, description="limits of further channels, of any device")
 
 
+class ZeroLimit(_Table):
+    """What a sensor may read at rest, in its channel's unit; what is left out is measured and not judged."""
+
+    within: Limit | None = Field(None, description="largest magnitude before a run")
+    drift: Limit | None = Field(None, description="largest change from before a run to after it")
+
+    @model_validator(mode="after")
+    def _says_something(self) -> Self:
+        if self.within is None and self.drift is None:
+            raise ValueError("limits nothing; give 'within', 'drift' or both")
+        return self
+
+
 class NoiseTable(_Table):
     """Standard deviations of the simulated sensors."""
 
@@ -146,12 +159,20 @@ class NoiseTable(_Table):
     shaft_torque_nm: Deviation = 0.5
 
 
+class SensorTable(_Table):
+    """What is wrong with a simulated sensor: it reads gain times the truth plus offset."""
+
+    gain: Bound = 1.0
+    offset: Bound = 0.0
+
+
 class Simulation(_Table):
     """A simulated bench in place of hardware."""
 
     model: File
     seed: int = Field(1, ge=0, le=2**63 - 1)
     noise: NoiseTable = NoiseTable()
+    sensors: dict[str, SensorTable] = Field({}, description="channel: what is wrong with its sensor")
     rmcu: dict[str, Bound] = Field(
         {}, description="parameters that this RMCU keeps in place of those that are written to it"
     )
@@ -172,6 +193,7 @@ class BenchFile(_Table):
     devices: dict[Name, SerializeAsAny[DeviceTable]] = {}
     limits: Limits
     vehicle: Vehicle = Vehicle()
+    zero: dict[str, ZeroLimit] = Field({}, description="channel: what it may read at rest")
     dut: dict[str, str] = {}
     calibration: dict[str, Day] = Field({}, description="sensor: valid until")
     simulation: Simulation | None = None

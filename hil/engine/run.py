@@ -24,6 +24,7 @@ from hil.engine.provenance import hashes, versions
 from hil.engine.recorder import Recorder
 from hil.engine.request_timing import COLLECT_S, RequestTiming
 from hil.engine.safety import reach_safe_state
+from hil.engine.zero import ZeroCheck
 from test_plans import estimate_duration_s, judge
 
 _PROGRESS_S = 0.5
@@ -61,6 +62,8 @@ class _Run:
         self._unsafe: list[str] = []
         self._armed = False
         self._identities: tuple[Identity, ...] = ()
+        self._zero = ZeroCheck(bench.streams, request.bench.zero)
+        self._rows_finished = False
         self._started_at = datetime.datetime.now(datetime.UTC)
 
     def carry_out(self) -> RunOutcome:
@@ -122,7 +125,9 @@ class _Run:
             device.come_up()
         refuse_others(self._identities)
         self._recorder.begin()
+        self._zero.begin()
         bench.loop.run_for(_LISTEN_S)
+        self._zero.before()
         self._recorder.event(bench.loop.clock.now_s(), "preflight", f"{self._names} answer")
         self._armed = True  # from here on the safe state is owed, whatever happens
         ramp = self._request.bench.dyno.speed_ramp_m_s2 / self._request.bench.vehicle.wheel_radius_m
@@ -159,6 +164,17 @@ class _Run:
         said = {f"{i.device}: {i.name}": i.value for i in self._identities if i.value}
         self._recorder.writer.describe("identification", said)
 
+    def _look_at_drift(self) -> None:
+        """The drives are off; what comes from here on is no part of the run's rows."""
+        try:
+            self._zero.after(
+                self._bench.loop, ended_well=not self._unsafe and not isinstance(self._error, BenchError)
+            )
+        except HilError as error:
+            self._fail(error)
+        except Exception as error:  # the recording is to be closed with what was measured
+            self._fail_by(error)
+
     def _steps(self) -> None:
         plan, conductor = self._request.plan, self._conductor
         try:
@@ -185,7 +201,9 @@ class _Run:
         now_s = self._bench.loop.clock.now_s()
         for source in self._bench.sources:
             for samples in source.samples():
-                self._recorder.take(samples)
+                self._zero.take(samples)
+                if not self._rows_finished:
+                    self._recorder.take(samples)
                 self._watch.take(samples, now_s)
         pauses = self._watch.pauses.count
         try:
@@ -237,6 +255,8 @@ class _Run:
                 self._try_event("bus", f"{wire.name}: {remark}")
         bench_time_s = loop.clock.now_s() - self._begin_s
         recording = self._recording()
+        self._rows_finished = True
+        self._look_at_drift()
         criteria = self._judged(recording) if recording is not None else ()
         result = RunResult(
             verdict=verdict_of(criteria, stopped=self._error is not None),
@@ -250,6 +270,7 @@ class _Run:
             clocks=self._recorder.clocks(),
             timing=self._timed(),
             identities=self._identities,
+            zeros=self._zero.zeros,
             reason=str(self._error) if self._error else "",
         )
         try:

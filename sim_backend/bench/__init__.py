@@ -1,15 +1,17 @@
 """The simulated bench as a whole: what stands at the other end of the wire when hardware is absent."""
 
 from sim_backend.bench._faults import Fault
-from sim_backend.bench._settings import Noise, SimulationSettings
+from sim_backend.bench._settings import SENSED_CHANNELS, Noise, SensorFault, SimulationSettings
 from sim_backend.bench._traffic import frame_time_s
 from sim_backend.bench._world import DYNO_BUS, RMCU_BUS, SimulatedBench, check_device_files
 
 __all__ = [
     "DYNO_BUS",
     "RMCU_BUS",
+    "SENSED_CHANNELS",
     "Fault",
     "Noise",
+    "SensorFault",
     "SimulatedBench",
     "SimulationSettings",
     "check_device_files",

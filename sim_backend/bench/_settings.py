@@ -20,6 +20,24 @@ class Noise:
 
 
 @dataclass(frozen=True)
+class SensorFault:
+    """A sensor that reads gain times the truth plus offset (in its channel's unit)."""
+
+    gain: float = 1.0
+    offset: float = 0.0
+
+
+#: Channels of the simulated sensors, in the order of the tick's rows.
+SENSED_CHANNELS = (
+    "motor_speed_rad_s",
+    "wheel_speed_left_rad_s",
+    "wheel_speed_right_rad_s",
+    "shaft_torque_left_nm",
+    "shaft_torque_right_nm",
+)
+
+
+@dataclass(frozen=True)
 class SimulationSettings:
     """Everything that makes a simulated bench; two benches with equal settings give equal frames."""
 
@@ -34,6 +52,7 @@ class SimulationSettings:
     wheel_radius_m: float = 0.33
     seed: int = 1
     noise: Noise = field(default_factory=Noise)
+    sensors: Mapping[str, SensorFault] = field(default_factory=dict)  # by channel; others are well
     names: Names = field(default_factory=Names)  # what the DBC calls things
     held: Mapping[str, float] = field(
         default_factory=dict

@@ -20,7 +20,7 @@ from hil.plant.closed_loop import drive as drive
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
-from sim_backend.bench._settings import SimulationSettings
+from sim_backend.bench._settings import SENSED_CHANNELS, SensorFault, SimulationSettings
 from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s, single
 from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
@@ -149,6 +149,10 @@ class SimulatedBench:
     def _make_state(self) -> None:
         self._plant = state_at_rest(self.settings.model, self.settings.wheel_radius_m)
         self._drives = self._plant.drives
+        for row, channel in zip(self._plant.sensors, SENSED_CHANNELS, strict=True):
+            fault = self.settings.sensors.get(channel, SensorFault())
+            row[T.SENSOR_GAIN] *= fault.gain
+            row[T.SENSOR_OFFSET] = row[T.SENSOR_OFFSET] * fault.gain + fault.offset
         self._status = np.zeros(2)
         noise = self.settings.noise
         self._noise_scale = np.array(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+import numpy as np
+
 from drivers import TICK_S, Finding, SampleAssembler, Samples, SampleSource, Stream
 from hil.core.errors import BenchError
 from hil.core.result import StreamClock
@@ -56,6 +58,16 @@ class Listener:
             for timing in assembler.timings()
         ]
         return found, [*_parted(assembler), *_late(found)]
+
+    def means(self) -> dict[str, float]:
+        """Mean of each channel that came, where every value is known."""
+        found: dict[str, float] = {}
+        for stream in self._streams:
+            values = [samples.values for samples in self._taken if samples.stream is stream]
+            if values:
+                means = np.concatenate(values).mean(axis=0)
+                found |= dict(zip(stream.channels, means.tolist(), strict=True))
+        return {name: mean for name, mean in found.items() if np.isfinite(mean)}
 
     def findings_of_rates(self, duration_s: float) -> Iterator[Finding]:
         """Streams that come more often or more seldom than they should."""

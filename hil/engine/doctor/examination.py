@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
 from drivers import Finding
-from hil.core.result import StreamClock
+from hil.core.result import StreamClock, Zero
 
 #: `fine`: no fault. `faults`: something is not as it should be. `not_there`: neither RMCU nor dynos answer.
 Verdict = Literal["fine", "faults", "not_there"]
@@ -57,6 +57,7 @@ class Examination:
     buses: dict[str, BusFacts] = field(default_factory=dict)
     devices: dict[str, DeviceFacts] = field(default_factory=dict)
     clocks: list[StreamClock] = field(default_factory=list)
+    zeros: list[Zero] = field(default_factory=list)
     calibration: dict[str, str] = field(default_factory=dict)
     versions: dict[str, str] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
@@ -71,6 +72,7 @@ class Examination:
     def as_dict(self) -> dict[str, Any]:
         """For JSON."""
         own = {**vars(self), "clocks": [clock.model_dump() for clock in self.clocks]}
+        own["zeros"] = [zero.model_dump(exclude={"after", "drift_within"}) for zero in self.zeros]
         for name in ("buses", "devices"):
             own[name] = {key: asdict(value) for key, value in own[name].items()}
         own["findings"] = [asdict(finding) for finding in self.findings]

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from drivers import BusLoop, Connections, Device, Examinable, Finding, Wire
+from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import FrameBlock
 from hil.core.model import load_model
@@ -23,6 +24,8 @@ from hil.engine.doctor.examination import BusFacts, DeviceFacts, Examination
 from hil.engine.identification import identities_of, told, what_to_do
 from hil.engine.provenance import versions
 from hil.engine.stopping import StopRequest
+from hil.engine.zero import SENSORS, offset_told, turning, zero_of
+from hil.engine.zero import what_to_do as what_to_do_about_zero
 
 _CHUNK_S = 0.1
 
@@ -86,7 +89,8 @@ class _Visit:
             self._describe_buses(loop.wires, duration_s)
             self._add(*listener.findings_of_rates(duration_s))
             self._look_for_other_hosts()
-            self._ask(devices)
+            self._ask(devices, readings := listener.means())
+        self._look_at_zero(readings)
         found.clocks, findings = listener.clocks()
         self._add(*findings, *findings_of_dates(self._file, request.today))
         found.findings.sort(key=lambda finding: finding.severity != "fault")
@@ -180,7 +184,23 @@ class _Visit:
                 fix = "wait until it is done, or end it; two hosts on one bench trip the RMCU"
                 self._add(Finding("fault", what, f"bus '{bus}'", fix))
 
-    def _ask(self, devices: dict[str, Device]) -> None:
+    def _look_at_zero(self, readings: dict[str, float]) -> None:
+        """What the sensors read, if the axle stands still."""
+        limits, moving = self._file.zero, turning(readings)
+        for name in dict.fromkeys((*SENSORS, *limits)):
+            if name in readings or name in limits:
+                unit = CHANNELS[name].unit if name in CHANNELS else ""
+                value = None if moving else readings.get(name)
+                zero = zero_of(name, unit, limits.get(name), value, None, moving or "nothing came")
+                self._found.zeros.append(zero)
+                if value is not None and not zero.offset_fits:
+                    self._add(Finding("fault", offset_told(zero), "zero check", what_to_do_about_zero()))
+        if moving and self._found.asked:
+            self._add(
+                Finding("hint", f"{moving}; sensors were not checked", "zero check", "bring it to rest")
+            )
+
+    def _ask(self, devices: dict[str, Device], readings: dict[str, float]) -> None:
         for key, device in devices.items():
             self._request.progress(0.9, f"looking at {device.name}")
             facts = self._found.devices[key]
@@ -194,6 +214,7 @@ class _Visit:
                 continue
             facts.answers, facts.facts = examined.answers, examined.facts
             self._add(*examined.findings)
+            readings |= examined.readings
             if examined.answers and self._found.asked:
                 self._identify(key, device, facts)
 
