@@ -94,6 +94,10 @@ class DeviceTable(BaseModel):
         """CAN identifiers that the device sends or hears on its bus, with words for each."""
         return {}
 
+    def described_in(self) -> Mapping[str, tuple[str, str]]:
+        """Where each channel is described: the key of the file in this table, and what to look for there."""
+        return {}
+
     def asked_by_hosts(self) -> Collection[int]:
         """Those of `identifiers` that only a host sends: who sends them drives this bench."""
         return ()

@@ -70,6 +70,16 @@ class DynoTable(LoadTable):
             taken |= identifiers_of(node, key)
         return taken
 
+    def described_in(self) -> dict[str, tuple[str, str]]:
+        """Objects that the EDS maps."""
+        found = {}
+        for side, node in (("left", self.rear_left), ("right", self.rear_right)):
+            of = f"of node {node}"
+            found[f"wheel_speed_{side}_rad_s"] = ("eds", f"'Wheel speed' {of}")
+            found[f"shaft_torque_{side}_nm"] = ("eds", f"'Shaft torque' {of}")
+            found[f"dyno_torque_{side}_nm"] = ("eds", f"'Torque actual value' {of}")
+        return found | {"vehicle_speed_m_s": ("eds", f"'Vehicle speed' of node {self.rear_left}")}
+
     def asked_by_hosts(self) -> tuple[int, ...]:
         """The host's heartbeat, NMT, commands and SDO requests."""
         rear = (self.rear_left, self.rear_right)

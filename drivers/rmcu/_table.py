@@ -66,6 +66,23 @@ class RmcuTable(DeviceTable):
         layouts = read_rmcu(self.dbc, self.names).layouts
         return {layout.id: f"'{layout.name}'" for layout in layouts.values()}
 
+    def described_in(self) -> dict[str, tuple[str, str]]:
+        """Signals of the DBC, as it calls them."""
+        signals = {
+            "motor_speed_rad_s": ("RMCU_Status", "MotorSpeed"),
+            "motor_torque_ref_nm": ("RMCU_Status", "MotorTorqueRef"),
+            "motor_torque_nm": ("RMCU_Status", "MotorTorque"),
+            "driving_torque_ref_nm": ("RMCU_Control", "DrivingTorqueRef"),
+            "driving_torque_est_nm": ("RMCU_Control", "DrivingTorqueEst"),
+        }
+        return {
+            channel: (
+                "dbc",
+                f"signal '{self.names.signal(message, signal)}' of '{self.names.message(message)}'",
+            )
+            for channel, (message, signal) in signals.items()
+        }
+
     def asked_by_hosts(self) -> tuple[int, ...]:
         """Requests and parameters."""
         layouts = read_rmcu(self.dbc, self.names).layouts

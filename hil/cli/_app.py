@@ -39,6 +39,7 @@ _COMMANDS = {
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
     "doctor": "What of a bench is there, what is wrong with it, and what to do.",
     "monitor": "Decoded channels and bus load live, touching nothing.",
+    "jog": "Turn the axle at low torque and check the sign of every sensor.",
     "schema": "JSON schema of plan files, for editors.",
 }
 

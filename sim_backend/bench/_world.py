@@ -73,6 +73,7 @@ class SimulatedBench:
         self._requests = np.zeros(_NODES_EVERY)
         self._rows = np.zeros((_LARGEST_BATCH, T.COLUMNS))
         self._first_row = 0
+        self._last_row = np.zeros(T.COLUMNS)
         self._make_state()
         self._make_nodes()
 
@@ -229,7 +230,7 @@ class SimulatedBench:
         self._rmcu.follow(first, *self._requests_until(end), modes, requests, codes)
         if first % _NODES_EVERY == 0:
             if Fault.RMCU_SILENT not in self.faults:
-                rmcu.pass_time(first * TICK_S)
+                self._rmcu.pass_time(first * TICK_S)
             for node in self._dynos:
                 node.pass_time(first * TICK_S)
             self._status[0] = self._dynos[0].power.statusword
@@ -289,9 +290,8 @@ class SimulatedBench:
 
     def _show_measured(self) -> None:
         """The newest sample, to whoever reads it by SDO."""
-        if self._samples == self._first_row:
-            return  # nothing new
-        row = self._rows[self._samples - self._first_row - 1]
+        new = self._samples - self._first_row
+        row = self._rows[new - 1] if new else self._last_row
         for side, node in enumerate(self._dynos[:2]):
             node.measure(
                 row[T.WHEEL_LEFT + side],
@@ -341,6 +341,7 @@ class SimulatedBench:
         if count == 0:
             return
         rows = self._rows[:count]
+        self._last_row[:] = rows[-1]
         self._pending[RMCU_BUS].append(self._rmcu_traffic.block(rows, self._first_row))
         if self._dyno_traffic:
             self._pending[DYNO_BUS].append(self._dyno_traffic.block(rows, self._first_row))

@@ -1,0 +1,37 @@
+"""`hil jog`: turns the axle a little and checks every sign."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+
+def command(
+    bench: Annotated[str, typer.Argument(help="bench file, or the name of a shipped bench")],
+    torque: Annotated[float, typer.Option(metavar="NM", help="at the motor, N m")] = 10.0,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="directory for recording and jog.json; default: out/jog-001 and so on"),
+    ] = None,
+    operator: Annotated[str, typer.Option(help="who runs the bench")] = "",
+    yes: Annotated[
+        str, typer.Option("--yes", metavar="NAME", help="who confirms every operator prompt beforehand")
+    ] = "",
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier jog in --out")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="print jog.json on stdout, nothing else")] = False,
+) -> int:
+    """Turn the axle at low torque and check the sign of every torque and speed.
+
+    The axle moves: an operator is asked before, and whether the wheels turned forwards. Exit code: 0 every
+    sign is right, 1 one is wrong or was not seen, 2 bad input, 3 the bench failed, 130 interrupted.
+    """
+    import_python_can()
+    from hil.cli.jog import carry_out
+
+    return carry_out(
+        bench=bench, torque=torque, out=out, operator=operator, yes=yes, overwrite=overwrite, as_json=as_json
+    )
