@@ -42,8 +42,8 @@ def test_a_sensor_with_the_wrong_sign_is_found_with_its_place(tmp_path):
     shaft, wheel = outcome.signs.findings
     assert shaft.what.startswith("shaft_torque_left_nm has the wrong sign: it went by -4")
     assert shaft.where.endswith("(dyno.eds): 'Shaft torque' of node 3")
-    assert f"{SIM.source}, line 21" in shaft.where
-    assert SIM.text.splitlines()[20].startswith("eds")
+    assert f"{SIM.source}, line 22" in shaft.where
+    assert SIM.text.splitlines()[21].startswith("eds")
     assert "wheel_speed_right_rad_s has the wrong sign" in wheel.what
     assert "dynos forwards" in wheel.what
 
