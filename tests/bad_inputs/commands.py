@@ -12,9 +12,16 @@ USUAL: dict[str, tuple[str, ...]] = {
     "simulate": ("--model", "model.toml", "--input", "short.csv", "--out", "out.csv"),
     "export": ("recording.mcap", "--out", "out.csv"),
     "schema": ("plan",),
-}
+    "compare": ("done", "recording.mcap", "--out", "out"),
+    "explain": (
+        "--target", "c.peak_shaft_torque=200", "--plan", "plan.yaml", "--bench", "bench.toml",
+        "--among", "dead_time", "--evaluations", "20", "--out", "out",
+    ),
+    "doctor": ("bench.toml", "--for", "0.3"),
+    "sim-bench": ("bench.toml", "--port", "0", "--for", "0.5"),
+}  # fmt: skip
 COMMANDS = tuple(USUAL)
-WRITING = ("run", "report", "identify", "design", "diagnose", "simulate", "export")
+WRITING = ("run", "report", "identify", "design", "diagnose", "simulate", "export", "compare", "explain")
 
 #: What an option needs beside the usual arguments, where it is not among them.
 EXTRA = {
@@ -39,6 +46,11 @@ FILE_ARGUMENTS = (
     ("simulate", "--model", "model.toml", "bench.toml"),
     ("simulate", "--input", "short.csv", "model.toml"),
     ("export", "RECORDING", "recording.mcap", "short.csv"),
+    ("compare", "DIR", "recording.mcap", "short.csv"),
+    ("explain", "--plan", "plan.yaml", "bench.toml"),
+    ("explain", "--bench", "bench.toml", "model.toml"),
+    ("doctor", "BENCH", "bench.toml", "model.toml"),
+    ("sim-bench", "BENCH", "bench.toml", "model.toml"),
 )
 READ_ELSEWHERE = (
     ("run", "--model"),
@@ -47,6 +59,10 @@ READ_ELSEWHERE = (
     ("diagnose", "--model"),
     ("diagnose", "--holdout"),
     ("simulate", "--model"),
+    ("explain", "--plan"),
+    ("explain", "--bench"),
+    ("doctor", "BENCH"),
+    ("sim-bench", "BENCH"),
 )
 #: Every numeric option.
 NUMBERS = {
@@ -64,6 +80,9 @@ NUMBERS = {
         "--torque-limit",
         "--largest-sensitivity",
     ),
+    "explain": ("--evaluations", "--seed"),
+    "doctor": ("--for",),
+    "sim-bench": ("--time-scale", "--port", "--seed"),
 }
 
 

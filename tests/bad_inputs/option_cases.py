@@ -9,6 +9,7 @@ from tests.bad_inputs.case import DONE, OPTIONS, REFUSED, Case
 from tests.bad_inputs.commands import COMMANDS, USUAL, usual, with_other
 
 _LONG = "x" * 5000
+_TARGET = "c.peak_shaft_torque=200"
 
 
 def option_cases() -> Iterator[Case]:
@@ -26,7 +27,8 @@ def option_cases() -> Iterator[Case]:
             yield _case(command, tried, (*usual(command), *surplus))
     for command in COMMANDS:
         if command != "schema":
-            yield _case(command, "no arguments", ())
+            allowed = (DONE,) if command == "doctor" else (REFUSED,)  # it looks at the default bench
+            yield _case(command, "no arguments", (), allowed)
     for command in ("identify", "design", "diagnose", "simulate", "export"):
         arguments = USUAL[command]
         at = arguments.index("--out")
@@ -61,6 +63,19 @@ def _contradictions() -> Iterator[Case]:
     held = (*usual("diagnose"), "--holdout", "short.csv")
     yield _case("diagnose", "a recording held out of itself", held)
     yield _case("diagnose", "a recording twice", ("short.csv", *usual("diagnose")))
+    yield _case("compare", "one run", with_other(usual("compare"), "done", "recording.mcap"))
+    yield _case(
+        "explain", "a target without a figure", with_other(usual("explain"), _TARGET, "c.peak_shaft_torque")
+    )
+    yield _case("explain", "a target of no criterion", with_other(usual("explain"), _TARGET, "x.y=1"))
+    yield _case("explain", "a target that is no number", with_other(usual("explain"), _TARGET, f"{_TARGET}x"))
+    yield _case("explain", "an effect that there is not", with_other(usual("explain"), "dead_time", "magic"))
+    for hidden in ("backlash", "backlash=", "backlash=nan", "backlash=-1", "magic=1", "=1", "backlash=x"):
+        yield _case("sim-bench", f"--hide {hidden}", (*usual("sim-bench"), "--hide", hidden))
+    for seconds in ("nan", "0", "-1", "x"):  # a very long time is one that it serves
+        yield _case("sim-bench", f"--for {seconds}", (*usual("sim-bench"), "--for", seconds))
+    yield _case("sim-bench", "a transport that there is not", (*usual("sim-bench"), "--transport", "pigeon"))
+    yield _case("sim-bench", "--bench-file is the bench", (*usual("sim-bench"), "--bench-file", "bench.toml"))
     for command in ("simulate", "export"):
         for ending in (".xyz", "", ".mcap", ".CSV.gz"):
             arguments = with_other(usual(command), "out.csv", f"out{ending}")

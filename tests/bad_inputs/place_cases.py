@@ -16,6 +16,8 @@ _RESULTS = {
     "identify": "frf.csv",
     "design": "controller.toml",
     "diagnose": "diagnosis.json",
+    "compare": "comparison.json",
+    "explain": "targets.json",
 }
 
 _ODD_NAMES = (
