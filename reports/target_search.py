@@ -33,7 +33,8 @@ def caution(found: Explanation) -> str:
     count = len(found.targets.values)
     best = found.rivals[0].numbers if found.rivals else 0
     text = (
-        f"{count} figures do not single out a cause: the best rival has {best} free numbers for them, and "
+        f"{_several(count, 'figure')} {'does' if count == 1 else 'do'} not single out a cause: the best rival "
+        f"has {_several(best, 'free number')} for {'it' if count == 1 else 'them'}, and "
         "what is ranked here is what could be, not what is. Only a recording decides (hil diagnose)."
     )
     if found.separating is not None:
@@ -43,6 +44,10 @@ def caution(found: Explanation) -> str:
             f"{level} noise levels rms."
         )
     return text
+
+
+def _several(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def _page(found: Explanation) -> Page:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from hil.analysis.target_search._conditions import Condition, conditions_of
 from hil.analysis.target_search._plausible import candidates
 from hil.analysis.target_search._search import Search
@@ -95,6 +97,22 @@ def _told(condition: Condition) -> str:
     return f"{condition.name}: {found}, wanted {condition.limit} {condition.unit}"
 
 
+def _shaft_torque_nm(trial: Trial) -> float:
+    """What the plan brings to the shaft: its steps of driving torque, else what the base model predicts."""
+    steps = [s for s in trial.targets.plan.segments if s.quantity == "driving_torque"]
+    largest = max((abs(segment.reference_after) for segment in steps), default=0.0)
+    if not largest:
+        predicted = trial.run(trial.plan, Guess({}, {})).recording
+        largest = float(np.max(np.abs(predicted["shaft_torque_nm"]), initial=0.0))
+    if not largest:
+        raise BadInputError(
+            "the plan brings no torque to the shaft: no effect could be seen",
+            where=trial.plan.name,
+            fix="name a plan with steps or a chirp",
+        )
+    return largest
+
+
 def explain(
     base: Model,
     carry_out: CarryOut,
@@ -111,11 +129,11 @@ def explain(
     Only candidates `among` are looked at, all if there are none.
 
     Raises:
-        BadInputError: a base model that carries no effect, or no candidate of a name.
+        BadInputError: a base model that carries no effect, no candidate of a name, or a plan that cannot be
+            predicted or brings no torque.
     """
     trial = Trial(base, carry_out, targets)
-    largest = max(abs(segment.reference_after) for segment in targets.plan.segments)
-    every = candidates(base, largest, targets.open)
+    every = candidates(base, _shaft_torque_nm(trial), targets.open)
     if not every:
         raise BadInputError(
             f"a '{base.kind}' model carries no effect", fix="give a two- or three-inertia model"

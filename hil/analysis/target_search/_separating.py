@@ -53,7 +53,8 @@ def _plans(plan: Plan) -> list[tuple[str, list[dict[str, Any]]]]:
     controllers = dict.fromkeys(
         str(step.file) for step in plan.steps if isinstance(step, SetController) and step.file
     )
-    largest = max((abs(segment.reference_after) for segment in plan.segments), default=0.0)
+    stepped = [segment for segment in plan.segments if segment.quantity == "driving_torque"]
+    largest = max((abs(segment.reference_after) for segment in stepped), default=0.0)
     found: list[tuple[str, list[dict[str, Any]]]] = []
     for speed in _SPEEDS_KM_H:
         for share in _SHARES:
@@ -64,7 +65,7 @@ def _plans(plan: Plan) -> list[tuple[str, list[dict[str, Any]]]]:
                     {"hold_speed": {"speed_km_h": speed, "duration_s": 2}},
                     _step(f"step_{number + 1}", "driving_torque", round(share * largest, 1)),
                 ]
-            if steps:
+            if steps and largest:
                 found.append((f"steps of {share * largest:g} N m at {speed:g} km/h", steps))
     held = {"hold_speed": {"speed_km_h": 20.0, "duration_s": 2}}
     found.append(

@@ -92,6 +92,11 @@ def read_targets(path: Path | None, plan: str | None, further: Mapping[str, floa
         raise BadInputError("no target is given", where=where, fix="add --target ID=VALUE, or a targets file")
     _refuse_unknown(values, [c.id for c in loaded.criteria if not c.below], "criterion", where)
     _refuse_unknown(keys.settles, [s.id for s in loaded.segments], "segment", where)
+    steps = [s.id for s in loaded.segments if s.reference_after != s.reference_before]
+    for name in keys.settles:
+        if name not in steps:
+            fix = f"name a step: {', '.join(steps) or 'this plan has none'}"
+            raise BadInputError(f"settles.{name}: that segment is no step", where=where, fix=fix)
     for name, value in values.items():
         if not value > 0:
             raise BadInputError(f"target '{name}' is {value:g}", where=where, fix="give a positive figure")

@@ -200,3 +200,24 @@ def test_wrong_targets_are_one_message(tmp_path, text, further, said):
     with pytest.raises(BadInputError) as caught:
         read_targets(path if text else None, "acceptance", further)
     assert said in str(caught.value)
+
+
+def test_a_plan_without_steps_can_be_explained_and_one_without_torque_says_so():
+    chirp = """
+  - chirp: {segment: s, quantity: motor_torque, from_hz: 1, to_hz: 30, duration_s: 2, amplitude_nm: 10}
+"""
+    aimed = Targets(plan(chirp, CRITERIA), {PEAK: 90.0})
+    found = explain(BASE, carry_out, aimed, evaluations=20, among=("dead_time",))
+    assert found.rivals
+    still = BASE.with_effects(EffectUse("torque_deadband", {"half_width_nm": 50.0}))
+    with pytest.raises(BadInputError, match="brings no torque"):
+        explain(still, carry_out, aimed, evaluations=20)
+
+
+def test_what_is_no_step_does_not_settle(tmp_path):
+    text = "name: p\nsteps:\n  - chirp: {segment: c, quantity: motor_torque, from_hz: 1, to_hz: 30, "
+    text += "duration_s: 2, amplitude_nm: 10}\ncriteria: [{segment: c, metric: peak_shaft_torque}]\n"
+    (tmp_path / "p.yaml").write_text(text)
+    (tmp_path / "t.toml").write_text("[targets]\n'c.peak_shaft_torque' = 1.0\n[settles]\nc = 1.0")
+    with pytest.raises(BadInputError, match="is no step"):
+        read_targets(tmp_path / "t.toml", str(tmp_path / "p.yaml"), {})
