@@ -32,9 +32,10 @@ def caution(found: Explanation) -> str:
     """What the figures cannot say, in words."""
     count = len(found.targets.values)
     best = found.rivals[0].numbers if found.rivals else 0
+    are, them = ("does", "it") if count == 1 else ("do", "them")
     text = (
-        f"{_several(count, 'figure')} {'does' if count == 1 else 'do'} not single out a cause: the best rival "
-        f"has {_several(best, 'free number')} for {'it' if count == 1 else 'them'}, and "
+        f"{_several(count, 'figure')} {are} not single out a cause: the best rival has "
+        f"{_several(best, 'free number')} for {them}, and "
         "what is ranked here is what could be, not what is. Only a recording decides (hil diagnose)."
     )
     if found.separating is not None:
