@@ -6,7 +6,7 @@ from drivers.bus_load import bits_on_the_wire
 from drivers.can_adapter import CanSettings, open_can
 from drivers.device import Device, MotorControl, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
-from drivers.examination import Examinable, Examined, Finding, Identifies
+from drivers.examination import Examinable, Examined, Finding, Identifies, Incomplete
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.listening_wire import ListeningWire
 from drivers.loop import BusLoop
@@ -42,6 +42,7 @@ __all__ = [
     "Finding",
     "FrameSource",
     "Identifies",
+    "Incomplete",
     "ListeningWire",
     "LoadTable",
     "MotorControl",

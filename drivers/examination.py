@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal, Protocol, runtime_checkable
 
@@ -74,4 +75,14 @@ class Identifies(Protocol):
         Asked before it comes up; reads only; may wait, by stepping the loop. What it does not say is left
         out.
         """
+        ...
+
+
+@runtime_checkable
+class Incomplete(Protocol):
+    """A device that comes up without parts that no run needs. A `Device` need not be one."""
+
+    @property
+    def missing(self) -> Sequence[str]:
+        """Those parts, once it has come up."""
         ...

@@ -65,6 +65,8 @@ class DynoDriver:
         self.right = DynoNode(network, wire.name, nodes.rear_right, "rear right", eds)
         self.rear = (self.left, self.right)
         self.idle = [DynoNode(network, wire.name, i, name, eds) for name, i in nodes.idle.items()]
+        self._watched: list[DynoNode] = [*self.rear, *self.idle]
+        self.missing: list[str] = []  # idle nodes that were not there when it came up
         # Both measure at the SYNC, and send what they measured after it.
         sync = CountedBy(wire.name, SYNC, "SYNC", opens=True)
         source = FrameSource([*self.left.bindings("left"), *self.right.bindings("right")], TICK_S, sync)
@@ -75,15 +77,19 @@ class DynoDriver:
     def come_up(self) -> None:
         """Bring the nodes to operation: supervision, SYNC, vehicle model. The drives stay without torque.
 
+        An idle node that is missing keeps nobody from anything: it stands in `missing`.
+
         Raises:
-            BenchError: a node is missing, does not answer or refuses a value.
+            BenchError: a rear node is missing, or one does not answer or refuses a value.
         """
         everyone = [*self.rear, *self.idle]
         self._loop.wait_for(lambda: all(n.last_heartbeat_s > -np.inf for n in everyone), 3.0)
-        missing = [f"{n.name} (node {n.id})" for n in everyone if n.last_heartbeat_s == -np.inf]
-        if missing:
+        silent = [n for n in everyone if n.last_heartbeat_s == -np.inf]
+        self._watched = [n for n in everyone if n not in silent]
+        self.missing = [f"{n.name} (node {n.id})" for n in silent if n in self.idle]
+        if any(n in self.rear for n in silent):
             raise BenchError(
-                f"no heartbeat from {', '.join(missing)}",
+                f"no heartbeat from {', '.join(f'{n.name} (node {n.id})' for n in silent)}",
                 where=f"bus '{self._wire.name}'",
                 fix="switch the dyno controller on, check node ids in the bench file",
             )
@@ -146,7 +152,7 @@ class DynoDriver:
         """What is wrong now: faults, lost heartbeats, emergencies since the start."""
         now_s = self._loop.clock.now_s()
         found = []
-        for node in [*self.rear, *self.idle]:
+        for node in self._watched:
             if now_s - node.last_heartbeat_s > HEARTBEAT_LOST_S:
                 found.append(f"{node.name}: heartbeat lost")
             found += [f"{node.name}: {text}" for text in node.emergencies]

@@ -17,6 +17,7 @@ from hil.cli._output import (
     print_json,
     progress,
     told_identities,
+    warn,
 )
 from hil.cli._place import Place, results_in
 from hil.cli._streams import complain
@@ -171,6 +172,8 @@ def _print(result: RunResult, folder: Path) -> None:
     )
     for line in timing_in_words(result.timing):
         page.print(line, highlight=False)
+    for text in result.missing:
+        warn(text)
     said = told_identities(result.identities)
     if said:
         page.print(f"identification: {said}", highlight=False, markup=False, soft_wrap=True)

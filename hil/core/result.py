@@ -195,5 +195,6 @@ class RunResult(_Frozen):
     timing: Timing | None = None
     identities: tuple[Identity, ...] = ()
     zeros: tuple[Zero, ...] = ()
+    missing: tuple[str, ...] = Field((), description="devices and parts that were not there and not needed")
     files: dict[str, str] = {}
     reason: str = ""

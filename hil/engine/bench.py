@@ -5,9 +5,9 @@ from __future__ import annotations
 import contextlib
 import logging
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from drivers import (
     BusHealth,
@@ -23,9 +23,9 @@ from drivers import (
     Wire,
     open_can,
 )
-from hil.core.channels import TIME
+from hil.core.channels import CHANNELS, TIME
 from hil.core.clock import Clock, WallClock
-from hil.core.errors import BadInputError
+from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model, load_model
 from hil.core.printable import printable
 from hil.core.real_time import undisturbed
@@ -40,7 +40,11 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass
 class Bench:
-    """An open bench; `further` are the devices beside the RMCU and the dynos, by name."""
+    """An open bench.
+
+    `further` are the devices beside the RMCU and the dynos, by name; `missing` those that cannot be opened,
+    with why.
+    """
 
     file: BenchFile
     loop: BusLoop
@@ -48,6 +52,7 @@ class Bench:
     dyno: WheelLoad
     model: Model | None
     further: dict[str, Device]
+    missing: dict[str, str] = field(default_factory=dict)
 
     @property
     def simulated(self) -> bool:
@@ -58,6 +63,12 @@ class Bench:
     def devices(self) -> list[Device]:
         """All devices, in the order in which they come up."""
         return [self.rmcu, self.dyno, *self.further.values()]
+
+    @property
+    def devices_by_key(self) -> dict[str, Device]:
+        """All devices by the keys of their tables in the bench file."""
+        further = {f"devices.{name}": device for name, device in self.further.items()}
+        return {"rmcu": self.rmcu, "dyno": self.dyno, **further}
 
     @property
     def sources(self) -> list[SampleSource]:
@@ -185,9 +196,16 @@ def _refuse_other_pace(name: str, theirs: float, ours: float) -> None:
 
 def _with_devices(file: BenchFile, connections: Connections, model: Model | None, opened: ExitStack) -> Bench:
     devices: dict[str, Device] = {}
+    missing: dict[str, str] = {}
     for key, table in file.device_tables.items():
         name = key.removeprefix("devices.")
-        device = devices[key] = table.open(name, connections)
+        try:
+            device = devices[key] = table.open(name, connections)
+        except BenchError as error:
+            if key in ("rmcu", "dyno"):
+                raise
+            missing[name] = f"{error.where}: {error.what}" if error.where else error.what
+            continue
         opened.callback(_close, device)
     rmcu, dyno = devices.pop("rmcu"), devices.pop("dyno")
     if not isinstance(rmcu, MotorControl):
@@ -195,7 +213,7 @@ def _with_devices(file: BenchFile, connections: Connections, model: Model | None
     if not isinstance(dyno, WheelLoad):
         raise _wrong_place(file, "dyno", "does not turn wheels")
     further = {key.removeprefix("devices."): device for key, device in devices.items()}
-    return Bench(file, connections.loop, rmcu, dyno, model, further)
+    return Bench(file, connections.loop, rmcu, dyno, model, further, missing)
 
 
 def _close(device: Device) -> None:
@@ -241,5 +259,29 @@ def _refuse_channels(bench: Bench) -> None:
             raise BadInputError(
                 f"{printable(key, 80)}: no device gives this channel",
                 where=where,
-                fix=f"there are: {', '.join(list(seen)[1:])}",
+                fix=_who_is_missing(bench) or f"there are: {', '.join(list(seen)[1:])}",
             )
+
+
+def refuse_needs(bench: Bench, channels: Iterable[str]) -> None:
+    """Refuse a plan that needs a channel of a device that is missing.
+
+    Args:
+        channels: what the plan's criteria are computed from.
+
+    Raises:
+        BenchError: channel, and which devices are missing.
+    """
+    given = {channel for stream in bench.streams for channel in stream.channels}
+    unknown = [name for name in channels if name not in given and name not in CHANNELS]
+    if bench.missing and unknown:
+        raise BenchError(
+            f"the plan needs {printable(', '.join(unknown), 200)}, which nobody gives now",
+            where=printable(bench.file.source, 200),
+            fix=_who_is_missing(bench),
+        )
+
+
+def _who_is_missing(bench: Bench) -> str:
+    missing = [f"devices.{name} is missing ({why})" for name, why in bench.missing.items()]
+    return printable("; ".join(missing), 400)

@@ -55,6 +55,12 @@ def preflight(
         )
 
 
+def channels_of(plan: Plan) -> list[str]:
+    """What the criteria of a plan are computed from."""
+    channels = (getattr(criterion.metric, "channel", None) for criterion in plan.criteria)
+    return list(dict.fromkeys(name for name in channels if isinstance(name, str)))
+
+
 class Rehearsal:
     """A `Conductor` that only compares what is asked for with the bench's limits."""
 

@@ -8,18 +8,18 @@ import time
 import traceback
 from functools import partial
 
-from drivers import TICK_S
+from drivers import TICK_S, Incomplete
 from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
 from hil.core.files import make_directory
 from hil.core.model import model_to_toml
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Identity, RunResult, SafeState, Timing, verdict_of
-from hil.engine.bench import Bench, open_bench
+from hil.engine.bench import Bench, open_bench, refuse_needs
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.conductor import BenchConductor
 from hil.engine.identification import identities_of, refuse_others
 from hil.engine.limits import LimitWatch
-from hil.engine.preflight import preflight
+from hil.engine.preflight import channels_of, preflight
 from hil.engine.provenance import hashes, versions
 from hil.engine.recorder import Recorder
 from hil.engine.request_timing import COLLECT_S, RequestTiming
@@ -47,6 +47,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
         answers = request.ask is not None or request.confirmed_by != ""
         preflight(request.plan, request.bench, request.out, today, somebody_answers=answers)
         with open_bench(request.bench, model=request.model) as bench:
+            refuse_needs(bench, channels_of(request.plan))
             for path in request.replaces:
                 path.unlink(missing_ok=True)
             with request.stop.telling(partial(setattr, bench.loop, "stop_requested", True)):
@@ -64,6 +65,7 @@ class _Run:
         self._identities: tuple[Identity, ...] = ()
         self._zero = ZeroCheck(bench.streams, request.bench.zero)
         self._rows_finished = False
+        self._missing: tuple[str, ...] = ()
         self._started_at = datetime.datetime.now(datetime.UTC)
 
     def carry_out(self) -> RunOutcome:
@@ -123,6 +125,7 @@ class _Run:
         for device in bench.further.values():
             self._armed = True  # what a further device does once it is up, only the device knows
             device.come_up()
+        self._note_missing()
         refuse_others(self._identities)
         self._recorder.begin()
         self._zero.begin()
@@ -151,12 +154,23 @@ class _Run:
             bench.rmcu.make_safe()
             tries -= 1
 
+    def _note_missing(self) -> None:
+        """Devices and parts that this run goes on without."""
+        parts = [
+            f"{device.name}: {part} is missing"
+            for device in self._bench.devices
+            if isinstance(device, Incomplete)
+            for part in device.missing
+        ]
+        self._missing = (*(f"{name} is missing: {why}" for name, why in self._bench.missing.items()), *parts)
+        for text in self._missing:
+            self._recorder.event(self._bench.loop.clock.now_s(), "missing", text)
+
     def _identify(self) -> None:
         """Listen, and ask the devices meanwhile what they are: asking makes no run longer."""
         bench, tables = self._bench, self._request.bench.device_tables
         bench.loop.run_for(_LISTEN_S / 2)
-        asked = zip(tables.items(), bench.devices, strict=True)
-        found = [identities_of(key, table, device) for (key, table), device in asked]
+        found = [identities_of(key, tables[key], device) for key, device in bench.devices_by_key.items()]
         self._identities = tuple(identity for several in found for identity in several)
         bench.loop.wait_for(
             lambda: bench.loop.clock.now_s() > self._begin_s + _LISTEN_S - 0.5 * TICK_S, _LISTEN_S
@@ -271,6 +285,7 @@ class _Run:
             timing=self._timed(),
             identities=self._identities,
             zeros=self._zero.zeros,
+            missing=self._missing,
             reason=str(self._error) if self._error else "",
         )
         try:

@@ -46,10 +46,24 @@ def test_missing_nodes_are_named():
     with running("missing"):
         world = attached("missing")
         wire = Wire("dyno", SimulatedBus("missing/dyno"), world)
-        nodes = DynoNodes(3, 4, {"front left": 9})
+        nodes = DynoNodes(3, 9, {"front left": 8})
         driver = DynoDriver(BusLoop(world, [wire]), wire, SIM.dyno.eds, nodes, VehicleParameters())
-        with pytest.raises(BenchError, match=r"front left \(node 9\)"):
+        with pytest.raises(BenchError, match=r"rear right \(node 9\), front left \(node 8\)"):
             driver.come_up()
+        wire.close()
+
+
+def test_idle_nodes_that_are_missing_are_told_and_not_watched():
+    with running("missing") as bench:
+        world = attached("missing")
+        wire = Wire("dyno", SimulatedBus("missing/dyno"), world)
+        nodes = DynoNodes(3, 4, {"front left": 8, "front right": 2})
+        loop = BusLoop(world, [bench.loop.wires[0], wire])
+        driver = DynoDriver(loop, wire, SIM.dyno.eds, nodes, VehicleParameters())
+        loop.every(0.05, driver.beat)
+        driver.come_up()
+        assert driver.missing == ["front left (node 8)"]
+        assert driver.troubles() == []
         wire.close()
 
 

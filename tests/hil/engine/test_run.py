@@ -216,15 +216,15 @@ def test_idle_nodes_may_be_called_anything(tmp_path):
 def test_a_dyno_without_a_heartbeat_keeps_the_bench_from_coming_up(tmp_path, monkeypatch):
     whole = SimulatedBench.take
 
-    def without_node_2(world, bus):
+    def without_two_nodes(world, bus):
         block = whole(world, bus)
-        return block[block["id"] != 0x702]
+        return block[(block["id"] != 0x702) & (block["id"] != 0x704)]
 
-    monkeypatch.setattr(SimulatedBench, "take", without_node_2)
+    monkeypatch.setattr(SimulatedBench, "take", without_two_nodes)
     outcome = run(tmp_path, dyno=SIM.dyno.model_copy(update={"idle": {"ghost": 2}}))
     assert isinstance(outcome.error, BenchError)
     assert "no heartbeat from" in str(outcome.error)
-    assert "ghost (node 2)" in str(outcome.error)
+    assert "rear right (node 4), ghost (node 2)" in str(outcome.error)
     assert (outcome.result.verdict, outcome.result.safe_state) == ("error", "not_needed")
 
 
