@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from functools import partial
 from typing import Protocol
 
@@ -18,6 +18,7 @@ from hil.core.errors import InterruptError
 from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 
 _DRAIN_EVERY = 10
+_GIVEN_UP_TICKS = 10  # who is later than this goes on from where it is
 _STANDARD_IDS = 2048
 _OTHERS = SENT_BY_HOST | EXTENDED | ERROR_FRAME
 
@@ -51,7 +52,8 @@ class BusLoop:
         self.shielded = False
         self.tick_s = clock.now_s()  # when the present tick was meant
         self._anchor_s, self._since_anchor = clock.now_s(), 0  # a sum of ticks would drift
-        self._ticks = 0
+        self._ticks = self._drained_at = 0
+        self._sending: _Sending | None = None
         self._duties: list[_Duty] = []
         self._next_duty_s = np.inf
         self._callbacks: dict[str, dict[int, FrameCallback]] = {wire.name: {} for wire in wires}
@@ -93,14 +95,14 @@ class BusLoop:
         """Call `callback()` each time that every wire and port has been looked at."""
         self._drained.append(callback)
 
-    def step(self, at_tick: Callable[[], None] | None = None) -> None:
-        """Wait for the next tick; do what is due, `at_tick` before anything that could hold it up.
+    def step(self) -> None:
+        """Wait for the next tick; do what is due, first of all what `each_tick` sends.
 
         Raises:
             InterruptError: the operator asked to stop.
             BenchError: a bus failed.
         """
-        self._pass(1, at_tick)
+        self._pass(1)
 
     def resume(self) -> None:
         """Count ticks from now if some have passed unserved: what comes next is not to catch up with them."""
@@ -122,18 +124,15 @@ class BusLoop:
         count: int,
         send: Callable[[int], None],
         ahead: Callable[[int, npt.NDArray[np.float64]], bool],
-    ) -> Iterator[int]:
+    ) -> Generator[int, None, None]:
         """Call `send(k)` first thing in each of `count` ticks; yields how many have passed.
 
         In virtual time `ahead(k, times_s)` may take those from `k` on up to the next look at the buses at
-        once, each with the time of its tick; it says whether it does.
+        once, each with the time of its tick; it says whether it does. In wall-clock time work that takes
+        longer than a tick lets `keep_up` be called on the way. Close it if it is left early.
         """
         if not self.clock.virtual:
-            self.resume()
-            send(0)
-            for passed in range(1, count + 1):
-                self.step(partial(send, passed) if passed < count else None)
-                yield passed
+            yield from self._as_time_comes(count, send)
             return
         passed = 0
         while passed < count:
@@ -145,12 +144,36 @@ class BusLoop:
             passed += ticks
             yield passed
 
+    def keep_up(self) -> None:
+        """Send what `each_tick` has due while something else is being done."""
+        if self._sending is None:
+            return
+        late_s = self.clock.now_s() - self._anchor_s - (self._since_anchor + 1) * TICK_S
+        if 0.0 <= late_s < _GIVEN_UP_TICKS * TICK_S:
+            for _ in range(1 + int(late_s / TICK_S)):
+                self._since_anchor += 1
+                self._ticks += 1
+                self.tick_s = self._anchor_s + self._since_anchor * TICK_S
+                self._sending.next()
+
+    def _as_time_comes(self, count: int, send: Callable[[int], None]) -> Iterator[int]:
+        self.resume()
+        sending = self._sending = _Sending(count, send)
+        try:
+            sending.next()
+            while sending.passed < count:
+                self.step()
+                yield sending.passed
+        finally:
+            self._sending = None
+
     def wait_for(self, condition: Callable[[], bool], timeout_s: float) -> bool:
         """Step until `condition` holds; False if it does not within `timeout_s`."""
         for _ in range(max(1, round(timeout_s / TICK_S))):
             if condition():
                 return True
             self._wait_for_tick(1)
+            self._drained_at = self._ticks // _DRAIN_EVERY
             self.drain()
         return condition()
 
@@ -162,18 +185,21 @@ class BusLoop:
         Raises:
             BenchError: a bus or a port failed.
         """
-        _each([*(partial(self._drain, wire) for wire in self.wires), *self._served, *self._drained])
+        looks = [partial(self._drain, wire) for wire in self.wires]
+        _each([*looks, *self._served, *self._drained], self.keep_up)
 
     def _drain(self, wire: Wire) -> None:
         block = wire.drain()
         if len(block):
             for callback in self._block_callbacks:
                 callback(wire.name, block)
+            self.keep_up()
             self._dispatch(wire.name, block)
 
-    def _pass(self, ticks: int, at_tick: Callable[[], None] | None = None) -> None:
-        self._wait_for_tick(ticks, at_tick)
-        if self._ticks % _DRAIN_EVERY == 0:
+    def _pass(self, ticks: int) -> None:
+        self._wait_for_tick(ticks)
+        if self._ticks // _DRAIN_EVERY > self._drained_at:
+            self._drained_at = self._ticks // _DRAIN_EVERY
             self.drain()
 
     def _undisturbed(self) -> int:
@@ -192,7 +218,7 @@ class BusLoop:
         times[0] = self.clock.now_s()
         return times
 
-    def _wait_for_tick(self, ticks: int, at_tick: Callable[[], None] | None = None) -> None:
+    def _wait_for_tick(self, ticks: int) -> None:
         if self.stop_requested and not self.shielded:
             self.stop_requested = False
             raise InterruptError("stopped by the operator")
@@ -200,9 +226,9 @@ class BusLoop:
         self.tick_s = next_s = self._anchor_s + self._since_anchor * TICK_S
         self.clock.sleep_until(next_s)
         now_s = self.clock.now_s()
-        if at_tick is not None:
-            at_tick()
-        if now_s - next_s > 10 * TICK_S:
+        if self._sending is not None:
+            self._sending.next()
+        if now_s - next_s > _GIVEN_UP_TICKS * TICK_S:
             # do not chase lost time: devices time out by themselves
             self._anchor_s, self._since_anchor = now_s, 0
         self._ticks += ticks
@@ -236,16 +262,32 @@ def _find(ids, flags, wanted, found):  # type: ignore[no-untyped-def]
     return count
 
 
-def _each(works: Iterable[Callable[[], None]]) -> None:
-    """Do all of it, also after one has failed; then raise the first failure."""
+def _each(works: Iterable[Callable[[], None]], between: Callable[[], None] = lambda: None) -> None:
+    """Do all of it, also after one has failed, and `between` after each; then raise the first failure."""
     failure: Exception | None = None
     for work in works:
         try:
             work()
+            between()
         except Exception as error:
             failure = failure or error
     if failure is not None:
         raise failure
+
+
+class _Sending:
+    """What is sent one each tick; `passed`: ticks since the first."""
+
+    def __init__(self, count: int, send: Callable[[int], None]) -> None:
+        self._count, self._send = count, send
+        self.passed = -1
+
+    def next(self) -> None:
+        """A tick has come."""
+        if self.passed < self._count:
+            self.passed += 1
+            if self.passed < self._count:
+                self._send(self.passed)
 
 
 class _Duty:

@@ -82,13 +82,13 @@ def late_bench(name: str, late: str, **changes: Any) -> Any:
 
 
 def late_served_bench(bench: Any, late: str) -> Any:
-    """A bench in another process behind such adapters."""
-    return _behind(bench, "late-udp", late)
+    """A bench in another process behind such adapters; own frames come back with late stamps, too."""
+    return _behind(bench, "late-udp", late, receive_own_messages=True)
 
 
-def _behind(bench: Any, interface: str, late: str) -> Any:
+def _behind(bench: Any, interface: str, late: str, **options: Any) -> Any:
     buses = {
-        key: bus.model_copy(update={"interface": interface, "options": {"late": late}})
+        key: bus.model_copy(update={"interface": interface, "options": {"late": late, **options}})
         for key, bus in bench.buses.items()
     }
     return bench.model_copy(update={"buses": buses})

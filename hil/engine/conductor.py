@@ -133,12 +133,15 @@ class BenchConductor:
         def ahead(index: int, times_s: Array) -> bool:
             return rmcu.send_ahead(payloads[index : index + len(times_s)], times_s)
 
-        for passed in loop.each_tick(len(payloads), send, ahead):
-            if rmcu.state == "fault":
-                raise BenchError(
-                    f"the RMCU went to fault: {rmcu.fault}", where="RMCU", fix="see the recording's events"
-                )
-            yield passed
+        with contextlib.closing(loop.each_tick(len(payloads), send, ahead)) as ticks:
+            for passed in ticks:
+                if rmcu.state == "fault":
+                    raise BenchError(
+                        f"the RMCU went to fault: {rmcu.fault}",
+                        where="RMCU",
+                        fix="see the recording's events",
+                    )
+                yield passed
 
     def coast(self, duration_s: float) -> None:
         """No motor torque for a while."""

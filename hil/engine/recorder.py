@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +16,7 @@ from hil.core.recording import CHUNK_BYTES, Event, Recording, RecordingWriter
 from hil.core.result import StreamClock
 
 _FLUSH_S = 0.5
-_PROMPT_FLUSH_S, _PROMPT_BYTES = 0.1, 48 * 1024  # 0.1 s of a bench
+_PROMPT_FLUSH_S, _PROMPT_BYTES = 0.2, 48 * 1024  # 0.15 s of a bench
 _LOOK_S = 2.0  # what clocks do shows in seconds
 
 
@@ -51,6 +51,7 @@ class Recorder:
         self._begun = False
         self._parted = False
         self.events: list[Event] = []
+        self.between: Callable[[], None] = lambda: None  # called between parts of long work
 
     def take_frames(self, bus: str, block: FrameBlock) -> None:
         """Record the raw frames of one bus."""
@@ -152,6 +153,8 @@ class Recorder:
 
     def _write_rows(self, *, everything: bool = False) -> None:
         rows = self._assembler.rows(everything=everything)
+        self.between()
         if len(rows):
             self.writer.add_rows(rows)
             self._chunks.append(rows)
+            self.between()

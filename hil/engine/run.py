@@ -74,6 +74,7 @@ class _Run:
         self._recorder = Recorder(
             request.out / RECORDING, bench.streams, buses, TICK_S, promptly=not bench.simulated
         )
+        self._recorder.between = bench.loop.keep_up
         self._watch = LimitWatch(bench.streams, request.bench.limits)
         self._store_inputs()
         # In virtual time nothing can be late.
@@ -219,6 +220,7 @@ class _Run:
                 if not self._rows_finished:
                     self._recorder.take(samples)
                 self._watch.take(samples, now_s)
+            self._bench.loop.keep_up()
         pauses = self._watch.pauses.count
         try:
             self._watch.look_for_silence(now_s)

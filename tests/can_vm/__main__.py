@@ -79,11 +79,10 @@ def main() -> int:
         return skipped(reason)
     settings = {**ANY_PROCESSOR, "NUMBA_CACHE_DIR": str(CACHE / "numba")}
     began = time.monotonic()
-    subprocess.run(
-        [sys.executable, "-m", "tests.can_vm.compiling"], check=True, cwd=ROOT, env={**os.environ, **settings}
-    )
-    print(f"compiled for the emulated processor in {time.monotonic() - began:.0f} s", flush=True)
     with tempfile.TemporaryDirectory() as folder:
+        compiling = [sys.executable, "-m", "tests.can_vm.compiling", f"{folder}/figures.json"]
+        subprocess.run(compiling, check=True, cwd=ROOT, env={**os.environ, **settings})
+        print(f"compiled for the emulated processor: {time.monotonic() - began:.0f} s", flush=True)
         script = INSIDE.format(
             settings=" ".join(f"{name}='{value}'" for name, value in settings.items()),
             root=ROOT,
@@ -92,7 +91,7 @@ def main() -> int:
         Path(folder, "run.sh").write_text(script)
         Path(folder, "disk").write_text("".join(f"{place}\n" for place in disk.places()))
         image = disk.made(ROOT, CACHE)
-        print(f"disk image made in {time.monotonic() - began:.0f} s", flush=True)
+        print(f"disk image made: {time.monotonic() - began:.0f} s", flush=True)
         done = subprocess.run(
             [HERE / "machine.sh", folder], check=False, env={**os.environ, "CAN_VM_DISK": str(image)}
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import pty
 import select
+from collections.abc import Generator
 
 import pytest
 
@@ -102,3 +103,60 @@ def test_a_serial_line_that_takes_nothing_is_not_waited_for() -> None:
     line.close()
     os.close(terminal)
     os.close(there)
+
+
+class Busy:
+    """A loop that sends, and work that takes 4.5 ms each time that wires were looked at."""
+
+    def __init__(self, *, keeps_up: bool) -> None:
+        self.clock = CountingClock()
+        self.loop = BusLoop(self.clock, [])
+        self.sent: list[tuple[int, float, float]] = []
+        self._keeps_up = keeps_up
+        self.loop.on_drained(self._work)
+
+    def _work(self) -> None:
+        for _ in range(9):
+            self.clock.time_s += 0.0005
+            if self._keeps_up:
+                self.loop.keep_up()
+
+    def each_tick(self, count: int) -> Generator[int, None, None]:
+        return self.loop.each_tick(count, self._send, lambda index, times_s: False)
+
+    def _send(self, number: int) -> None:
+        self.sent.append((number, self.loop.tick_s, self.clock.time_s))
+
+
+@pytest.mark.parametrize(("keeps_up", "latest_s"), [(True, 0.00051), (False, 0.0041)])
+def test_long_work_holds_up_no_request_if_it_lets_the_loop_keep_up(keeps_up: bool, latest_s: float) -> None:
+    busy = Busy(keeps_up=keeps_up)
+    assert list(busy.each_tick(30))[-1] == 30
+    assert [number for number, *_ in busy.sent] == list(range(30))
+    meant = [meant_s for _, meant_s, _ in busy.sent]
+    assert meant == pytest.approx([number * 1e-3 for number in range(30)])
+    assert max(sent_s - meant_s for _, meant_s, sent_s in busy.sent) < latest_s
+
+
+def test_what_is_left_early_is_sent_no_further() -> None:
+    busy = Busy(keeps_up=True)
+    ticks = busy.each_tick(100)
+    next(ticks)
+    ticks.close()
+    busy.loop.run_for(0.05)
+    assert [number for number, *_ in busy.sent] == [0, 1]
+
+
+def test_a_fault_on_the_way_ends_the_sending() -> None:
+    busy = Busy(keeps_up=True)
+
+    def fail() -> None:
+        raise BenchError("is unplugged")
+
+    busy.loop.on_drained(fail)
+    with pytest.raises(BenchError, match="unplugged"):
+        list(busy.each_tick(100))
+    count = len(busy.sent)
+    busy.clock.time_s += 0.001
+    busy.loop.keep_up()
+    assert len(busy.sent) == count
