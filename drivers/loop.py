@@ -194,7 +194,7 @@ class BusLoop:
             for callback in self._block_callbacks:
                 callback(wire.name, block)
             self.keep_up()
-            self._dispatch(wire.name, block)
+            self.hand_out(wire.name, block)
 
     def _pass(self, ticks: int) -> None:
         self._wait_for_tick(ticks)
@@ -243,7 +243,8 @@ class BusLoop:
             nearest_s = min((duty.due_s for duty in self._duties), default=np.inf) - 0.5 * TICK_S
             self._next_duty_s = min(self._next_duty_s, nearest_s)
 
-    def _dispatch(self, name: str, block: FrameBlock) -> None:
+    def hand_out(self, name: str, block: FrameBlock) -> None:
+        """Call those who wait for single frames of a bus."""
         found = np.empty(len(block), np.int64)
         count = _find(block["id"], block["flags"], self._wanted[name], found)
         for frame in block[found[:count]] if count else ():

@@ -24,6 +24,7 @@ from hil.engine.provenance import hashes, versions
 from hil.engine.recorder import Recorder
 from hil.engine.request_timing import COLLECT_S, RequestTiming
 from hil.engine.safety import reach_safe_state
+from hil.engine.warming import warm_up
 from hil.engine.zero import ZeroCheck
 from test_plans import estimate_duration_s, judge
 
@@ -120,6 +121,8 @@ class _Run:
         bench = self._bench
         self._begin_s = bench.loop.clock.now_s()
         self._identify()
+        if not bench.simulated:
+            warm_up(bench)
         bench.start_heartbeats(self._timing)
         bench.rmcu.come_up()
         bench.dyno.come_up()

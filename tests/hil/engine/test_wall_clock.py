@@ -13,6 +13,7 @@ import time
 
 import can
 import numpy as np
+import pytest
 from mcap.reader import make_reader
 
 from hil.core.errors import BenchError, InterruptError
@@ -22,6 +23,7 @@ from hil.core.recording import read_recording
 from hil.engine import RunRequest, run_plan
 from sim_backend.bench import SimulatedBench, SimulationSettings
 from tests.benches_for_tests import SIM, plan
+from tests.hil.cli.test_sim_bench import serving
 
 STEPS = """
   - set_controller: {file: phase_stabilization.toml}
@@ -153,10 +155,13 @@ def test_an_interrupt_does_not_wait_for_an_answer_of_the_operator(tmp_path):
     assert outcome.result.safe_state == "confirmed"
 
 
-def test_nothing_is_compiled_or_loaded_once_the_drives_are_enabled():
+@pytest.mark.slow
+def test_nothing_is_compiled_or_loaded_once_devices_watch_their_host(tmp_path):
     """In a process of its own: in this one other tests have made all ready."""
-    command = [sys.executable, "-m", "tests.hil.engine.ready_when_armed"]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    with serving(tmp_path, "--time-scale", "0.25") as (_, file):
+        command = [sys.executable, "-m", "tests.hil.engine.ready_when_armed", str(file)]
+        done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == ""
 
 
