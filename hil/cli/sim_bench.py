@@ -24,7 +24,7 @@ def carry_out(
     for_s: float | None,
     transport: str,
     port: int,
-    interfaces: tuple[str, ...],
+    interface: tuple[str, ...],
     bench_file: Path | None,
     as_json: bool,
 ) -> int:
@@ -55,7 +55,7 @@ def carry_out(
         for_s=float("inf") if for_s is None else for_s,
         transport=transport,
         port=port,
-        interfaces=interfaces,
+        interfaces=interface,
         ready=ready,
         stop=stop,
     )

@@ -57,6 +57,6 @@ def command(
 
     return carry_out(
         bench=bench, time_scale=time_scale, seed=seed, hide=tuple(hide or ()), for_s=for_s,
-        transport=transport, port=port, interfaces=tuple(interface or ()), bench_file=bench_file,
+        transport=transport, port=port, interface=tuple(interface or ()), bench_file=bench_file,
         as_json=as_json,
     )  # fmt: skip
