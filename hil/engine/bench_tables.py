@@ -166,6 +166,14 @@ class SensorTable(_Table):
     offset: Bound = 0.0
 
 
+class StatedNoise(_Table):
+    """Standard deviations of a sample that the sensors' makers state."""
+
+    motor_speed_rad_s: Deviation | None = None
+    wheel_speed_rad_s: Deviation | None = None
+    shaft_torque_nm: Deviation | None = None
+
+
 class Simulation(_Table):
     """A simulated bench in place of hardware."""
 
@@ -196,6 +204,9 @@ class BenchFile(_Table):
     zero: dict[str, ZeroLimit] = Field({}, description="channel: what it may read at rest")
     dut: dict[str, str] = {}
     calibration: dict[str, Day] = Field({}, description="sensor: valid until")
+    noise: StatedNoise = Field(
+        StatedNoise(), description="as the sensors' makers state it; `hil diagnose` reads it with a recording"
+    )
     simulation: Simulation | None = None
     text: str = ""
     source: File = Path()

@@ -10,6 +10,7 @@ from dataclasses import replace
 from hil.analysis.diagnosis._asked import Asked
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
 from hil.analysis.diagnosis.data._sanity import examined
+from hil.analysis.diagnosis.data._stated import stated_noise
 from hil.analysis.diagnosis.data._thresholds import COARSE_SAMPLE_S
 from hil.analysis.diagnosis.fit._allowance import UNBOUNDED, Allowance, OutOfTimeError
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, untold
@@ -45,7 +46,8 @@ def diagnose(
     Args:
         model: rigid, two_inertia or three_inertia.
         holdout: recordings that no fit sees, only the final figures.
-        noise: standard deviation of a sample that a channel's sensor is known to have, by channel.
+        noise: standard deviation of a sample that a channel's sensor is known to have, by channel; before
+            what the recordings' bench files state.
         least: smallest size of an effect that is worth a name, by effect; others have sizes of their own.
         at_most_s: processor time of the search, s; what it knows by then is told as `unfinished`.
         show: told what is going on.
@@ -64,7 +66,8 @@ def diagnose(
             fix="give the chain that `hil identify` writes as physical.toml",
         )
     refuse_same_data(recordings, holdout)
-    asked = Asked.checked(noise or {}, least or {}, at_most_s)
+    stated = stated_noise([*recordings, *holdout])
+    asked = Asked.checked({**stated, **(noise or {})}, least or {}, at_most_s)
     with within_floating_point(", ".join(str(r.source) for r in recordings)):
         return _diagnosed(model, recordings, holdout, asked, show)
 
