@@ -31,7 +31,8 @@ from hil.analysis.diagnosis.search._thresholds import (
     WIDTHS,
 )
 from hil.analysis.diagnosis.search._width import width_of, window_errors
-from hil.core.effects import EFFECTS
+from hil.core.chain import Chain
+from hil.core.effects import EFFECTS, Law
 from hil.plant import chain_numbers
 
 Array = npt.NDArray[np.float64]
@@ -106,10 +107,10 @@ def _begun(problem: Problem, best: Fit, index: int, width: float) -> _Begun:
     """`best` with its width times `width`, every recording begun where that suits it best."""
     theta = best.theta.copy()
     theta[index] += np.log(width)
-    point = best.hypothesis.packed(theta)
+    point, play = best.hypothesis.packed(theta), _Play.of(best, index)
     total, starts = best.prior, []
     for trace, start in enumerate(best.starts):
-        places = [start[SHAFT], *PLACES_NM, *_same_ways(best, index, width, float(start[SHAFT]))]
+        places = [start[SHAFT], *PLACES_NM, *play.same_ways(width, float(start[SHAFT]))]
         tried = np.tile(start, (len(places), 1))
         tried[:, SHAFT] = places
         cheapest, cost = problem.cheapest_start(trace, point, tried)
@@ -118,36 +119,51 @@ def _begun(problem: Problem, best: Fit, index: int, width: float) -> _Begun:
     return _Begun(theta, starts, total)
 
 
-def _same_ways(best: Fit, index: int, width: float, torque: float) -> list[float]:
-    """Torques whose places in the other width are as far from one flank, or the other, as before."""
-    gap, now = _gap(best, index), _place(best, index, torque, 1.0)
-    torques = np.linspace(PLACES_NM[0], PLACES_NM[-1], PLACES_FINE)
-    places = [_place(best, index, t, width) for t in torques]
-    return [float(np.interp(now + side * (width - 1.0) * gap, places, torques)) for side in (-1.0, 1.0)]
-
-
 def _from_the_middle(problem: Problem, best: Fit, index: int) -> list[float]:
     """Widths with which a recording that begins at rest has the same way to a flank from the middle."""
+    play = _Play.of(best, index)
     torques = [float(s[SHAFT]) for s, rests in zip(best.starts, problem.resting, strict=True) if rests]
-    shares = [_place(best, index, torque, 1.0) / _gap(best, index) for torque in torques]
+    shares = [play.place(torque, 1.0) / play.gap for torque in torques]
     return [1.0 + way for share in shares for way in (-share, share) if way > -MOST_OF_PLAY]
 
 
-def _gap(best: Fit, index: int) -> float:
-    return float(
-        best.hypothesis.model(best.theta).effects[-1].values[best.hypothesis.coordinates()[index].name]
-    )
+@dataclass(frozen=True)
+class _Play:
+    """The play of a fit: its law, the chain that it is in, its numbers, and which of them is its width."""
 
+    law: Law
+    chain: Chain
+    numbers: tuple[float, ...]
+    width: int
 
-def _place(best: Fit, index: int, torque: float, width: float) -> float:
-    """Where in a play times `width` a torque begins."""
-    model, name = best.hypothesis.model(best.theta), best.hypothesis.coordinates()[index].name
-    effect = EFFECTS[best.hypothesis.ids[-1]]
-    known = effect.completed(model.effects[-1].values)
-    values = known | {name: float(known[name]) * width}
-    assert effect.law.begin is not None
-    numbers = tuple(float(values[p.name]) for p in effect.parameters)
-    return float(effect.law.begin(torque, chain_numbers(model), numbers))
+    @classmethod
+    def of(cls, best: Fit, index: int) -> _Play:
+        model, name = best.hypothesis.model(best.theta), best.hypothesis.coordinates()[index].name
+        effect = EFFECTS[best.hypothesis.ids[-1]]
+        values = effect.completed(model.effects[-1].values)
+        names = [parameter.name for parameter in effect.parameters]
+        numbers = tuple(float(values[each]) for each in names)
+        return cls(effect.law, chain_numbers(model), numbers, names.index(name))
+
+    @property
+    def gap(self) -> float:
+        return self.numbers[self.width]
+
+    def place(self, torque: float, width: float) -> float:
+        """Where in this play times `width` a torque begins."""
+        numbers = list(self.numbers)
+        numbers[self.width] *= width
+        assert self.law.begin is not None
+        return float(self.law.begin(torque, self.chain, tuple(numbers)))
+
+    def same_ways(self, width: float, torque: float) -> list[float]:
+        """Torques whose places in another width are as far from one flank, or the other, as before."""
+        now = self.place(torque, 1.0)
+        torques = np.linspace(PLACES_NM[0], PLACES_NM[-1], PLACES_FINE)
+        places = [self.place(t, width) for t in torques]
+        return [
+            float(np.interp(now + side * (width - 1.0) * self.gap, places, torques)) for side in (-1.0, 1.0)
+        ]
 
 
 def _as_good(fits: list[Fit]) -> list[Fit]:
