@@ -14,7 +14,7 @@ USUAL: dict[str, tuple[str, ...]] = {
     "schema": ("plan",),
     "compare": ("done", "recording.mcap", "--out", "out"),
     "explain": (
-        "--target", "c.peak_shaft_torque=200", "--plan", "plan.yaml", "--bench", "bench.toml",
+        "--target", "c.peak_shaft_torque=120", "--plan", "plan.yaml", "--bench", "bench.toml",
         "--among", "dead_time", "--evaluations", "20", "--out", "out",
     ),
     "doctor": ("bench.toml", "--for", "0.3"),

@@ -9,7 +9,7 @@ from tests.bad_inputs.case import DONE, OPTIONS, REFUSED, Case
 from tests.bad_inputs.commands import COMMANDS, USUAL, usual, with_other
 
 _LONG = "x" * 5000
-_TARGET = "c.peak_shaft_torque=200"
+_TARGET = "c.peak_shaft_torque=120"
 
 
 def option_cases() -> Iterator[Case]:

@@ -78,7 +78,7 @@ def test_the_logger_writes_what_python_can_reads_again(buses: dict[str, Any], tm
     said, _ = logger.communicate(timeout=30)
     with can.LogReader(str(file)) as reader:
         messages = list(reader)
-    assert {0x110, 0x111, 0x200} == {message.arbitration_id for message in messages}, said
+    assert {0x110, 0x111, 0x112, 0x200} == {message.arbitration_id for message in messages}, said
     status = [message.timestamp for message in messages if message.arbitration_id == 0x110]
     apart = [after - before for before, after in pairwise(status)]
     assert sorted(apart)[len(apart) // 2] == pytest.approx(0.002, rel=0.1)  # 1 ms at half of real time

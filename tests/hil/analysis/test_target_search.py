@@ -123,7 +123,7 @@ def test_what_was_found_can_be_used(found):
     assert (
         b"set_controller" in files["separating_plan.yaml"] or b"motor_torque" in files["separating_plan.yaml"]
     )
-    assert "do not single out" in caution(found)
+    assert "does not single out" in caution(found)
     page = explanation_html(found)
     assert page.count("<figure") == 1
     assert explanation_pdf(found).startswith(b"%PDF")

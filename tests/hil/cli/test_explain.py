@@ -36,7 +36,7 @@ def test_rivals_are_ranked_and_their_models_written(tmp_path, plan, capsys):
     told = json.loads((out / "targets.json").read_text())
     assert code == (0 if told["reached"] else 1)
     assert told["verdict"][:40] in shown
-    assert "do not single out a cause" in told["caution"]
+    assert "not single out a cause" in told["caution"]
     assert {path.name for path in out.iterdir()} == set(told["files"])
     ranks = [(len(rival["missed"]), rival["cost"]) for rival in told["rivals"]]
     assert ranks == sorted(ranks)
