@@ -59,10 +59,7 @@ def _measured(node: DynoNode, side: str) -> dict[str, float]:
     """Means of what its sensors read, by channel; before a run has started them they send nothing."""
     readings = {}
     with contextlib.suppress(BenchError):
-        for name, channel in (
-            ("Wheel speed", f"wheel_speed_{side}_rad_s"),
-            ("Shaft torque", f"shaft_torque_{side}_nm"),
-        ):
+        for name, channel in _MEASURED.items():
             values = [node.measured(name) for _ in range(_READINGS)]
             known = [value for value in values if value is not None]
             if known:

@@ -60,6 +60,17 @@ def console() -> Console:
     return Console(soft_wrap=False) if sys.stdout.isatty() else Console(width=140)
 
 
+def plain_table(title: str | None = None) -> Table:
+    """A table without lines, its columns still to come."""
+    return Table(box=None, pad_edge=False, header_style="bold", title=title, title_justify="left")
+
+
+def ask_operator(text: str) -> None:
+    """Put a prompt on standard error and wait for Enter."""
+    print(f"\n{text}\nPress Enter to go on.", file=sys.stderr)
+    sys.stdin.readline()
+
+
 def warn(text: str) -> None:
     """What a person must know though the command goes on; on standard error."""
     logger.warning(text)
@@ -156,7 +167,7 @@ def told_identities(identities: Iterable[Identity]) -> str:
 
 
 def _table(criteria: tuple[CriterionResult, ...]) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
+    table = plain_table()
     table.add_column("criterion", no_wrap=True)
     for name in ("value", "limit", "margin"):
         table.add_column(name, justify="right", no_wrap=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.table import Table
 
-from hil.cli._output import console, print_criteria, print_json, progress
+from hil.cli._output import console, plain_table, print_criteria, print_json, progress
 from hil.core.channels import CHANNELS
 from hil.engine import load_bench
 from hil.engine.forecast import Forecast, forecast
@@ -79,9 +79,7 @@ def _verdict(predicted: Forecast) -> str:
 
 
 def _table(peaks: dict[str, tuple[float, float]]) -> Table:
-    table = Table(
-        box=None, pad_edge=False, header_style="bold", title="peaks, predicted", title_justify="left"
-    )
+    table = plain_table("peaks, predicted")
     table.add_column("channel")
     for name in ("peak", "limit", "used"):
         table.add_column(name, justify="right")

@@ -6,10 +6,8 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from rich.table import Table
-
 from hil.analysis.comparison import ComparedRun, Comparison, compare
-from hil.cli._output import Show, console, print_json, progress, to_json, warn_of_damage
+from hil.cli._output import Show, console, plain_table, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import refuse_missing, results_in
 from hil.cli.report import rejudged
 from hil.core.errors import BadInputError
@@ -110,7 +108,7 @@ def _summary(found: Comparison, runs: list[Path]) -> dict[str, Any]:
 
 
 def _tell(found: Comparison, page: Path) -> None:
-    table = Table(box=None, pad_edge=False, header_style="bold")
+    table = plain_table()
     table.add_column("criterion", no_wrap=True)
     for run in found.runs:
         table.add_column(run.name, justify="right", no_wrap=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.table import Table
 
-from hil.cli._output import console, print_json, progress
+from hil.cli._output import console, plain_table, print_json, progress
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
 from hil.engine.doctor import BusFacts, DoctorRequest, Examination, examine_bench
@@ -70,7 +70,7 @@ def _tell_findings(page: Console, found: Examination) -> None:
 
 
 def _table(*columns: str, right: tuple[str, ...] = ()) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
+    table = plain_table()
     for column in columns:
         table.add_column(column, justify="right" if column in right else "left", overflow="fold")
     return table

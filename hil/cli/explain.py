@@ -6,8 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rich.table import Table
-
 from hil.analysis.target_search import (
     SEPARATING,
     CarryOut,
@@ -20,7 +18,7 @@ from hil.analysis.target_search import (
 )
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_numbers import named_numbers
-from hil.cli._output import console, print_json, progress, to_json
+from hil.cli._output import console, plain_table, print_json, progress, to_json
 from hil.cli._place import results_in
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model
@@ -122,7 +120,7 @@ def _summary(found: Explanation, seed: int, files: list[str]) -> dict[str, Any]:
 
 def _tell(found: Explanation, folder: Path) -> None:
     out = console()
-    table = Table(box=None, pad_edge=False, header_style="bold")
+    table = plain_table()
     table.add_column("rival")
     for name in found.targets.values:
         table.add_column(name, justify="right", no_wrap=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.table import Table
 
-from hil.cli._output import console, print_json, progress, to_json
+from hil.cli._output import ask_operator, console, plain_table, print_json, progress, to_json
 from hil.cli._place import results_in
 from hil.cli._streams import complain
 from hil.core.errors import BenchError
@@ -30,7 +30,7 @@ def carry_out(
     """Carry the command out; its exit code."""
     file, stop = load_bench(bench), StopRequest()
     request = JogRequest(file, Path(), torque, operator=operator, confirmed_by=yes, stop=stop)
-    request.ask = _ask if sys.stdin.isatty() else None
+    request.ask = ask_operator if sys.stdin.isatty() else None
     with (
         results_in(
             out, NAMES, inputs=[file.source], overwrite=overwrite, default="jog", summary=JOG
@@ -94,7 +94,7 @@ def _tell(outcome: JogOutcome, folder: Path) -> None:
 
 
 def _table(signs: tuple[Sign, ...]) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
+    table = plain_table()
     for name in ("asked for", "channel", "changed by", "unit", "sign"):
         table.add_column(name, justify="right" if name == "changed by" else "left", no_wrap=True)
     for sign in signs:
@@ -102,8 +102,3 @@ def _table(signs: tuple[Sign, ...]) -> Table:
         words = f"[{_STYLES[sign.verdict]}]{_WORDS[sign.verdict]}[/]"
         table.add_row(sign.test, sign.channel, change, sign.unit, words)
     return table
-
-
-def _ask(text: str) -> None:
-    print(f"\n{text}\nPress Enter to go on.", file=sys.stderr)
-    sys.stdin.readline()

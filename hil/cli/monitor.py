@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hil.cli._interrupts import EXIT_CODE
-from hil.cli._output import console, print_json
+from hil.cli._output import console, plain_table, print_json
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
 from hil.engine.monitor import ChannelView, MonitorRequest, View, monitor
@@ -95,7 +95,7 @@ def _number(value: float) -> str:
 
 
 def _table(first: str, *others: str) -> Table:
-    table = Table(box=None, pad_edge=False, header_style="bold")
+    table = plain_table()
     table.add_column(first, no_wrap=True)
     for name in others:
         left = name in ("unit", "unknown")

@@ -11,6 +11,7 @@ from typing import TypeVar
 from hil.cli._interrupts import INTERRUPTS
 from hil.cli._output import (
     Show,
+    ask_operator,
     console,
     count_in_words,
     print_criteria,
@@ -57,7 +58,7 @@ def carry_out(
         out=Path(),
         model=load_model(model) if model else None,
         operator=operator,
-        ask=_ask if sys.stdin.isatty() else None,
+        ask=ask_operator if sys.stdin.isatty() else None,
         confirmed_by=yes,
         stop=stop,
     )
@@ -179,8 +180,3 @@ def _print(result: RunResult, folder: Path) -> None:
         page.print(f"identification: {said}", highlight=False, markup=False, soft_wrap=True)
     shown = "html" if "html" in result.files else "recording"
     page.print(f"{'report' if shown == 'html' else shown}: {folder / result.files[shown]}", highlight=False)
-
-
-def _ask(text: str) -> None:
-    print(f"\n{text}\nPress Enter to go on.", file=sys.stderr)
-    sys.stdin.readline()

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from hil.core.checksum import crc8_of
 from hil.core.compiled import compiled_exactly
 from hil.core.conventions import TICK_S
-from hil.core.frames import FRAME, FrameBlock, frames
+from hil.core.frames import FRAME, FrameBlock
 from hil.core.signals import FrameLayout, payload_with
 
 #: A frame with the column of a bench row that each of its signals shows.
@@ -76,8 +76,3 @@ def _fill(rows, first, tick_s, ends_s, checked, columns, places, numbers, times_
             if checked[message] != _NO_CHECKSUM:
                 word = payloads[i, message]
                 payloads[i, message] = word | crc8_of(checked[message], word) << np.uint64(56)
-
-
-def single(frame_id: int, data: bytes, time_s: float) -> FrameBlock:
-    """A block of one frame."""
-    return frames(frame_id, int.from_bytes(data, "little"), len(data), time_s)

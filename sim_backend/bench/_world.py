@@ -13,7 +13,7 @@ import numpy.typing as npt
 from hil.core.conventions import TICK_S
 from hil.core.dbc import Names, read_dbc
 from hil.core.errors import BadInputError
-from hil.core.frames import FrameBlock, empty_block, joined
+from hil.core.frames import FrameBlock, empty_block, frames, joined
 from hil.core.signals import FrameLayout
 from hil.plant.closed_loop import advance, state_at_rest
 from hil.plant.closed_loop import drive as drive
@@ -21,7 +21,7 @@ from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SENSED_CHANNELS, SensorFault, SimulationSettings
-from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s, single
+from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s
 from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
 
@@ -332,7 +332,7 @@ class SimulatedBench:
     def _event(self, bus: str, frame_id: int, data: bytes) -> None:
         rate = self.settings.rmcu_bit_rate if bus == RMCU_BUS else self.settings.dyno_bit_rate
         stamp = self._samples * TICK_S + 6 * frame_time_s(8, rate)
-        self._pending[bus].append(single(frame_id, data, stamp))
+        self._pending[bus].append(frames(frame_id, int.from_bytes(data, "little"), len(data), stamp))
 
     # --- frames of many samples ---
 
