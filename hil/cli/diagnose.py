@@ -8,7 +8,7 @@ from typing import Any
 
 from hil.analysis.diagnosis import INTERRUPTED, LEAST_SAMPLES, Diagnosis, diagnose
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
-from hil.cli._named_numbers import named_numbers
+from hil.cli._named_values import named_numbers
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import results_in
 from hil.core.errors import BadInputError

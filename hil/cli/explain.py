@@ -17,7 +17,7 @@ from hil.analysis.target_search import (
     read_targets,
 )
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
-from hil.cli._named_numbers import named_numbers
+from hil.cli._named_values import named_numbers
 from hil.cli._output import console, plain_table, print_json, progress, to_json
 from hil.cli._place import results_in
 from hil.core.errors import BadInputError

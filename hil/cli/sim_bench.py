@@ -6,13 +6,14 @@ import sys
 from pathlib import Path
 
 from hil.cli._interrupts import EXIT_CODE
+from hil.cli._named_values import named_values
 from hil.cli._output import print_json
 from hil.cli._place import refuse_file
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
-from hil.engine.sim_bench import TRANSPORTS, Served, Serving, SimBenchRequest, serve
+from hil.engine.sim_bench import HIDDEN_FORM, TRANSPORTS, Served, Serving, SimBenchRequest, serve
 
 
 def carry_out(
@@ -51,7 +52,7 @@ def carry_out(
         bench=checked,
         time_scale=time_scale,
         seed=seed,
-        hidden=hide,
+        hidden=named_values(hide, "--hide", form=HIDDEN_FORM),
         for_s=float("inf") if for_s is None else for_s,
         transport=transport,
         port=port,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -30,6 +30,7 @@ from sim_backend.serving import (
 )
 
 TRANSPORTS = ("udp", "slcan", "socketcand", "socketcan")
+HIDDEN_FORM = "EFFECT=VALUE or EFFECT.PARAMETER=VALUE"
 FIRST_PORT = 47110
 _HIGHEST_PORT = 65535
 
@@ -68,8 +69,8 @@ class SimBenchRequest:
         bench: with [simulation].
         time_scale: seconds of bench time in a second of the wall clock.
         seed: of the sensors' noise; None: that of the bench file.
-        hidden: effects in the served bench beside those of its model: "backlash=0.01" gives an effect's first
-            number, "backlash.restitution=0.5" another.
+        hidden: effects in the served bench beside those of its model: what "backlash" names is the effect's
+            first number, "backlash.restitution" another.
         for_s: ends by itself after this many seconds of the wall clock.
         transport: one of `TRANSPORTS`.
         port: first UDP or TCP port; 0 takes free ones.
@@ -81,7 +82,7 @@ class SimBenchRequest:
     bench: BenchFile
     time_scale: float = 1.0
     seed: int | None = None
-    hidden: tuple[str, ...] = ()
+    hidden: Mapping[str, str] = field(default_factory=dict)
     for_s: float = float("inf")
     transport: str = "udp"
     port: int = FIRST_PORT
@@ -114,34 +115,33 @@ def serve(request: SimBenchRequest) -> Served:
             for role, name in roles.items()
         }
         text = bench_text(bench, tables, request.time_scale)
-        added = tuple(f"{use.id}: {_numbers(use.values)}" for use in model.effects if use.id in _ids(request))
-        request.ready(Serving(text, tables, added, tuple(bench.devices)))
+        added = {_effect_and_parameter(name)[0] for name in request.hidden}
+        told = tuple(f"{use.id}: {_numbers(use.values)}" for use in model.effects if use.id in added)
+        request.ready(Serving(text, tables, told, tuple(bench.devices)))
         server.serve(lambda: request.stop.times > 0, request.for_s)
         frames = {roles[role]: (sent, received) for role, (sent, received) in server.frames.items()}
         lost = {name: servers[role].lost for role, name in roles.items()}
     return Served(server.pace, frames, lost)
 
 
-def with_hidden(model: Model, hidden: Iterable[str]) -> Model:
+def with_hidden(model: Model, hidden: Mapping[str, str]) -> Model:
     """The model with effects added, or with other numbers for those that it has.
+
+    Args:
+        hidden: values by "EFFECT" or "EFFECT.PARAMETER".
 
     Raises:
         BadInputError: no such effect or parameter, or a value that it does not take.
     """
     data = tomllib.loads(model_to_toml(model))
     effects: list[dict[str, Any]] = data.setdefault("effects", [])
-    for text in hidden:
-        name, sign, value = (part.strip() for part in text.partition("="))
-        effect_id, _, parameter = name.partition(".")
-        if not sign or effect_id not in EFFECTS:
-            known = ", ".join(EFFECTS)
-            what = (
-                f"there is no effect '{printable(effect_id)}'" if sign else f"'{printable(text)}' has no '='"
-            )
+    for name, value in hidden.items():
+        effect_id, parameter = _effect_and_parameter(name)
+        if effect_id not in EFFECTS:
             raise BadInputError(
-                what,
+                f"there is no effect '{printable(effect_id)}'",
                 where="--hide",
-                fix=f"write --hide EFFECT=VALUE or EFFECT.PARAMETER=VALUE; known: {known}",
+                fix=f"write --hide {HIDDEN_FORM}; known: {', '.join(EFFECTS)}",
             )
         entry = next((entry for entry in effects if entry["id"] == effect_id), None)
         if entry is None:
@@ -226,8 +226,9 @@ def _at_interface(interface: str, bit_rate: int, name: str) -> SocketcanPort:
         ) from error
 
 
-def _ids(request: SimBenchRequest) -> set[str]:
-    return {text.partition("=")[0].partition(".")[0].strip() for text in request.hidden}
+def _effect_and_parameter(name: str) -> tuple[str, str]:
+    effect_id, _, parameter = name.partition(".")
+    return effect_id, parameter
 
 
 def _numbers(values: Mapping[str, object]) -> str:

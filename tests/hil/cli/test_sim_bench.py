@@ -63,6 +63,7 @@ def test_it_ends_by_itself_and_tells_programs_what_it_serves():
     [
         (("sim", "--transport", "pigeon"), "--transport 'pigeon' is not known"),
         (("sim", "--hide", "backlsh=1"), "there is no effect 'backlsh'"),
+        (("sim", "--hide", "backlash"), "--hide: 'backlash' has no '='"),
         (("rear_axle_socketcan",), "it is a bench with hardware"),
     ],
 )

@@ -28,37 +28,37 @@ def loaded(text: str, tmp_path: Any) -> Any:
 
 
 def test_effects_are_hidden_by_name_with_their_first_number_or_another() -> None:
-    model = with_hidden(MODEL, ["backlash=0.01", "backlash.restitution = 0.5", "viscous_drag=0.02"])
+    model = with_hidden(MODEL, {"backlash": "0.01", "backlash.restitution": "0.5", "viscous_drag": "0.02"})
     uses = {use.id: use.values for use in model.effects}
     assert uses["backlash"]["half_gap_rad"] == 0.01
     assert uses["backlash"]["restitution"] == 0.5
     assert uses["viscous_drag"]["coefficient_nms_rad"] == 0.02
     assert {use.id for use in MODEL.effects} < uses.keys()
-    assert with_hidden(MODEL, []) == MODEL
+    assert with_hidden(MODEL, {}) == MODEL
 
 
 def test_an_effect_that_the_model_has_takes_another_number() -> None:
     (use,) = MODEL.effects
-    (changed,) = with_hidden(MODEL, [f"{use.id}.amplitude_nm=50"]).effects
+    (changed,) = with_hidden(MODEL, {f"{use.id}.amplitude_nm": "50"}).effects
     assert changed.values == {**use.values, "amplitude_nm": 50.0}
-    sensed = with_hidden(MODEL, ["sensor_gain.channel=motor_speed_rad_s", "sensor_gain.gain=1.05"])
+    sensed = with_hidden(MODEL, {"sensor_gain.channel": "motor_speed_rad_s", "sensor_gain.gain": "1.05"})
     assert sensed.effects[-1].values == {"channel": "motor_speed_rad_s", "gain": 1.05}
 
 
 @pytest.mark.parametrize(
-    ("hidden", "said"),
+    ("name", "value", "said"),
     [
-        ("backlsh=0.01", "there is no effect 'backlsh'"),
-        ("backlash", "'backlash' has no '='"),
-        ("backlash.gap=0.01", "effect 'backlash' has no parameter 'gap'"),
-        ("backlash=big", "not a finite number"),
-        ("backlash=nan", "not a finite number"),
-        ("backlash=50", "out of range"),
+        ("backlsh", "0.01", "there is no effect 'backlsh'"),
+        ("", "1", "there is no effect ''"),
+        ("backlash.gap", "0.01", "effect 'backlash' has no parameter 'gap'"),
+        ("backlash", "big", "not a finite number"),
+        ("backlash", "nan", "not a finite number"),
+        ("backlash", "50", "out of range"),
     ],
 )
-def test_what_cannot_be_hidden_is_refused(hidden: str, said: str) -> None:
+def test_what_cannot_be_hidden_is_refused(name: str, value: str, said: str) -> None:
     with pytest.raises(BadInputError, match=said) as caught:
-        with_hidden(MODEL, [hidden])
+        with_hidden(MODEL, {name: value})
     assert "--hide" in caught.value.where
 
 
@@ -100,7 +100,7 @@ def test_a_port_that_is_taken_is_told() -> None:
 
 def test_it_says_what_it_serves_and_ends_when_asked() -> None:
     told: list[Serving] = []
-    request = SimBenchRequest(SIM, port=0, seed=7, hidden=("backlash=0.01",), time_scale=0.5)
+    request = SimBenchRequest(SIM, port=0, seed=7, hidden={"backlash": "0.01"}, time_scale=0.5)
 
     def ready(serving: Serving) -> None:
         told.append(serving)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hil.cli._named_numbers import named_numbers
+from hil.cli._named_values import named_numbers, named_values
 from hil.core.errors import BadInputError
 
 
@@ -14,3 +14,10 @@ def test_names_and_numbers() -> None:
 def test_what_is_no_number_is_refused_with_the_option(text: str) -> None:
     with pytest.raises(BadInputError, match="--least"):
         named_numbers([text], "--least")
+
+
+def test_values_keep_their_text_and_a_name_given_twice_counts_the_last_time() -> None:
+    given = ["a.channel = speed", "b==", "a.channel=torque"]
+    assert named_values(given, "--hide") == {"a.channel": "torque", "b": "="}
+    with pytest.raises(BadInputError, match="EFFECT=VALUE"):
+        named_values(["backlash"], "--hide", form="EFFECT=VALUE")
