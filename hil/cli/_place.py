@@ -12,13 +12,9 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, refuse_special, replacing
+from hil.core.locks import HeldError, lock_on
 
 logger = logging.getLogger(__name__)
-
-try:
-    import fcntl
-except ImportError:  # Windows
-    fcntl = None  # type: ignore[assignment]
 
 _OVERWRITE = "add --overwrite to replace it, or name another place with --out"
 
@@ -172,25 +168,15 @@ def _make(folder: Path, made: list[Path]) -> None:
 
 @contextlib.contextmanager
 def _held(folder: Path) -> Iterator[None]:
-    """A lock on the folder itself: it leaves no file behind and dies with its process."""
-    if fcntl is None:
-        yield
-        return
-    handle = os.open(folder, os.O_RDONLY)
     try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise BadInputError(
-                "another command is writing here",
-                where=str(folder),
-                fix="wait until it has ended, or name another place with --out",
-            ) from None
-        except OSError:
-            pass  # a file system without locks: the names are checked all the same
-        yield
-    finally:
-        os.close(handle)
+        with lock_on(folder):
+            yield
+    except HeldError as error:
+        raise BadInputError(
+            f"another command is writing here: {error}",
+            where=str(folder),
+            fix="wait until it has ended, or name another place with --out",
+        ) from None
 
 
 def _listed(summary: Path) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import os
 import secrets
 from collections.abc import Iterator
 from pathlib import Path
@@ -44,6 +45,7 @@ def replacing(path: Path) -> Iterator[Path]:
     try:
         make_directory(path.parent)
         yield temporary
+        _put_on_disk(temporary)
         temporary.chmod(0o644)
         temporary.replace(path)
     except OSError as error:
@@ -51,6 +53,15 @@ def replacing(path: Path) -> Iterator[Path]:
     finally:
         with contextlib.suppress(OSError):
             temporary.unlink(missing_ok=True)
+
+
+def _put_on_disk(path: Path) -> None:
+    """Else a power cut after the renaming could leave an empty file in the place of the earlier one."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
 def refuse_special(path: Path) -> None:

@@ -31,6 +31,7 @@ from hil.core.printable import printable
 from hil.core.real_time import undisturbed
 from hil.engine._bus_settings import can_settings
 from hil.engine._simulable import simulated
+from hil.engine.bench_lock import alone_on
 from hil.engine.bench_tables import BenchFile
 from hil.engine.request_timing import Periodic, RequestTiming
 from sim_backend.can_interface import attach, detach
@@ -110,7 +111,7 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
 
     Raises:
         BadInputError: a file that the bench file names cannot be used, or devices that do not go together.
-        BenchError: a bus or a port cannot be opened.
+        BenchError: a bus or a port cannot be opened, or another process drives the bench.
     """
     if model is not None and not file.simulation:
         raise BadInputError(
@@ -119,6 +120,7 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
     with ExitStack() as opened:
         if file.simulation:
             model = model or load_model(file.simulation.model)
+        opened.enter_context(alone_on(file))
         clock, offset_s = bench_clock(file, model, opened)
         wires = {name: open_wire(file, name, clock, offset_s, opened) for name in file.buses}
         if not file.simulation:

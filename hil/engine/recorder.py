@@ -12,11 +12,12 @@ from drivers import SampleAssembler, Samples, Stream
 from hil.core.channels import TIME
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock
-from hil.core.recording import CHUNK_BYTES, Event, Recording, RecordingWriter
+from hil.core.recording import Event, Recording, RecordingWriter
 from hil.core.result import StreamClock
 
 _FLUSH_S = 0.5
-_PROMPT_FLUSH_S, _PROMPT_BYTES = 0.2, 48 * 1024  # 0.15 s of a bench
+#: How often `keep` is to be called, s: with what it waits for all is on the disk within 0.25 s.
+KEEP_S = 0.15
 _LOOK_S = 2.0  # what clocks do shows in seconds
 
 
@@ -27,7 +28,8 @@ class Recorder:
     times count samples from there, at the pace of the time base's own clock.
 
     Args:
-        promptly: write more often, in smaller blocks: whoever is killed loses less than half a second.
+        promptly: the recording is of a bench that nobody can repeat: `keep` will be called every `KEEP_S`,
+            and what it has written survives a power cut a quarter of a second later.
     """
 
     def __init__(
@@ -40,10 +42,7 @@ class Recorder:
         promptly: bool = False,
     ) -> None:
         self._assembler = SampleAssembler(streams, sample_time_s)
-        self._flush_s = _PROMPT_FLUSH_S if promptly else _FLUSH_S
-        self.writer = RecordingWriter(
-            path, self._assembler.names, buses, chunk_bytes=_PROMPT_BYTES if promptly else CHUNK_BYTES
-        )
+        self.writer = RecordingWriter(path, self._assembler.names, buses, durable=promptly)
         self._base = streams[0]
         self._chunks: list[npt.NDArray[np.float64]] = []
         self._flushed_s = self._looked_s = -np.inf
@@ -70,9 +69,9 @@ class Recorder:
         if samples.stream is not self._base:
             return
         if self.start_s is None:
-            self.start_s = self._flushed_s = float(samples.time_s[0])
+            self.start_s = self._flushed_s = self.writer.row_0_s = float(samples.time_s[0])
         latest_s = float(samples.time_s[-1])
-        if latest_s - self._flushed_s > self._flush_s:
+        if latest_s - self._flushed_s > _FLUSH_S:
             self._flushed_s = latest_s
             self._write_rows()
         if latest_s - self._looked_s > _LOOK_S:
@@ -83,11 +82,18 @@ class Recorder:
         """Keep samples from the next ones on: every device is giving its channels now."""
         self._begun = True
 
+    def keep(self) -> None:
+        """Write all that came, so that a killed process loses none of it."""
+        if self.start_s is not None:
+            self._write_rows()
+        self.writer.flush()
+        self.between()
+
     def event(self, clock_s: float, kind: str, text: str) -> None:
         """Record what happened at a time of the bench clock."""
         event = Event(self.recording_time(clock_s), kind, text)
         self.events.append(event)
-        self.writer.add_event(event.time_s, kind, text)
+        self.writer.add_event(event.time_s, kind, text, logged_s=max(0.0, clock_s))
 
     def recording_time(self, clock_s: float) -> float:
         """Time in the recording, on its millisecond grid, of the next sample after a bench time."""
@@ -136,6 +142,7 @@ class Recorder:
     def so_far(self) -> Recording:
         """The channels written until now."""
         self._write_rows()
+        self.writer.flush()  # what asks may take long, and the process be killed meanwhile
         names = self._assembler.names
         rows = np.concatenate(self._chunks) if self._chunks else np.zeros((0, len(names)))
         channels = {name: np.ascontiguousarray(rows[:, column]) for column, name in enumerate(names)}

@@ -21,7 +21,7 @@ from hil.engine.identification import identities_of, refuse_others
 from hil.engine.limits import LimitWatch
 from hil.engine.preflight import channels_of, preflight
 from hil.engine.provenance import hashes, versions
-from hil.engine.recorder import Recorder
+from hil.engine.recorder import KEEP_S, Recorder
 from hil.engine.request_timing import COLLECT_S, RequestTiming
 from hil.engine.safety import reach_safe_state
 from hil.engine.warming import warm_up
@@ -123,6 +123,7 @@ class _Run:
         self._identify()
         if not bench.simulated:
             warm_up(bench)
+            bench.loop.every(KEEP_S, self._recorder.keep)
         bench.start_heartbeats(self._timing)
         bench.rmcu.come_up()
         bench.dyno.come_up()

@@ -38,6 +38,8 @@ _HEAD = np.dtype(
 _BEFORE_LENGTH = 9  # opcode and length, which the length does not count
 _ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
 _PATIENCE = 4  # chunks that wait for a slow channel before they are written out of order
+_PATIENCE_NS = 250_000_000  # likewise, when as much as possible is asked for
+_UNSETTLED_NS = 20_000_000  # channels come this much apart
 
 
 class Output(Protocol):
@@ -159,6 +161,19 @@ class McapFile:
         length = self._put(_written(mcap.Metadata(name, table)))
         self._index.tables.append(mcap.MetadataIndex(offset, length, name))
 
+    def flush(self) -> None:
+        """Write what waits; what is newer than the slow channel only if it has waited for it long enough."""
+        if not self._waiting:
+            return
+        first = min(int(some.times[0]) for some in self._waiting)
+        last = max(int(some.times[-1]) for some in self._waiting)
+        until = self._slow_until if self.slow else last - _UNSETTLED_NS
+        if last - max(first, until) > _PATIENCE_NS:
+            self._write_chunk(self._waiting)
+            self._waiting, self._waiting_bytes = [], 0
+        else:
+            self._write_until(until, least_bytes=0)
+
     def finish(self) -> None:
         """Write what waits, the index and the end of the file."""
         if self._waiting:
@@ -204,15 +219,18 @@ class McapFile:
         if not self.slow or self._waiting_bytes > _PATIENCE * self._chunk_bytes:
             self._write_chunk(self._waiting)
             self._waiting, self._waiting_bytes = [], 0
-            return
+        else:
+            self._write_until(self._slow_until, self._chunk_bytes // 2)
+
+    def _write_until(self, until: int, least_bytes: int) -> None:
         ready, later = [], []
         for some in self._waiting:
-            split = int(np.searchsorted(some.times, self._slow_until, "right"))
+            split = int(np.searchsorted(some.times, until, "right"))
             if split:
                 ready.append(_Messages(some.channel, some.times[:split], some.records[:split]))
             if split < len(some.times):
                 later.append(_Messages(some.channel, some.times[split:], some.records[split:]))
-        if sum(some.records.size for some in ready) > self._chunk_bytes // 2:
+        if sum(some.records.size for some in ready) > least_bytes:
             self._write_chunk(ready)
             self._waiting, self._waiting_bytes = later, sum(some.records.size for some in later)
 

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock, joined
 from hil.core.recording import _schema
+from hil.core.recording._growing_file import GrowingFile
 from hil.core.recording._mcap_damage import CHANNELS_TABLE
 from hil.core.recording._mcap_file import McapFile
 
@@ -29,52 +30,35 @@ _EVENT_SCHEMA = {
 }
 
 
-class _WholeWrites:
-    """A file without a buffer of its own: after a full disk nothing is left that would be written later."""
-
-    def __init__(self, path: Path) -> None:
-        self._raw = path.open("wb", buffering=0)
-        self._failure: OSError | None = None
-
-    def write(self, data: bytes | bytearray | memoryview) -> int:
-        if self._failure is not None:
-            raise self._failure
-        rest = memoryview(data)
-        try:
-            while rest:
-                rest = rest[self._raw.write(rest) :]
-        except OSError as error:
-            self._failure = error
-            self.close()
-            raise
-        return len(data)
-
-    def tell(self) -> int:
-        return self._raw.tell()
-
-    def flush(self) -> None:
-        """Nothing waits here."""
-
-    def close(self) -> None:
-        self._raw.close()
-
-
 class RecordingWriter:
     """Streams a run to `path`. Everything added before a crash can be read again.
 
     A block of the file holds `chunk_bytes` before compression: what a crash or a flipped bit can cost.
     A disk that fills up raises BenchError from any method that writes.
+
+    Args:
+        durable: a power cut too costs no more than what was added in the last quarter of a second before.
+
+    Attributes:
+        row_0_s: time of the frames' stamps at which `time_s` is 0: rows and events are logged on their base.
     """
 
     def __init__(
-        self, path: Path, channel_names: list[str], buses: list[str], *, chunk_bytes: int = CHUNK_BYTES
+        self,
+        path: Path,
+        channel_names: list[str],
+        buses: list[str],
+        *,
+        chunk_bytes: int = CHUNK_BYTES,
+        durable: bool = False,
     ) -> None:
         self.path = path
+        self.row_0_s = 0.0
         self._samples = 0
         self._hash = hashlib.sha256()
         self._waiting: dict[str, list[FrameBlock]] = {bus: [] for bus in buses}
         try:
-            self._file = _WholeWrites(path)
+            self._file = GrowingFile(path, durable=durable)
             self._writer = McapFile(self._file, library="eaxle-hil", chunk_bytes=chunk_bytes)
             self._register(channel_names, buses)
         except OSError as error:
@@ -122,14 +106,16 @@ class RecordingWriter:
         self._samples += len(rows)
         self._hash.update(encoded.data)
         try:
-            self._writer.add(self._channels, np.rint(rows[:, 0] * 1e9).astype(np.int64), encoded)
+            self._writer.add(
+                self._channels, np.rint((rows[:, 0] + self.row_0_s) * 1e9).astype(np.int64), encoded
+            )
         except OSError as error:
             raise self._failed(error) from error
 
-    def add_event(self, time_s: float, kind: str, text: str) -> None:
-        """Add one event of the run."""
+    def add_event(self, time_s: float, kind: str, text: str, *, logged_s: float | None = None) -> None:
+        """Add one event of the run; `logged_s` is its time on the base of the frames' stamps, if known."""
         message = json.dumps({"time_s": round(time_s, 6), "kind": kind, "text": text}).encode()
-        self._add(self._events, time_s, message)
+        self._add(self._events, time_s + self.row_0_s if logged_s is None else logged_s, message)
 
     def add_requests(self, request: str, logged_s: float, times_s: npt.NDArray[np.float64]) -> None:
         """Add when some periodic requests were meant, sent and seen on the bus, s, shape (3, n)."""
@@ -149,8 +135,20 @@ class RecordingWriter:
         except OSError as error:
             raise self._failed(error) from error
 
+    def flush(self) -> None:
+        """Hand over to the operating system what was added until now: a killed process loses none of it.
+
+        Frames that are newer than the newest row wait for theirs, a quarter of a second at most.
+        """
+        try:
+            for bus in self._frames:
+                self._flush_frames(bus)
+            self._writer.flush()
+        except OSError as error:
+            raise self._failed(error) from error
+
     def close(self) -> None:
-        """Finish the file; it can be read without this, but then the last second may be missing."""
+        """Finish the file; it can be read without this, but then what was not flushed is missing."""
         try:
             for bus in self._frames:
                 self._flush_frames(bus)
