@@ -73,7 +73,7 @@ def results_in(
     made: list[Path] = []
     folder = _numbered(default, made) if out is None else _named(out, made)
     try:
-        with _held(folder):
+        with alone_in(folder):
             there = [folder / name for name in dict.fromkeys((*names, *_listed(folder / summary)))]
             for path in there:
                 refuse_special(path)
@@ -167,7 +167,12 @@ def _make(folder: Path, made: list[Path]) -> None:
 
 
 @contextlib.contextmanager
-def _held(folder: Path) -> Iterator[None]:
+def alone_in(folder: Path) -> Iterator[None]:
+    """Refuse to work in a folder in which another command is writing.
+
+    Raises:
+        BadInputError: names the process.
+    """
     try:
         with lock_on(folder):
             yield

@@ -11,6 +11,7 @@ USUAL: dict[str, tuple[str, ...]] = {
     "diagnose": ("short.csv", "--model", "model.toml", "--out", "out"),
     "simulate": ("--model", "model.toml", "--input", "short.csv", "--out", "out.csv"),
     "export": ("recording.mcap", "--out", "out.csv"),
+    "recover": ("recording.mcap", "--out", "out.mcap"),
     "schema": ("plan",),
     "compare": ("done", "recording.mcap", "--out", "out"),
     "explain": (
@@ -21,7 +22,18 @@ USUAL: dict[str, tuple[str, ...]] = {
     "sim-bench": ("bench.toml", "--port", "0", "--for", "0.5"),
 }  # fmt: skip
 COMMANDS = tuple(USUAL)
-WRITING = ("run", "report", "identify", "design", "diagnose", "simulate", "export", "compare", "explain")
+WRITING = (
+    "run",
+    "report",
+    "identify",
+    "design",
+    "diagnose",
+    "simulate",
+    "export",
+    "recover",
+    "compare",
+    "explain",
+)
 
 #: What an option needs beside the usual arguments, where it is not among them.
 EXTRA = {
@@ -46,6 +58,7 @@ FILE_ARGUMENTS = (
     ("simulate", "--model", "model.toml", "bench.toml"),
     ("simulate", "--input", "short.csv", "model.toml"),
     ("export", "RECORDING", "recording.mcap", "short.csv"),
+    ("recover", "RECORDING", "recording.mcap", "short.csv"),
     ("compare", "DIR", "recording.mcap", "short.csv"),
     ("explain", "--plan", "plan.yaml", "bench.toml"),
     ("explain", "--bench", "bench.toml", "model.toml"),

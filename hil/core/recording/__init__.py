@@ -14,6 +14,7 @@ from hil.core.recording._evidence import sidecar
 from hil.core.recording._formats import READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
+from hil.core.recording._recovery import Missing, missing_of, recover_recording
 from hil.core.recording._run import RUN, SEGMENT, run_of
 from hil.core.recording._table import Event, Recording, checked
 
@@ -94,12 +95,15 @@ __all__ = [
     "RUN",
     "SEGMENT",
     "Event",
+    "Missing",
     "Recording",
     "RecordingWriter",
     "checked",
     "driven_by_torque",
+    "missing_of",
     "read_frames",
     "read_recording",
+    "recover_recording",
     "run_of",
     "write_recording",
     "written_with",

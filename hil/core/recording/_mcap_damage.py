@@ -10,6 +10,8 @@ from hil.core.recording._table import Array
 
 #: Metadata table that closes a recording: SHA-256 of its samples, and how many they are.
 CHANNELS_TABLE = "channels"
+#: Metadata table of a recording that was made of a damaged one: what that one lacked, and which it was.
+RECOVERY_TABLE = "recovery"
 
 
 @dataclass
@@ -64,6 +66,12 @@ def damage(findings: Findings) -> list[str]:
     if whole is False and not findings.breaks and not findings.cut:
         said.append(_disagreement(findings))
     return said
+
+
+def lost_earlier(tables: dict[str, dict[str, str]]) -> list[str]:
+    """What the recording lacked from which this one was recovered."""
+    table = tables.get(RECOVERY_TABLE, {})
+    return [text for key, text in table.items() if key.startswith("lost ")]
 
 
 def _samples_are_whole(findings: Findings) -> bool | None:

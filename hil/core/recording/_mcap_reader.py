@@ -15,13 +15,13 @@ from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording import _schema
-from hil.core.recording._mcap_damage import Findings, damage
+from hil.core.recording._mcap_damage import Findings, damage, lost_earlier
 from hil.core.recording._mcap_walk import MAGIC, records, records_inside
 from hil.core.recording._mcap_writer import CHANNELS_TOPIC, EVENTS_TOPIC, FRAMES_TOPIC
 from hil.core.recording._regular_file import open_regular
 from hil.core.recording._table import Event, Recording
 
-_Definitions = tuple[dict[int, mcap.Schema], dict[int, mcap.Channel]]
+Definitions = tuple[dict[int, mcap.Schema], dict[int, mcap.Channel]]
 
 
 def read_mcap(path: Path) -> Recording:
@@ -43,8 +43,13 @@ def read_mcap(path: Path) -> Recording:
         contents.attachments,
         contents.events,
         contents.notes(),
-        damage(contents.findings),
+        [*damage(contents.findings), *lost_earlier(contents.metadata)],
     )
+
+
+def definitions_of(path: Path) -> Definitions:
+    """Schemas and channels of a recording by their ids, as `read_mcap` found them."""
+    return _contents(path).definitions
 
 
 def read_frames(path: Path) -> dict[str, FrameBlock]:
@@ -87,23 +92,22 @@ class _Contents:
     `known`: schemas and channels to start from; `repeated`: those of the file's index, if it is whole.
     """
 
-    def __init__(self, path: Path, *, keep_frames: bool, known: _Definitions | None = None) -> None:
+    def __init__(self, path: Path, *, keep_frames: bool, known: Definitions | None = None) -> None:
         self.names: list[str] = []
         self.metadata: dict[str, dict[str, str]] = {}
         self.attachments: dict[str, bytes] = {}
         self.events: list[Event] = []
         self.frames: dict[str, list[bytes]] = {}
         self.findings = Findings()
-        self.repeated: _Definitions | None = None
+        self.repeated: Definitions | None = None
         self._path = path
         self._keep_frames = keep_frames
         self._unusable_events = 0
         self._rows: list[npt.NDArray[np.float64]] = []
         self._samples = 0
         self._hash = hashlib.sha256()
-        self._schemas: dict[int, mcap.Schema] = {}
-        self._topics: dict[int, str] = {}
-        self._index: _Definitions = ({}, {})
+        self.definitions: Definitions = ({}, {})
+        self._index: Definitions = ({}, {})
         for definitions in known or ():
             for definition in definitions.values():
                 self._take(definition)
@@ -200,23 +204,24 @@ class _Contents:
         """Take what may stand inside a chunk."""
         match record:
             case mcap.Schema():
-                self._schemas[record.id] = record
+                self.definitions[0][record.id] = record
             case mcap.Channel():
                 self._take_channel(record)
             case mcap.Messages(channel_id, payloads):
-                self._take_messages(self._topics.get(channel_id, ""), payloads)
+                channel = self.definitions[1].get(channel_id)
+                self._take_messages(channel.topic if channel else "", payloads)
             case mcap.Break():
                 self.findings.breaks.append(self._samples)
             case _:
                 pass
 
     def _take_channel(self, channel: mcap.Channel) -> None:
-        self._topics[channel.id] = channel.topic
+        self.definitions[1][channel.id] = channel
         if channel.topic.startswith(FRAMES_TOPIC):
             self.frames.setdefault(channel.topic.removeprefix(FRAMES_TOPIC), [])
         if channel.topic != CHANNELS_TOPIC:
             return
-        schema = self._schemas.get(channel.schema_id)
+        schema = self.definitions[0].get(channel.schema_id)
         try:
             if schema is None:
                 raise ValueError("its schema is missing")

@@ -36,6 +36,7 @@ class Attachment:
 
     name: str
     content: bytes | None
+    media_type: str = "text/plain"
 
 
 @dataclass(frozen=True)
@@ -63,14 +64,16 @@ class Channel:
     id: int
     schema_id: int
     topic: str
+    encoding: str = ""
 
 
 @dataclass(frozen=True)
 class Messages:
-    """Messages of one channel and one length that follow each other, one row of bytes each."""
+    """Messages of one channel and one length that follow each other, one row of bytes each; `times` in ns."""
 
     channel_id: int
     payloads: npt.NDArray[np.uint8]
+    times: npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -154,16 +157,20 @@ def parsed(opcode: int, body: memoryview) -> Record | None:
             case Opcode.ATTACHMENT:
                 return _attachment(fields, body)
             case Opcode.MESSAGE:
-                channel_id = fields.number(2)
-                fields.take(MESSAGE_HEAD - 2)
-                payload = np.frombuffer(body[MESSAGE_HEAD:], np.uint8)
-                return Messages(channel_id, payload.reshape(1, -1))
+                fields.take(MESSAGE_HEAD)
+                return messages(np.frombuffer(body, np.uint8).reshape(1, -1))
             case _:
                 record = _described(opcode, fields)
                 fields.end()
                 return record
     except ValueError:  # also text that is not UTF-8
         return None
+
+
+def messages(bodies: npt.NDArray[np.uint8]) -> Messages:
+    """Bodies of messages of one channel and one length, shape (n, bytes)."""
+    times = np.ascontiguousarray(bodies[:, 6:14]).view("<i8")[:, 0]
+    return Messages(int(bodies[0, 0]) | int(bodies[0, 1]) << 8, bodies[:, MESSAGE_HEAD:], times)
 
 
 def _described(opcode: int, fields: _Fields) -> Record:
@@ -175,8 +182,8 @@ def _described(opcode: int, fields: _Fields) -> Record:
                 fields.number(2), fields.text(), fields.text(), bytes(fields.take(fields.number(4)))
             )
         case Opcode.CHANNEL:
-            channel = Channel(fields.number(2), fields.number(2), fields.text())
-            fields.text(), fields.table()
+            channel = Channel(fields.number(2), fields.number(2), fields.text(), fields.text())
+            fields.table()
             return channel
         case Opcode.METADATA:
             return Metadata(fields.text(), fields.table())
@@ -225,9 +232,9 @@ def _chunk(fields: _Fields) -> Chunk | None:
 def _attachment(fields: _Fields, body: memoryview) -> Attachment:
     fields.take(16)
     name = str(fields.take(fields.number(4)), "utf-8", "replace")
-    fields.take(fields.number(4))
+    media_type = str(fields.take(fields.number(4)), "utf-8", "replace")
     content = fields.take(fields.number(8))
     checksum = fields.number(4)
     fields.end()
     intact = checksum == 0 or checksum == zlib.crc32(body[:-4])
-    return Attachment(name, bytes(content) if intact else None)
+    return Attachment(name, bytes(content) if intact else None, media_type)

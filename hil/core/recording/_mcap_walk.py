@@ -17,9 +17,9 @@ from hil.core.recording._mcap_records import (
     Break,
     DataEnd,
     Footer,
-    Messages,
     Other,
     Record,
+    messages,
     parsed,
 )
 
@@ -80,8 +80,7 @@ def records_inside(content: bytes) -> Iterator[Record]:
             count = _alike(data, position, stride)
             end = position + count * stride
             rows = data[position:end].reshape(count, stride)
-            channel_id = int.from_bytes(content[position + _HEAD : position + _HEAD + 2], "little")
-            yield Messages(channel_id, rows[:, _HEAD + MESSAGE_HEAD :])
+            yield messages(rows[:, _HEAD:])
         else:
             yield parsed(opcode, memoryview(content)[position + _HEAD : end]) or Break(to_end=False)
         position = end

@@ -26,10 +26,12 @@ def serving(tmp_path, *options):
         list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
-        for _ in range(600):
+        for _ in range(2400):
             if file.exists() or process.poll() is not None:
                 break
             time.sleep(0.05)
+        else:
+            process.kill()  # else it would be waited for
         assert file.exists(), process.communicate()
         yield process, file
     finally:

@@ -1,0 +1,95 @@
+"""`hil recover`: a whole recording from what a crash left."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+from hil.cli._output import console, print_json
+from hil.cli._place import alone_in, refuse_file, refuse_missing
+from hil.cli.run import NAMES
+from hil.core.errors import BadInputError
+from hil.core.recording import Missing, Recording, missing_of, read_recording, recover_recording, run_of
+from hil.core.result import RunResult
+from hil.engine import RECORDING
+
+_RECOVERED = ".recovered.mcap"
+
+
+def carry_out(*, source: Path, out: Path | None, overwrite: bool, as_json: bool) -> int:
+    """Carry the command out; its exit code."""
+    path = source / RECORDING if source.is_dir() else source
+    refuse_missing(path)
+    if path.suffix.lower() != ".mcap":
+        raise BadInputError(
+            "only recordings in MCAP can be recovered",
+            where=str(path),
+            fix="give the run's recording.mcap; tables of other formats have no blocks to go on with",
+        )
+    target = out or path.with_name(path.stem + _RECOVERED)
+    if target.suffix.lower() != ".mcap":
+        raise BadInputError("a recovered recording ends in .mcap", where=str(target), fix="name it so")
+    with alone_in(path.parent):
+        found = read_recording(path, least_samples=0, allow_missing=True)
+        if found.damage:
+            refuse_file(target, [path], overwrite=overwrite)
+            found = recover_recording(path, target)
+    absent = [name for name in NAMES if not (path.parent / name).exists()] if source.is_dir() else []
+    recovered = target if found.source == target else None
+    if as_json:
+        print_json(_as_data(path, recovered, found, absent))
+    else:
+        _tell(path, recovered, found, absent)
+    return 0
+
+
+def _as_data(path: Path, out: Path | None, found: Recording, absent: list[str]) -> dict[str, Any]:
+    missing, run = missing_of(found), run_of(found)
+    return {
+        "recording": str(path),
+        "recovered": str(out) if out else None,
+        "samples": len(found.time_s),
+        "until_s": missing.until_s,
+        "missing": {
+            "seconds": missing.seconds,
+            "gaps_s": [list(gap) for gap in missing.gaps_s],
+            "channels": missing.channels,
+            "files_inside": list(missing.files),
+            "files_beside": absent,
+            "segments": _cut_segments(run),
+        },
+        "damage": found.damage,
+    }
+
+
+def _tell(path: Path, out: Path | None, found: Recording, absent: list[str]) -> None:
+    page = console()
+
+    def say(text: str) -> None:
+        page.print(text, highlight=False, markup=False, soft_wrap=True)
+
+    missing = missing_of(found)
+    if out is None:
+        say(f"{path} is whole: {len(found.time_s)} samples, nothing to recover")
+    else:
+        say(f"{len(found.time_s)} samples until {missing.until_s:.3f} s: {out}")
+    for sentence in (*found.damage, *_sentences(missing, run_of(found), absent)):
+        say(f"  {sentence}")
+    if out is not None or absent:
+        say(f"hil report {out or path} makes its report")
+
+
+def _sentences(missing: Missing, run: RunResult | None, absent: list[str]) -> list[str]:
+    said = [f"missing: {before:.3f} s to {after:.3f} s" for before, after in missing.gaps_s]
+    said += [f"missing: {share:.1%} of '{name}'" for name, share in missing.channels.items()]
+    if missing.files:
+        said.append(f"missing in the recording: {', '.join(missing.files)}")
+    if absent:
+        said.append(f"missing beside it: {', '.join(absent)}")
+    said += [f"segment '{name}' was not recorded whole: it is not judged" for name in _cut_segments(run)]
+    return said if math.isfinite(missing.until_s) else ["no sample", *said]
+
+
+def _cut_segments(run: RunResult | None) -> list[str]:
+    return [segment.id for segment in (run.segments if run else ()) if not segment.complete]
