@@ -9,6 +9,8 @@ import tomllib
 from dataclasses import dataclass
 from typing import Any
 
+from hil.core.errors import BadInputError
+from hil.core.files import sha256_of
 from hil.core.recording import Recording
 from hil.core.result import Lateness, PeriodicRequests, RunResult
 from reports import quantities
@@ -163,9 +165,8 @@ def stored_files(recording: Recording) -> tuple[StoredFile, ...]:
 def recording_hash(recording: Recording) -> str:
     """SHA-256 of the recording's file, '' if it cannot be read."""
     try:
-        with recording.source.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError:
+        return sha256_of(recording.source)
+    except BadInputError:
         return ""
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hil.core.files import replacing
+from hil.core.files import replacing, sha256_of
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording._growing_file import GrowingFile
 from hil.core.recording._mcap_damage import CHANNELS_TABLE, RECOVERY_TABLE
@@ -74,9 +74,8 @@ def recover_recording(source: Path, out: Path) -> Recording:
     recording = read_mcap(source)
     with open_regular(source) as file:
         size = os.fstat(file.fileno()).st_size
-        sha256 = hashlib.file_digest(file, "sha256").hexdigest()
     lost = {f"lost {number}": text for number, text in enumerate(recording.damage, 1)}
-    told = {"from": source.name, "from_sha256": sha256, "from_bytes": str(size), **lost}
+    told = {"from": source.name, "from_sha256": sha256_of(source), "from_bytes": str(size), **lost}
     with replacing(out) as temporary:
         target = GrowingFile(temporary)
         try:
