@@ -109,6 +109,25 @@ class MotorControl(Device, Protocol):
 
 
 @runtime_checkable
+class TakesBack(Protocol):
+    """A `MotorControl` whose requests are counted, and that can be told that some were never sent."""
+
+    def take_back(self, count: int) -> None:
+        """The last `count` payloads made by `requests` will not be sent: the next go on from before them."""
+        ...
+
+
+@runtime_checkable
+class SaysEmergency(Protocol):
+    """A device that tells when somebody pressed its emergency stop."""
+
+    @property
+    def emergency(self) -> str:
+        """What it said; empty if nobody did."""
+        ...
+
+
+@runtime_checkable
 class WheelLoad(Device, Protocol):
     """What stands under [dyno]: it turns the wheels, at a speed or like a vehicle."""
 

@@ -111,13 +111,16 @@ class BusLoop:
             self._anchor_s, self._since_anchor = now_s, 0
             self.tick_s = now_s
 
-    def run_for(self, duration_s: float) -> None:
-        """Step for a while."""
+    def run_for(self, duration_s: float, until: Callable[[], bool] = lambda: False) -> bool:
+        """Step for a while; false if `until` held before it was over."""
         left = round(duration_s / TICK_S)
         while left:
+            if until():
+                return False
             ticks = min(self._undisturbed(), left)
             self._pass(ticks)
             left -= ticks
+        return True
 
     def each_tick(
         self,

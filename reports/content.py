@@ -13,6 +13,7 @@ from reports import provenance, quantities
 from reports.bench_state import identification_facts, zero_facts
 from reports.criteria import CriteriaTable, CriterionRow, count_by_verdict, criteria_table
 from reports.figure import Section
+from reports.guards import hold_facts, limit_facts
 from reports.labels import channel_label, channel_unit
 from reports.provenance import ControllerTable, Fact, StoredFile
 from reports.sections import sections
@@ -88,6 +89,8 @@ class Content:
     calibration: tuple[Fact, ...]
     identification: tuple[Fact, ...]
     zeros: tuple[Fact, ...]
+    limits: tuple[Fact, ...]
+    holds: tuple[Fact, ...]
     files: tuple[StoredFile, ...]
     source: str
     sha256: str
@@ -131,6 +134,8 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         calibration=calibration,
         identification=identification,
         zeros=zeros,
+        limits=limit_facts(result),
+        holds=hold_facts(result),
         files=files,
         warnings=_warnings(calibration, (*identification, *zeros), files),
         damage=tuple(recording.damage),

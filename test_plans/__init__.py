@@ -1,6 +1,6 @@
 """Test plans: what a plan is, the stimuli it plays, the metrics and criteria it is judged by."""
 
-from test_plans.conductor import Array, Conductor, PlannedSegment, Quantity, Work
+from test_plans.conductor import PROMPT_TIMEOUT_S, Array, Conductor, PlannedSegment, Quantity, Work
 from test_plans.criteria import Criterion
 from test_plans.judging import judge
 from test_plans.loading import library_plans, load_plan, plan_from_text
@@ -12,6 +12,7 @@ from test_plans.steps import STEPS, Step
 
 __all__ = [
     "METRICS",
+    "PROMPT_TIMEOUT_S",
     "STEPS",
     "Array",
     "Conductor",

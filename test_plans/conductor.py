@@ -39,6 +39,10 @@ class PlannedSegment:
 Work = Callable[[Recording, Path], Mapping[str, bytes]]
 
 
+#: An operator who has not answered by then ends the run, unless the step says otherwise, s.
+PROMPT_TIMEOUT_S = 600.0
+
+
 class Conductor(Protocol):
     """Carries out what steps ask for; the engine implements it. Every call blocks until done."""
 
@@ -72,8 +76,8 @@ class Conductor(Protocol):
         """Leave everything as it is."""
         ...
 
-    def prompt(self, text: str) -> None:
-        """Show `text` to the operator and wait for the answer."""
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
+        """Show `text` to the operator and wait for the answer; none within `timeout_s` ends the run."""
         ...
 
     def ramp_down(self, duration_s: float) -> None:

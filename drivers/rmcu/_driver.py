@@ -204,6 +204,10 @@ class RmcuDriver:
         payloads |= self._request.signals["Crc"].encode(crc8_many(self._request.id, payloads))
         return payloads
 
+    def take_back(self, count: int) -> None:
+        """The last `count` requests will not be sent: the RMCU would miss them in their counter."""
+        self._counter = (self._counter - count) % _COUNTER_VALUES
+
     def send(self, payload: int) -> None:
         """Send one payload made by `requests`."""
         self._wire.send(self._request.id, int(payload).to_bytes(8, "little")[: self._request.length])

@@ -65,12 +65,6 @@ def plain_table(title: str | None = None) -> Table:
     return Table(box=None, pad_edge=False, header_style="bold", title=title, title_justify="left")
 
 
-def ask_operator(text: str) -> None:
-    """Put a prompt on standard error and wait for Enter."""
-    print(f"\n{text}\nPress Enter to go on.", file=sys.stderr)
-    sys.stdin.readline()
-
-
 def warn(text: str) -> None:
     """What a person must know though the command goes on; on standard error."""
     logger.warning(text)

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from rich.table import Table
 
-from hil.cli._output import ask_operator, console, plain_table, print_json, progress, to_json
+from hil.cli._output import console, plain_table, print_json, progress, to_json
 from hil.cli._place import results_in
 from hil.cli._streams import complain
+from hil.cli._terminal import operators_terminal
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
 from hil.core.printable import printable
@@ -30,7 +30,7 @@ def carry_out(
     """Carry the command out; its exit code."""
     file, stop = load_bench(bench), StopRequest()
     request = JogRequest(file, Path(), torque, operator=operator, confirmed_by=yes, stop=stop)
-    request.ask = ask_operator if sys.stdin.isatty() else None
+    request.terminal = operators_terminal()
     with (
         results_in(
             out, NAMES, inputs=[file.source], overwrite=overwrite, default="jog", summary=JOG

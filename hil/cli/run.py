@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -11,7 +10,6 @@ from typing import TypeVar
 from hil.cli._interrupts import INTERRUPTS
 from hil.cli._output import (
     Show,
-    ask_operator,
     console,
     count_in_words,
     print_criteria,
@@ -22,6 +20,7 @@ from hil.cli._output import (
 )
 from hil.cli._place import Place, results_in
 from hil.cli._streams import complain
+from hil.cli._terminal import KEYS, operators_terminal
 from hil.cli._timing import times_in_words, timing_in_words
 from hil.core.errors import BenchError, HilError, InterruptError
 from hil.core.files import write_atomically
@@ -58,7 +57,7 @@ def carry_out(
         out=Path(),
         model=load_model(model) if model else None,
         operator=operator,
-        ask=ask_operator if sys.stdin.isatty() else None,
+        terminal=operators_terminal(),
         confirmed_by=yes,
         stop=stop,
     )
@@ -70,7 +69,7 @@ def carry_out(
         stop.by_signals(),  # from here to the result a signal only asks: nothing that was measured is lost
     ):
         request.out, request.replaces = place.folder, place.stale
-        with progress(f"{checked.name} on {bench_file.name}") as show:
+        with progress(f"{checked.name} on {bench_file.name}{_keys(request)}") as show:
             request.progress = lambda share, text: show(text, share)
             outcome = run_plan(request)
         with progress(f"{checked.name} on {bench_file.name}") as show:
@@ -151,6 +150,10 @@ class _Conclusion:
         return self._place.folder / name
 
 
+def _keys(request: RunRequest) -> str:
+    return f" ({KEYS})" if request.terminal is not None else ""
+
+
 def _exit_code(outcome: RunOutcome, result: RunResult) -> int:
     if outcome.error is not None:
         complain("error", str(outcome.error))
@@ -173,6 +176,9 @@ def _print(result: RunResult, folder: Path) -> None:
     )
     for line in timing_in_words(result.timing):
         page.print(line, highlight=False)
+    for limit in result.limits:
+        if limit.reached:
+            warn(f"limit {limit.name} was reached {limit.reached} times; response: {limit.response}")
     for text in result.missing:
         warn(text)
     said = told_identities(result.identities)

@@ -46,6 +46,21 @@ class BenchError(HilError):
     exit_code = 3
 
 
+class OrderlyEndError(BenchError):
+    """The run was ended though every device is well: its end steps can be carried out (exit code 3)."""
+
+
+class EmergencyStopError(BenchError):
+    """An emergency stop: nothing moves any more until a person has reset it (exit code 3).
+
+    `by`: who or what asked for it.
+    """
+
+    def __init__(self, what: str, *, by: str, where: str = "emergency stop", fix: str = "") -> None:
+        super().__init__(what, where=where, fix=fix)
+        self.by = by
+
+
 class InterruptError(HilError):
     """The operator stopped the run (exit code 130)."""
 

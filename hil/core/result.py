@@ -180,6 +180,33 @@ class Zero(_Frozen):
         return self.drift_within is None or self.drift is None or abs(self.drift) <= self.drift_within
 
 
+class LimitResult(_Frozen):
+    """A limit or an interlock of the bench file, and what was reached."""
+
+    name: str
+    channel: str
+    of: Literal["value", "slope"] = "value"
+    unit: str
+    below: float | None = None
+    above: float | None = None
+    hysteresis: float = 0.0
+    persistence_s: float | None = None
+    persistence_samples: int | None = None
+    response: str
+    lowest: float | None = Field(None, description="null: nothing came, or a value was not known")
+    highest: float | None = Field(None, description="null: nothing came, or a value was not known")
+    reached: int = Field(0, description="how often the response was called for")
+
+
+class Hold(_Frozen):
+    """A time in which the run was held; on the recording's `time_s`."""
+
+    start_s: float
+    end_s: float
+    cause: str
+    ended_by: str = Field(description="operator, well again, or end of the run")
+
+
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
@@ -195,6 +222,9 @@ class RunResult(_Frozen):
     timing: Timing | None = None
     identities: tuple[Identity, ...] = ()
     zeros: tuple[Zero, ...] = ()
+    limits: tuple[LimitResult, ...] = ()
+    holds: tuple[Hold, ...] = ()
+    end_steps: str = Field("", description="what became of the plan's end steps, as read back")
     missing: tuple[str, ...] = Field((), description="devices and parts that were not there and not needed")
     files: dict[str, str] = {}
     reason: str = ""

@@ -53,9 +53,10 @@ class PredictedLoop:
         """The newest sample that the drivers know, as one row."""
         return self.closed.rows[max(self._seen - 1, 0) : max(self._seen, 1)]
 
-    def run_for(self, duration_s: float) -> None:
-        """Let time pass."""
+    def run_for(self, duration_s: float, until: Callable[[], bool] = lambda: False) -> bool:  # noqa: ARG002
+        """Let time pass; nobody holds a prediction."""
         self.run(round(duration_s / TICK_S))
+        return True
 
     def run(self, ticks: int) -> None:
         """Let ticks pass."""

@@ -23,7 +23,7 @@ from drivers import (
     Wire,
     open_can,
 )
-from hil.core.channels import CHANNELS, TIME
+from hil.core.channels import CHANNELS
 from hil.core.clock import Clock, WallClock
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model, load_model
@@ -31,8 +31,10 @@ from hil.core.printable import printable
 from hil.core.real_time import undisturbed
 from hil.engine._bus_settings import can_settings
 from hil.engine._simulable import simulated
+from hil.engine.bench_channels import refuse_channels, who_is_missing
 from hil.engine.bench_lock import alone_on
 from hil.engine.bench_tables import BenchFile
+from hil.engine.computed_channels import Computed, computed_channels
 from hil.engine.request_timing import Periodic, RequestTiming
 from sim_backend.can_interface import attach, detach
 
@@ -44,7 +46,7 @@ class Bench:
     """An open bench.
 
     `further` are the devices beside the RMCU and the dynos, by name; `missing` those that cannot be opened,
-    with why.
+    with why; `computed` gives channels that no device measures.
     """
 
     file: BenchFile
@@ -54,6 +56,7 @@ class Bench:
     model: Model | None
     further: dict[str, Device]
     missing: dict[str, str] = field(default_factory=dict)
+    computed: list[Computed] = field(default_factory=list)
 
     @property
     def simulated(self) -> bool:
@@ -73,8 +76,8 @@ class Bench:
 
     @property
     def sources(self) -> list[SampleSource]:
-        """Whatever gives samples."""
-        return [source for device in self.devices for source in device.sources]
+        """Whatever gives samples; what is computed from others' comes last."""
+        return [*(source for device in self.devices for source in device.sources), *self.computed]
 
     @property
     def streams(self) -> list[Stream]:
@@ -129,7 +132,7 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
         for wire in wires.values():
             connections.loop.on_drained(wire.check)
         bench = _with_devices(file, connections, model, opened)
-        _refuse_channels(bench)
+        refuse_channels(file, bench.streams, bench.missing)
         yield bench
 
 
@@ -215,7 +218,8 @@ def _with_devices(file: BenchFile, connections: Connections, model: Model | None
     if not isinstance(dyno, WheelLoad):
         raise _wrong_place(file, "dyno", "does not turn wheels")
     further = {key.removeprefix("devices."): device for key, device in devices.items()}
-    return Bench(file, connections.loop, rmcu, dyno, model, further, missing)
+    computed = computed_channels(file, connections.loop)
+    return Bench(file, connections.loop, rmcu, dyno, model, further, missing, computed)
 
 
 def _close(device: Device) -> None:
@@ -235,36 +239,6 @@ def _wrong_place(file: BenchFile, key: str, what: str) -> BadInputError:
     )
 
 
-def _refuse_channels(bench: Bench) -> None:
-    """Channels that no recording can hold, that come twice, or that are limited and do not come at all."""
-    where = printable(bench.file.source, 200)
-    seen = {TIME: "the time base"}
-    for stream in bench.streams:
-        for channel in stream.channels:
-            if not (channel.isidentifier() and channel.isascii()):
-                raise BadInputError(
-                    f"a channel cannot be called '{printable(channel, 60)}'",
-                    where=stream.where,
-                    fix="use letters, digits and _, with the unit at the end: oil_temperature_k",
-                )
-            if channel in seen:
-                raise BadInputError(
-                    f"channel '{channel}' is also given by {seen[channel]}",
-                    where=stream.where,
-                    fix="every channel has one source; leave a device out, or call one otherwise",
-                )
-            seen[channel] = stream.where
-    limited = {f"limits.channels.{name}": name for name in bench.file.limits.channels}
-    limited |= {f"zero.{name}": name for name in bench.file.zero}
-    for key, channel in limited.items():
-        if channel not in seen:
-            raise BadInputError(
-                f"{printable(key, 80)}: no device gives this channel",
-                where=where,
-                fix=_who_is_missing(bench) or f"there are: {', '.join(list(seen)[1:])}",
-            )
-
-
 def refuse_needs(bench: Bench, channels: Iterable[str]) -> None:
     """Refuse a plan that needs a channel of a device that is missing.
 
@@ -280,10 +254,5 @@ def refuse_needs(bench: Bench, channels: Iterable[str]) -> None:
         raise BenchError(
             f"the plan needs {printable(', '.join(unknown), 200)}, which nobody gives now",
             where=printable(bench.file.source, 200),
-            fix=_who_is_missing(bench),
+            fix=who_is_missing(bench.missing),
         )
-
-
-def _who_is_missing(bench: Bench) -> str:
-    missing = [f"devices.{name} is missing ({why})" for name, why in bench.missing.items()]
-    return printable("; ".join(missing), 400)

@@ -6,9 +6,10 @@ import datetime
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, SerializeAsAny, model_validator
+from pydantic import BeforeValidator, Field, SerializeAsAny, model_validator
 
 from drivers import DeviceTable, File, LoadTable, Name
+from hil.engine.limit_tables import Bound, Interlock, Limit, Limits, Table
 
 
 def _date(value: object) -> object:
@@ -22,13 +23,7 @@ def _date(value: object) -> object:
 
 Day = Annotated[datetime.date, BeforeValidator(_date)]
 _HIGHEST_CHANNEL = 255
-Bound = Annotated[float, Field(ge=-1e6, le=1e6)]
-Limit = Annotated[float, Field(gt=0, le=1e6, description="beyond 1e6 it would limit nothing")]
 Deviation = Annotated[float, Field(ge=0, le=1e4)]
-
-
-class _Table(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True)
 
 
 def _channel(value: object) -> object:
@@ -45,7 +40,7 @@ Segment = Annotated[int, Field(ge=1, le=1024)]
 SamplePoint = Annotated[float, Field(ge=50.0, le=100.0, description="%")]
 
 
-class Timing(_Table):
+class Timing(Table):
     """How an adapter cuts a bit, where its own choice does not do; by sample points or by segments.
 
     Segments count time quanta and have CiA's and python-can's names; those of CAN FD's data phase begin
@@ -85,7 +80,7 @@ class Timing(_Table):
         return self.data_sample_point is not None or self.data_tseg1 is not None
 
 
-class Bus(_Table):
+class Bus(Table):
     """One CAN bus, opened by python-can."""
 
     interface: str = Field(min_length=1)
@@ -99,7 +94,7 @@ class Bus(_Table):
     options: dict[str, Any] = Field({}, description="further arguments for can.Bus")
 
 
-class Vehicle(_Table):
+class Vehicle(Table):
     """The dynos' vehicle model; what is left out keeps the controller's value."""
 
     wheel_radius_m: float = Field(0.33, ge=0.01, le=10.0)
@@ -109,36 +104,7 @@ class Vehicle(_Table):
     aero_nms2_rad2: float | None = Field(None, ge=0, le=1e6)
 
 
-class ChannelLimit(_Table):
-    """Where a channel may be, in its unit; one end may be open."""
-
-    below: Bound | None = None
-    above: Bound | None = None
-    persistence_s: float | None = Field(None, ge=0, le=10, description="default: that of [limits]")
-
-    @model_validator(mode="after")
-    def _has_an_end(self) -> Self:
-        if self.below is None and self.above is None:
-            raise ValueError("limits nothing; give 'below', 'above' or both")
-        if self.below is not None and self.above is not None and not self.below < self.above:
-            raise ValueError("nothing is between 'below' and 'above'; a value trips beneath 'below'")
-        return self
-
-
-class Limits(_Table):
-    """What the bench never exceeds; magnitudes. They lie below every plan."""
-
-    motor_torque_nm: Limit
-    driving_torque_nm: Limit
-    shaft_torque_nm: Limit
-    motor_speed_rad_s: Limit
-    wheel_speed_rad_s: Limit
-    vehicle_speed_m_s: Limit
-    persistence_s: float = Field(0.005, ge=0, le=10, description="a limit trips when exceeded for longer")
-    channels: dict[str, ChannelLimit] = Field({}, description="limits of further channels, of any device")
-
-
-class ZeroLimit(_Table):
+class ZeroLimit(Table):
     """What a sensor may read at rest, in its channel's unit; what is left out is measured and not judged."""
 
     within: Limit | None = Field(None, description="largest magnitude before a run")
@@ -151,7 +117,7 @@ class ZeroLimit(_Table):
         return self
 
 
-class NoiseTable(_Table):
+class NoiseTable(Table):
     """Standard deviations of the simulated sensors."""
 
     motor_speed_rad_s: Deviation = 0.02
@@ -159,14 +125,14 @@ class NoiseTable(_Table):
     shaft_torque_nm: Deviation = 0.5
 
 
-class SensorTable(_Table):
+class SensorTable(Table):
     """What is wrong with a simulated sensor: it reads gain times the truth plus offset."""
 
     gain: Bound = 1.0
     offset: Bound = 0.0
 
 
-class StatedNoise(_Table):
+class StatedNoise(Table):
     """Standard deviations of a sample that the sensors' makers state."""
 
     motor_speed_rad_s: Deviation | None = None
@@ -174,7 +140,7 @@ class StatedNoise(_Table):
     shaft_torque_nm: Deviation | None = None
 
 
-class Simulation(_Table):
+class Simulation(Table):
     """A simulated bench in place of hardware."""
 
     model: File
@@ -186,7 +152,7 @@ class Simulation(_Table):
     )
 
 
-class BenchFile(_Table):
+class BenchFile(Table):
     """One bench file; paths are absolute once it is loaded."""
 
     name: Name
@@ -198,11 +164,12 @@ class BenchFile(_Table):
     buses: dict[Name, Bus]
     rmcu: SerializeAsAny[DeviceTable]
     dyno: SerializeAsAny[LoadTable]
-    devices: dict[Name, SerializeAsAny[DeviceTable]] = {}
+    devices: dict[Name, SerializeAsAny[DeviceTable]] = Field({})
     limits: Limits
+    interlocks: dict[Name, Interlock] = Field({}, description="what must hold while a run goes on")
     vehicle: Vehicle = Vehicle()
     zero: dict[str, ZeroLimit] = Field({}, description="channel: what it may read at rest")
-    dut: dict[str, str] = {}
+    dut: dict[str, str] = Field({})
     calibration: dict[str, Day] = Field({}, description="sensor: valid until")
     noise: StatedNoise = Field(
         StatedNoise(), description="as the sensors' makers state it; `hil diagnose` reads it with a recording"

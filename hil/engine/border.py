@@ -6,9 +6,10 @@ one process; nothing here keeps them there (docs/decisions/0011).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol
 
 from hil.core.errors import HilError
 from hil.core.model import Model
@@ -22,6 +23,18 @@ RECORDING = "recording.mcap"
 
 Progress = Callable[[float, str], None]
 Analyse = Callable[[Work, Recording, Path], Mapping[str, bytes]]
+
+
+class Terminal(Protocol):
+    """The operator's terminal. Nothing here waits."""
+
+    def tell(self, text: str) -> None:
+        """Show a text."""
+        ...
+
+    def typed(self) -> Sequence[str]:
+        """Lines that were typed since the last call."""
+        ...
 
 
 def analysed_here(work: Work, recording: Recording, directory: Path) -> Mapping[str, bytes]:
@@ -47,13 +60,13 @@ class RunOutcome:
 class RunRequest:
     """A run to be carried out.
 
-    Data: `plan`, `bench`, `out`, `model`, `operator`, `confirmed_by` (who confirmed every prompt beforehand)
-    and `replaces`: files of an earlier run in the same place, which are removed once nothing about plan and
-    bench can keep this run from beginning.
+    Data: `plan`, `bench`, `out`, `model`, `operator`, `confirmed_by` (who confirmed every prompt beforehand),
+    `hazard_confirmed_by` (who takes a hazardous plan upon them) and `replaces`: files of an earlier run in
+    the same place, which are removed once nothing about plan and bench can keep this run from beginning.
 
-    Calls to who asked for the run, with data and for data: `ask` shows an operator prompt and returns when it
-    is confirmed (None: nobody can be asked); `progress` is told the share that is done and what is going on;
-    `analyse` does the analysis of a step of the plan, while the bench is kept alive.
+    Calls to who asked for the run, with data and for data: `terminal` shows texts to the operator and gives
+    what was typed (None: nobody can be asked); `progress` is told the share that is done and what is going
+    on; `analyse` does the analysis of a step of the plan, while the bench is kept alive.
 
     The one call the other way is `stop`.
     """
@@ -63,8 +76,9 @@ class RunRequest:
     out: Path
     model: Model | None = None
     operator: str = ""
-    ask: Callable[[str], None] | None = None
+    terminal: Terminal | None = None
     confirmed_by: str = ""
+    hazard_confirmed_by: str = ""
     progress: Progress = lambda share, text: None
     analyse: Analyse = analysed_here
     replaces: tuple[Path, ...] = ()

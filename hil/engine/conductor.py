@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Future
 from pathlib import Path
 from typing import Literal, TypeVar
@@ -15,16 +15,16 @@ from drivers import TICK_S
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
-from hil.core.real_time import without_collections
 from hil.core.recording import SEGMENT
 from hil.core.result import RunResult, Segment
-from hil.core.signals import Payloads
 from hil.engine.bench import Bench
 from hil.engine.border import Analyse, analysed_here
+from hil.engine.hold import Holding
+from hil.engine.playing import Playing
 from hil.engine.preflight import Rehearsal
 from hil.engine.recorder import Recorder
 from hil.engine.request_timing import Periodic
-from test_plans import Array, PlannedSegment, Quantity, Work
+from test_plans import PROMPT_TIMEOUT_S, Array, PlannedSegment, Quantity, Work
 
 T = TypeVar("T")
 _SPEED_TOLERANCE_RAD_S = 0.5
@@ -42,12 +42,13 @@ class BenchConductor:
         bench: Bench,
         recorder: Recorder,
         out: Path,
-        ask: Callable[[str], str],
+        ask: Callable[[str, float], str],
         analyse: Analyse = analysed_here,
         noted: Periodic | None = None,
+        hold: Holding | None = None,
     ) -> None:
         self._bench, self._recorder, self._out = bench, recorder, out
-        self._ask, self._analyse, self._noted = ask, analyse, noted
+        self._ask, self._analyse, self._noted, self._hold = ask, analyse, noted, hold
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
         self._speed_m_s = 0.0
@@ -74,89 +75,114 @@ class BenchConductor:
     def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
         """Ramp to a speed and hold it."""
         self._check.hold_speed(speed_m_s, duration_s)
+        self._whole(lambda: self._held_speed(speed_m_s, duration_s), back=False)
+
+    def _held_speed(self, speed_m_s: float, duration_s: float) -> bool:
+        radius_m = self._bench.file.vehicle.wheel_radius_m
+        if not self._brought_to(speed_m_s / radius_m):
+            return False
+        self._speed_m_s = speed_m_s
+        self._event("speed", f"dynos hold {speed_m_s * 3.6:.1f} km/h")
+        return self._bench.loop.run_for(duration_s, self._is_due)
+
+    def _brought_to(self, target_rad_s: float) -> bool:
+        """Whether the wheels have got there; false if the run is to be held before."""
         dyno, loop = self._bench.dyno, self._bench.loop
-        target = speed_m_s / self._bench.file.vehicle.wheel_radius_m
-        ramp_s = abs(target - dyno.wheel_speed_rad_s) * self._bench.file.vehicle.wheel_radius_m
+        ramp_s = abs(target_rad_s - dyno.wheel_speed_rad_s) * self._bench.file.vehicle.wheel_radius_m
         ramp_s /= self._bench.file.dyno.speed_ramp_m_s2
-        dyno.hold_speed(target)
+        dyno.hold_speed(target_rad_s)
         self._load = "speed"
-        loop.run_for(ramp_s)
+        if not loop.run_for(ramp_s, self._is_due):
+            return False
         reached = loop.wait_for(
-            lambda: abs(dyno.wheel_speed_rad_s - target) < _SPEED_TOLERANCE_RAD_S, _SPEED_GRACE_S
+            lambda: abs(dyno.wheel_speed_rad_s - target_rad_s) < _SPEED_TOLERANCE_RAD_S, _SPEED_GRACE_S
         )
         if not reached:
             raise BenchError(
-                f"the wheels turn at {dyno.wheel_speed_rad_s:.2f} rad/s, {target:.2f} rad/s was asked for",
+                f"the wheels turn at {dyno.wheel_speed_rad_s:.2f} rad/s, "
+                f"{target_rad_s:.2f} rad/s was asked for",
                 where="dynos",
                 fix="look at the dyno controller's torque limit",
             )
-        self._speed_m_s = speed_m_s
-        self._event("speed", f"dynos hold {speed_m_s * 3.6:.1f} km/h")
-        loop.run_for(duration_s)
+        return True
 
     def release_vehicle(self) -> None:
         """Let the dynos simulate the vehicle."""
-        self._bench.dyno.release_vehicle(self._speed_m_s)
+        self._release(self._speed_m_s)
+
+    def _release(self, speed_m_s: float) -> None:
+        self._bench.dyno.release_vehicle(speed_m_s)
         self._load = "vehicle"
         self._event("speed", "dynos simulate the vehicle")
 
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
         """Request the samples one each tick, then take the torque away and switch it off."""
         self._check.play(quantity, samples_nm, segment)
+        self._whole(lambda: self._played_whole(quantity, samples_nm, segment))
+
+    def _played_whole(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> bool:
         loop = self._bench.loop
         tail = np.linspace(samples_nm[-1], 0.0, round(RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
-        payloads = self._bench.rmcu.requests(quantity, np.concatenate([samples_nm, tail]))
+        values = np.concatenate([samples_nm, tail])
         if segment:
             self._begin(segment, loop.clock.now_s(), len(samples_nm))
-        sent = 0
+        playing = Playing(self._bench, self._noted)
         try:
-            with contextlib.nullcontext() if self._bench.simulated else without_collections():
-                for passed in self._played(payloads):
-                    sent = passed
+            sent = playing.send(quantity, values, self._is_due)
         finally:
-            if self._noted:
-                self._noted.rest()
+            whole = playing.passed >= len(samples_nm)
             if segment:
-                self._end(loop.clock.now_s(), complete=sent >= len(samples_nm))
+                self._end(loop.clock.now_s(), complete=whole)
+        if sent < len(values) and values[sent - 1]:
+            playing.send(quantity, np.linspace(values[sent - 1], 0.0, round(RELEASE_S / TICK_S)))
         self._switch_off()
+        return whole
 
-    def _played(self, payloads: Payloads) -> Iterator[int]:
-        """Send one each tick, before anything that could hold it up; yields how many ticks have passed."""
-        rmcu, loop = self._bench.rmcu, self._bench.loop
+    def _is_due(self) -> bool:
+        return self._hold is not None and self._hold.due()
 
-        def send(index: int) -> None:
-            meant_s = loop.tick_s if index else loop.clock.now_s()
-            rmcu.send(int(payloads[index]))
-            if self._noted:
-                self._noted.noted(meant_s)
+    def _whole(self, attempt: Callable[[], bool], *, back: bool = True) -> None:
+        """Carry it out; after each hold on the way again from its beginning.
 
-        def ahead(index: int, times_s: Array) -> bool:
-            return rmcu.send_ahead(payloads[index : index + len(times_s)], times_s)
+        Args:
+            back: whether it begins at the speed and with the load that it found.
+        """
+        dyno, load = self._bench.dyno, self._load
+        began_rad_s = dyno.wheel_speed_rad_s
+        while not attempt():
+            assert self._hold is not None
+            self._switch_off()
+            dyno.hold_speed(dyno.wheel_speed_rad_s)
+            self._load = "speed"
+            self._hold.wait()
+            self._keep_what_was_held()
+            radius_m = self._bench.file.vehicle.wheel_radius_m
+            target_rad_s = began_rad_s if load == "vehicle" else self._speed_m_s / radius_m
+            if back and self._brought_to(target_rad_s) and load == "vehicle":
+                self._release(began_rad_s * radius_m)
 
-        with contextlib.closing(loop.each_tick(len(payloads), send, ahead)) as ticks:
-            for passed in ticks:
-                if rmcu.state == "fault":
-                    raise BenchError(
-                        f"the RMCU went to fault: {rmcu.fault}",
-                        where="RMCU",
-                        fix="see the recording's events",
-                    )
-                yield passed
+    def _keep_what_was_held(self) -> None:
+        """A segment that was cut off by a hold gets a name of its own: it is begun again under its own."""
+        if self.segments and not self.segments[-1].complete:
+            begun = self.segments[-1]
+            count = sum(segment.id.startswith(f"{begun.id}_held_") for segment in self.segments)
+            self.segments[-1] = begun.model_copy(update={"id": f"{begun.id}_held_{count + 1}"})
+            self._store_segment()
 
     def coast(self, duration_s: float) -> None:
         """No motor torque for a while."""
         self._switch_off()
-        self._bench.loop.run_for(duration_s)
+        self.wait(duration_s)
 
     def wait(self, duration_s: float) -> None:
         """Let time pass."""
-        self._bench.loop.run_for(duration_s)
+        self._whole(lambda: self._bench.loop.run_for(duration_s, self._is_due))
 
-    def prompt(self, text: str) -> None:
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
         """Ask the operator, with the RMCU off; the dynos hold."""
         self._switch_off()
         self._event("prompt", text)
-        self._event("prompt", self._meanwhile(lambda: self._ask(text)))
+        self._event("prompt", self._ask(text, timeout_s))
 
     def ramp_down(self, duration_s: float) -> None:
         """Torque off, then the dynos bring the wheels to standstill."""

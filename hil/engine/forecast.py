@@ -8,8 +8,8 @@ from hil.core.model import load_model
 from hil.core.result import CriterionResult
 from hil.engine.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench_tables import BenchFile
-from hil.engine.limits import limits_of_channels
 from hil.engine.prediction import predict
+from hil.engine.ranges import limits_of_channels
 from test_plans import Plan, judge
 
 

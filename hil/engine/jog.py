@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -16,7 +16,7 @@ from hil.core.recording import Recording, read_recording
 from hil.core.result import Segment
 from hil.engine._bench_lines import line_of
 from hil.engine.bench_tables import BenchFile
-from hil.engine.border import Progress, RunOutcome, RunRequest
+from hil.engine.border import Progress, RunOutcome, RunRequest, Terminal
 from hil.engine.run import run_plan
 from hil.engine.stopping import StopRequest
 from test_plans import Plan, plan_from_text
@@ -82,7 +82,7 @@ class JogRequest:
     out: Path
     torque_nm: float = 10.0
     operator: str = ""
-    ask: Callable[[str], None] | None = None
+    terminal: Terminal | None = None
     confirmed_by: str = ""
     progress: Progress = lambda share, text: None
     replaces: tuple[Path, ...] = ()
@@ -176,7 +176,7 @@ def jog(request: JogRequest) -> JogOutcome:
         bench=bench,
         out=request.out,
         operator=request.operator,
-        ask=request.ask,
+        terminal=request.terminal,
         confirmed_by=request.confirmed_by,
         progress=request.progress,
         replaces=request.replaces,

@@ -67,7 +67,9 @@ class PredictionConductor(BenchConductor):
     """The engine's conductor on a predicted bench; only torque is not sent millisecond by millisecond."""
 
     def __init__(self, bench: PredictedBench, recorder: _PredictedRecorder, out: Path) -> None:
-        super().__init__(cast(Bench, bench), cast(Recorder, recorder), out, lambda text: "not asked")
+        super().__init__(
+            cast(Bench, bench), cast(Recorder, recorder), out, lambda text, timeout_s: "not asked"
+        )
         self._rmcu, self._loop = bench.rmcu, bench.loop
 
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:

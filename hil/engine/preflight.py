@@ -12,7 +12,7 @@ from hil.core.controller import load_controller
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.engine.bench_tables import BenchFile
-from test_plans import Array, Plan, PlannedSegment, Quantity, Work, estimate_duration_s
+from test_plans import PROMPT_TIMEOUT_S, Array, Plan, PlannedSegment, Quantity, Work, estimate_duration_s
 
 _BYTES_PER_SECOND = 250_000  # a recording takes some 170 kB for each second of bench time, and a report
 
@@ -132,8 +132,9 @@ class Rehearsal:
     def wait(self, duration_s: float) -> None:
         """Nothing to compare."""
 
-    def prompt(self, text: str) -> None:
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
         """Remember what the operator will be asked."""
+        del timeout_s
         self.prompts.append(text)
 
     def ramp_down(self, duration_s: float) -> None:

@@ -8,29 +8,35 @@ import time
 import traceback
 from functools import partial
 
-from drivers import TICK_S, Incomplete
-from hil.core.errors import BadInputError, BenchError, HilError, InterruptError
+from drivers import TICK_S, SaysEmergency
+from hil.core.errors import (
+    BadInputError,
+    BenchError,
+    EmergencyStopError,
+    HilError,
+    InterruptError,
+    OrderlyEndError,
+)
 from hil.core.files import make_directory
-from hil.core.model import model_to_toml
 from hil.core.recording import Recording
-from hil.core.result import CriterionResult, Identity, RunResult, SafeState, Timing, verdict_of
+from hil.core.result import CriterionResult, RunResult, SafeState, Timing, verdict_of
+from hil.engine.arming import Arming
 from hil.engine.bench import Bench, open_bench, refuse_needs
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.conductor import BenchConductor
-from hil.engine.identification import identities_of, refuse_others
+from hil.engine.hold import Holding
 from hil.engine.limits import LimitWatch
+from hil.engine.operator import LOOK_S, Operator
 from hil.engine.preflight import channels_of, preflight
-from hil.engine.provenance import hashes, versions
-from hil.engine.recorder import KEEP_S, Recorder
+from hil.engine.ranges import Range
+from hil.engine.recorder import Recorder
 from hil.engine.request_timing import COLLECT_S, RequestTiming
+from hil.engine.run_files import store_inputs, store_result
 from hil.engine.safety import reach_safe_state
-from hil.engine.warming import warm_up
 from hil.engine.zero import ZeroCheck
 from test_plans import estimate_duration_s, judge
 
 _PROGRESS_S = 0.5
-_LISTEN_S = 0.2
-_REPEAT_S = 0.02
 
 
 def run_plan(request: RunRequest) -> RunOutcome:
@@ -45,7 +51,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
     with request.stop.by_signals():
         make_directory(request.out)
         today = datetime.datetime.now(datetime.UTC).date()
-        answers = request.ask is not None or request.confirmed_by != ""
+        answers = request.terminal is not None or request.confirmed_by != ""
         preflight(request.plan, request.bench, request.out, today, somebody_answers=answers)
         with open_bench(request.bench, model=request.model) as bench:
             refuse_needs(bench, channels_of(request.plan))
@@ -58,41 +64,21 @@ def run_plan(request: RunRequest) -> RunOutcome:
 class _Run:
     def __init__(self, request: RunRequest, bench: Bench) -> None:
         self._request, self._bench = request, bench
-        *others, last = [device.name for device in bench.devices]
-        self._names = f"{', '.join(others)} and {last}"
         self._error: HilError | None = None
         self._unsafe: list[str] = []
-        self._armed = False
-        self._identities: tuple[Identity, ...] = ()
+        self._end_steps = ""
+        self._going_safe = False
         self._zero = ZeroCheck(bench.streams, request.bench.zero)
         self._rows_finished = False
-        self._missing: tuple[str, ...] = ()
-        self._started_at = datetime.datetime.now(datetime.UTC)
 
     def carry_out(self) -> RunOutcome:
-        request, bench = self._request, self._bench
-        buses = [wire.name for wire in bench.loop.wires]
-        self._recorder = Recorder(
-            request.out / RECORDING, bench.streams, buses, TICK_S, promptly=not bench.simulated
-        )
-        self._recorder.between = bench.loop.keep_up
-        self._watch = LimitWatch(bench.streams, request.bench.limits)
-        self._store_inputs()
-        # In virtual time nothing can be late.
-        self._timing = (
-            None
-            if bench.simulated
-            else RequestTiming(bench.loop.clock, bench.loop.wires, self._recorder.writer.add_requests)
-        )
-        noted = bench.torque_requests(self._timing, TICK_S) if self._timing else None
-        self._conductor = BenchConductor(
-            bench, self._recorder, request.out, self._prompt, request.analyse, noted
-        )
-        bench.loop.on_block(self._recorder.take_frames)
-        bench.loop.on_drained(self._take_samples)
+        self._prepare()
+        bench = self._bench
         started = time.perf_counter()
+        self._begin_s = bench.loop.clock.now_s()
         try:
-            self._come_up()
+            self._arming.come_up()
+            self._begin_duties()
             started = time.perf_counter()
             self._begin_s = bench.loop.clock.now_s()
             self._steps()
@@ -102,86 +88,59 @@ class _Run:
             self._fail_by(error)
         finally:
             # Also when the interpreter itself is going down: nobody may be left with torque on.
-            bench.loop.shielded = True
+            bench.loop.shielded = self._going_safe = True
             self._watch.active = False  # its work is done: what is beyond a limit is being taken down
-            self._unsafe = reach_safe_state(bench, self._note_fault) if self._armed else []
+            self._unsafe = reach_safe_state(bench, self._note_fault) if self._arming.armed else []
         return self._finish(time.perf_counter() - started)
 
-    def _prompt(self, text: str) -> str:
-        """Have a prompt confirmed; says by whom or by what."""
-        request = self._request
-        if request.confirmed_by:
-            return f"confirmed beforehand by {request.confirmed_by}"
-        if request.ask is None:
-            return "nobody to ask: a simulated bench goes on"
-        request.ask(text)
-        return "confirmed by the operator"
-
-    def _come_up(self) -> None:
-        bench = self._bench
-        self._begin_s = bench.loop.clock.now_s()
-        self._identify()
-        if not bench.simulated:
-            warm_up(bench)
-            bench.loop.every(KEEP_S, self._recorder.keep)
-        bench.start_heartbeats(self._timing)
-        bench.rmcu.come_up()
-        bench.dyno.come_up()
-        for device in bench.further.values():
-            self._armed = True  # what a further device does once it is up, only the device knows
-            device.come_up()
-        self._note_missing()
-        refuse_others(self._identities)
-        self._recorder.begin()
-        self._zero.begin()
-        bench.loop.run_for(_LISTEN_S)
-        self._zero.before()
-        self._recorder.event(bench.loop.clock.now_s(), "preflight", f"{self._names} answer")
-        self._armed = True  # from here on the safe state is owed, whatever happens
-        ramp = self._request.bench.dyno.speed_ramp_m_s2 / self._request.bench.vehicle.wheel_radius_m
-        bench.rmcu.make_safe()
-        self._leave_old_fault()
-        bench.dyno.enable(ramp)
-        self._watch.active = True
-        bench.loop.every(0.05, self._supervise)
-        bench.loop.every(_PROGRESS_S, self._show_progress)
-        if self._timing:
-            bench.loop.every(COLLECT_S, self._timing.collect)
-        self._expected_s = estimate_duration_s(self._request.plan)
-        self._recorder.event(bench.loop.clock.now_s(), "arm", "drives enabled")
-
-    def _leave_old_fault(self) -> None:
-        """A run that was killed leaves the RMCU in fault, with a count of requests that ours do not go on."""
-        bench = self._bench
-        tries = round(bench.rmcu.safe_within_s / _REPEAT_S)
-        while bench.rmcu.state == "fault" and tries:
-            bench.loop.wait_for(bench.rmcu.is_safe, _REPEAT_S)
-            bench.rmcu.make_safe()
-            tries -= 1
-
-    def _note_missing(self) -> None:
-        """Devices and parts that this run goes on without."""
-        parts = [
-            f"{device.name}: {part} is missing"
-            for device in self._bench.devices
-            if isinstance(device, Incomplete)
-            for part in device.missing
-        ]
-        self._missing = (*(f"{name} is missing: {why}" for name, why in self._bench.missing.items()), *parts)
-        for text in self._missing:
-            self._recorder.event(self._bench.loop.clock.now_s(), "missing", text)
-
-    def _identify(self) -> None:
-        """Listen, and ask the devices meanwhile what they are: asking makes no run longer."""
-        bench, tables = self._bench, self._request.bench.device_tables
-        bench.loop.run_for(_LISTEN_S / 2)
-        found = [identities_of(key, tables[key], device) for key, device in bench.devices_by_key.items()]
-        self._identities = tuple(identity for several in found for identity in several)
-        bench.loop.wait_for(
-            lambda: bench.loop.clock.now_s() > self._begin_s + _LISTEN_S - 0.5 * TICK_S, _LISTEN_S
+    def _prepare(self) -> None:
+        request, bench = self._request, self._bench
+        buses = [wire.name for wire in bench.loop.wires]
+        self._recorder = Recorder(
+            request.out / RECORDING, bench.streams, buses, TICK_S, promptly=not bench.simulated
         )
-        said = {f"{i.device}: {i.name}": i.value for i in self._identities if i.value}
-        self._recorder.writer.describe("identification", said)
+        self._recorder.between = bench.loop.keep_up
+        self._watch = LimitWatch(bench.streams, request.bench.limits, request.bench.interlocks, self._answer)
+        store_inputs(self._recorder, request, bench)
+        # In virtual time nothing can be late.
+        self._timing = (
+            None
+            if bench.simulated
+            else RequestTiming(bench.loop.clock, bench.loop.wires, self._recorder.writer.add_requests)
+        )
+        noted = bench.torque_requests(self._timing, TICK_S) if self._timing else None
+        self._operator = Operator(bench.loop, request.terminal, request.confirmed_by)
+        self._hold = Holding(
+            bench.loop, self._operator, self._watch.standing, self._event, self._recorder.recording_time
+        )
+        self._conductor = BenchConductor(
+            bench, self._recorder, request.out, self._operator.confirm, request.analyse, noted, self._hold
+        )
+        self._arming = Arming(bench, self._recorder, self._watch, self._zero, self._timing)
+        bench.loop.on_block(self._recorder.take_frames)
+        bench.loop.on_drained(self._take_samples)
+
+    def _begin_duties(self) -> None:
+        loop = self._bench.loop
+        loop.every(0.05, self._supervise)
+        loop.every(_PROGRESS_S, self._show_progress)
+        if self._timing:
+            loop.every(COLLECT_S, self._timing.collect)
+        if self._operator.present:
+            loop.every(LOOK_S, self._operator.look)
+        self._expected_s = estimate_duration_s(self._request.plan)
+
+    def _answer(self, reached: Range, text: str) -> None:
+        """What is done when a limit is reached that is no trip, or an interlock is lost."""
+        self._event("limit", f"{reached.name}: {text}; response: {reached.response}")
+        if reached.response == "emergency_stop":
+            raise EmergencyStopError(f"{text}; {reached.message}", by=f"interlock '{reached.name}'")
+        if reached.response == "ramp_down":
+            self._hold.end_run(text)
+        elif reached.response in ("pause", "hold"):
+            self._hold.ask(reached, text)
+        else:
+            self._operator.tell(f"warning: {text}")
 
     def _look_at_drift(self) -> None:
         """The drives are off; what comes from here on is no part of the run's rows."""
@@ -195,24 +154,46 @@ class _Run:
             self._fail_by(error)
 
     def _steps(self) -> None:
+        """The plan's steps; whatever ends them, its end steps too, unless nothing should move any more."""
         plan, conductor = self._request.plan, self._conductor
         try:
             for step in plan.steps:
                 step.carry_out(conductor)
-        except (InterruptError, BadInputError) as error:
-            # The bench is well: torque off, then the plan's own end steps, undisturbed.
-            self._fail(error)
-            self._bench.loop.shielded = True
-            self._bench.rmcu.make_safe()
+        except (InterruptError, BadInputError, OrderlyEndError) as error:
+            self._end_early(error)
+        except HilError:
+            self._end_steps = "not carried out: nothing should move on a bench that has failed"
+            raise
+        except Exception as error:  # a mistake in a step's code: the bench is well
+            self._note_fault(error)
+            self._end_early(_of_ours(error))
+        self._hold.active = False
+        self._end_steps = "begun, but not carried out whole"
         for step in plan.finally_:
             step.carry_out(conductor)
+        self._end_steps = self._read_back()
+        self._event("end_steps", self._end_steps)
+
+    def _end_early(self, error: HilError) -> None:
+        """Torque off; the end steps that follow are not to be disturbed."""
+        self._fail(error)
+        self._bench.loop.shielded = True
+        self._bench.rmcu.make_safe()
+
+    def _read_back(self) -> str:
+        """What the end steps have left, as the devices say."""
+        names = ", ".join(step.kind for step in self._request.plan.finally_) or "none"
+        speed, state = self._bench.dyno.wheel_speed_rad_s, self._bench.rmcu.state
+        return f"carried out: {names}; the wheels turn at {abs(speed):.2f} rad/s, the RMCU is in '{state}'"
 
     def _supervise(self) -> None:
         if self._watch.standing_still(self._bench.loop.clock.now_s()):
             return  # what came meanwhile is to be looked at first
-        for device in self._bench.devices:
+        for device in self._bench.devices if not self._going_safe else ():
+            if isinstance(device, SaysEmergency) and device.emergency:
+                raise EmergencyStopError(device.emergency, by=device.name)
             troubles = device.troubles()
-            if troubles and not self._bench.loop.shielded:
+            if troubles:
                 raise BenchError("; ".join(troubles), where=device.name, fix=f"look at: {device.name}")
 
     def _take_samples(self) -> None:
@@ -220,6 +201,8 @@ class _Run:
         now_s = self._bench.loop.clock.now_s()
         for source in self._bench.sources:
             for samples in source.samples():
+                for computed in self._bench.computed:
+                    computed.take(samples)
                 self._zero.take(samples)
                 if not self._rows_finished:
                     self._recorder.take(samples)
@@ -238,12 +221,13 @@ class _Run:
 
     def _fail_by(self, error: Exception) -> None:
         self._note_fault(error)
-        self._fail(BenchError(f"internal error: {type(error).__name__}: {error}", fix="please report it"))
+        self._fail(_of_ours(error))
 
     def _show_progress(self) -> None:
         passed_s = self._bench.loop.clock.now_s() - self._begin_s
         segments = self._conductor.segments
         text = segments[-1].id if segments else "coming up"
+        text = f"held: {self._hold.said}" if self._hold.said else text
         self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
 
     def _fail(self, error: HilError) -> None:
@@ -254,18 +238,22 @@ class _Run:
                     error = BenchError(f"{error.what} ({pause})", where=error.where, fix=error.fix)
             self._error = error
             kind = "interrupt" if isinstance(error, InterruptError) else "failure"
+            kind = "emergency_stop" if isinstance(error, EmergencyStopError) else kind
             self._try_event(kind, str(error).replace("\n", " "))
 
     def _try_event(self, kind: str, text: str) -> None:
         with contextlib.suppress(HilError):  # a full disk is already being reported
-            self._recorder.event(self._bench.loop.clock.now_s(), kind, text)
+            self._event(kind, text)
+
+    def _event(self, kind: str, text: str) -> None:
+        self._recorder.event(self._bench.loop.clock.now_s(), kind, text)
 
     def _finish(self, wall_s: float) -> RunOutcome:
         request, loop = self._request, self._bench.loop
         safe: SafeState = "not_needed"
-        if self._armed:
+        if self._arming.armed:
             safe = "not_confirmed" if self._unsafe else "confirmed"
-            self._try_event("safe_state", "; ".join(self._unsafe) or f"confirmed by {self._names}")
+            self._try_event("safe_state", "; ".join(self._unsafe) or f"confirmed by {self._arming.names}")
         if self._unsafe and not isinstance(self._error, BenchError):
             self._error = BenchError(
                 "; ".join(self._unsafe), where="safe state", fix="cut the drives' power before you go near"
@@ -289,13 +277,16 @@ class _Run:
             segments=tuple(self._conductor.segments),
             clocks=self._recorder.clocks(),
             timing=self._timed(),
-            identities=self._identities,
+            identities=self._arming.identities,
             zeros=self._zero.zeros,
-            missing=self._missing,
+            limits=self._watch.results,
+            holds=tuple(self._hold.holds),
+            end_steps=self._end_steps,
+            missing=self._arming.missing,
             reason=str(self._error) if self._error else "",
         )
         try:
-            self._store(result)
+            store_result(self._recorder, request, self._bench, self._conductor, result)
         except HilError as error:
             self._error = self._error or error
         largest = dict(self._watch.largest)
@@ -331,45 +322,6 @@ class _Run:
             self._fail(error)
             return None
 
-    def _store(self, result: RunResult) -> None:
-        writer = self._recorder.writer
-        attachments = {"run.json": result.model_dump_json(indent=1).encode()}
-        attachments |= {f"made/{name}": content for name, content in self._conductor.made.items()}
-        for name, content in attachments.items():
-            writer.attach(name, content)
-        controllers = {
-            f"controller/{name}.toml": text.encode() for name, text in self._conductor.controllers.items()
-        }
-        writer.describe("time", self._recorder.time_base())
-        writer.describe("hashes", hashes(self._inputs() | controllers | attachments))
-        writer.close()
 
-    def _inputs(self) -> dict[str, bytes]:
-        request = self._request
-        inputs = {"plan.yaml": request.plan.text.encode(), "bench.toml": request.bench.text.encode()}
-        if self._bench.model is not None:
-            inputs["model.toml"] = model_to_toml(self._bench.model).encode()
-        return inputs
-
-    def _store_inputs(self) -> None:
-        """What is known at the start stands at the start: also a recording that is cut off has it."""
-        request, writer = self._request, self._recorder.writer
-        for name, content in self._inputs().items():
-            writer.attach(name, content)
-        operator = request.operator or request.bench.operator
-        writer.describe(
-            "run",
-            {
-                "plan": request.plan.name,
-                "title": request.plan.title,
-                "bench": request.bench.title or request.bench.name,
-                "operator": operator,
-                "started_at": self._started_at.isoformat(timespec="seconds"),
-                "simulated": str(self._bench.simulated).lower(),
-                **({"prompts_confirmed_by": request.confirmed_by} if request.confirmed_by else {}),
-            },
-        )
-        writer.describe("dut", request.bench.dut)
-        writer.describe("versions", versions())
-        dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
-        writer.describe("calibration", dates)
+def _of_ours(error: Exception) -> BenchError:
+    return BenchError(f"internal error: {type(error).__name__}: {error}", fix="please report it")

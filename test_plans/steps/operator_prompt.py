@@ -6,20 +6,26 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from test_plans.conductor import Conductor
+from test_plans.conductor import PROMPT_TIMEOUT_S, Conductor
 from test_plans.pace import Outlook, Pace
 from test_plans.steps._step import Step
 
 
 class OperatorPrompt(Step):
-    """Show a text and wait for the answer."""
+    """Show a text and wait for the answer, but not for ever."""
 
     kind: ClassVar[str] = "operator_prompt"
     text: str = Field(min_length=1, max_length=1000, description="what the operator reads")
+    timeout_s: float = Field(
+        default=PROMPT_TIMEOUT_S,
+        gt=0,
+        le=24 * 3600,
+        description="without an answer by then the run is ended, s; default 600",
+    )
 
     def carry_out(self, conductor: Conductor) -> None:
         """Ask."""
-        conductor.prompt(self.text)
+        conductor.prompt(self.text, self.timeout_s)
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:  # noqa: ARG002 - nobody knows
         """People take as long as they take: counted as none."""

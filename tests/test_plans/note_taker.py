@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from test_plans import Array, PlannedSegment, Quantity, Work
+from test_plans import PROMPT_TIMEOUT_S, Array, PlannedSegment, Quantity, Work
 
 
 class NoteTaker:
@@ -32,7 +32,7 @@ class NoteTaker:
     def wait(self, duration_s: float) -> None:
         self.calls.append(("wait", duration_s))
 
-    def prompt(self, text: str) -> None:
+    def prompt(self, text: str, timeout_s: float = PROMPT_TIMEOUT_S) -> None:
         self.calls.append(("prompt", text))
 
     def ramp_down(self, duration_s: float) -> None:

@@ -8,7 +8,7 @@ import pytest
 from drivers import Binding, FrameSource, SampleAssembler
 from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, newest, standard
 from hil.core.signals import Signal
-from hil.engine.bench_tables import Limits
+from hil.engine.limit_tables import Limits
 from hil.engine.limits import LimitWatch
 
 SPEED = Binding("rmcu", 0x110, Signal("MotorSpeed", 0, 16, scale=0.1, unit="rad/s"), "motor_speed_rad_s")

@@ -11,8 +11,9 @@ import pytest
 from drivers import SampleQueue, Stream
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import load_model
-from hil.engine.bench import _refuse_channels, open_bench
-from hil.engine.bench_tables import ChannelLimit
+from hil.engine.bench import open_bench
+from hil.engine.bench_channels import refuse_channels
+from hil.engine.limit_tables import ChannelLimit
 from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM, running, sim_bench
 from tests.hil.engine.test_safety import Valve
@@ -79,7 +80,7 @@ def test_channels_that_no_recording_can_hold_are_refused(channels: tuple[str, ..
     with running("channels") as bench:
         bench.further["oil"] = Meter(*channels)
         with pytest.raises(BadInputError, match=said) as caught:
-            _refuse_channels(bench)
+            refuse_channels(bench.file, bench.streams, bench.missing)
         assert caught.value.where == "device 'oil'"
 
 
@@ -90,11 +91,11 @@ def test_a_limit_needs_a_device_that_gives_its_channel() -> None:
         with pytest.raises(
             BadInputError, match=r"limits.channels.oil_k: no device gives this channel"
         ) as caught:
-            _refuse_channels(bench)
+            refuse_channels(bench.file, bench.streams, bench.missing)
         assert "motor_speed_rad_s" in caught.value.fix
         assert "time_s" not in caught.value.fix
         bench.further["oil"] = Meter("oil_k")
-        _refuse_channels(bench)
+        refuse_channels(bench.file, bench.streams, bench.missing)
 
 
 def test_only_devices_that_watch_the_host_are_told_that_it_lives(tmp_path: Path) -> None:

@@ -38,7 +38,7 @@ class Stage:
 def stage(out: Path, name: str = "conductor") -> Iterator[Stage]:
     asked: list[str] = []
 
-    def ask(text: str) -> str:
+    def ask(text: str, timeout_s: float) -> str:
         asked.append(text)
         return "yes"
 

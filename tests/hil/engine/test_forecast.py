@@ -17,8 +17,8 @@ from hil.engine import RunRequest, load_bench, run_plan
 from hil.engine._predicted_wire import wire_of
 from hil.engine.bench_tables import NoiseTable
 from hil.engine.forecast import forecast
-from hil.engine.limits import limits_of_channels
 from hil.engine.prediction import predict
+from hil.engine.ranges import limits_of_channels
 from test_plans import Outlook, Step, judge, load_plan
 from tests.benches_for_tests import SIM, plan, sim_bench
 

@@ -18,6 +18,7 @@ from hil.engine.preflight import preflight
 from sim_backend.bench import Fault
 from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM, plan, sim_bench
+from tests.operators import Answering
 
 STEPS = """
   - set_controller: {file: phase_stabilization.toml}
@@ -113,9 +114,11 @@ PROMPT = "[{operator_prompt: {text: 'Is the cage shut?'}}, {wait: {duration_s: 0
 
 
 def test_a_prompt_is_answered_by_the_operator_or_by_name(tmp_path: Path) -> None:
-    asked: list[str] = []
-    outcome = run_plan(RunRequest(plan(PROMPT), sim_bench("p1"), tmp_path / "a", ask=asked.append))
-    assert (asked, outcome.error) == (["Is the cage shut?"], None)
+    operator = Answering()
+    outcome = run_plan(RunRequest(plan(PROMPT), sim_bench("p1"), tmp_path / "a", terminal=operator))
+    assert outcome.error is None
+    (told,) = operator.told
+    assert told.startswith("Is the cage shut?")
     named = RunRequest(plan(PROMPT), sim_bench("p2"), tmp_path / "b", confirmed_by="A. Tester")
     recording = read_recording(run_plan(named).recording)
     assert recording.metadata["run"]["prompts_confirmed_by"] == "A. Tester"

@@ -24,6 +24,7 @@ from hil.engine import RunRequest, run_plan
 from sim_backend.bench import SimulatedBench, SimulationSettings
 from tests.benches_for_tests import SIM, plan
 from tests.hil.cli.test_sim_bench import serving
+from tests.operators import Silent, Slow
 
 STEPS = """
   - set_controller: {file: phase_stabilization.toml}
@@ -134,23 +135,17 @@ def test_a_bench_that_loses_power_ends_the_run_and_is_not_called_safe(tmp_path):
 def test_heartbeats_go_on_while_the_operator_is_asked(tmp_path):
     steps = "[{hold_speed: {speed_km_h: 2, duration_s: 0.1}}, {operator_prompt: {text: look}}]"
     with bench_in_real_time("asked") as (bench, _, _):
-        request = RunRequest(plan(steps), bench, tmp_path, ask=lambda text: time.sleep(0.5))
+        request = RunRequest(plan(steps), bench, tmp_path, terminal=Slow(0.5))
         outcome = run_plan(request)
     assert (outcome.error, outcome.result.safe_state) == (None, "confirmed")
 
 
 def test_an_interrupt_does_not_wait_for_an_answer_of_the_operator(tmp_path):
-    never = threading.Event()
     with bench_in_real_time("unanswered") as (bench, _, _):
         request = RunRequest(plan("[{operator_prompt: {text: look}}]"), bench, tmp_path)
 
-        def ask(text):
-            request.stop.ask()
-            never.wait(20)
-
-        request.ask = ask
+        request.terminal = Silent(then=lambda text: request.stop.ask())
         outcome = run_plan(request)
-    never.set()
     assert isinstance(outcome.error, InterruptError)
     assert outcome.result.safe_state == "confirmed"
 

@@ -1,0 +1,61 @@
+"""What watched over a run: limits and interlocks with what was reached, holds, end steps."""
+
+from __future__ import annotations
+
+from hil.core.result import LimitResult, RunResult
+from reports import quantities
+from reports.provenance import Fact
+
+#: Responses that end or hold a run.
+_SERIOUS = ("pause", "ramp_down", "trip", "hold", "emergency_stop")
+
+
+def limit_facts(result: RunResult | None) -> tuple[Fact, ...]:
+    """Each limit: what was reached, what is allowed, and which response was taken."""
+    return tuple(
+        Fact(limit.name, _reached(limit), _state(limit)) for limit in (result.limits if result else ())
+    )
+
+
+def hold_facts(result: RunResult | None) -> tuple[Fact, ...]:
+    """When the run was held, why, what ended it; and what became of its end steps."""
+    if result is None:
+        return ()
+    holds = [
+        Fact(
+            f"{quantities.quantity(hold.start_s, 's', 1)} to {quantities.quantity(hold.end_s, 's', 1)}",
+            f"held: {hold.cause}; ended by: {hold.ended_by}",
+        )
+        for hold in result.holds
+    ]
+    return (*holds, *([Fact("End steps", result.end_steps)] if result.end_steps else []))
+
+
+def _reached(limit: LimitResult) -> str:
+    what = f"slope of {limit.channel}" if limit.of == "slope" else limit.channel
+    ends = (limit.lowest, limit.highest)
+    if ends == (None, None):
+        span = "nothing known"
+    else:
+        low, high = (
+            quantities.DASH if end is None else quantities.number(end, significant=4) for end in ends
+        )
+        span = f"{low} to {high} {limit.unit}"
+    within = f"{quantities.number(limit.persistence_samples, 0)} samples" if limit.persistence_samples else ""
+    within = within or f"{quantities.nominal(1e3 * (limit.persistence_s or 0.0))} ms"
+    taken = f"; reached {limit.reached} times" if limit.reached else ""
+    return f"{what} {span}; {_allowed(limit)}, for {within}: {limit.response.replace('_', ' ')}{taken}"
+
+
+def _allowed(limit: LimitResult) -> str:
+    if limit.below is not None and limit.above is not None and limit.below == -limit.above:
+        return f"limit {quantities.nominal(limit.above)} {limit.unit}"
+    ends = [f"at least {quantities.nominal(limit.below)}"] if limit.below is not None else []
+    ends += [f"at most {quantities.nominal(limit.above)}"] if limit.above is not None else []
+    return f"{' and '.join(ends)} {limit.unit}"
+
+
+def _state(limit: LimitResult) -> str:
+    if not limit.reached:
+        return "good"
+    return "bad" if limit.response in _SERIOUS else ""
