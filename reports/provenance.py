@@ -66,6 +66,8 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
         Fact("Plan", run.get("plan") or (result.plan if result else "")),
         Fact("Bench", f"{bench} (simulated)" if simulated else bench),
         Fact("Operator", run.get("operator", "")),
+        Fact("Hazard taken upon them by", run.get("hazard_confirmed_by", "")),
+        Fact("Prompts confirmed beforehand by", run.get("prompts_confirmed_by", "")),
         Fact("Started", _moment(run.get("started_at", ""))),
     ]
     if result is not None:

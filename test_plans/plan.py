@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 from pydantic import Field
 
@@ -22,6 +23,9 @@ class PlanKeys(Strict):
     )
     title: str = Field(default="", max_length=200, description="what the report is headed with")
     description: str = Field(default="", max_length=10_000, description="what the plan is for")
+    hazardous: bool | Annotated[str, Field(min_length=1, max_length=500)] = Field(
+        default=False, description="true, or why: it is carried out only if somebody confirms it by name"
+    )
 
 
 class Plan(PlanKeys):

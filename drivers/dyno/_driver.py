@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -56,9 +57,15 @@ class DynoDriver:
     safe_within_s = 0.5
 
     def __init__(
-        self, loop: BusLoop, wire: Wire, eds: Path, nodes: DynoNodes, vehicle: VehicleParameters
+        self,
+        loop: BusLoop,
+        wire: Wire,
+        eds: Path,
+        nodes: DynoNodes,
+        vehicle: VehicleParameters,
+        stop_codes: Collection[int] = (),
     ) -> None:
-        self._loop, self._wire, self._host = loop, wire, nodes.host
+        self._loop, self._wire, self._host, self._stop_codes = loop, wire, nodes.host, stop_codes
         self.vehicle = vehicle
         network = LoopNetwork(loop, wire)
         self.left = DynoNode(network, wire.name, nodes.rear_left, "rear left", eds)
@@ -158,6 +165,15 @@ class DynoDriver:
             found += [f"{node.name}: {text}" for text in node.emergencies]
         found += [f"{node.name}: drive in fault" for node in self.rear if node.in_state(FAULT)]
         return found
+
+    @property
+    def emergency(self) -> str:
+        """The EMCY of a node that says that its emergency stop was pressed; empty if none does."""
+        for node in self._watched:
+            for code, text in zip(node.emergency_codes, node.emergencies, strict=True):
+                if code in self._stop_codes:
+                    return f"{node.name}: {text}"
+        return ""
 
     def _all(self, controlword: int, state: int) -> None:
         for node in self.rear:

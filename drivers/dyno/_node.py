@@ -76,6 +76,7 @@ class DynoNode:
         network.add_node(self._node)
         self._target_speed = 0.0
         self.emergencies: list[str] = []
+        self.emergency_codes: list[int] = []
         self.last_heartbeat_s = -math.inf
         self.last_seen_s = -math.inf
         self.status = 0
@@ -210,4 +211,5 @@ class DynoNode:
 
     def _take_emergency(self, error: Any) -> None:
         if error.code & 0xFF00:
+            self.emergency_codes.append(error.code)
             self.emergencies.append(f"EMCY 0x{error.code:04X} {error.get_desc()}".strip())

@@ -25,6 +25,9 @@ class DynoTable(LoadTable):
     rear_right: NodeId = 4
     idle: dict[Name, NodeId] = Field({}, description="nodes that are watched but not used")
     host_node: NodeId = 127
+    emergency_stop_codes: tuple[Annotated[int, Field(ge=0x100, le=0xFFFF)], ...] = Field(
+        (), strict=False, description="EMCY codes that say that the dynos' emergency stop was pressed"
+    )
 
     @property
     def nodes(self) -> dict[str, int]:
@@ -46,7 +49,9 @@ class DynoTable(LoadTable):
         del name  # there is one pair of dynos
         nodes = DynoNodes(self.rear_left, self.rear_right, dict(self.idle), self.host_node)
         wire = connections.wires[self.bus]
-        return DynoDriver(connections.loop, wire, self.eds, nodes, connections.vehicle)
+        return DynoDriver(
+            connections.loop, wire, self.eds, nodes, connections.vehicle, self.emergency_stop_codes
+        )
 
     def contradictions(self) -> Iterator[str]:
         """Node ids that two nodes share."""

@@ -41,6 +41,7 @@ _COMMANDS = {
     "doctor": "What of a bench is there, what is wrong with it, and what to do.",
     "monitor": "Decoded channels and bus load live, touching nothing.",
     "jog": "Turn the axle at low torque and check the sign of every sensor.",
+    "reset": "Let a bench be armed again after an emergency stop.",
     "schema": "JSON schema of plan files, for editors.",
 }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -25,11 +26,12 @@ from hil.cli._timing import times_in_words, timing_in_words
 from hil.core.errors import BenchError, HilError, InterruptError
 from hil.core.files import write_atomically
 from hil.core.model import load_model
+from hil.core.printable import printable
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING, RunOutcome, RunRequest, StopRequest, load_bench, run_plan
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
-from test_plans import load_plan
+from test_plans import Plan, load_plan
 
 logger = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -45,6 +47,7 @@ def carry_out(
     model: Path | None,
     operator: str,
     yes: str,
+    confirm: str,
     overwrite: bool,
     as_json: bool,
 ) -> int:
@@ -59,6 +62,7 @@ def carry_out(
         operator=operator,
         terminal=operators_terminal(),
         confirmed_by=yes,
+        hazard_confirmed_by=confirm or _asked_for_name(checked),
         stop=stop,
     )
     inputs = [bench_file.source, *([Path(plan)] if Path(plan).is_file() else []), *([model] if model else [])]
@@ -148,6 +152,15 @@ class _Conclusion:
 
     def _path(self, name: str) -> Path:
         return self._place.folder / name
+
+
+def _asked_for_name(plan: Plan) -> str:
+    """Who takes a hazardous plan upon them; asked before anything of the bench is opened."""
+    if not plan.hazardous or not sys.stdin.isatty():
+        return ""
+    why = f": {printable(plan.hazardous, 500)}" if isinstance(plan.hazardous, str) else ""
+    print(f"The plan {plan.name} is hazardous{why}\nYour name, to carry it out:", file=sys.stderr)
+    return sys.stdin.readline().strip()
 
 
 def _keys(request: RunRequest) -> str:

@@ -207,6 +207,14 @@ class Hold(_Frozen):
     ended_by: str = Field(description="operator, well again, or end of the run")
 
 
+class StoppedInEmergency(_Frozen):
+    """Who or what asked for an emergency stop, and whether it was latched on disk."""
+
+    by: str
+    why: str
+    latched: bool
+
+
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
@@ -224,6 +232,7 @@ class RunResult(_Frozen):
     zeros: tuple[Zero, ...] = ()
     limits: tuple[LimitResult, ...] = ()
     holds: tuple[Hold, ...] = ()
+    emergency_stop: StoppedInEmergency | None = None
     end_steps: str = Field("", description="what became of the plan's end steps, as read back")
     missing: tuple[str, ...] = Field((), description="devices and parts that were not there and not needed")
     files: dict[str, str] = {}

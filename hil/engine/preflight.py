@@ -55,6 +55,19 @@ def preflight(
         )
 
 
+def refuse_unconfirmed(plan: Plan, confirmed_by: str) -> None:
+    """Raises:
+    BadInputError: the plan is hazardous, and nobody has taken it upon them.
+    """
+    if plan.hazardous and not confirmed_by.strip():
+        why = f": {plan.hazardous}" if isinstance(plan.hazardous, str) else ""
+        raise BadInputError(
+            f"the plan is hazardous{why}",
+            where=f"plan '{plan.name}'",
+            fix="who takes it upon them says so with --confirm 'their name'; the report prints it",
+        )
+
+
 def channels_of(plan: Plan) -> list[str]:
     """What the criteria of a plan are computed from."""
     channels = (getattr(criterion.metric, "channel", None) for criterion in plan.criteria)

@@ -8,7 +8,7 @@ import time
 import traceback
 from functools import partial
 
-from drivers import TICK_S, SaysEmergency
+from drivers import TICK_S
 from hil.core.errors import (
     BadInputError,
     BenchError,
@@ -19,21 +19,19 @@ from hil.core.errors import (
 )
 from hil.core.files import make_directory
 from hil.core.recording import Recording
-from hil.core.result import CriterionResult, RunResult, SafeState, Timing, verdict_of
+from hil.core.result import CriterionResult, RunResult, SafeState, StoppedInEmergency, Timing, verdict_of
 from hil.engine.arming import Arming
 from hil.engine.bench import Bench, open_bench, refuse_needs
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.conductor import BenchConductor
-from hil.engine.hold import Holding
-from hil.engine.limits import LimitWatch
-from hil.engine.operator import LOOK_S, Operator
-from hil.engine.preflight import channels_of, preflight
-from hil.engine.ranges import Range
+from hil.engine.emergency_stop import latch, refuse_latched
+from hil.engine.operator import Operator
+from hil.engine.preflight import channels_of, preflight, refuse_unconfirmed
 from hil.engine.recorder import Recorder
 from hil.engine.request_timing import COLLECT_S, RequestTiming
 from hil.engine.run_files import store_inputs, store_result
 from hil.engine.safety import reach_safe_state
-from hil.engine.zero import ZeroCheck
+from hil.engine.watchkeeping import Watchkeeping
 from test_plans import estimate_duration_s, judge
 
 _PROGRESS_S = 0.5
@@ -53,6 +51,8 @@ def run_plan(request: RunRequest) -> RunOutcome:
         today = datetime.datetime.now(datetime.UTC).date()
         answers = request.terminal is not None or request.confirmed_by != ""
         preflight(request.plan, request.bench, request.out, today, somebody_answers=answers)
+        refuse_unconfirmed(request.plan, request.hazard_confirmed_by)
+        refuse_latched(request.bench)
         with open_bench(request.bench, model=request.model) as bench:
             refuse_needs(bench, channels_of(request.plan))
             for path in request.replaces:
@@ -67,9 +67,6 @@ class _Run:
         self._error: HilError | None = None
         self._unsafe: list[str] = []
         self._end_steps = ""
-        self._going_safe = False
-        self._zero = ZeroCheck(bench.streams, request.bench.zero)
-        self._rows_finished = False
 
     def carry_out(self) -> RunOutcome:
         self._prepare()
@@ -88,10 +85,26 @@ class _Run:
             self._fail_by(error)
         finally:
             # Also when the interpreter itself is going down: nobody may be left with torque on.
-            bench.loop.shielded = self._going_safe = True
-            self._watch.active = False  # its work is done: what is beyond a limit is being taken down
+            bench.loop.shielded = True
+            self._watch.end()
             self._unsafe = reach_safe_state(bench, self._note_fault) if self._arming.armed else []
+            self._stopped = self._latched()
         return self._finish(time.perf_counter() - started)
+
+    def _latched(self) -> StoppedInEmergency | None:
+        """Keep an emergency stop for every process that comes after this one."""
+        error, file = self._error, self._request.bench
+        if not isinstance(error, EmergencyStopError):
+            return None
+        error.fix = f"make sure that nobody is in danger; then: hil reset {file.source} --by NAME"
+        try:
+            latch(file, by=error.by, why=error.what, run=self._request.out)
+        except (HilError, OSError) as failure:
+            error.fix += (
+                f"\n  it could NOT be latched, nothing but you keeps the bench from being armed: {failure}"
+            )
+            return StoppedInEmergency(by=error.by, why=error.what, latched=False)
+        return StoppedInEmergency(by=error.by, why=error.what, latched=True)
 
     def _prepare(self) -> None:
         request, bench = self._request, self._bench
@@ -100,7 +113,6 @@ class _Run:
             request.out / RECORDING, bench.streams, buses, TICK_S, promptly=not bench.simulated
         )
         self._recorder.between = bench.loop.keep_up
-        self._watch = LimitWatch(bench.streams, request.bench.limits, request.bench.interlocks, self._answer)
         store_inputs(self._recorder, request, bench)
         # In virtual time nothing can be late.
         self._timing = (
@@ -109,43 +121,25 @@ class _Run:
             else RequestTiming(bench.loop.clock, bench.loop.wires, self._recorder.writer.add_requests)
         )
         noted = bench.torque_requests(self._timing, TICK_S) if self._timing else None
-        self._operator = Operator(bench.loop, request.terminal, request.confirmed_by)
-        self._hold = Holding(
-            bench.loop, self._operator, self._watch.standing, self._event, self._recorder.recording_time
-        )
+        operator = Operator(bench.loop, request.terminal, request.confirmed_by)
+        self._watch = Watchkeeping(bench, self._recorder, operator, self._try_event)
         self._conductor = BenchConductor(
-            bench, self._recorder, request.out, self._operator.confirm, request.analyse, noted, self._hold
+            bench, self._recorder, request.out, operator.confirm, request.analyse, noted, self._watch.hold
         )
-        self._arming = Arming(bench, self._recorder, self._watch, self._zero, self._timing)
-        bench.loop.on_block(self._recorder.take_frames)
-        bench.loop.on_drained(self._take_samples)
+        self._arming = Arming(bench, self._recorder, self._watch.limits, self._watch.zero, self._timing)
 
     def _begin_duties(self) -> None:
         loop = self._bench.loop
-        loop.every(0.05, self._supervise)
+        self._watch.begin()
         loop.every(_PROGRESS_S, self._show_progress)
         if self._timing:
             loop.every(COLLECT_S, self._timing.collect)
-        if self._operator.present:
-            loop.every(LOOK_S, self._operator.look)
         self._expected_s = estimate_duration_s(self._request.plan)
-
-    def _answer(self, reached: Range, text: str) -> None:
-        """What is done when a limit is reached that is no trip, or an interlock is lost."""
-        self._event("limit", f"{reached.name}: {text}; response: {reached.response}")
-        if reached.response == "emergency_stop":
-            raise EmergencyStopError(f"{text}; {reached.message}", by=f"interlock '{reached.name}'")
-        if reached.response == "ramp_down":
-            self._hold.end_run(text)
-        elif reached.response in ("pause", "hold"):
-            self._hold.ask(reached, text)
-        else:
-            self._operator.tell(f"warning: {text}")
 
     def _look_at_drift(self) -> None:
         """The drives are off; what comes from here on is no part of the run's rows."""
         try:
-            self._zero.after(
+            self._watch.zero.after(
                 self._bench.loop, ended_well=not self._unsafe and not isinstance(self._error, BenchError)
             )
         except HilError as error:
@@ -167,7 +161,7 @@ class _Run:
         except Exception as error:  # a mistake in a step's code: the bench is well
             self._note_fault(error)
             self._end_early(_of_ours(error))
-        self._hold.active = False
+        self._watch.hold.active = False
         self._end_steps = "begun, but not carried out whole"
         for step in plan.finally_:
             step.carry_out(conductor)
@@ -186,35 +180,6 @@ class _Run:
         speed, state = self._bench.dyno.wheel_speed_rad_s, self._bench.rmcu.state
         return f"carried out: {names}; the wheels turn at {abs(speed):.2f} rad/s, the RMCU is in '{state}'"
 
-    def _supervise(self) -> None:
-        if self._watch.standing_still(self._bench.loop.clock.now_s()):
-            return  # what came meanwhile is to be looked at first
-        for device in self._bench.devices if not self._going_safe else ():
-            if isinstance(device, SaysEmergency) and device.emergency:
-                raise EmergencyStopError(device.emergency, by=device.name)
-            troubles = device.troubles()
-            if troubles:
-                raise BenchError("; ".join(troubles), where=device.name, fix=f"look at: {device.name}")
-
-    def _take_samples(self) -> None:
-        """Whoever measured: all is recorded, all is watched."""
-        now_s = self._bench.loop.clock.now_s()
-        for source in self._bench.sources:
-            for samples in source.samples():
-                for computed in self._bench.computed:
-                    computed.take(samples)
-                self._zero.take(samples)
-                if not self._rows_finished:
-                    self._recorder.take(samples)
-                self._watch.take(samples, now_s)
-            self._bench.loop.keep_up()
-        pauses = self._watch.pauses.count
-        try:
-            self._watch.look_for_silence(now_s)
-        finally:
-            if self._watch.pauses.count > pauses:
-                self._try_event("pause", f"own loop stood still for {self._watch.pauses.last_s:.2g} s")
-
     def _note_fault(self, error: Exception) -> None:
         """A fault of ours, or of a device's code: where it happened stands in the recording."""
         self._try_event("traceback", "".join(traceback.format_exception(error)))
@@ -227,13 +192,13 @@ class _Run:
         passed_s = self._bench.loop.clock.now_s() - self._begin_s
         segments = self._conductor.segments
         text = segments[-1].id if segments else "coming up"
-        text = f"held: {self._hold.said}" if self._hold.said else text
+        text = f"held: {self._watch.hold.said}" if self._watch.hold.said else text
         self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
 
     def _fail(self, error: HilError) -> None:
-        if self._error is None:
-            if isinstance(error, BenchError) and "own loop" not in error.what:
-                pause = self._watch.pauses.blamed_at(self._bench.loop.clock.now_s())
+        if self._error is None or isinstance(error, EmergencyStopError):
+            if type(error) is BenchError and "own loop" not in error.what:
+                pause = self._watch.limits.pauses.blamed_at(self._bench.loop.clock.now_s())
                 if pause:
                     error = BenchError(f"{error.what} ({pause})", where=error.where, fix=error.fix)
             self._error = error
@@ -263,7 +228,7 @@ class _Run:
                 self._try_event("bus", f"{wire.name}: {remark}")
         bench_time_s = loop.clock.now_s() - self._begin_s
         recording = self._recording()
-        self._rows_finished = True
+        self._watch.rows_finished = True
         self._look_at_drift()
         criteria = self._judged(recording) if recording is not None else ()
         result = RunResult(
@@ -278,9 +243,10 @@ class _Run:
             clocks=self._recorder.clocks(),
             timing=self._timed(),
             identities=self._arming.identities,
-            zeros=self._zero.zeros,
-            limits=self._watch.results,
-            holds=tuple(self._hold.holds),
+            zeros=self._watch.zero.zeros,
+            limits=self._watch.limits.results,
+            holds=tuple(self._watch.hold.holds),
+            emergency_stop=self._stopped,
             end_steps=self._end_steps,
             missing=self._arming.missing,
             reason=str(self._error) if self._error else "",
@@ -289,7 +255,7 @@ class _Run:
             store_result(self._recorder, request, self._bench, self._conductor, result)
         except HilError as error:
             self._error = self._error or error
-        largest = dict(self._watch.largest)
+        largest = dict(self._watch.limits.largest)
         return RunOutcome(result, request.out / RECORDING, self._error, largest, tuple(self._conductor.made))
 
     def _timed(self) -> Timing:
@@ -298,7 +264,7 @@ class _Run:
             return Timing(clock="virtual")
         with contextlib.suppress(HilError):  # a full disk is already being reported
             self._timing.collect(everything=True)
-        pauses = self._watch.pauses
+        pauses = self._watch.limits.pauses
         return Timing(
             clock="wall",
             requests=self._timing.results(),

@@ -12,6 +12,7 @@ USUAL: dict[str, tuple[str, ...]] = {
     "simulate": ("--model", "model.toml", "--input", "short.csv", "--out", "out.csv"),
     "export": ("recording.mcap", "--out", "out.csv"),
     "recover": ("recording.mcap", "--out", "out.mcap"),
+    "reset": ("bench.toml", "--by", "A. Tester"),
     "schema": ("plan",),
     "compare": ("done", "recording.mcap", "--out", "out"),
     "explain": (

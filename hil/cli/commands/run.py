@@ -27,6 +27,12 @@ def command(
             "--yes", metavar="NAME", help="who confirms every operator prompt; stands in the report"
         ),
     ] = "",
+    confirm: Annotated[
+        str,
+        typer.Option(
+            "--confirm", metavar="NAME", help="who takes a hazardous plan upon them; stands in the report"
+        ),
+    ] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print result.json on stdout, nothing else")
@@ -41,5 +47,5 @@ def command(
 
     return carry_out(
         plan=plan, bench=bench, out=out, model=model, operator=operator, yes=yes,
-        overwrite=overwrite, as_json=as_json
+        confirm=confirm, overwrite=overwrite, as_json=as_json
     )  # fmt: skip

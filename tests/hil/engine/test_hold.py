@@ -12,6 +12,7 @@ import pytest
 from hil.core.errors import BenchError, EmergencyStopError, InterruptError, OrderlyEndError
 from hil.core.recording import read_recording
 from hil.engine import RunOutcome, RunRequest, run_plan
+from hil.engine.emergency_stop import reset
 from hil.engine.limit_tables import NamedLimit
 from tests.benches_for_tests import SIM, plan, sim_bench
 from tests.hil.engine.cages import cage, shut
@@ -176,3 +177,10 @@ def test_an_emergency_stop_moves_nothing_any_more(way: str, tmp_path: Path) -> N
     assert outcome.result.end_steps.startswith("not carried out")
     assert outcome.result.safe_state == "confirmed"
     assert events(outcome, "emergency_stop")
+    assert outcome.result.emergency_stop is not None
+    assert outcome.result.emergency_stop.latched
+    with pytest.raises(BenchError, match="emergency stop since"):
+        held(tmp_path / "again", f"stop-{way}", interlocks={})
+    (stop,) = reset(sim_bench(f"stop-{way}"), "A. Tester")
+    assert (stop.by, stop.reset_by) == (outcome.result.emergency_stop.by, "A. Tester")
+    assert held(tmp_path / "reset", f"stop-{way}", interlocks={}).error is None

@@ -1,0 +1,26 @@
+"""`hil reset`: a bench may be armed again after an emergency stop."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+
+def command(
+    bench: Annotated[str, typer.Argument(help="bench file, or the name of a shipped bench")],
+    by: Annotated[str, typer.Option("--by", metavar="NAME", help="who has made sure that it is safe; kept")],
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Reset an emergency stop, so that the bench can be armed again. Nothing moves.
+
+    Before: make sure that nobody is in danger, and that its cause is gone.
+    """
+    import_python_can()
+    from hil.cli.reset import carry_out
+
+    return carry_out(bench=bench, by=by, as_json=as_json)

@@ -1,0 +1,28 @@
+"""`hil reset`: a bench may be armed again after an emergency stop."""
+
+from __future__ import annotations
+
+from hil.cli._output import console, print_json
+from hil.core.errors import BadInputError
+from hil.core.printable import is_printable, printable
+from hil.engine import load_bench
+from hil.engine.emergency_stop import reset
+
+
+def carry_out(*, bench: str, by: str, as_json: bool) -> int:
+    """Carry the command out; its exit code."""
+    name = by.strip()
+    if not name or not is_printable(name):
+        raise BadInputError("--by names nobody", fix="give the name of who has made sure that it is safe")
+    file = load_bench(bench)
+    stops = reset(file, name)
+    if as_json:
+        print_json({"bench": file.name, "reset": [stop.model_dump() for stop in stops]})
+        return 0
+    page = console()
+    for stop in stops:
+        text = f"reset by {name}: emergency stop of {stop.at}, by {stop.by}: {stop.why}"
+        page.print(printable(text, 500), highlight=False, markup=False, soft_wrap=True)
+    if not stops:
+        page.print(f"no emergency stop is latched on {file.name}", highlight=False, markup=False)
+    return 0

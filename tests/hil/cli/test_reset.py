@@ -1,0 +1,58 @@
+"""A bench after an emergency stop, from one process to the next; a hazardous plan at the command line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.benches_for_tests import SIM
+from tests.hil.cli.test_commands import hil
+
+PLAN = "name: quick\nsteps: [{wait: {duration_s: 0.2}}]\n"
+STOP = """
+[interlocks.still]
+channel = "motor_speed_rad_s"
+unit = "rad/s"
+above = 3.0
+message = "keep it at rest"
+response = "emergency_stop"
+"""
+
+
+@pytest.fixture
+def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("HIL_STATE", str(tmp_path / "state"))
+    text = SIM.text + STOP
+    for name in ("rmcu.dbc", "rcs_dyno.eds", "three_inertia.toml"):
+        text = text.replace(f'"{name}"', f'"{SIM.source.parent / name}"')
+    path = tmp_path / "bench.toml"
+    path.write_text(text)
+    return path
+
+
+def test_nobody_arms_the_bench_until_it_is_reset(bench: Path, tmp_path: Path) -> None:
+    moving = tmp_path / "moving.yaml"
+    moving.write_text("name: moving\nsteps: [{hold_speed: {speed_km_h: 5, duration_s: 1}}]\n")
+    (tmp_path / "quick.yaml").write_text(PLAN)
+    told = json.loads(hil("run", moving, "--bench", bench, "--out", tmp_path / "a", "--json", code=3).stdout)
+    assert told["emergency_stop"]["by"] == "interlock 'still'"
+    assert told["emergency_stop"]["latched"]
+    again = hil("run", tmp_path / "quick.yaml", "--bench", bench, "--out", tmp_path / "b", code=3)
+    assert "emergency stop since" in again.stderr
+    assert "hil reset" in again.stderr
+    assert "--by names nobody" in hil("reset", bench, "--by", " ", code=2).stderr
+    done = hil("reset", bench, "--by", "A. Tester")
+    assert done.stdout.startswith("reset by A. Tester: emergency stop of 20")
+    assert "no emergency stop is latched" in hil("reset", bench, "--by", "A. Tester").stdout
+    hil("run", tmp_path / "quick.yaml", "--bench", bench, "--out", tmp_path / "b")
+
+
+def test_a_hazardous_plan_is_confirmed_by_name(bench: Path, tmp_path: Path) -> None:
+    plan = tmp_path / "hazard.yaml"
+    plan.write_text(PLAN + "hazardous: the wheels turn fast\n")
+    refused = hil("run", plan, "--bench", bench, "--out", tmp_path / "a", code=2)
+    assert "the plan is hazardous: the wheels turn fast" in refused.stderr
+    hil("run", plan, "--bench", bench, "--out", tmp_path / "a", "--confirm", "A. Tester")
+    assert "A. Tester" in (tmp_path / "a" / "report.html").read_text("utf-8")
