@@ -120,7 +120,7 @@ def content(recording: Recording, result: RunResult | None) -> Content:
     plan = result.plan if result else ""
     title = run.get("title") or plan or recording.source.stem
     started = run.get("started_at", "")
-    calibration, files = provenance.calibration_facts(recording), provenance.stored_files(recording)
+    calibration, files = provenance.calibration_facts(recording, result), provenance.stored_files(recording)
     identification = identification_facts(recording, result)
     zeros = zero_facts(result)
     marks = (plan or recording.source.name, started, f"SHA-256 {sha256[:12]}" if sha256 else "")

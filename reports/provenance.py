@@ -134,8 +134,10 @@ def simulated(recording: Recording) -> bool:
     return recording.metadata.get("run", {}).get("simulated", "").lower() == "true"
 
 
-def calibration_facts(recording: Recording) -> tuple[Fact, ...]:
-    """Until when each sensor's calibration is valid, judged at the start of the run."""
+def calibration_facts(recording: Recording, result: RunResult | None = None) -> tuple[Fact, ...]:
+    """Until when each sensor's calibration is valid at the start of the run, and who let it run out."""
+    accepted = result.accepted_expired if result else None
+    told = f", accepted by {accepted.by}: {accepted.reason}" if accepted else ""
     started = _date(recording.metadata.get("run", {}).get("started_at", ""))
     facts = []
     for sensor, until in recording.metadata.get("calibration", {}).items():
@@ -143,7 +145,7 @@ def calibration_facts(recording: Recording) -> tuple[Fact, ...]:
         if started is None or expires is None:
             facts.append(Fact(_words(sensor), until))
         elif expires < started:
-            facts.append(Fact(_words(sensor), f"{until}, expired before the run", "bad"))
+            facts.append(Fact(_words(sensor), f"{until}, expired before the run{told}", "bad"))
         else:
             facts.append(Fact(_words(sensor), until, "good"))
     return tuple(facts)

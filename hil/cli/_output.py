@@ -17,7 +17,7 @@ from rich.table import Table
 from hil.cli._log import LOG
 from hil.cli._streams import complain
 from hil.core.printable import printable
-from hil.core.result import CriterionResult, CriterionVerdict, Identity
+from hil.core.result import AcceptedExpiry, CriterionResult, CriterionVerdict, Identity
 
 if TYPE_CHECKING:
     from hil.core.recording import Recording
@@ -148,6 +148,13 @@ def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
     parts = [f"{passed} of {len(judged)} criteria passed"] if judged else ["nothing was judged"]
     informational = sum(c.verdict == "informational" for c in criteria)
     return ", ".join([*parts, f"{informational} informational"] if informational else parts)
+
+
+def expiry_in_words(accepted: AcceptedExpiry) -> str:
+    """Which sensors measured although their calibration had run out, and who answers for it."""
+    sensors = ", ".join(f"{printable(name, 60)} (until {until})" for name, until in accepted.sensors.items())
+    by, reason = printable(accepted.by, 100), printable(accepted.reason, 400)
+    return f"calibration has run out: {sensors}; accepted by {by}: {reason}"
 
 
 def told_identities(identities: Iterable[Identity]) -> str:

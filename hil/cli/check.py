@@ -12,6 +12,7 @@ from hil.cli._output import console, plain_table, print_criteria, print_json, pr
 from hil.core.channels import CHANNELS
 from hil.engine import load_bench
 from hil.engine.forecast import Forecast, forecast
+from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.preflight import preflight
 from test_plans import Pace, Plan, estimate_duration_s, load_plan
 
@@ -25,7 +26,9 @@ def carry_out(
     """Carry the command out; its exit code."""
     checked, file = load_plan(plan), load_bench(bench)
     with tempfile.TemporaryDirectory() as directory:
-        preflight(checked, file, Path(directory), datetime.datetime.now(datetime.UTC).date())
+        today = datetime.datetime.now(datetime.UTC).date()
+        accepted_expiry(file, today, "")
+        preflight(checked, file, Path(directory), today)
     pace = Pace(speed_ramp_m_s2=file.dyno.speed_ramp_m_s2, wheel_radius_m=file.vehicle.wheel_radius_m)
     duration_s = estimate_duration_s(checked, pace)
     with progress(checked.name) as show:

@@ -13,6 +13,7 @@ from hil.cli._output import (
     Show,
     console,
     count_in_words,
+    expiry_in_words,
     print_criteria,
     print_json,
     progress,
@@ -48,6 +49,7 @@ def carry_out(
     operator: str,
     yes: str,
     confirm: str,
+    accept_expired: str,
     overwrite: bool,
     as_json: bool,
 ) -> int:
@@ -62,6 +64,7 @@ def carry_out(
         operator=operator,
         terminal=operators_terminal(),
         confirmed_by=yes,
+        accept_expired=accept_expired,
         hazard_confirmed_by=confirm or _asked_for_name(checked),
         stop=stop,
     )
@@ -194,6 +197,8 @@ def _print(result: RunResult, folder: Path) -> None:
             warn(f"limit {limit.name} was reached {limit.reached} times; response: {limit.response}")
     for text in result.missing:
         warn(text)
+    if result.accepted_expired:
+        warn(expiry_in_words(result.accepted_expired))
     said = told_identities(result.identities)
     if said:
         page.print(f"identification: {said}", highlight=False, markup=False, soft_wrap=True)

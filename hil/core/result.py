@@ -215,6 +215,14 @@ class StoppedInEmergency(_Frozen):
     latched: bool
 
 
+class AcceptedExpiry(_Frozen):
+    """Who let a run measure with sensors whose calibration had run out, and why; `sensors`: until when."""
+
+    by: str
+    reason: str
+    sensors: dict[str, str]
+
+
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
@@ -235,5 +243,8 @@ class RunResult(_Frozen):
     emergency_stop: StoppedInEmergency | None = None
     end_steps: str = Field("", description="what became of the plan's end steps, as read back")
     missing: tuple[str, ...] = Field((), description="devices and parts that were not there and not needed")
+    accepted_expired: AcceptedExpiry | None = Field(
+        None, description="who answered for sensors whose calibration had run out"
+    )
     files: dict[str, str] = {}
     reason: str = ""

@@ -61,8 +61,9 @@ class RunRequest:
     """A run to be carried out.
 
     Data: `plan`, `bench`, `out`, `model`, `operator`, `confirmed_by` (who confirmed every prompt beforehand),
-    `hazard_confirmed_by` (who takes a hazardous plan upon them) and `replaces`: files of an earlier run in
-    the same place, which are removed once nothing about plan and bench can keep this run from beginning.
+    `hazard_confirmed_by` (who takes a hazardous plan upon them), `accept_expired` ("NAME: reason" of who
+    answers for sensors whose calibration has run out) and `replaces`: files of an earlier run in the same
+    place, which are removed once nothing about plan and bench can keep this run from beginning.
 
     Calls to who asked for the run, with data and for data: `terminal` shows texts to the operator and gives
     what was typed (None: nobody can be asked); `progress` is told the share that is done and what is going
@@ -79,6 +80,7 @@ class RunRequest:
     terminal: Terminal | None = None
     confirmed_by: str = ""
     hazard_confirmed_by: str = ""
+    accept_expired: str = ""
     progress: Progress = lambda share, text: None
     analyse: Analyse = analysed_here
     replaces: tuple[Path, ...] = ()

@@ -26,16 +26,9 @@ def preflight(
         somebody_answers: whether prompts reach an operator, or a person has confirmed them beforehand.
 
     Raises:
-        BadInputError: expired calibration, a controller file that cannot be used, a request beyond the
+        BadInputError: a controller file that cannot be used, a request beyond the
             bench's limits, a prompt that nobody can answer on hardware, or too little room on the disk.
     """
-    for sensor, valid_until in bench.calibration.items():
-        if valid_until < today:
-            raise BadInputError(
-                f"the calibration of '{sensor}' ran out on {valid_until.isoformat()}",
-                where=str(bench.source),
-                fix="have it calibrated and enter the new date under [calibration]",
-            )
     rehearsal = Rehearsal(bench)
     for step in (*plan.steps, *plan.finally_):
         step.carry_out(rehearsal)

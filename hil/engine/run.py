@@ -19,17 +19,26 @@ from hil.core.errors import (
 )
 from hil.core.files import make_directory
 from hil.core.recording import Recording
-from hil.core.result import CriterionResult, RunResult, SafeState, StoppedInEmergency, Timing, verdict_of
+from hil.core.result import (
+    AcceptedExpiry,
+    CriterionResult,
+    RunResult,
+    SafeState,
+    StoppedInEmergency,
+    Timing,
+    verdict_of,
+)
 from hil.engine.arming import Arming
 from hil.engine.bench import Bench, open_bench, refuse_needs
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
+from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.conductor import BenchConductor
 from hil.engine.emergency_stop import latch, refuse_latched
 from hil.engine.operator import Operator
 from hil.engine.preflight import channels_of, preflight, refuse_unconfirmed
 from hil.engine.recorder import Recorder
 from hil.engine.request_timing import COLLECT_S, RequestTiming
-from hil.engine.run_files import store_inputs, store_result
+from hil.engine.run_files import store_expiry, store_inputs, store_result
 from hil.engine.safety import reach_safe_state
 from hil.engine.watchkeeping import Watchkeeping
 from test_plans import estimate_duration_s, judge
@@ -50,6 +59,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
         make_directory(request.out)
         today = datetime.datetime.now(datetime.UTC).date()
         answers = request.terminal is not None or request.confirmed_by != ""
+        expired = accepted_expiry(request.bench, today, request.accept_expired)
         preflight(request.plan, request.bench, request.out, today, somebody_answers=answers)
         refuse_unconfirmed(request.plan, request.hazard_confirmed_by)
         refuse_latched(request.bench)
@@ -58,12 +68,12 @@ def run_plan(request: RunRequest) -> RunOutcome:
             for path in request.replaces:
                 path.unlink(missing_ok=True)
             with request.stop.telling(partial(setattr, bench.loop, "stop_requested", True)):
-                return _Run(request, bench).carry_out()
+                return _Run(request, bench, expired).carry_out()
 
 
 class _Run:
-    def __init__(self, request: RunRequest, bench: Bench) -> None:
-        self._request, self._bench = request, bench
+    def __init__(self, request: RunRequest, bench: Bench, expired: AcceptedExpiry | None) -> None:
+        self._request, self._bench, self._expired = request, bench, expired
         self._error: HilError | None = None
         self._unsafe: list[str] = []
         self._end_steps = ""
@@ -114,6 +124,8 @@ class _Run:
         )
         self._recorder.between = bench.loop.keep_up
         store_inputs(self._recorder, request, bench)
+        if self._expired:
+            store_expiry(self._recorder, self._expired)
         # In virtual time nothing can be late.
         self._timing = (
             None
@@ -249,6 +261,7 @@ class _Run:
             emergency_stop=self._stopped,
             end_steps=self._end_steps,
             missing=self._arming.missing,
+            accepted_expired=self._expired,
             reason=str(self._error) if self._error else "",
         )
         try:

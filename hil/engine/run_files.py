@@ -5,7 +5,8 @@ from __future__ import annotations
 import datetime
 
 from hil.core.model import model_to_toml
-from hil.core.result import RunResult
+from hil.core.recording import ACCEPTED_EXPIRY
+from hil.core.result import AcceptedExpiry, RunResult
 from hil.engine.bench import Bench
 from hil.engine.border import RunRequest
 from hil.engine.conductor import BenchConductor
@@ -39,6 +40,11 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> None:
     writer.describe("versions", versions())
     dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
     writer.describe("calibration", dates)
+
+
+def store_expiry(recorder: Recorder, expired: AcceptedExpiry) -> None:
+    """Who answers for sensors whose calibration has run out."""
+    recorder.writer.describe(ACCEPTED_EXPIRY, {"json": expired.model_dump_json()})
 
 
 def store_result(

@@ -33,6 +33,13 @@ def command(
             "--confirm", metavar="NAME", help="who takes a hazardous plan upon them; stands in the report"
         ),
     ] = "",
+    accept_expired: Annotated[
+        str,
+        typer.Option(
+            metavar="'NAME: reason'",
+            help="who answers for sensors whose calibration has run out, and why; stands in the report",
+        ),
+    ] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print result.json on stdout, nothing else")
@@ -47,5 +54,5 @@ def command(
 
     return carry_out(
         plan=plan, bench=bench, out=out, model=model, operator=operator, yes=yes,
-        confirm=confirm, overwrite=overwrite, as_json=as_json
+        confirm=confirm, accept_expired=accept_expired, overwrite=overwrite, as_json=as_json
     )  # fmt: skip

@@ -15,7 +15,7 @@ from hil.core.recording._formats import READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
-from hil.core.recording._run import RUN, SEGMENT, run_of
+from hil.core.recording._run import ACCEPTED_EXPIRY, RUN, SEGMENT, run_of
 from hil.core.recording._table import Event, Recording, checked
 
 logger = logging.getLogger(__name__)
@@ -91,6 +91,7 @@ def write_recording(recording: Recording, path: Path) -> None:
 
 
 __all__ = [
+    "ACCEPTED_EXPIRY",
     "CHUNK_BYTES",
     "RUN",
     "SEGMENT",

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from hil.core.errors import BadInputError
 from hil.core.recording._table import Recording
-from hil.core.result import RunResult, Segment
+from hil.core.result import AcceptedExpiry, RunResult, Segment
 
 #: Attachment with the run's result, written when the run has ended.
 RUN = "run.json"
 #: Prefix of the metadata tables that hold the run's segments, written as each begins and as it ends.
 SEGMENT = "segment/"
+#: Metadata table with who answered for sensors whose calibration had run out.
+ACCEPTED_EXPIRY = "accepted expired calibration"
 
 
 def run_of(recording: Recording) -> RunResult | None:
@@ -34,6 +36,16 @@ def run_of(recording: Recording) -> RunResult | None:
         ) from error
 
 
+def accepted_expiry_of(recording: Recording) -> AcceptedExpiry | None:
+    """Who answered for sensors whose calibration had run out before the run, if any had.
+
+    Raises:
+        ValueError: what is stored cannot be understood.
+    """
+    table = recording.metadata.get(ACCEPTED_EXPIRY)
+    return AcceptedExpiry.model_validate_json(table["json"]) if table else None
+
+
 def _as_far_as_recorded(recording: Recording) -> RunResult:
     run = recording.metadata["run"]
     last_s = float(recording.time_s[-1]) if len(recording.time_s) else 0.0
@@ -47,6 +59,7 @@ def _as_far_as_recorded(recording: Recording) -> RunResult:
         bench_time_s=last_s,
         safe_state="not_confirmed",
         segments=tuple(_cut(segment, last_s) for segment in segments if segment.start_s < last_s),
+        accepted_expired=accepted_expiry_of(recording),
         reason="the recording was cut off before the run had ended; nothing is known of its safe state",
     )
 
