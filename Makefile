@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
+.PHONY: run setup kills test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -66,6 +66,10 @@ coverage: setup
 # What the next release's CHANGELOG.md will say, from the fragments in changelog.d.
 changelog: setup
 	$(BIN)/towncrier build --draft --version next
+
+# A run killed at a hundred random moments, in real time: docs/reference/kills.md.
+kills: setup
+	$(BIN)/python -m benchmarks.kills
 
 bench: setup
 	$(BIN)/python -m benchmarks

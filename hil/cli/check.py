@@ -11,8 +11,8 @@ from rich.table import Table
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress
 from hil.core.channels import CHANNELS
 from hil.engine import load_bench
-from hil.engine.forecast import Forecast, forecast
 from hil.engine.calibration_dates import accepted_expiry
+from hil.engine.forecast import Forecast, forecast
 from hil.engine.preflight import preflight
 from test_plans import Pace, Plan, estimate_duration_s, load_plan
 
@@ -28,7 +28,7 @@ def carry_out(
     with tempfile.TemporaryDirectory() as directory:
         today = datetime.datetime.now(datetime.UTC).date()
         accepted_expiry(file, today, "")
-        preflight(checked, file, Path(directory), today)
+        preflight(checked, file, Path(directory))
     pace = Pace(speed_ramp_m_s2=file.dyno.speed_ramp_m_s2, wheel_radius_m=file.vehicle.wheel_radius_m)
     duration_s = estimate_duration_s(checked, pace)
     with progress(checked.name) as show:

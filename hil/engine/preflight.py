@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import shutil
 from pathlib import Path
 
@@ -17,9 +16,7 @@ from test_plans import PROMPT_TIMEOUT_S, Array, Plan, PlannedSegment, Quantity, 
 _BYTES_PER_SECOND = 250_000  # a recording takes some 170 kB for each second of bench time, and a report
 
 
-def preflight(
-    plan: Plan, bench: BenchFile, out: Path, today: datetime.date, *, somebody_answers: bool = True
-) -> None:
+def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool = True) -> None:
     """Refuse a run that could not end well.
 
     Args:

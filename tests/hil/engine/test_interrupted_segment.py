@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import json
 import signal
 from pathlib import Path
@@ -127,8 +126,7 @@ def test_a_prompt_is_answered_by_the_operator_or_by_name(tmp_path: Path) -> None
 
 def test_on_hardware_a_prompt_that_nobody_can_answer_is_refused(tmp_path: Path) -> None:
     hardware = SIM.model_copy(update={"simulation": None})
-    today = datetime.date(2020, 1, 1)
     with pytest.raises(BadInputError, match=r"Is the cage shut\?.*no terminal"):
-        preflight(plan(PROMPT), hardware, tmp_path, today, somebody_answers=False)
-    preflight(plan(PROMPT), hardware, tmp_path, today)
-    preflight(plan(PROMPT), SIM, tmp_path, today, somebody_answers=False)
+        preflight(plan(PROMPT), hardware, tmp_path, somebody_answers=False)
+    preflight(plan(PROMPT), hardware, tmp_path)
+    preflight(plan(PROMPT), SIM, tmp_path, somebody_answers=False)
