@@ -31,6 +31,7 @@ from hil.core.printable import printable
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING, RunOutcome, RunRequest, StopRequest, load_bench, run_plan
+from hil.engine.border import analysed_apart
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import Plan, load_plan
 
@@ -66,6 +67,7 @@ def carry_out(
         confirmed_by=yes,
         accept_expired=accept_expired,
         hazard_confirmed_by=confirm or _asked_for_name(checked),
+        analyse=analysed_apart,
         stop=stop,
     )
     inputs = [bench_file.source, *([Path(plan)] if Path(plan).is_file() else []), *([model] if model else [])]

@@ -13,6 +13,7 @@ from typing import Protocol
 
 from hil.core.errors import HilError
 from hil.core.model import Model
+from hil.core.other_process import OtherProcess
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from hil.engine.bench_tables import BenchFile
@@ -22,7 +23,43 @@ from test_plans import Plan, Work
 RECORDING = "recording.mcap"
 
 Progress = Callable[[float, str], None]
-Analyse = Callable[[Work, Recording, Path], Mapping[str, bytes]]
+
+
+class Analysis(Protocol):
+    """An analysis that is being done."""
+
+    def done(self) -> bool:
+        """Whether it has ended; never waits."""
+        ...
+
+    def result(self) -> Mapping[str, bytes]:
+        """Files by name; raises what went wrong."""
+        ...
+
+    def kill(self) -> None:
+        """Nobody wants it any more."""
+        ...
+
+
+Analyse = Callable[[Work, Recording, Path], Analysis]
+
+
+@dataclass(frozen=True)
+class Analysed:
+    """An analysis that has been done already."""
+
+    files: Mapping[str, bytes]
+
+    def done(self) -> bool:
+        """It has."""
+        return True
+
+    def result(self) -> Mapping[str, bytes]:
+        """Files by name."""
+        return self.files
+
+    def kill(self) -> None:
+        """Too late."""
 
 
 class Terminal(Protocol):
@@ -37,9 +74,14 @@ class Terminal(Protocol):
         ...
 
 
-def analysed_here(work: Work, recording: Recording, directory: Path) -> Mapping[str, bytes]:
-    """Do the analysis where it is asked for."""
-    return work(recording, directory)
+def analysed_here(work: Work, recording: Recording, directory: Path) -> Analysis:
+    """Do the analysis where it is asked for: where time stands still meanwhile."""
+    return Analysed(work(recording, directory))
+
+
+def analysed_apart(work: Work, recording: Recording, directory: Path) -> Analysis:
+    """Let a process of its own do it: heartbeats go on, and it can be killed."""
+    return OtherProcess(work, recording, directory)
 
 
 @dataclass
@@ -67,7 +109,8 @@ class RunRequest:
 
     Calls to who asked for the run, with data and for data: `terminal` shows texts to the operator and gives
     what was typed (None: nobody can be asked); `progress` is told the share that is done and what is going
-    on; `analyse` does the analysis of a step of the plan, while the bench is kept alive.
+    on; `analyse` begins the analysis of a step of the plan, while the bench is kept alive (None: in a process
+    of its own on hardware, at once in virtual time).
 
     The one call the other way is `stop`.
     """
@@ -82,6 +125,6 @@ class RunRequest:
     hazard_confirmed_by: str = ""
     accept_expired: str = ""
     progress: Progress = lambda share, text: None
-    analyse: Analyse = analysed_here
+    analyse: Analyse | None = None
     replaces: tuple[Path, ...] = ()
     stop: StopRequest = field(default_factory=StopRequest)

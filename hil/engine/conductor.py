@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import threading
-from collections.abc import Callable
-from concurrent.futures import Future
+import math
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Literal, TypeVar
+from typing import Literal
 
 import numpy as np
 
@@ -18,7 +17,7 @@ from hil.core.files import write_atomically
 from hil.core.recording import SEGMENT
 from hil.core.result import RunResult, Segment
 from hil.engine.bench import Bench
-from hil.engine.border import Analyse, analysed_here
+from hil.engine.border import Analyse, Analysis, analysed_here
 from hil.engine.hold import Holding
 from hil.engine.playing import Playing
 from hil.engine.preflight import Rehearsal
@@ -26,7 +25,6 @@ from hil.engine.recorder import Recorder
 from hil.engine.request_timing import Periodic
 from test_plans import PROMPT_TIMEOUT_S, Array, PlannedSegment, Quantity, Work
 
-T = TypeVar("T")
 _SPEED_TOLERANCE_RAD_S = 0.5
 _SPEED_GRACE_S = 5.0
 RELEASE_S = 0.2  # torque is taken away over this time after a stretch of samples
@@ -46,9 +44,11 @@ class BenchConductor:
         analyse: Analyse = analysed_here,
         noted: Periodic | None = None,
         hold: Holding | None = None,
+        wait_for: Callable[[Callable[[], bool], float], bool] | None = None,
     ) -> None:
         self._bench, self._recorder, self._out = bench, recorder, out
         self._ask, self._analyse, self._noted, self._hold = ask, analyse, noted, hold
+        self._wait_for = wait_for
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
         self._speed_m_s = 0.0
@@ -195,7 +195,7 @@ class BenchConductor:
         self._switch_off()
         recording = self._recorder.so_far()
         recording.attachments["run.json"] = self._result_so_far().model_dump_json().encode()
-        files = self._meanwhile(lambda: self._analyse(work, recording, self._out))
+        files = self._awaited(self._analyse(work, recording, self._out))
         for file, content in files.items():
             write_atomically(self._out / file, content)
             self.made[file] = content
@@ -213,25 +213,15 @@ class BenchConductor:
             reason="the run is still going on",
         )
 
-    def _meanwhile(self, work: Callable[[], T]) -> T:
-        """What `work` gives; the loop goes on meanwhile, or the dynos would miss the host's heartbeat.
-
-        An interrupt does not wait for it.
-        """
-        if self._bench.simulated:
-            return work()  # virtual time stands still
-        answer: Future[T] = Future()
-
-        def do() -> None:
-            try:
-                answer.set_result(work())
-            except BaseException as error:  # raised where it is waited for
-                answer.set_exception(error)
-
-        threading.Thread(target=do, daemon=True).start()
-        while not answer.done():
-            self._bench.loop.step()
-        return answer.result()
+    def _awaited(self, analysis: Analysis) -> Mapping[str, bytes]:
+        """What it gives; heartbeats go on meanwhile, and whatever ends the run ends it."""
+        try:
+            if not analysis.done() and self._wait_for is not None:
+                self._wait_for(analysis.done, math.inf)
+            return analysis.result()
+        except BaseException:
+            analysis.kill()
+            raise
 
     def _begin(self, planned: PlannedSegment, clock_s: float, samples: int) -> None:
         start_s = self._recorder.recording_time(clock_s)

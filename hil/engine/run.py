@@ -30,7 +30,7 @@ from hil.core.result import (
 )
 from hil.engine.arming import Arming
 from hil.engine.bench import Bench, open_bench, refuse_needs
-from hil.engine.border import RECORDING, RunOutcome, RunRequest
+from hil.engine.border import RECORDING, RunOutcome, RunRequest, analysed_apart, analysed_here
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.conductor import BenchConductor
 from hil.engine.emergency_stop import latch, refuse_latched
@@ -136,7 +136,14 @@ class _Run:
         operator = Operator(bench.loop, request.terminal, request.confirmed_by)
         self._watch = Watchkeeping(bench, self._recorder, operator, self._try_event)
         self._conductor = BenchConductor(
-            bench, self._recorder, request.out, operator.confirm, request.analyse, noted, self._watch.hold
+            bench,
+            self._recorder,
+            request.out,
+            operator.confirm,
+            request.analyse or (analysed_here if bench.simulated else analysed_apart),
+            noted,
+            self._watch.hold,
+            operator.wait_for,
         )
         self._arming = Arming(bench, self._recorder, self._watch.limits, self._watch.zero, self._timing)
 

@@ -10,7 +10,7 @@ from typing import ClassVar, TypeVar
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.engine import RunOutcome, RunRequest, run_plan
-from hil.engine.border import analysed_here
+from hil.engine.border import Analysis, analysed_here
 from test_plans import Conductor, Outlook, Pace, Plan, Step, Work
 from tests.benches_for_tests import plan, sim_bench
 from tests.operators import Answering
@@ -45,7 +45,7 @@ def across(thing: T) -> T:
 def run_on_the_other_side(asked: Plan, out: Path, heard: list[str]) -> RunOutcome:
     """A run of which nothing but bytes passes in either direction."""
 
-    def analyse(work: Work, recording: Recording, directory: Path) -> Mapping[str, bytes]:
+    def analyse(work: Work, recording: Recording, directory: Path) -> Analysis:
         heard.append("analyse")
         return across(analysed_here(*across((work, recording, directory))))
 
