@@ -149,7 +149,7 @@ class BenchConductor:
         """
         dyno, load = self._bench.dyno, self._load
         began_rad_s = dyno.wheel_speed_rad_s
-        while not attempt():
+        while self._is_due() or not attempt():
             assert self._hold is not None
             self._switch_off()
             dyno.hold_speed(dyno.wheel_speed_rad_s)

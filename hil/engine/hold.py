@@ -81,6 +81,15 @@ class Holding:
         """End the run at the next safe point, with its end steps."""
         self._end = self._end or OrderlyEndError(text, where="bench limits", fix=_FIX)
 
+    def refuse_end(self) -> None:
+        """Call when nothing is left that could be held.
+
+        Raises:
+            OrderlyEndError: the run was to be ended.
+        """
+        if self._end is not None:
+            raise self._end
+
     def wait(self) -> None:
         """Return when the run may go on.
 
@@ -93,13 +102,11 @@ class Holding:
         causes = "; ".join(cause.text for cause in self._causes.values())
         ended_by = "end of the run"
         try:
-            if self._end is not None:
-                raise self._end
+            self.refuse_end()
             self._begin(causes)
             while self._causes:
                 self._operator.pass_time()
-                if self._end is not None:
-                    raise self._end
+                self.refuse_end()
                 ended_by = self._look(self._loop.clock.now_s() - began_s) or ended_by
         except BaseException:
             ended_by = "end of the run"

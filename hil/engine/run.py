@@ -172,6 +172,7 @@ class _Run:
         try:
             for step in plan.steps:
                 step.carry_out(conductor)
+            self._watch.hold.refuse_end()
         except (InterruptError, BadInputError, OrderlyEndError) as error:
             self._end_early(error)
         except HilError:
@@ -186,6 +187,7 @@ class _Run:
             step.carry_out(conductor)
         self._end_steps = self._read_back()
         self._event("end_steps", self._end_steps)
+        self._watch.hold.refuse_end()
 
     def _end_early(self, error: HilError) -> None:
         """Torque off; the end steps that follow are not to be disturbed."""

@@ -20,6 +20,7 @@ from hil.engine.bus_tally import Tally, known_identifiers
 from hil.engine.doctor._buses import findings_of_bus, findings_of_link
 from hil.engine.doctor._clocks import Listener
 from hil.engine.doctor._dates import findings_of_dates
+from hil.engine.doctor._stops import findings_of_stops
 from hil.engine.doctor.examination import BusFacts, DeviceFacts, Examination
 from hil.engine.identification import identities_of, told, what_to_do
 from hil.engine.provenance import versions
@@ -93,6 +94,7 @@ class _Visit:
         self._look_at_zero(readings)
         found.clocks, findings = listener.clocks()
         self._add(*findings, *findings_of_dates(self._file, request.today))
+        self._add(*findings_of_stops(self._file))
         found.findings.sort(key=lambda finding: finding.severity != "fault")
         return found
 

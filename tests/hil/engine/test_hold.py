@@ -131,6 +131,23 @@ def test_ramp_down_ends_the_run_with_its_end_steps_and_no_jump_of_torque(tmp_pat
     assert np.min(np.diff(torque)) > -0.2
 
 
+@pytest.mark.parametrize("reached_s", [2.9, 3.6])
+def test_what_is_reached_at_the_very_end_still_ends_the_run_in_error(
+    reached_s: float, tmp_path: Path
+) -> None:
+    """In the last step, or in the end steps: nothing is left that could be held."""
+    named = NamedLimit(channel="cage_shut", unit="1", below=0.5, response="ramp_down", persistence_samples=0)
+    limited = SIM.limits.model_copy(update={"watch": {"late": named}})
+    file = sim_bench(
+        f"late-{reached_s}", devices=cage(open_between(reached_s, 99.0)), limits=limited, interlocks={}
+    )
+    waits = plan("[{wait: {duration_s: 2.35}}]", end="[{ramp_down: {duration_s: 1.5}}]")
+    outcome = run_plan(RunRequest(waits, file, tmp_path))
+    assert isinstance(outcome.error, OrderlyEndError)
+    assert outcome.result.end_steps.startswith("carried out")
+    assert outcome.result.verdict == "error"
+
+
 def test_a_pause_without_an_operator_ends_the_run_in_order(tmp_path: Path) -> None:
     outcome = held(tmp_path, "nobody", limits=limits("pause"))
     assert isinstance(outcome.error, OrderlyEndError)

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from hil.core.errors import BadInputError, BenchError
+from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from hil.engine.bench_tables import SensorTable
 from hil.engine.jog import JogRequest, jog, jog_bench, jog_plan, signs_of
 from tests.benches_for_tests import SIM, sim_bench
+from tests.operators import Answering
 
 SPEEDS = ("motor_speed_rad_s", "wheel_speed_left_rad_s", "wheel_speed_right_rad_s")
 SHAFTS = ("shaft_torque_left_nm", "shaft_torque_right_nm")
@@ -108,6 +109,18 @@ def test_what_runs_away_is_stopped_and_left_safe(tmp_path):
 def test_a_torque_that_is_no_jogging_is_refused(torque_nm):
     with pytest.raises(BadInputError, match="--torque"):
         jog_plan(torque_nm, SIM)
+
+
+def test_the_operator_is_asked_before_the_axle_turns_and_whether_it_did(tmp_path):
+    operator = Answering()
+    outcome = jog(JogRequest(sim_bench("asking"), tmp_path, terminal=operator))
+    assert outcome.signs.right
+    assert [text.split()[0] for text in operator.told] == ["The", "Did", "Did"]
+    declines = Answering("q")
+    outcome = jog(JogRequest(sim_bench("declining"), tmp_path / "again", terminal=declines))
+    assert isinstance(outcome.run.error, InterruptError)
+    assert outcome.run.result.segments == ()
+    assert len(declines.told) == 1
 
 
 def test_on_hardware_somebody_is_asked(tmp_path):
