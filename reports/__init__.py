@@ -8,6 +8,7 @@ from pathlib import Path
 from hil.core.files import replacing, write_atomically
 from hil.core.recording import Recording
 from hil.core.result import RunResult
+from reports.belonging import Claim, claim_of
 from reports.content import content
 from reports.html import html_text, input_texts, recording_named_in, write_html
 from reports.junit import junit_text, write_junit
@@ -74,6 +75,8 @@ __all__ = [
     "HTML",
     "JUNIT",
     "PDF",
+    "Claim",
+    "claim_of",
     "recording_named_in",
     "write_documents",
     "write_figures",

@@ -94,6 +94,7 @@ class Content:
     files: tuple[StoredFile, ...]
     source: str
     sha256: str
+    samples_sha256: str
     mark: str
     criteria: CriteriaTable | None
     warnings: tuple[str, ...]
@@ -141,6 +142,7 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         damage=tuple(recording.damage),
         source=recording.source.name,
         sha256=sha256,
+        samples_sha256=recording.samples_sha256,
         mark=" · ".join(part for part in marks if part),
         criteria=criteria_table(result) if result and result.criteria else None,
         controllers=provenance.controller_table(recording),

@@ -18,6 +18,7 @@ from hil.core.files import write_atomically
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from reports import style
+from reports.belonging import Claim, keywords
 from reports.content import Content, content
 from reports.figure import Figure
 from reports.labels import pieces
@@ -84,6 +85,7 @@ def _data(report: Content) -> dict[str, Any]:
         }
         for section in report.sections
     ]
+    data["keywords"] = keywords(Claim(report.source, report.sha256, report.samples_sha256))
     data["colors"] = {name: tone.light for name, tone in style.SURFACE.items()}
     data["width_mm"] = style.PAPER_WIDTH_MM
     return data

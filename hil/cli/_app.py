@@ -36,6 +36,8 @@ _COMMANDS = {
     "explain": "What would bring a predicted run to target figures.",
     "simulate": "Replay a recording's torque through a model.",
     "recover": "A whole recording from what a crash left.",
+    "verify": "Prove that report and recording belong together and nothing changed.",
+    "sign": "Sign a run's directory: who approved it.",
     "export": "Write a recording as CSV, Parquet or MDF4.",
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
     "doctor": "What of a bench is there, what is wrong with it, and what to do.",

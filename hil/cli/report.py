@@ -14,9 +14,8 @@ from hil.cli._output import (
     warn_of_damage,
 )
 from hil.cli._place import refuse_missing, results_in
+from hil.cli._result_file import RESULT, write_result
 from hil.cli._streams import complain
-from hil.cli.run import RESULT
-from hil.core.files import write_atomically
 from hil.core.recording import Recording, read_recording, run_of
 from hil.core.result import RunResult, verdict_of
 from hil.engine import RECORDING
@@ -48,8 +47,7 @@ def carry_out(
             written = write_reports(recording, result, folder)
         files = {kind: file.name for kind, file in written.items()}
         if result is not None:
-            result = result.model_copy(update={"files": {"recording": path.name, **files}})
-            write_atomically(folder / RESULT, result.model_dump_json(indent=2) + "\n")
+            result = write_result(result, recording, {"recording": path.name, **files}, folder)
         place.remove_stale([*files.values(), *([RESULT] if result else [])])
     return _told(result, files, path, folder, as_json=as_json)
 

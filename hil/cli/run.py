@@ -21,23 +21,23 @@ from hil.cli._output import (
     warn,
 )
 from hil.cli._place import Place, results_in
+from hil.cli._result_file import RESULT, write_result
 from hil.cli._streams import complain
 from hil.cli._terminal import KEYS, operators_terminal
 from hil.cli._timing import times_in_words, timing_in_words
 from hil.core.errors import BenchError, HilError, InterruptError
-from hil.core.files import write_atomically
 from hil.core.model import load_model
 from hil.core.printable import printable
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING, RunOutcome, RunRequest, StopRequest, load_bench, run_plan
 from hil.engine.border import analysed_apart
+from hil.engine.disk_room import remark_on_room
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import Plan, load_plan
 
 logger = logging.getLogger(__name__)
 T = TypeVar("T")
-RESULT = "result.json"
 NAMES = (RECORDING, RESULT, JUNIT, HTML, PDF)
 
 
@@ -78,6 +78,9 @@ def carry_out(
         stop.by_signals(),  # from here to the result a signal only asks: nothing that was measured is lost
     ):
         request.out, request.replaces = place.folder, place.stale
+        remark = remark_on_room(checked, place.folder)
+        if remark:
+            warn(remark)
         with progress(f"{checked.name} on {bench_file.name}{_keys(request)}") as show:
             request.progress = lambda share, text: show(text, share)
             outcome = run_plan(request)
@@ -105,11 +108,11 @@ class _Conclusion:
         recording = self._try(lambda: read_recording(path, least_samples=0, allow_missing=True))
         recording = recording or Recording({}, path)  # the verdicts are told all the same
         self._add(lambda: {"junit": write_junit(recording, self._outcome.result, self._path(JUNIT))})
-        result = self._store()
+        result = self._store(recording)
         if not self._asked_again():
             show("writing the reports")
             self._add(lambda: self._documents(recording, result))
-            result = self._store()
+            result = self._store(recording)
         if self._asked_again() and "pdf" not in self._files:
             error = InterruptError(
                 "interrupted before the reports were written",
@@ -134,10 +137,10 @@ class _Conclusion:
         finally:
             INTERRUPTS.ignore_from_now_on()
 
-    def _store(self) -> RunResult:
-        result = self._outcome.result.model_copy(update={"files": dict(self._files)})
-        self._try(lambda: write_atomically(self._path(RESULT), result.model_dump_json(indent=2) + "\n"))
-        return result
+    def _store(self, recording: Recording) -> RunResult:
+        result = self._outcome.result
+        written = self._try(lambda: write_result(result, recording, self._files, self._place.folder))
+        return written or result.model_copy(update={"files": dict(self._files)})
 
     def _add(self, write: Callable[[], dict[str, Path]]) -> None:
         written = self._try(write)

@@ -7,6 +7,7 @@ import errno
 import hashlib
 import os
 import secrets
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -21,6 +22,16 @@ def read_text(path: Path) -> str:
         return path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise BadInputError("not a UTF-8 text file", where=str(path)) from error
+    except OSError as error:
+        raise BadInputError(
+            _reason(error), where=str(path), fix="check the path and its permissions"
+        ) from error
+
+
+def read_bytes(path: Path) -> bytes:
+    """Content of a file; BadInputError tells why it cannot be read."""
+    try:
+        return path.read_bytes()
     except OSError as error:
         raise BadInputError(
             _reason(error), where=str(path), fix="check the path and its permissions"
@@ -80,6 +91,22 @@ def _put_on_disk(path: Path) -> None:
         os.close(handle)
 
 
+def disk_of(path: Path) -> str:
+    """The disk that a path lies on, in words: where it is mounted, and what of it is free."""
+    place = path.resolve()
+    while not place.is_mount() and place != place.parent:
+        place = place.parent
+    with contextlib.suppress(OSError):
+        room = shutil.disk_usage(place)
+        return f"disk at {place}, {room.free / 1e6:.1f} of {room.total / 1e6:.0f} MB free"
+    return f"disk at {place}"
+
+
+def full_disk_in_words(error: OSError, path: Path) -> str:
+    """Why a file could not be written; of a full or broken disk also which."""
+    return f"{_reason(error)} ({disk_of(path)})" if error.errno in _DISK_FAILURES else _reason(error)
+
+
 def refuse_special(path: Path) -> None:
     """Refuse to put a file in the place of a directory or a device.
 
@@ -117,7 +144,7 @@ def of_the_system(error: OSError) -> HilError:
 def _unwritable(path: Path, error: OSError) -> HilError:
     if error.errno in _DISK_FAILURES:
         return BenchError(
-            f"cannot be written: {_reason(error)}",
+            f"cannot be written: {full_disk_in_words(error, path)}",
             where=str(path),
             fix="make room on the disk, then try again",
         )

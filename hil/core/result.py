@@ -226,6 +226,11 @@ class AcceptedExpiry(_Frozen):
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
+    @property
+    def of_the_run(self) -> RunResult:
+        """Without what is only known once the files are written."""
+        return self.model_copy(update={"files": {}, "sha256": {}, "samples_sha256": ""})
+
     verdict: Verdict
     plan: str
     bench: str
@@ -247,4 +252,6 @@ class RunResult(_Frozen):
         None, description="who answered for sensors whose calibration had run out"
     )
     files: dict[str, str] = {}
+    sha256: dict[str, str] = Field({}, description="of each file that `files` names")
+    samples_sha256: str = Field("", description="of the recording's samples, as its table `channels` has it")
     reason: str = ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +10,8 @@ from hil.core.controller import load_controller
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.engine.bench_tables import BenchFile
-from test_plans import PROMPT_TIMEOUT_S, Array, Plan, PlannedSegment, Quantity, Work, estimate_duration_s
-
-_BYTES_PER_SECOND = 250_000  # a recording takes some 170 kB for each second of bench time, and a report
+from hil.engine.disk_room import refuse_too_little_room
+from test_plans import PROMPT_TIMEOUT_S, Array, Plan, PlannedSegment, Quantity, Work
 
 
 def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool = True) -> None:
@@ -35,14 +33,7 @@ def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool
             where=f"plan '{plan.name}'",
             fix="run it from a terminal, or confirm beforehand with --yes 'your name'; the report prints it",
         )
-    needed = int(estimate_duration_s(plan) * _BYTES_PER_SECOND)
-    free = shutil.disk_usage(out).free
-    if free < needed:
-        raise BadInputError(
-            f"{free / 1e6:.0f} MB are free, the recording may need {needed / 1e6:.0f} MB",
-            where=str(out),
-            fix="make room, or choose another place with --out",
-        )
+    refuse_too_little_room(plan, out)
 
 
 def refuse_unconfirmed(plan: Plan, confirmed_by: str) -> None:

@@ -29,7 +29,14 @@ NAMES = (
     "recording.mcap",
     "short.csv",
     "done",
+    "key.pem",
 )
+#: An Ed25519 key of these tests; it signs nothing else.
+KEY = """\
+-----BEGIN PRIVATE KEY-----
+MC4CAQAwBQYDK2VwBCIEIHXkafbv4yTeFFg44pBKRuOhNOMCJx5ULLY6gRu16kZo
+-----END PRIVATE KEY-----
+"""
 
 
 def make_inputs(folder: Path) -> None:
@@ -44,6 +51,7 @@ def make_inputs(folder: Path) -> None:
         shutil.copy(SHIPPED / source, folder / target)
     bench = (folder / "bench.toml").read_text("utf-8").replace('"three_inertia.toml"', '"model.toml"')
     (folder / "bench.toml").write_text(bench, "utf-8")
+    (folder / "key.pem").write_text(KEY, "utf-8")
     (folder / "plan.yaml").write_text(PLAN, "utf-8")
     _hil(folder, "run", "plan.yaml", "--bench", "bench.toml", "--out", "whole")
     _hil(folder, "export", "whole/recording.mcap", "--out", "short.csv")

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.errors import BenchError
+from hil.core.files import full_disk_in_words
 from hil.core.frames import FrameBlock, joined
 from hil.core.recording import _schema
 from hil.core.recording._growing_file import GrowingFile
@@ -168,7 +169,7 @@ class RecordingWriter:
 
     def _failed(self, error: OSError) -> BenchError:
         return BenchError(
-            f"the recording cannot be written: {error.strerror or error}",
+            f"the recording cannot be written: {full_disk_in_words(error, self.path)}",
             where=str(self.path),
             fix="make room on the disk, or choose another place with --out",
         )

@@ -76,6 +76,11 @@ class Recording:
         """Median distance of time stamps in seconds."""
         return float(np.median(np.diff(self.time_s)))
 
+    @property
+    def samples_sha256(self) -> str:
+        """SHA-256 of the samples as they were recorded, '' if nobody wrote it down."""
+        return self.metadata.get("channels", {}).get("sha256", "")
+
     def between(self, start_s: float, end_s: float) -> Recording:
         """The samples with start_s <= time_s <= end_s (half a sample of grace on both ends)."""
         grace = 0.5 * self.sample_time_s

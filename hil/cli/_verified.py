@@ -1,0 +1,167 @@
+"""What of a folder, a report or a recording can be proven, and what does not match."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from hil.cli._result_file import RESULT, text_of
+from hil.cli.report import rejudged
+from hil.core.errors import BadInputError
+from hil.core.files import read_bytes, sha256_of
+from hil.core.recording import Recording, read_recording, run_of
+from hil.core.result import RunResult
+from hil.core.signatures import BrokenSignatureError, fingerprint, hashes_of, read_signature, signatures_in
+from hil.engine import RECORDING
+from reports import HTML, PDF, claim_of
+from reports.provenance import stored_files
+
+RECORDINGS = (".mcap", ".csv", ".parquet", ".mf4")
+REPORTS = (".html", ".pdf", ".json")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something about a file that was proven (`holds`), or that does not match or cannot be proven."""
+
+    holds: bool
+    file: Path
+    text: str
+
+
+def of_run(folder: Path) -> Iterator[Finding]:
+    """A run's folder: its result, every file that it lists, the recording, the reports."""
+    result_file = folder / RESULT
+    try:
+        text = read_bytes(result_file).decode()
+        result = RunResult.model_validate_json(text)
+    except (BadInputError, ValueError):
+        there = "was changed: it cannot be read" if result_file.exists() else "is missing"
+        yield Finding(False, result_file, f"{there}; nothing else tells which files there were")
+        return
+    yield from _listed(folder, result)
+    recording = folder / result.files.get("recording", RECORDING)
+    if recording.is_file():
+        yield from of_recording(recording)
+        yield _of_result(result_file, text, result, recording)
+        for name in (HTML, PDF):
+            if (folder / name).is_file():
+                yield of_report(folder / name, [recording])
+
+
+def _listed(folder: Path, result: RunResult) -> Iterator[Finding]:
+    for name in dict.fromkeys((*result.files.values(), *result.sha256)):
+        path = folder / name
+        wanted = result.sha256.get(name)
+        if Path(name).name != name:
+            yield Finding(False, folder / RESULT, f"names a file of another folder: {name}")
+        elif not path.is_file():
+            yield Finding(False, path, "is missing")
+        elif wanted is None:
+            yield Finding(False, path, f"has no hash in {RESULT}: made by an earlier version?")
+        elif sha256_of(path) != wanted:
+            yield Finding(False, path, f"was changed, or {RESULT} was: its SHA-256 is another there")
+        else:
+            yield Finding(True, path, f"is as {RESULT} says")
+
+
+def _of_result(file: Path, text: str, result: RunResult, path: Path) -> Finding:
+    """Whether result.json says what the recording says of the run, to the byte."""
+    try:
+        recording = _read(path)
+        told = [run for run in (run_of(recording), rejudged(recording)) if run is not None]
+    except BadInputError:
+        return Finding(False, file, "cannot be compared with the recording")
+    if text_of(result) != text:
+        return Finding(False, file, "was changed after it had been written")
+    if result.of_the_run not in [run.of_the_run for run in told]:
+        return Finding(False, file, "was changed: the recording says something else of the run")
+    if result.samples_sha256 != recording.samples_sha256:
+        return Finding(False, file, "was changed: it names other samples than the recording")
+    return Finding(True, file, "says what the recording says of the run")
+
+
+def of_recording(path: Path) -> Iterator[Finding]:
+    """Whether all that is checked in a recording agrees."""
+    try:
+        recording = _read(path)
+    except BadInputError as error:
+        yield Finding(False, path, f"cannot be read: {error.what}")
+        return
+    bad = [*recording.damage, *(note for note in recording.notes if "index" in note)]
+    bad += [f"{f.name}: its hash {f.check}" for f in stored_files(recording) if f.state == "bad"]
+    if not recording.samples_sha256 and not bad:
+        bad = ["has no hash of its samples: nothing says what they were"]
+    for text in bad:
+        yield Finding(False, path, text)
+    if not bad:
+        yield Finding(True, path, f"agrees with its own hashes ({len(recording.time_s)} samples)")
+
+
+def of_report(report: Path, recordings: Iterable[Path]) -> Finding:
+    """Whether a report was made from one of the recordings, or without any from the one beside it."""
+    claim = claim_of(report)
+    if claim is None:
+        return Finding(False, report, "does not say which recording it was made from, or cannot be read")
+    among = list(recordings) or [report.parent / Path(claim.recording).name]
+    there = [path for path in among if path.is_file()]
+    for path in there:
+        if sha256_of(path) == claim.sha256:
+            return Finding(True, report, f"was made from {path}")
+    for path in there:
+        if claim.samples_sha256 and _samples_of(path) == claim.samples_sha256:
+            return Finding(True, report, f"was made from the samples of {path}, then in another file")
+    names = ", ".join(str(path) for path in among)
+    what = "was made from another recording than" if there else "has lost its recording"
+    return Finding(False, report, f"{what} {names}: from {claim.recording}, SHA-256 {claim.sha256}")
+
+
+def of_signatures(folder: Path, by: bytes | None) -> Iterator[Finding]:
+    """Every signature of a folder; with `by`, a raw public key, there must be one of it."""
+    manifests = signatures_in(folder)
+    files = hashes_of(folder) if manifests else {}
+    keys = set()
+    for manifest in manifests:
+        try:
+            signature = read_signature(manifest)
+        except BrokenSignatureError as error:
+            yield Finding(False, manifest, str(error))
+            continue
+        if not signature.intact:
+            yield Finding(False, manifest, "was changed after it had been signed, or its signature was")
+            continue
+        changed = list(_changes(signature.files, files))
+        for name, text in changed:
+            yield Finding(False, folder / name, f"{text} after {signature.signed_by} had signed")
+        if not changed:
+            keys.add(signature.key)
+            whose = "the key that was given" if signature.key == by else f"key {signature.fingerprint}"
+            told = (
+                f"{len(files)} files as {signature.signed_by} signed them at {signature.signed_at}, {whose}"
+            )
+            yield Finding(True, manifest, told)
+    if by is not None and by not in keys:
+        yield Finding(False, folder, f"has no valid signature of the key {fingerprint(by)}")
+
+
+def _changes(signed: Mapping[str, str], now: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    for name in sorted(signed.keys() | now.keys()):
+        if name not in now:
+            yield name, "was removed"
+        elif name not in signed:
+            yield name, "was added"
+        elif signed[name] != now[name]:
+            yield name, "was changed"
+
+
+def _samples_of(path: Path) -> str:
+    try:
+        recording = _read(path)
+    except BadInputError:
+        return ""
+    return "" if recording.damage else recording.samples_sha256
+
+
+def _read(path: Path) -> Recording:
+    return read_recording(path, least_samples=0, allow_missing=True)

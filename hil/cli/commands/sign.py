@@ -1,0 +1,31 @@
+"""`hil sign`: who approved a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="a run's directory")],
+    key: Annotated[
+        Path,
+        typer.Option(help="your Ed25519 private key, of OpenSSH or PEM; 'ssh-keygen -t ed25519' makes one"),
+    ],
+    by: Annotated[str, typer.Option(metavar="NAME", help="who signs; default: the user's name")] = "",
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="replace an earlier signature of this key")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Sign every file of a run's directory, in two files beside them; hil verify --by checks it.
+
+    What does not verify is not signed (exit code 1). Several persons can sign.
+    """
+    from hil.cli.sign import carry_out
+
+    return carry_out(folder=folder, key=key, by=by, overwrite=overwrite, as_json=as_json)

@@ -1,0 +1,55 @@
+"""`hil sign`: who approved a folder."""
+
+from __future__ import annotations
+
+import datetime
+import getpass
+import sys
+from pathlib import Path
+
+from hil.cli._output import console, print_json
+from hil.cli._place import alone_in, refuse_missing
+from hil.cli._result_file import RESULT
+from hil.cli._streams import complain
+from hil.cli._verified import of_run
+from hil.core.errors import BadInputError
+from hil.core.signatures import fingerprint, private_key, sign_folder
+
+
+def carry_out(*, folder: Path, key: Path, by: str, overwrite: bool, as_json: bool) -> int:
+    """Carry the command out; its exit code."""
+    refuse_missing(folder)
+    if not folder.is_dir():
+        raise BadInputError("is not a directory", where=str(folder), fix="name a run's folder")
+    if folder.resolve() in key.resolve().parents:
+        raise BadInputError(
+            "the key lies in the folder that it is to sign", where=str(key), fix="keep it elsewhere"
+        )
+    signer = private_key(key, _passphrase)
+    with alone_in(folder):
+        wrong = [f for f in of_run(folder) if not f.holds] if (folder / RESULT).exists() else []
+        if wrong:
+            told = "\n  ".join(f"{finding.file}: {finding.text}" for finding in wrong)
+            complain("error", f"nothing was signed, for something does not match:\n  {told}")
+            return 1
+        name = by or getpass.getuser()
+        at = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+        manifest, signature = sign_folder(folder, signer, by=name, at=at, overwrite=overwrite)
+    shown = fingerprint(signer.public_key().public_bytes_raw())
+    if as_json:
+        files = {"manifest": str(manifest), "signature": str(signature)}
+        print_json({**files, "signed_by": name, "signed_at": at, "key": shown})
+    else:
+        told = f"signed by {name} with key {shown}: {manifest}, {signature.name}"
+        console().print(told, highlight=False, markup=False, soft_wrap=True)
+    return 0
+
+
+def _passphrase() -> bytes:
+    if not sys.stdin.isatty():
+        raise BadInputError(
+            "the key has a passphrase, and there is no terminal to ask on",
+            where="--key",
+            fix="run it from a terminal",
+        )
+    return getpass.getpass("Passphrase of the key: ").encode()

@@ -1,0 +1,59 @@
+"""`hil verify`: that reports belong to their recordings, that nothing changed, and who signed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from hil.cli._output import console, print_json
+from hil.cli._place import refuse_missing
+from hil.cli._verified import (
+    RECORDINGS,
+    REPORTS,
+    Finding,
+    of_recording,
+    of_report,
+    of_run,
+    of_signatures,
+)
+from hil.core.errors import BadInputError
+from hil.core.signatures import public_key
+
+
+def carry_out(*, sources: list[Path], by: Path | None, as_json: bool) -> int:
+    """Carry the command out; its exit code."""
+    for source in sources:
+        refuse_missing(source)
+        if not source.is_dir() and source.suffix.lower() not in (*RECORDINGS, *REPORTS):
+            raise BadInputError(
+                f"is no folder and ends in none of {', '.join((*RECORDINGS, *REPORTS))}",
+                where=str(source),
+                fix="give a run's folder, a report or a recording",
+            )
+    if by is not None and not any(source.is_dir() for source in sources):
+        raise BadInputError("--by goes with a folder", fix="name the folder that was signed")
+    key = public_key(by) if by else None
+    findings = list(dict.fromkeys(_findings(sources, key)))
+    holds = all(finding.holds for finding in findings)
+    if as_json:
+        told = [{"holds": f.holds, "file": str(f.file), "text": f.text} for f in findings]
+        print_json({"verified": holds, "findings": told})
+        return 0 if holds else 1
+    page = console()
+    for finding in findings:
+        text = f"{'ok ' if finding.holds else 'NOT'} {finding.file}: {finding.text}"
+        page.print(text, highlight=False, markup=False, soft_wrap=True)
+    page.print("\nverified" if holds else "\nNOT verified", highlight=False)
+    return 0 if holds else 1
+
+
+def _findings(sources: list[Path], key: bytes | None) -> Iterator[Finding]:
+    recordings = [path for path in sources if path.suffix.lower() in RECORDINGS and not path.is_dir()]
+    for source in sources:
+        if source.is_dir():
+            yield from of_run(source)
+            yield from of_signatures(source, key)
+        elif source in recordings:
+            yield from of_recording(source)
+        else:
+            yield of_report(source, recordings)
