@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -20,6 +20,10 @@ _BOTH_SIDES = (
 _NEAREST_WITHIN = 2.5  # sample times; beyond, a value is missing (NaN)
 _GIVEN_UP_S = 0.1  # a stream that is silent for this long holds up nobody
 _SLOWER = 1.5  # sample times; a stream slower than this leaves rows without a value
+
+
+def _nothing() -> None:
+    """What most callers have to do between parts."""
 
 
 class SampleAssembler:
@@ -103,9 +107,13 @@ class SampleAssembler:
                     fix="look for lost frames, a device that started again, and the adapter's time stamps",
                 )
 
-    def rows(self, *, everything: bool = False) -> Array:
-        """Samples that are complete (`everything`: also the newest), one row each, columns as `names`."""
-        self._join(everything=everything)
+    def rows(self, *, everything: bool = False, between: Callable[[], None] = _nothing) -> Array:
+        """Samples that are complete (`everything`: also the newest), one row each, columns as `names`.
+
+        `between` is called after each part of it, for together they take longer than a millisecond; it
+        may add nothing here.
+        """
+        self._join(everything=everything, between=between)
         base = self._base
         count = len(base.stamps) if everything else self._complete()
         if count <= 0:
@@ -125,6 +133,7 @@ class SampleAssembler:
             else:
                 values = waiting.nearest(stamps, within_s)
             columns |= dict(zip(waiting.stream.channels, values.T, strict=True))
+            between()
         for name, left, right, is_sum in _BOTH_SIDES:
             if name in self.names:
                 both = columns[left] + columns[right]
@@ -135,9 +144,10 @@ class SampleAssembler:
         self._begun = True
         return np.column_stack([columns[name] for name in self.names])
 
-    def _join(self, *, everything: bool = False) -> None:
+    def _join(self, *, everything: bool = False, between: Callable[[], None] = _nothing) -> None:
         for waiting in self._waiting.values():
             waiting.join(everything=everything)
+            between()
         for waiting in self._waiting.values():
             if waiting.count:
                 waiting.count.forget()

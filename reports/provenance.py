@@ -115,13 +115,13 @@ def timing_facts(result: RunResult) -> list[Fact]:
 
 def _request(request: PeriodicRequests) -> str:
     """Late by how much when sent, and when seen on the bus."""
-    parts = [
+    parts = (
         f"{request.count} every {quantities.quantity(request.period_s * 1e3, 'ms', 0)}",
         f"sent {_late(request.sent)}",
-        f"on the bus {_late(request.seen)}" if request.seen else "",
+        f"on the bus {_late(request.seen) if request.seen else f'not known: {request.why_not_seen}'}",
         f"{request.missed} cycles missed",
-    ]
-    return ", ".join(part for part in parts if part)
+    )
+    return ", ".join(parts)
 
 
 def _late(late: Lateness) -> str:

@@ -17,10 +17,10 @@ def timing_in_words(timing: Timing | None) -> Iterator[str]:
     if timing is None or timing.clock == "virtual":
         return
     for request in timing.requests:
-        seen = f"; on the bus {_late(request.seen)}" if request.seen else ""
+        seen = _late(request.seen) if request.seen else f"not known ({request.why_not_seen})"
         yield (
             f"{request.device} {request.request}: {request.count} every {request.period_s * 1e3:g} ms, sent "
-            f"{_late(request.sent)}{seen}; {request.missed} cycles missed"
+            f"{_late(request.sent)}; on the bus {seen}; {request.missed} cycles missed"
         )
     if timing.pauses:
         times = "once" if timing.pauses == 1 else f"{timing.pauses} times"

@@ -127,6 +127,13 @@ class PeriodicRequests(_Frozen):
         0, description="requests that the adapter did not show on the bus, where it shows any"
     )
 
+    @property
+    def why_not_seen(self) -> str:
+        """Why `seen` is null, in words; '' if it is not."""
+        if self.seen is not None:
+            return ""
+        return "none came back from the bus" if self.unseen else "the adapter gives own frames not back"
+
 
 class Timing(_Frozen):
     """How well the bench's own loop kept time; in virtual time it cannot but be exact, and has no entries."""

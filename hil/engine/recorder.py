@@ -159,7 +159,7 @@ class Recorder:
             raise
 
     def _write_rows(self, *, everything: bool = False) -> None:
-        rows = self._assembler.rows(everything=everything)
+        rows = self._assembler.rows(everything=everything, between=self.between)
         self.between()
         if len(rows):
             self.writer.add_rows(rows)

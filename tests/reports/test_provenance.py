@@ -7,7 +7,7 @@ from pathlib import Path
 from pypdf import PdfReader
 
 from hil.core.recording import Recording
-from hil.core.result import RunResult
+from hil.core.result import Lateness, PeriodicRequests, RunResult, Timing
 from reports import provenance, write_reports
 from reports.content import content
 
@@ -104,3 +104,13 @@ def test_damage_stands_in_the_report(recording: Recording, result: RunResult, tm
     paths = write_reports(broken, result, tmp_path)
     assert "Damaged recording: samples from 1 s to 2 s are lost" in paths["html"].read_text()
     assert "Damaged recording" in PdfReader(paths["pdf"]).pages[0].extract_text()
+
+
+def test_a_run_on_an_adapter_without_echoes_says_why_nothing_was_seen_on_the_bus(result: RunResult) -> None:
+    late = Lateness(p50_ms=0.05, p99_ms=0.4, max_ms=2.25)
+    request = PeriodicRequests(
+        request="torque request", device="RMCU", period_s=0.001, count=5, missed=0, sent=late
+    )
+    timing = Timing(clock="wall", requests=(request,))
+    (fact,) = provenance.timing_facts(result.model_copy(update={"timing": timing}))
+    assert "on the bus not known: the adapter gives own frames not back, 0 cycles missed" in fact.value

@@ -28,6 +28,18 @@ def test_a_bench_in_wall_clock_time_has_a_line_for_each_request() -> None:
     assert pause == "own loop stood still once, the longest 0.3 s"
 
 
+@pytest.mark.parametrize(
+    ("unseen", "said"), [(0, "the adapter gives own frames not back"), (7, "none came back from the bus")]
+)
+def test_why_nothing_was_seen_on_the_bus_is_said(unseen: int, said: str) -> None:
+    late = Lateness(p50_ms=0.05, p99_ms=0.4, max_ms=2.25)
+    request = PeriodicRequests(
+        request="heartbeat", device="dynos", period_s=0.05, count=7, missed=0, sent=late, unseen=unseen
+    )
+    (line,) = timing_in_words(Timing(clock="wall", requests=(request,)))
+    assert f"on the bus not known ({said})" in line
+
+
 def test_virtual_time_needs_none() -> None:
     assert list(timing_in_words(Timing(clock="virtual"))) == []
     assert list(timing_in_words(None)) == []

@@ -61,6 +61,18 @@ def test_rows_are_written_every_half_second_and_the_rest_at_the_end(
     assert np.array_equal(read["oil_temperature_k"], whole["oil_temperature_k"], equal_nan=True)
 
 
+def test_others_have_their_turn_between_the_streams_while_rows_are_made(recorder: Recorder) -> None:
+    turns: list[int] = []
+    recorder.between = lambda: turns.append(0)
+    recorder.begin()
+    for first in range(0, 400, 10):
+        recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(first, first + 10))))
+    assert not turns
+    recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(400, 600))))
+    # Two streams numbered, one placed; the rows as a whole, and as they are written
+    assert len(turns) >= 5
+
+
 def test_a_recording_without_samples_has_its_channels(recorder: Recorder) -> None:
     empty = recorder.finish_rows()
     assert list(empty.channels) == ["time_s", *CHANNELS, "oil_temperature_k"]
