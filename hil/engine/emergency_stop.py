@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime
 import os
 import secrets
@@ -65,11 +66,12 @@ def latch(file: BenchFile, *, by: str, why: str, run: Path) -> None:
     make_directory(folder)
     path = folder / f"{file.name[:60]}-{secrets.token_hex(6)}.json"
     write_atomically(path, stop.model_dump_json(indent=1) + "\n")
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(handle)  # else its name could be gone after a power cut
-    finally:
-        os.close(handle)
+    with contextlib.suppress(OSError):  # a system that opens no folders
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)  # else its name could be gone after a power cut
+        finally:
+            os.close(handle)
 
 
 def refuse_latched(file: BenchFile) -> None:

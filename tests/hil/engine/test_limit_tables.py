@@ -1,0 +1,94 @@
+"""What a bench file may say of limits and interlocks, and what of it is refused with its key."""
+
+from __future__ import annotations
+
+import tomllib
+
+import pytest
+
+from hil.core.errors import BadInputError
+from hil.engine import BenchFile
+from hil.engine.bench_file import bench_from_dict
+from hil.engine.ranges import ranges_of
+from tests.benches_for_tests import SIM
+
+WARM = """
+[limits.watch.warm]
+channel = "motor_speed_rad_s"
+unit = "rad/s"
+above = 90.0
+hysteresis = 2.0
+persistence_samples = 5
+response = "pause"
+"""
+STEEP = WARM.replace('above = 90.0', 'of = "slope"\nover_s = 0.02\nabove = 90.0')  # fmt: skip
+CAGE = """
+[interlocks.cage]
+channel = "motor_speed_rad_s"
+unit = "rad/s"
+below = -0.5
+message = "shut the cage"
+"""
+
+
+def loaded(further: str) -> BenchFile:
+    text = f"{SIM.text}\n{further}"
+    return bench_from_dict(tomllib.loads(text), text, SIM.source)
+
+
+def test_a_file_of_before_means_what_it_meant() -> None:
+    ranges = ranges_of(loaded("").limits)
+    assert {r.response for r in ranges} == {"trip"}
+    assert {r.hysteresis for r in ranges} == {0.0}
+    assert {r.samples(0.001) for r in ranges} == {5}
+
+
+def test_what_is_stated_is_what_is_watched() -> None:
+    file = loaded(WARM + CAGE)
+    ranges = {r.name: r for r in ranges_of(file.limits, file.interlocks)}
+    warm, cage = ranges["warm"], ranges["cage"]
+    assert (warm.above, warm.hysteresis, warm.samples(0.001), warm.response) == (90.0, 2.0, 5, "pause")
+    assert (cage.below, cage.response, cage.well_for_s, cage.timeout_s) == (-0.5, "hold", 1.0, 60.0)
+    assert (cage.message, cage.samples(0.001)) == ("shut the cage", 5)
+    assert ranges_of(loaded(STEEP).limits)[-1].slope_s == 0.02
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["motor_torque_nm", "driving_torque_nm", "shaft_torque_nm", "motor_speed_rad_s", "wheel_speed_rad_s",
+     "vehicle_speed_m_s"],
+)  # fmt: skip
+def test_a_magnitude_that_is_missing_is_an_error_and_never_no_limit(key: str) -> None:
+    text = "\n".join(line for line in SIM.text.splitlines() if not line.startswith(f"{key} ="))
+    if key in ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm"):  # also a sensor's noise
+        text += f"\n{key} = 0.0\n"  # the noise table is the last
+    with pytest.raises(BadInputError, match=f"limits.{key}: is missing"):
+        bench_from_dict(tomllib.loads(text), text, SIM.source)
+
+
+@pytest.mark.parametrize(
+    ("table", "change", "said"),
+    [
+        (WARM, ("above = 90.0", ""), "limits nothing; give 'below', 'above' or both"),
+        (WARM, ("above = 90.0", "above = 90.0\nbelow = 88.0"), "the hysteresis leaves nothing"),
+        (WARM, ("above = 90.0", "above = 90.0\npersistence_s = 0.1"), "not both"),
+        (WARM, ("above = 90.0", "above = 90.0\nover_s = 0.1"), "over_s goes with of = 'slope'"),
+        (WARM, ('"pause"', '"hope"'), "limits.watch.warm.response"),
+        (WARM, ('unit = "rad/s"', ""), "limits.watch.warm.unit: is missing"),
+        (WARM, ("above = 90.0", "above = nan"), "limits.watch.warm.above"),
+        (WARM, ("above = 90.0", "above = 1e308"), "limits.watch.warm.above"),
+        (
+            WARM,
+            ("persistence_samples = 5", "persistence_samples = -1"),
+            "limits.watch.warm.persistence_samples",
+        ),
+        (CAGE, ('message = "shut the cage"', ""), "interlocks.cage.message: is missing"),
+        (CAGE, ("below = -0.5", 'below = -0.5\nresponse = "trip"'), "interlocks.cage.response"),
+        (CAGE, ("below = -0.5", "below = -0.5\ntimeout_s = 0"), "interlocks.cage.timeout_s"),
+        ("[limits.twist]\ngear_ratio = 0.0\n", ("", ""), "limits.twist.gear_ratio"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_with_its_key(table: str, change: tuple[str, str], said: str) -> None:
+    with pytest.raises(BadInputError) as caught:
+        loaded(table.replace(*change) if change[0] else table)
+    assert said in str(caught.value)
