@@ -42,9 +42,8 @@ class Counted:
         return len(counts) == 1 and not (self.dropped or self.gaps or self.remarks)
 
 
-def recorded(near: str, far: str, gap_ms: float, for_s: float, path: Path) -> Counted:
-    """Send from `far`, receive at `near` for about `for_s`."""
-    count = max(1, int(for_s / gap_ms * 1e3))
+def recorded(near: str, far: str, gap_ms: float, count: int, path: Path) -> Counted:
+    """Send `count` frames from `far`, `gap_ms` between two of them, and receive them at `near`."""
     before = _dropped(near)
     clock = WallClock()
     offset_s = time.time() - clock.now_s()

@@ -4,7 +4,10 @@
 # There are vcan and two buses with two kvaser_pci controllers each: simcan0 and simcan1, simcan2 and simcan3.
 # DIR is /mnt/out inside: only what is written there lasts. If there is a DIR/disk, its lines are the places at
 # which the folders 0, 1, ... of the disk image $CAN_VM_DISK are mounted.
-# Environment: CAN_VM_CACHE (default ~/.cache/hil-can-vm: kernel and boot image), LIMIT (seconds, default 1100).
+# Its one processor takes 2 ns for an instruction, by its own clock: a machine outside that is slow or busy makes
+# all of it last longer, and changes nothing inside. With two, the one that takes frames from a controller could be
+# kept waiting outside while the other sends: frames were lost that no real machine loses.
+# Environment: CAN_VM_CACHE (default ~/.cache/hil-can-vm: kernel and boot image), LIMIT (seconds, default 2400).
 set -euo pipefail
 OUT=$(realpath "$1"); CACHE=${CAN_VM_CACHE:-$HOME/.cache/hil-can-vm}; mkdir -p "$CACHE"; cd "$CACHE"
 if [ ! -s initrd.gz ]; then
@@ -48,7 +51,7 @@ rm -f "$OUT/rc"
 set +e
 DISK=()
 [ -z "${CAN_VM_DISK:-}" ] || DISK=(-drive "file=$CAN_VM_DISK,format=raw,if=virtio,readonly=on")
-timeout -k 5 "${LIMIT:-1100}" qemu-system-x86_64 -accel tcg,thread=multi -cpu max -smp 2 -m 1536 -nographic -nodefaults \
+timeout -k 5 "${LIMIT:-2400}" qemu-system-x86_64 -accel tcg,thread=single -icount shift=1 -cpu max -smp 1 -m 1536 -nographic -nodefaults \
   -no-reboot -serial stdio -monitor none -kernel kernel/boot/vmlinuz-* -initrd initrd.gz \
   -append "console=ttyS0 quiet panic=-1 mitigations=off tsc=reliable" \
   -fsdev local,id=r,path=/,security_model=none,readonly=on,multidevs=remap \

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import logging
 import os
-import subprocess
 import time
-from pathlib import Path
 
 import can
 import pytest
@@ -18,6 +16,7 @@ from drivers import BusHealth, BusLoop, CanSettings, Wire, open_can
 from hil.core.clock import WallClock
 from hil.core.errors import BenchError
 from hil.core.frames import EXTENDED, FrameBlock
+from tests.can_vm.interfaces import ip, plugged_in, unplugged, up
 from tests.transports import contract, far_ends
 
 NEAR, _, FAR = os.environ.get("HIL_SOCKETCAN", "").partition(":")
@@ -68,15 +67,6 @@ class TestSocketcan(contract.TransportContract):
             open_can(CanSettings("bus", "socketcan", "none7", BIT_RATE))
 
 
-def ip(*arguments: str) -> None:
-    subprocess.run(["ip", "link", "set", *arguments], check=True)
-
-
-def up(name: str) -> None:
-    kind = [] if name.startswith("vcan") else ["txqueuelen", "500", "type", "can", "bitrate", str(BIT_RATE)]
-    ip(name, "up", *kind)
-
-
 @pytest.fixture
 def loop():
     bus = open_can(CanSettings("rmcu", "socketcan", NEAR, BIT_RATE))
@@ -121,7 +111,7 @@ def test_a_network_that_is_down_is_told(loop):
         with pytest.raises(BenchError, match="the network interface is down"):
             loop.wires[0].send(0x100, b"")
     finally:
-        up(NEAR)
+        up(NEAR, BIT_RATE)
 
 
 @pytest.mark.skipif(NEAR.startswith("vcan"), reason="no bus of its own")
@@ -135,20 +125,17 @@ def test_a_bus_on_which_nobody_acknowledges_is_told(loop):
     except BenchError as error:
         assert "error-passive" in str(error) or "bus-off" in str(error)
     finally:
-        up(FAR)
+        up(FAR, BIT_RATE)
 
 
 @pytest.mark.skipif(not os.access("/sys/bus/pci/rescan", os.W_OK), reason="no PCI")
 @pytest.mark.skipif(NEAR.startswith("vcan"), reason="no adapter")
 def test_an_adapter_that_is_unplugged_is_told(loop):
-    device = Path(f"/sys/class/net/{NEAR}/device").resolve()
-    (device / "remove").write_text("1")
+    unplugged(NEAR)
     try:
         told = failure(loop)
         assert "the network interface is down" in told or "the adapter is gone" in told
         with pytest.raises(BenchError, match="the adapter is gone"):
             loop.wires[0].send(0x100, b"")
     finally:
-        Path("/sys/bus/pci/rescan").write_text("1")
-        time.sleep(1.0)
-        up(NEAR)
+        plugged_in(NEAR, BIT_RATE)

@@ -1,9 +1,8 @@
 """Real frames on emulated controllers: `hil sim-bench` at one end, a run and others' tools at the other.
 
-Inside of the machine that `make test-can-vm` boots, with everything ten times slower than real time: an
-emulated processor is that much slower; more where it has to share a real one. Time-outs are scaled alike.
-simcan0 and simcan1 are two controllers on the RMCU's bus, simcan2 and simcan3 on the dynos'; the bench is at
-the odd ones.
+Inside of the machine that `make test-can-vm` boots, with everything ten times slower than real time: its
+processor is that much slower. Time-outs are scaled alike. simcan0 and simcan1 are two controllers on the bus
+of the RMCU, simcan2 and simcan3 on the dynos'; the bench is at the odd ones.
 """
 
 from __future__ import annotations
@@ -23,17 +22,14 @@ import numpy as np
 import pytest
 
 from hil.core.conventions import TICK_S
-from hil.core.model import load_model
 from hil.core.recording import read_frames, read_recording
 from hil.engine import BenchFile, RunOutcome, RunRequest, load_bench, run_plan
-from sim_backend.bench import SimulatedBench, SimulationSettings
 from tests.benches_for_tests import SIM, plan
-from tests.can_vm.at_the_limit import recorded
+from tests.can_vm.interfaces import ip, plugged_in, unplugged, up
 from tests.can_vm.plans import BOTH_CONTROLLERS, CRITERIA, LONG_STEP
 
 INSIDE = "HIL_CAN_VM_INSIDE" in os.environ
-TIME_SCALES = (0.1, 0.05, 0.03)
-BUSY_AT_MOST = 0.3  # share of a processor for what the bench computes; sockets cost more than as much again
+TIME_SCALE = 0.1
 STARTS_WITHIN_S = 400
 FIGURES = Path("/mnt/out/figures.json")  # of the same plan in virtual time, from outside
 HIL = str(Path(sys.executable).with_name("hil"))
@@ -44,34 +40,11 @@ pytestmark = [
 ]
 
 
-def ip(*arguments: str) -> None:
-    subprocess.run(["ip", "link", "set", *arguments], check=True)
-
-
-def up(name: str) -> None:
-    ip(name, "up", "txqueuelen", "500", "type", "can", "bitrate", "1000000")
-
-
-def time_scale() -> float:
-    """As fast as the simulated bench can be computed here, with room."""
-    world = SimulatedBench(SimulationSettings(load_model(SIM.simulation.model), SIM.rmcu.dbc, SIM.dyno.eds))
-    turns, began = 300, 0.0
-    for turn in range(-turns, turns):
-        began = time.monotonic() if turn == 0 else began
-        world.sleep_until(world.now_s() + TICK_S)
-        for bus in SIM.buses:
-            world.take(bus)
-    possible = BUSY_AT_MOST * turns * TICK_S / (time.monotonic() - began)
-    chosen = next((scale for scale in TIME_SCALES if scale <= possible), TIME_SCALES[-1])
-    print(f"\n{possible:.3f} of real time is possible, {chosen} is taken", flush=True)
-    return chosen
-
-
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BenchFile]:
     """The bench file of a simulated bench in another process, on the odd controllers."""
     file = tmp_path_factory.mktemp("served") / "net.toml"
-    command = [HIL, "sim-bench", "sim", "--transport", "socketcan", "--time-scale", str(time_scale()),
+    command = [HIL, "sim-bench", "sim", "--transport", "socketcan", "--time-scale", str(TIME_SCALE),
                "--interface", "simcan1:simcan0", "--interface", "simcan3:simcan2",
                "--bench-file", str(file)]  # fmt: skip
     with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
@@ -95,7 +68,7 @@ def test_candump_sees_the_devices_at_their_pace(served: BenchFile) -> None:
     command = ["candump", "-t", "a", "-n", "1500", "simcan0"]
     shown = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
     frames = re.findall(r"\(([\d.]+)\)\s+simcan0\s+([0-9A-F]+)", shown)
-    assert {frame for _, frame in frames} == {"110", "111", "200"}
+    assert {frame for _, frame in frames} >= {"110", "111", "200"}
     stamps = np.array([float(stamp) for stamp, frame in frames if frame == "110"])
     print(f"\nstatus frames: {np.percentile(np.diff(stamps) * 1e3, [1, 50, 99]).round(2)} ms apart")
     assert np.mean(np.diff(stamps)) == pytest.approx(TICK_S / served.time_scale, rel=0.1)
@@ -179,42 +152,20 @@ def test_a_foreign_canopen_master_finds_the_dynos_and_reads_their_objects(served
         network.disconnect()
 
 
-def test_a_minute_at_the_limit_of_this_machine_is_recorded_without_a_loss(tmp_path: Path) -> None:
-    """The fastest pace of which two seconds are lossless, a fifth slower, for a minute."""
-    fastest = None
-    for gap_ms in (4.0, 2.0, 1.0, 0.7, 0.5, 0.35, 0.25):
-        counted = recorded("simcan0", "simcan1", gap_ms, 2.0, tmp_path / f"{gap_ms}.mcap")
-        print(f"\n{counted}")
-        if not counted.lossless:
-            break
-        if fastest is None or counted.rate > fastest:
-            fastest = counted.rate
-    assert fastest is not None
-    minute = recorded("simcan0", "simcan1", 1.25e3 / fastest, 60.0, tmp_path / "minute.mcap")
-    print(f"\n60 s: {minute}")
-    assert minute.lossless
-
-
 def test_a_controller_that_is_unplugged_ends_the_run(served: BenchFile, tmp_path: Path) -> None:
-    device = Path("/sys/class/net/simcan2/device").resolve()
     request = RunRequest(plan(LONG_STEP), served, tmp_path)
     done: list[float] = []
 
     def unplug(share: float, text: str) -> None:
         if text == "s" and not done:
             done.append(share)
-            (device / "remove").write_text("1")
+            unplugged("simcan2")
 
     request.progress = unplug
     outcome = run_plan(request)
     print(f"\n{outcome.error}", flush=True)
     assert done
-    before = {path.name for path in Path("/sys/class/net").iterdir()}
-    Path("/sys/bus/pci/rescan").write_text("1")
-    time.sleep(2.0)
-    (back,) = {path.name for path in Path("/sys/class/net").iterdir()} - before
-    ip(back, "name", "simcan2")
-    up("simcan2")
+    plugged_in("simcan2")
     said = str(outcome.error)
     assert "the adapter is gone" in said or "the network interface is down" in said
     assert (outcome.result.verdict, outcome.result.safe_state) == ("error", "not_confirmed")
