@@ -40,12 +40,12 @@ def made_late(stamps: Stamps, late: str, random: np.random.Generator) -> Stamps:
 
 
 class LateStamps(SimulatedBus):
-    """A simulated bus whose frames come as ever but are stamped `late`."""
+    """A simulated bus whose frames come as ever but are stamped `late`; `seed` and bus say which."""
 
-    def __init__(self, channel: str, late: str, **kwargs: Any) -> None:
+    def __init__(self, channel: str, late: str, seed: int = 0, **kwargs: Any) -> None:
         super().__init__(channel, **kwargs)
         self._late = late
-        self._random = np.random.default_rng(len(channel))
+        self._random = np.random.default_rng([seed, *channel.encode()])
 
     def recv_block(self) -> FrameBlock:
         """All frames that arrived until now."""
@@ -75,10 +75,10 @@ class LateUdp(LoopbackBus):
         return block
 
 
-def late_bench(name: str, late: str, **changes: Any) -> Any:
+def late_bench(name: str, late: str, seed: int = 0, **changes: Any) -> Any:
     """The simulated bench behind such adapters."""
     bench = sim_bench(name, **changes)
-    return _behind(bench, "late-stamps", late)
+    return _behind(bench, "late-stamps", late, seed=seed)
 
 
 def late_served_bench(bench: Any, late: str) -> Any:

@@ -30,6 +30,7 @@ from tests.can_vm.plans import BOTH_CONTROLLERS, CRITERIA, LONG_STEP
 
 INSIDE = "HIL_CAN_VM_INSIDE" in os.environ
 TIME_SCALE = 0.1
+MISSED_AT_MOST = 0.03  # share of cycles: the processor has 5 million instructions for each, for both ends
 STARTS_WITHIN_S = 400
 FIGURES = Path("/mnt/out/figures.json")  # of the same plan in virtual time, from outside
 HIL = str(Path(sys.executable).with_name("hil"))
@@ -88,7 +89,7 @@ def test_a_run_passes_with_the_figures_of_virtual_time(served: BenchFile, tmp_pa
     torque = next(request for request in timing.requests if request.request == "torque request")
     assert torque.seen is not None
     assert torque.unseen <= 0.001 * torque.count
-    assert torque.missed <= 0.01 * torque.count
+    assert torque.missed <= MISSED_AT_MOST * torque.count
     frames = read_frames(outcome.recording)
     assert {0x110, 0x111, 0x200, 0x100} <= set(frames["rmcu"]["id"].tolist())
 

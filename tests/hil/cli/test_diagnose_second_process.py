@@ -5,8 +5,8 @@ import subprocess
 
 import pytest
 
-from tests.hil.cli.test_commands import HIL, hil
-from tests.hil.cli.test_sim_bench import MOST_REPEATS, serving
+from tests.hil.cli.test_commands import HIL
+from tests.hil.cli.test_sim_bench import serving
 
 MODEL = HIL.parents[2] / "benches/three_inertia.toml"
 PLAN = """
@@ -21,22 +21,47 @@ finally:
 """
 
 
-@pytest.mark.slow
-def test_what_a_bench_in_another_process_hides_is_named(tmp_path):
-    """At a fifth of real time; a machine that stood still trips the RMCU, and then it is tried again."""
-    (tmp_path / "chirps.yaml").write_text(PLAN)
-    for attempt in range(MOST_REPEATS):
-        run = tmp_path / str(attempt)
-        with serving(tmp_path, "--time-scale", "0.2", "--hide", "dead_time=0.002") as (_, file):
-            command = [HIL, "run", tmp_path / "chirps.yaml", "--bench", file, "--out", run]
-            done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+def run_on_a_bench_that_hides(tmp_path, hidden, plan, time_scales):
+    """Recording of a plan, at the first pace that succeeds.
+
+    A machine that stood still trips the RMCU, as it should; then it is tried again.
+    """
+    for attempt, time_scale in enumerate(time_scales):
+        out = tmp_path / str(attempt)
+        with serving(tmp_path, "--time-scale", time_scale, "--hide", hidden) as (_, file):
+            command = [HIL, "run", plan, "--bench", file, "--out", out]
+            done = subprocess.run(command, capture_output=True, text=True, timeout=2400, check=False)
         if done.returncode != 3:
             break
     assert done.returncode == 0, done.stderr
-    told = json.loads(
-        hil("diagnose", "--model", MODEL, run / "recording.mcap", "--out", tmp_path / "why", "--json").stdout
-    )
+    return out / "recording.mcap"
+
+
+def the_effect_that_is_named(tmp_path, recording):
+    command = [HIL, "diagnose", "--model", MODEL, recording, "--out", tmp_path / "why", "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=2400, check=True)
+    told = json.loads(done.stdout)
     assert told["verdict"] == "named"
     (effect,) = told["effects"]
+    return effect
+
+
+@pytest.mark.slow
+def test_what_a_bench_in_another_process_hides_is_named(tmp_path):
+    (tmp_path / "chirps.yaml").write_text(PLAN)
+    recording = run_on_a_bench_that_hides(
+        tmp_path, "dead_time=0.002", tmp_path / "chirps.yaml", ["0.2", "0.2", "0.2", "0.2"]
+    )
+    effect = the_effect_that_is_named(tmp_path, recording)
     assert effect["id"] == "dead_time"
     assert effect["parameters"]["extra_delay_s"] == pytest.approx(0.002, rel=0.03)
+
+
+@pytest.mark.slow
+def test_free_play_is_named_from_the_identification_plan_in_real_time(tmp_path):
+    recording = run_on_a_bench_that_hides(
+        tmp_path, "backlash=0.01", "identification", ["1", "1", "0.5", "0.2"]
+    )
+    effect = the_effect_that_is_named(tmp_path, recording)
+    assert effect["id"] == "backlash"
+    assert effect["parameters"]["half_gap_rad"] == pytest.approx(0.01, rel=0.03)

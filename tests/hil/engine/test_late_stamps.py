@@ -61,6 +61,15 @@ def test_late_stamps_change_no_figure(
     assert all(abs(clock.drift_ppm) < 100 for clock in result.clocks)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(1, 11))
+def test_which_stamps_are_outliers_changes_no_figure(
+    seed: int, true_run: tuple[RunResult, Recording], tmp_path: Path
+) -> None:
+    late = late_bench(f"late_{seed}", "outliers", seed)
+    compare(*carried_out(plan(STEPS, CRITERIA), late, tmp_path), *true_run)
+
+
 def test_with_stamps_as_they_should_be_the_clocks_agree(true_run: tuple[RunResult, Recording]) -> None:
     result, recording = true_run
     base, *others = result.clocks
