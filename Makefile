@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup kills test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
+.PHONY: run setup kills soak test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -70,6 +70,10 @@ changelog: setup
 # A run killed at a hundred random moments, in real time: docs/reference/kills.md.
 kills: setup
 	$(BIN)/python -m benchmarks.kills
+
+# Ten hours of bench time in virtual time: memory, time, file size.
+soak: setup
+	$(BIN)/python -m benchmarks.soak
 
 bench: setup
 	$(BIN)/python -m benchmarks

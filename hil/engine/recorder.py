@@ -12,12 +12,14 @@ from drivers import SampleAssembler, Samples, Stream
 from hil.core.channels import TIME
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock
-from hil.core.recording import Event, Recording, RecordingWriter
+from hil.core.recording import Event, Recording, RecordingWriter, read_as_written
 from hil.core.result import StreamClock
 
 _FLUSH_S = 0.5
 #: How often `keep` is to be called, s: with what it waits for all is on the disk within 0.25 s.
 KEEP_S = 0.15
+#: Half an hour of rows; of a longer run they are read from its file when somebody wants them.
+MOST_KEPT_BYTES = 1 << 28
 _LOOK_S = 2.0  # what clocks do shows in seconds
 
 
@@ -44,7 +46,9 @@ class Recorder:
         self._assembler = SampleAssembler(streams, sample_time_s)
         self.writer = RecordingWriter(path, self._assembler.names, buses, durable=promptly)
         self._base = streams[0]
-        self._chunks: list[npt.NDArray[np.float64]] = []
+        self._chunks: list[npt.NDArray[np.float64]] | None = []  # None: too many, the file has them
+        self._kept_bytes = 0
+        self._last_row_s = 0.0
         self._flushed_s = self._looked_s = -np.inf
         self.start_s: float | None = None
         self._begun = False
@@ -136,18 +140,31 @@ class Recorder:
         self._write_rows(everything=True)
         if self._assembler.late and self.start_s is not None:
             text = f"{self._assembler.late} samples came too late for their row and were left out"
-            self.event(self.start_s + float(self._chunks[-1][-1, 0]), "late", text)
+            self.event(self.start_s + self._last_row_s, "late", text)
         return self.so_far()
 
     def so_far(self) -> Recording:
         """The channels written until now."""
         self._write_rows()
         self.writer.flush()  # what asks may take long, and the process be killed meanwhile
+        return Recording(self._channels(), self.writer.path, events=list(self.events))
+
+    def _channels(self) -> dict[str, npt.NDArray[np.float64]]:
+        if self._chunks is None:
+            return read_as_written(self.writer.path).channels
         names = self._assembler.names
         rows = np.concatenate(self._chunks) if self._chunks else np.zeros((0, len(names)))
-        channels = {name: np.ascontiguousarray(rows[:, column]) for column, name in enumerate(names)}
         assert names[0] == TIME
-        return Recording(channels, self.writer.path, events=list(self.events))
+        return {name: np.ascontiguousarray(rows[:, column]) for column, name in enumerate(names)}
+
+    def _remember(self, rows: npt.NDArray[np.float64]) -> None:
+        """Keep rows at hand, as long as they are few."""
+        self._last_row_s = float(rows[-1, 0])
+        self._kept_bytes += rows.nbytes
+        if self._kept_bytes > MOST_KEPT_BYTES:
+            self._chunks = None
+        if self._chunks is not None:
+            self._chunks.append(rows)
 
     def _look_at_clocks(self) -> None:
         if self._parted:
@@ -163,5 +180,5 @@ class Recorder:
         self.between()
         if len(rows):
             self.writer.add_rows(rows)
-            self._chunks.append(rows)
+            self._remember(rows)
             self.between()

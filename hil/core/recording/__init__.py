@@ -13,6 +13,7 @@ from hil.core.errors import BadInputError
 from hil.core.recording._evidence import sidecar
 from hil.core.recording._formats import READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_reader import read_frames
+from hil.core.recording._mcap_reader import read_mcap as read_as_written
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
 from hil.core.recording._run import ACCEPTED_EXPIRY, RUN, SEGMENT, run_of
@@ -102,6 +103,7 @@ __all__ = [
     "checked",
     "driven_by_torque",
     "missing_of",
+    "read_as_written",
     "read_frames",
     "read_recording",
     "recover_recording",

@@ -67,10 +67,21 @@ class _Index:
 
     schemas: list[mcap.Schema] = field(default_factory=list)
     channels: list[mcap.Channel] = field(default_factory=list)
-    chunks: list[mcap.ChunkIndex] = field(default_factory=list)
+    chunks: bytearray = field(default_factory=bytearray)  # as records: a long run has many
+    chunk_count: int = 0
+    first: int = 0
+    last: int = 0
     attachments: list[mcap.AttachmentIndex] = field(default_factory=list)
     tables: list[mcap.MetadataIndex] = field(default_factory=list)
     messages: defaultdict[int, int] = field(default_factory=lambda: defaultdict(int))
+
+    def add_chunk(self, chunk: mcap.ChunkIndex) -> None:
+        """Take a chunk into the index."""
+        first, last = chunk.message_start_time, chunk.message_end_time
+        self.first = min(self.first, first) if self.chunk_count else first
+        self.last = max(self.last, last)
+        self.chunk_count += 1
+        self.chunks += _written(chunk)
 
     def groups(self) -> Iterator[tuple[int, bytes]]:
         """Records by kind, in the order of the file."""
@@ -78,17 +89,17 @@ class _Index:
             attachment_count=len(self.attachments),
             channel_count=len(self.channels),
             channel_message_counts=self.messages,
-            chunk_count=len(self.chunks),
+            chunk_count=self.chunk_count,
             message_count=sum(self.messages.values()),
-            message_start_time=min((chunk.message_start_time for chunk in self.chunks), default=0),
-            message_end_time=max((chunk.message_end_time for chunk in self.chunks), default=0),
+            message_start_time=self.first,
+            message_end_time=self.last,
             metadata_count=len(self.tables),
             schema_count=len(self.schemas),
         )
         yield Opcode.SCHEMA, _written(*self.schemas)
         yield Opcode.CHANNEL, _written(*self.channels)
         yield Opcode.STATISTICS, _written(statistics)
-        yield Opcode.CHUNK_INDEX, _written(*self.chunks)
+        yield Opcode.CHUNK_INDEX, bytes(self.chunks)
         yield Opcode.ATTACHMENT_INDEX, _written(*self.attachments)
         yield Opcode.METADATA_INDEX, _written(*self.tables)
 
@@ -256,7 +267,7 @@ class McapFile:
             index += _message_index(channel, times[of_channel], offsets[of_channel])
             self._index.messages[channel] += int(of_channel.sum())
         self._put(index)
-        self._index.chunks.append(
+        self._index.add_chunk(
             mcap.ChunkIndex(
                 chunk_length=length,
                 chunk_start_offset=start,

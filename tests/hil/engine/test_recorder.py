@@ -73,6 +73,25 @@ def test_others_have_their_turn_between_the_streams_while_rows_are_made(recorder
     assert len(turns) >= 5
 
 
+def test_rows_of_a_long_run_are_read_from_its_file(
+    recorder: Recorder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("hil.engine.recorder.MOST_KEPT_BYTES", 50_000)
+    recorder.begin()
+    recorder.take(samples(SLOW, *(5.0 + 0.1 * np.arange(40)), value=330.0))
+    for first in range(0, 3000, 10):
+        recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(first, first + 10)), value=first))
+    seen = recorder.so_far()
+    assert len(seen.time_s) > 2900
+    recorder.event(5.25, "arm", "armed")
+    whole = recorder.finish_rows()
+    assert np.array_equal(whole.time_s, np.round(0.001 * np.arange(3000), 9))
+    assert np.array_equal(whole["motor_speed_rad_s"], 10.0 * (np.arange(3000) // 10))
+    assert np.array_equal(seen["motor_speed_rad_s"], whole["motor_speed_rad_s"][: len(seen.time_s)])
+    assert [e.kind for e in whole.events] == ["arm"]
+    assert (recorder._chunks, recorder._last_row_s) == (None, 2.999)
+
+
 def test_a_recording_without_samples_has_its_channels(recorder: Recorder) -> None:
     empty = recorder.finish_rows()
     assert list(empty.channels) == ["time_s", *CHANNELS, "oil_temperature_k"]
