@@ -77,7 +77,7 @@ def _tell(one: Score, number: int, total: int) -> None:
     said = one.failure or f"{one.verdict} {' + '.join(one.named)}"
     print(
         f"[{number}/{total}] {mark} {one.key} ({one.kind}): {' + '.join(one.hidden) or '-'} -> {said}; "
-        f"gap/noise {one.worst_gap:.2f}; {one.wall_s:.0f} s",
+        f"gap/noise {one.worst_gap:.2f}; {one.processor_s:.0f} s",
         file=sys.stderr,
         flush=True,
     )

@@ -39,7 +39,7 @@ class Score:
     named: list[str]
     right: bool
     failure: str
-    wall_s: float
+    processor_s: float
     names_right: list[tuple[float, bool]] = field(default_factory=list)
     honest: bool = True
     parameter_errors: dict[str, float] = field(default_factory=dict)
@@ -83,7 +83,7 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
     ]
     result = Score(
         spec.group, spec.subject, spec.size, spec.turn, kind, hidden, answer.share, verdict, named,
-        _right(spec, hidden, verdict, named, diagnosis), reply.failure, reply.wall_s, judged,
+        _right(spec, hidden, verdict, named, diagnosis), reply.failure, reply.processor_s, judged,
     )  # fmt: skip
     result.started = sorted((diagnosis.get("start") or {}).get("parameters", {}))
     result.unshrunk, result.unexplained = judged_gaps(answer, diagnosis)

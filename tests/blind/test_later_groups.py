@@ -265,4 +265,4 @@ def test_every_figure_has_a_row_with_its_line_and_target():
     assert rows["closed loop, right"] == [1, "100 %", "95 %", "99 %"]
     assert rows["other laws, held-out gap / noise, median / 95th"] == [1, "1 / 1", "1.2 / 3", "1.05 / 1.5"]
     assert rows["`named` while a channel's gap shrank by less than half"] == [5, 0, 0, 0]
-    assert rows["time per case, median / 95th, s"][1:] == ["1 / 1", "15 / 60", "8 / 25"]
+    assert rows["processor time per case, median / 95th, s"][1:] == ["1 / 1", "15 / 60", "8 / 25"]
