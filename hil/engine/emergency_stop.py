@@ -11,8 +11,9 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from hil.core.errors import BenchError
+from hil.core.errors import BenchError, EmergencyStopError, HilError
 from hil.core.files import make_directory, write_atomically
+from hil.core.result import StoppedInEmergency
 from hil.engine.bench_tables import BenchFile
 
 _FOLDER = "emergency-stops"
@@ -72,6 +73,21 @@ def latch(file: BenchFile, *, by: str, why: str, run: Path) -> None:
             os.fsync(handle)  # else its name could be gone after a power cut
         finally:
             os.close(handle)
+
+
+def keep_latched(error: HilError | None, file: BenchFile, run: Path) -> StoppedInEmergency | None:
+    """Latch the bench if an emergency stop ended the run; `error.fix` tells then what a person has to do."""
+    if not isinstance(error, EmergencyStopError):
+        return None
+    error.fix = f"make sure that nobody is in danger; then: hil reset {file.source} --by NAME"
+    try:
+        latch(file, by=error.by, why=error.what, run=run)
+    except (HilError, OSError) as failure:
+        error.fix += (
+            f"\n  it could NOT be latched, nothing but you keeps the bench from being armed: {failure}"
+        )
+        return StoppedInEmergency(by=error.by, why=error.what, latched=False)
+    return StoppedInEmergency(by=error.by, why=error.what, latched=True)
 
 
 def refuse_latched(file: BenchFile) -> None:

@@ -5,14 +5,12 @@ from __future__ import annotations
 import contextlib
 import datetime
 import time
-import traceback
 from functools import partial
 
 from drivers import TICK_S
 from hil.core.errors import (
     BadInputError,
     BenchError,
-    EmergencyStopError,
     HilError,
     InterruptError,
     OrderlyEndError,
@@ -24,7 +22,6 @@ from hil.core.result import (
     CriterionResult,
     RunResult,
     SafeState,
-    StoppedInEmergency,
     Timing,
     verdict_of,
 )
@@ -33,7 +30,8 @@ from hil.engine.bench import Bench, open_bench, refuse_needs
 from hil.engine.border import RECORDING, RunOutcome, RunRequest, analysed_apart, analysed_here
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.conductor import BenchConductor
-from hil.engine.emergency_stop import latch, refuse_latched
+from hil.engine.emergency_stop import keep_latched, refuse_latched
+from hil.engine.failures import Failures
 from hil.engine.operator import Operator
 from hil.engine.preflight import channels_of, preflight, refuse_unconfirmed
 from hil.engine.recorder import Recorder
@@ -74,7 +72,6 @@ def run_plan(request: RunRequest) -> RunOutcome:
 class _Run:
     def __init__(self, request: RunRequest, bench: Bench, expired: AcceptedExpiry | None) -> None:
         self._request, self._bench, self._expired = request, bench, expired
-        self._error: HilError | None = None
         self._unsafe: list[str] = []
         self._end_steps = ""
 
@@ -89,32 +86,15 @@ class _Run:
             started = time.perf_counter()
             self._begin_s = bench.loop.clock.now_s()
             self._steps()
-        except HilError as error:
-            self._fail(error)
-        except Exception as error:  # a fault of ours must leave a safe bench and say what it was
-            self._fail_by(error)
+        except Exception as error:  # also a fault of ours must leave a safe bench and say what it was
+            self._failures.take(error)
         finally:
             # Also when the interpreter itself is going down: nobody may be left with torque on.
             bench.loop.shielded = True
             self._watch.end()
-            self._unsafe = reach_safe_state(bench, self._note_fault) if self._arming.armed else []
-            self._stopped = self._latched()
+            self._unsafe = reach_safe_state(bench, self._failures.note) if self._arming.armed else []
+            self._stopped = keep_latched(self._failures.error, self._request.bench, self._request.out)
         return self._finish(time.perf_counter() - started)
-
-    def _latched(self) -> StoppedInEmergency | None:
-        """Keep an emergency stop for every process that comes after this one."""
-        error, file = self._error, self._request.bench
-        if not isinstance(error, EmergencyStopError):
-            return None
-        error.fix = f"make sure that nobody is in danger; then: hil reset {file.source} --by NAME"
-        try:
-            latch(file, by=error.by, why=error.what, run=self._request.out)
-        except (HilError, OSError) as failure:
-            error.fix += (
-                f"\n  it could NOT be latched, nothing but you keeps the bench from being armed: {failure}"
-            )
-            return StoppedInEmergency(by=error.by, why=error.what, latched=False)
-        return StoppedInEmergency(by=error.by, why=error.what, latched=True)
 
     def _prepare(self) -> None:
         request, bench = self._request, self._bench
@@ -134,7 +114,8 @@ class _Run:
         )
         noted = bench.torque_requests(self._timing, TICK_S) if self._timing else None
         operator = Operator(bench.loop, request.terminal, request.confirmed_by)
-        self._watch = Watchkeeping(bench, self._recorder, operator, self._try_event)
+        self._failures = Failures(self._event, self._blame)
+        self._watch = Watchkeeping(bench, self._recorder, operator, self._failures.tell)
         self._conductor = BenchConductor(
             bench,
             self._recorder,
@@ -158,13 +139,10 @@ class _Run:
     def _look_at_drift(self) -> None:
         """The drives are off; what comes from here on is no part of the run's rows."""
         try:
-            self._watch.zero.after(
-                self._bench.loop, ended_well=not self._unsafe and not isinstance(self._error, BenchError)
-            )
-        except HilError as error:
-            self._fail(error)
+            failed = isinstance(self._failures.error, BenchError)
+            self._watch.zero.after(self._bench.loop, ended_well=not self._unsafe and not failed)
         except Exception as error:  # the recording is to be closed with what was measured
-            self._fail_by(error)
+            self._failures.take(error)
 
     def _steps(self) -> None:
         """The plan's steps; whatever ends them, its end steps too, unless nothing should move any more."""
@@ -179,8 +157,7 @@ class _Run:
             self._end_steps = "not carried out: nothing should move on a bench that has failed"
             raise
         except Exception as error:  # a mistake in a step's code: the bench is well
-            self._note_fault(error)
-            self._end_early(_of_ours(error))
+            self._end_early(error)
         self._watch.hold.active = False
         self._end_steps = "begun, but not carried out whole"
         for step in plan.finally_:
@@ -189,9 +166,9 @@ class _Run:
         self._event("end_steps", self._end_steps)
         self._watch.hold.refuse_end()
 
-    def _end_early(self, error: HilError) -> None:
+    def _end_early(self, error: Exception) -> None:
         """Torque off; the end steps that follow are not to be disturbed."""
-        self._fail(error)
+        self._failures.take(error)
         self._bench.loop.shielded = True
         self._bench.rmcu.make_safe()
 
@@ -201,14 +178,6 @@ class _Run:
         speed, state = self._bench.dyno.wheel_speed_rad_s, self._bench.rmcu.state
         return f"carried out: {names}; the wheels turn at {abs(speed):.2f} rad/s, the RMCU is in '{state}'"
 
-    def _note_fault(self, error: Exception) -> None:
-        """A fault of ours, or of a device's code: where it happened stands in the recording."""
-        self._try_event("traceback", "".join(traceback.format_exception(error)))
-
-    def _fail_by(self, error: Exception) -> None:
-        self._note_fault(error)
-        self._fail(_of_ours(error))
-
     def _show_progress(self) -> None:
         passed_s = self._bench.loop.clock.now_s() - self._begin_s
         segments = self._conductor.segments
@@ -216,20 +185,8 @@ class _Run:
         text = f"held: {self._watch.hold.said}" if self._watch.hold.said else text
         self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
 
-    def _fail(self, error: HilError) -> None:
-        if self._error is None or isinstance(error, EmergencyStopError):
-            if type(error) is BenchError and "own loop" not in error.what:
-                pause = self._watch.limits.pauses.blamed_at(self._bench.loop.clock.now_s())
-                if pause:
-                    error = BenchError(f"{error.what} ({pause})", where=error.where, fix=error.fix)
-            self._error = error
-            kind = "interrupt" if isinstance(error, InterruptError) else "failure"
-            kind = "emergency_stop" if isinstance(error, EmergencyStopError) else kind
-            self._try_event(kind, str(error).replace("\n", " "))
-
-    def _try_event(self, kind: str, text: str) -> None:
-        with contextlib.suppress(HilError):  # a full disk is already being reported
-            self._event(kind, text)
+    def _blame(self) -> str:
+        return self._watch.limits.pauses.blamed_at(self._bench.loop.clock.now_s())
 
     def _event(self, kind: str, text: str) -> None:
         self._recorder.event(self._bench.loop.clock.now_s(), kind, text)
@@ -239,21 +196,22 @@ class _Run:
         safe: SafeState = "not_needed"
         if self._arming.armed:
             safe = "not_confirmed" if self._unsafe else "confirmed"
-            self._try_event("safe_state", "; ".join(self._unsafe) or f"confirmed by {self._arming.names}")
-        if self._unsafe and not isinstance(self._error, BenchError):
-            self._error = BenchError(
+            self._failures.tell("safe_state", "; ".join(self._unsafe) or f"confirmed by {self._arming.names}")
+        failures = self._failures
+        if self._unsafe and not isinstance(failures.error, BenchError):
+            failures.error = BenchError(
                 "; ".join(self._unsafe), where="safe state", fix="cut the drives' power before you go near"
             )
         for wire in loop.wires:
             for remark in wire.remarks:
-                self._try_event("bus", f"{wire.name}: {remark}")
+                self._failures.tell("bus", f"{wire.name}: {remark}")
         bench_time_s = loop.clock.now_s() - self._begin_s
         recording = self._recording()
         self._watch.rows_finished = True
         self._look_at_drift()
         criteria = self._judged(recording) if recording is not None else ()
         result = RunResult(
-            verdict=verdict_of(criteria, stopped=self._error is not None),
+            verdict=verdict_of(criteria, stopped=failures.error is not None),
             plan=request.plan.name,
             bench=request.bench.name,
             real_time_factor=round(bench_time_s / max(wall_s, 1e-9), 2),
@@ -271,14 +229,16 @@ class _Run:
             end_steps=self._end_steps,
             missing=self._arming.missing,
             accepted_expired=self._expired,
-            reason=str(self._error) if self._error else "",
+            reason=str(failures.error) if failures.error else "",
         )
         try:
             store_result(self._recorder, request, self._bench, self._conductor, result)
         except HilError as error:
-            self._error = self._error or error
+            failures.error = failures.error or error
         largest = dict(self._watch.limits.largest)
-        return RunOutcome(result, request.out / RECORDING, self._error, largest, tuple(self._conductor.made))
+        return RunOutcome(
+            result, request.out / RECORDING, failures.error, largest, tuple(self._conductor.made)
+        )
 
     def _timed(self) -> Timing:
         """How well the loop kept time; what is left of it is recorded."""
@@ -297,19 +257,13 @@ class _Run:
     def _judged(self, recording: Recording) -> tuple[CriterionResult, ...]:
         try:
             return judge(self._request.plan, recording, self._conductor.segments)
-        except HilError as error:
-            self._fail(error)
         except Exception as error:  # the recording is to be closed with what was measured
-            self._fail_by(error)
+            self._failures.take(error)
         return ()
 
     def _recording(self) -> Recording | None:
         try:
             return self._recorder.finish_rows()
         except HilError as error:
-            self._fail(error)
+            self._failures.take(error)
             return None
-
-
-def _of_ours(error: Exception) -> BenchError:
-    return BenchError(f"internal error: {type(error).__name__}: {error}", fix="please report it")

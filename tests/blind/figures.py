@@ -27,7 +27,9 @@ def figure_rows(scores: Sequence[Score]) -> Rows:
         rows.append(["95 % intervals that hold the true number", len(held), share, "85 %", "93 to 97 %"])
     times = [s.processor_s for s in scores if not s.failure]
     if times:
-        rows.append(["processor time per case, median / 95th, s", len(times), _two(times), "15 / 60", "8 / 25"])
+        rows.append(
+            ["processor time per case, median / 95th, s", len(times), _two(times), "15 / 60", "8 / 25"]
+        )
     return rows
 
 

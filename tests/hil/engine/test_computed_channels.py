@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from drivers import BusLoop, Samples, Stream, bits_on_the_wire
 from hil.core.errors import BadInputError, BenchError
+from hil.core.frames import ERROR_FRAME, FRAME
 from hil.core.model import load_model
 from hil.core.recording import read_recording
 from hil.engine import BenchFile, RunRequest, run_plan
 from hil.engine.bench import open_bench
+from hil.engine.computed_channels import BusStatistics, ShaftTwist, channels_of_bus, computed_channels
 from hil.engine.limit_tables import NamedLimit, TwistTable
+from test_plans import Array
 from tests.benches_for_tests import SIM, plan, sim_bench
+from tests.hil.engine.clocks import SteppedClock
 
 STEP = (
     "[{step: {segment: s, quantity: motor_torque, from_nm: 0, to_nm: 30, before_s: 0.3, after_s: 0.5, "
@@ -86,3 +92,104 @@ def test_a_magnitude_that_nobody_measures_is_no_limit_and_refused() -> None:
         streams = [s for s in opened.streams if "shaft_torque_right_nm" not in s.channels]
         with pytest.raises(BadInputError, match="limits.wheel_speed_rad_s: nothing is watched by it"):
             refuse_channels(opened.file, streams, {})
+
+
+def speeds(motor_rad_s: Array, left_rad_s: Array, right_rad_s: Array, first: int = 0) -> list[Samples]:
+    times_s = 5.0 + 0.001 * np.arange(first, first + len(motor_rad_s), dtype=np.float64)
+    wheels = np.column_stack([left_rad_s, right_rad_s])
+    return [Samples(MOTOR, times_s, motor_rad_s[:, None]), Samples(WHEELS, times_s, wheels)]
+
+
+MOTOR = Stream("motor", "bus 'rmcu'", ("motor_speed_rad_s",), ("rad/s",), 0.001)
+WHEELS = Stream(
+    "wheels", "bus 'dyno'", ("wheel_speed_left_rad_s", "wheel_speed_right_rad_s"), ("rad/s",) * 2, 0.001
+)
+ONES = np.ones(1001)
+
+
+def twisted(*pieces: list[Samples], forget_s: float = 60.0) -> Array:
+    twist = ShaftTwist(TwistTable(gear_ratio=8.0, forget_s=forget_s))
+    found = []
+    for piece in pieces:
+        for samples in piece:
+            twist.take(samples)
+        found += [samples.values[:, 0] for samples in twist.samples()]
+    return np.concatenate(found) if found else np.zeros(0)
+
+
+@pytest.mark.parametrize(
+    ("motor", "left", "right", "expected"),
+    [
+        (8.0, 1.0, 1.0, 0.0),  # all turn together
+        (8.8, 1.0, 1.0, 0.1),  # 0.1 rad/s for 1 s
+        (8.0, 1.2, 1.0, -0.1),  # the mean of both wheels counts
+        (-8.8, -1.0, -1.0, -0.1),
+    ],
+)
+def test_twist_is_the_integral_of_what_the_wheels_lag(
+    motor: float, left: float, right: float, expected: float
+) -> None:
+    found = twisted(speeds(motor * ONES, left * ONES, right * ONES))
+    assert found[-1] == pytest.approx(expected * 60.0 * -math.expm1(-1 / 60.0), rel=1e-3, abs=1e-9)
+    assert found[0] == 0.0
+
+
+def test_an_offset_reads_as_offset_times_forgetting() -> None:
+    found = twisted(speeds(np.full(3001, 8.08), np.ones(3001), np.ones(3001)), forget_s=0.2)
+    assert found[-1] == pytest.approx(0.01 * 0.2, rel=1e-3)
+
+
+def test_it_waits_for_the_slowest_of_the_three_and_gives_each_sample_once() -> None:
+    motor, wheels = speeds(8.8 * ONES, ONES, ONES)
+    first = Samples(WHEELS, wheels.time_s[:500], wheels.values[:500])
+    rest = Samples(WHEELS, wheels.time_s[500:], wheels.values[500:])
+    assert len(twisted([motor])) == 0
+    assert np.array_equal(twisted([motor, first], [rest]), twisted([motor, wheels]))
+
+
+def test_what_is_not_known_is_not_known_and_a_gap_adds_nothing() -> None:
+    motor = 8.8 * ONES
+    motor[500] = np.nan
+    found = twisted(speeds(motor, ONES, ONES))
+    assert np.isnan(found[500])
+    assert found[-1] == pytest.approx(0.1, rel=0.01)
+    apart = twisted(speeds(8.8 * ONES, ONES, ONES), speeds(8.8 * ONES, ONES, ONES, first=60_000))
+    assert apart[-1] == pytest.approx(0.2, rel=0.02)  # and not the minute between
+
+
+def test_load_and_error_frames_of_one_bus_are_counted() -> None:
+    loop = BusLoop(SteppedClock(), [])
+    health = BusStatistics(loop, "rmcu", 1_000_000)
+    block = np.zeros(100, FRAME)
+    block["length"] = 8
+    block["flags"][:3] = ERROR_FRAME
+    health.take_frames("rmcu", block)
+    health.take_frames("dyno", block)
+    assert health.samples() == []  # not for long enough
+    loop.run_for(0.1)
+    (given,) = health.samples()
+    assert given.stream.channels == ("bus_load_rmcu", "bus_error_frames_rmcu")
+    assert given.values[0, 0] == pytest.approx(bits_on_the_wire(block).sum() / 1e5)
+    assert 0.1 < given.values[0, 0] < 0.14
+    assert given.values[0, 1] == 3
+    loop.run_for(0.1)
+    (given,) = health.samples()
+    assert given.values.tolist() == [[0.0, 3.0]]  # load of the last 0.1 s, errors since the beginning
+
+
+@pytest.mark.parametrize(
+    ("name", "channel"),
+    [("rmcu", "bus_load_rmcu"), ("can-0.left", "bus_load_can_0_left"), ("bü", "bus_load_b_")],
+)
+def test_names_of_buses_become_names_of_channels(name: str, channel: str) -> None:
+    assert channels_of_bus(name)[0] == channel
+
+
+def test_only_what_is_limited_is_computed() -> None:
+    loop = BusLoop(SteppedClock(), [])
+    assert computed_channels(bench("none", TwistTable(gear_ratio=8.0)), loop) == []
+    twist, load = (limit("shaft_twist_rad", "rad", 0.1), limit("bus_error_frames_dyno", "1", 3.0))
+    found = computed_channels(bench("both", TwistTable(gear_ratio=8.0), t=twist, e=load), loop)
+    assert [channel for one in found for stream in one.streams for channel in stream.channels] == [
+        "shaft_twist_rad", "bus_load_dyno", "bus_error_frames_dyno",
+    ]  # fmt: skip

@@ -1,0 +1,22 @@
+"""A clock for tests that goes when somebody waits for it."""
+
+from __future__ import annotations
+
+
+class SteppedClock:
+    """Waiting takes no time. It may say that it is no virtual one: then all is done tick by tick.
+
+    Args:
+        oversleeps_s: so much longer than asked for everybody sleeps.
+    """
+
+    def __init__(self, *, virtual: bool = True, oversleeps_s: float = 0.0) -> None:
+        self.virtual = virtual
+        self._oversleeps_s = oversleeps_s
+        self._now_s = 10.0
+
+    def now_s(self) -> float:
+        return self._now_s
+
+    def sleep_until(self, time_s: float) -> None:
+        self._now_s = max(self._now_s, time_s + self._oversleeps_s)
