@@ -100,6 +100,7 @@ def against_others(model: Model, torque: np.ndarray) -> list[tuple[str, float, n
 def main() -> None:
     torque = np.zeros(SAMPLES)
     torque[1000:] = 40.0
+    load = np.zeros(SAMPLES)
     with_order = load_model(shipped("three_inertia.toml"))
     linear = with_order.with_effects().with_parameters(torque_delay=0.0)
     print(f"{SAMPLES * DT:.0f} s at {DT * 1e3:g} ms samples, Runge-Kutta steps of {STEP * 1e3:g} ms")
@@ -109,9 +110,9 @@ def main() -> None:
         for title, model in (("three inertias", linear), ("default bench (wheel order)", with_order)):
             vector = _slots.pack(model)
             out_c, out = _kernel.empty_output(SAMPLES), _kernel.empty_output(SAMPLES)
-            _kernel.run(torque, DT, vector, np.zeros(5), STEP, out)  # compiles
+            _kernel.run(torque, load, True, DT, vector, np.zeros(5), STEP, out)  # compiles
             c_ms = best_of(partial(run_c, torque, vector, out_c))
-            ms = best_of(partial(_kernel.run, torque, DT, vector, np.zeros(5), STEP, out))
+            ms = best_of(partial(_kernel.run, torque, load, True, DT, vector, np.zeros(5), STEP, out))
             difference = np.max(np.abs(out[:, 0] - out_c[:, 0]))
             print(f"{title + ', C -O3':42}{c_ms:9.2f}{1.0:8.2f}")
             print(f"{title + ', kernel':42}{ms:9.2f}{ms / c_ms:8.2f}{difference:28.2e}")

@@ -98,8 +98,10 @@ def parts(found: Diagnosis) -> list[Part]:
         Part(
             "consequences",
             "What it does to the acceptance figures",
-            "Open-loop step of 20 N m, model before and after.",
-            (_consequences(found),),
+            "Open-loop step of 20 N m, model before and after."
+            if found.consequences
+            else "The model takes its load from recordings: what its wheels would meet in a step is not in it.",
+            _if_any(_consequences(found)),
         ),
         Part(
             "considered",

@@ -12,7 +12,7 @@ from hil.cli._named_values import named_numbers
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import results_in
 from hil.core.errors import BadInputError
-from hil.core.model import load_model, model_to_toml
+from hil.core.model import Model, load_model, model_to_toml
 from hil.core.recording import Recording, driven_by_torque, read_recording
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
 from reports.quantities import chance
@@ -41,8 +41,8 @@ def carry_out(
     inputs = [model, *recordings, *(holdout or [])]
     with results_in(out, _FILES, inputs=inputs, overwrite=overwrite, summary="diagnosis.json") as place:
         with progress("diagnosis") as show:
-            read = _read(recordings, show)
-            held = _read(holdout or [], show)
+            read = _read(recordings, base, show)
+            held = _read(holdout or [], base, show)
             found = diagnose(
                 base, read, held, noise=known, least=smallest, at_most_s=60.0 * at_most, show=show
             )
@@ -84,14 +84,14 @@ def _refuse_twice(recordings: list[Path], holdout: list[Path]) -> None:
             raise BadInputError(f"is given twice as {role}", where=str(twice), fix="give it once")
 
 
-def _read(paths: list[Path], show: Show) -> list[Recording]:
-    """The stretches of all files that can be explained: driven by torque alone."""
+def _read(paths: list[Path], base: Model, show: Show) -> list[Recording]:
+    """The stretches of all files that a model can explain: driven by torque alone, or by its load too."""
     parts = []
     for path in paths:
         show(f"reading {path.name}")
         whole = read_recording(path, least_samples=LEAST_SAMPLES)
         warn_of_damage([whole])
-        parts += driven_by_torque(whole)
+        parts += [whole] if base.load_input else driven_by_torque(whole)
     return parts
 
 

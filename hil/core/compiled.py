@@ -46,7 +46,7 @@ def compiled_exactly(function: _F) -> Any:
 
 def inlined(function: _F) -> Any:
     """Compile `function` into each of its callers."""
-    return _cached(function, inline="always")
+    return _cached(function, forceinline=True)
 
 
 def compiled_parallel(function: _F) -> Any:

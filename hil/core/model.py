@@ -57,7 +57,18 @@ _KINDS: dict[str, tuple[str, ...]] = {
     ),
     "transfer_function": (),
 }
-_KEYS = ("kind", "parameters", "tolerance", "wheel_radius_m", "effects", "transfer_functions", "meta")
+_KEYS = (
+    "kind",
+    "parameters",
+    "tolerance",
+    "wheel_radius_m",
+    "load_input",
+    "effects",
+    "transfer_functions",
+    "meta",
+)
+#: Channels that may brake a model's wheels: positive against forward motion, left plus right.
+LOAD_INPUTS = ("dyno_torque_ref_nm",)
 _LARGEST_DELAY_S = 1.0
 _LARGEST_TOLERANCE = 5.0  # relative: known to a factor of six
 _RADII_M = (0.01, 10.0)  # of a wheel
@@ -89,7 +100,11 @@ class EffectUse:
 
 @dataclass(frozen=True)
 class Model:
-    """A plant model; the input is `motor_torque_ref_nm`, the outputs are `OUTPUTS`."""
+    """A plant model; the input is `motor_torque_ref_nm`, the outputs are `OUTPUTS`.
+
+    `load_input` names a recorded channel whose torque brakes the wheels (the load where there is no wheel),
+    beside what the model itself holds of the vehicle; '' for none.
+    """
 
     kind: str
     parameters: dict[str, float] = field(default_factory=dict)
@@ -99,6 +114,7 @@ class Model:
     wheel_radius_m: float = WHEEL_RADIUS_M
     #: How well parameters are known, relative; those not named have the default of who asks.
     tolerance: dict[str, float] = field(default_factory=dict)
+    load_input: str = ""
 
     def with_parameters(self, **changes: float) -> Model:
         """The same model with other parameter values."""
@@ -154,7 +170,8 @@ def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
     parameters = _parameters(data.get("parameters", {}), kind, where)
     effects = _effects(data.get("effects", []), kind, where)
     tolerance = _tolerance(data.get("tolerance", {}), kind, where)
-    return Model(kind, parameters, effects, functions, meta, _wheel_radius(data, where), tolerance)
+    load = _load_input(data.get("load_input", ""), kind, where)
+    return Model(kind, parameters, effects, functions, meta, _wheel_radius(data, where), tolerance, load)
 
 
 def save_model(model: Model, path: Path) -> None:
@@ -167,6 +184,8 @@ def model_to_toml(model: Model) -> str:
     data: dict[str, Any] = {"kind": model.kind}
     if model.wheel_radius_m != WHEEL_RADIUS_M:
         data["wheel_radius_m"] = model.wheel_radius_m
+    if model.load_input:
+        data["load_input"] = model.load_input
     if model.parameters:
         data["parameters"] = dict(model.parameters)
     if model.tolerance:
@@ -189,6 +208,22 @@ def _no_others(table: Mapping[str, Any], known: tuple[str, ...], prefix: str, wh
             raise BadInputError(
                 f"unknown key '{prefix}{key}'", where=where, fix=f"known here: {', '.join(known) or 'none'}"
             )
+
+
+def _load_input(value: Any, kind: str, where: str) -> str:
+    if value == "":
+        return ""
+    if value not in LOAD_INPUTS:
+        raise BadInputError(
+            f"load_input is {shown(value)}", where=where, fix=f"known here: {', '.join(LOAD_INPUTS)}"
+        )
+    if kind == "transfer_function":
+        raise BadInputError(
+            "a 'transfer_function' model has no load_input: its functions are those of the motor torque",
+            where=where,
+            fix="give a rigid, two_inertia or three_inertia model",
+        )
+    return str(value)
 
 
 def _wheel_radius(data: Mapping[str, Any], where: str) -> float:

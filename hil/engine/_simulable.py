@@ -49,6 +49,12 @@ def simulated(bench: BenchFile, model: Model) -> SimulatedBench:
         BadInputError: something of it cannot be simulated.
     """
     assert bench.simulation is not None
+    if model.load_input:
+        raise BadInputError(
+            f"the model takes {model.load_input} from recordings and does not hold the vehicle",
+            where=str(bench.simulation.model),
+            fix="simulate a bench with a model of axle and vehicle, without load_input",
+        )
     rmcu, dyno, noise = rmcu_of(bench), dyno_of(bench), bench.simulation.noise
     return SimulatedBench(
         SimulationSettings(

@@ -60,7 +60,7 @@ def tyre_torque(x, m, chain, memories, p, acting):  # type: ignore[no-untyped-de
 
 @inlined
 def derivative(x, memories, p, acting, torque, coupled, load, direction):  # type: ignore[no-untyped-def]
-    """dx/dt; `torque` acts on the rotor (before the lag), `load` on the wheel unless coupled.
+    """dx/dt; `torque` acts on the rotor (before the lag), `load` on the wheel; the vehicle only if coupled.
 
     `acting` is that of `acting_of`. Dry friction acts against `direction`, which a whole step shares: the
     sign of the speed, 0 at standstill.
@@ -73,9 +73,10 @@ def derivative(x, memories, p, acting, torque, coupled, load, direction):  # typ
         torque = x[X.LAGGED]
     slope = put(put(X.AT_REST, X.LAGGED, lagged), X.WHEEL_ANGLE, x[X.WHEEL_SPEED])
     n = chain.gear_ratio
-    outside = load
-    if coupled:
-        outside = L.vehicle_load(m, chain, memories, p) if acting.load else 0.0
+    resistance = 0.0
+    if coupled and acting.load:
+        resistance = L.vehicle_load(m, chain, memories, p)
+    outside = load + resistance
     if chain.kind == P.RIGID:
         rotor = rigid_acceleration(x, m, chain, memories, p, acting, torque, outside, direction)
         slope = put(put(slope, X.ROTOR_SPEED, rotor), X.WHEEL_SPEED, rotor / n)
@@ -107,11 +108,11 @@ def derivative(x, memories, p, acting, torque, coupled, load, direction):  # typ
         tyre, vehicle = 0.0, wheel
     elif coupled:
         road = tyre_torque(x, m, chain, memories, p, acting)
-        wheel = (shaft - road) / chain.wheel_inertia
+        wheel = (shaft - road - load) / chain.wheel_inertia
         tyre = x[X.WHEEL_SPEED] - x[X.VEHICLE_SPEED]
         if acting.tyre:
             tyre += L.tyre_rate(m, chain, memories, p)
-        vehicle = (road - outside) / chain.vehicle_inertia
+        vehicle = (road - resistance) / chain.vehicle_inertia
     else:
         wheel = (shaft - load) / chain.wheel_inertia
         tyre = -_TRACKING_RATE_1_S * x[X.TYRE_TWIST]

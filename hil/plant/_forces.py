@@ -64,8 +64,11 @@ def angles_at(angles, k, part, old, x, at, h, p):  # type: ignore[no-untyped-def
 
 
 @inlined
-def shaft_torque(x, f, p, acting, dry):  # type: ignore[no-untyped-def]
-    """Torque in N m that a state and its forces show on the wheel side; `acting` before the lag."""
+def shaft_torque(x, f, brakes, p, acting, dry):  # type: ignore[no-untyped-def]
+    """Torque in N m that a state and its forces show on the wheel side; `acting` before the lag.
+
+    `brakes` is the torque at the wheels from outside.
+    """
     chain = chain_of(p)
     n = chain.gear_ratio
     speed = relative_speed(x)
@@ -74,9 +77,10 @@ def shaft_torque(x, f, p, acting, dry):  # type: ignore[no-untyped-def]
         return chain.shaft_stiffness * x[X.TWIST] + chain.shaft_damping * rate + f[SHAFT]
     if chain.torque_lag > 0.0:
         acting = x[X.LAGGED]
-    driving = acting - f[LOSS] - chain.viscous_drag * speed - f[LOAD] / n
+    load = f[LOAD] + brakes
+    driving = acting - f[LOSS] - chain.viscous_drag * speed - load / n
     if dry:
         direction = speed if abs(speed) > _STANDSTILL_RAD_S else 0.0
         driving -= friction_torque(direction, driving, level(speed, chain, X.NO_MEMORY, p))
     rotor = driving / (chain.motor_inertia + chain.vehicle_inertia / (n * n))
-    return chain.vehicle_inertia * rotor / n + f[LOAD]
+    return chain.vehicle_inertia * rotor / n + load

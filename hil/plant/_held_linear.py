@@ -34,6 +34,39 @@ def _product(a, b):  # type: ignore[no-untyped-def]
 
 
 @compiled
+def _added(a, factor, b):  # type: ignore[no-untyped-def]
+    """factor·(a + b): a loop, because an expression of arrays takes a second to compile."""
+    out = np.empty(a.shape)
+    for i in range(a.shape[0]):
+        for j in range(a.shape[1]):
+            out[i, j] = factor * (a[i, j] + b[i, j])
+    return out
+
+
+@compiled
+def _scaled(a, factor, diagonal):  # type: ignore[no-untyped-def]
+    """factor·a with `diagonal` added to its diagonal."""
+    out = np.empty(a.shape)
+    for i in range(a.shape[0]):
+        for j in range(a.shape[1]):
+            out[i, j] = factor * a[i, j] + (diagonal if i == j else 0.0)
+    return out
+
+
+@compiled
+def _largest_column(a):  # type: ignore[no-untyped-def]
+    """The 1-norm of a matrix."""
+    largest = 0.0
+    for j in range(a.shape[1]):
+        total = 0.0
+        for i in range(a.shape[0]):
+            total += abs(a[i, j])
+        if not total <= largest:  # NaN too
+            largest = total
+    return largest
+
+
+@compiled
 def held_step(a, b, duration):  # type: ignore[no-untyped-def]
     """Transition over `duration`, effect of inputs held, and of inputs that rise from 0 to 1 over it.
 
@@ -43,23 +76,23 @@ def held_step(a, b, duration):  # type: ignore[no-untyped-def]
     """
     square = _product(a, a)
     # of the fourth power, since a itself mixes units: its norm says little about how large a power gets
-    norm = duration * np.abs(_product(square, square)).sum(axis=0).max() ** 0.25
+    norm = duration * _largest_column(_product(square, square)) ** 0.25
     part, doublings = duration, 0
     while 0.5 < norm < math.inf:
         part, norm, doublings = 0.5 * part, 0.5 * norm, doublings + 1
-    one, z = np.eye(X.LINEAR_STATES), part * a
+    z = _scaled(a, part, 0.0)
     # exp(z), phi_1 = (exp(z) - 1)/z and phi_2 = (phi_1 - 1)/z
-    phi_2 = one.copy()
+    phi_2 = _scaled(a, 0.0, 1.0)
     for k in range(_TERMS, 2, -1):
-        phi_2 = one + _product(z, phi_2) / k
-    phi_2 *= 0.5
-    phi_1 = one + _product(z, phi_2)
-    power = one + _product(z, phi_1)
+        phi_2 = _scaled(_product(z, phi_2), 1.0 / k, 1.0)
+    phi_2 = _scaled(phi_2, 0.5, 0.0)
+    phi_1 = _scaled(_product(z, phi_2), 1.0, 1.0)
+    power = _scaled(_product(z, phi_1), 1.0, 1.0)
     for _ in range(doublings):
-        phi_2 = 0.25 * (_product(power, phi_2) + phi_1 + phi_2)
-        phi_1 = 0.5 * (_product(power, phi_1) + phi_1)
+        phi_2 = _added(_product(power, phi_2), 0.25, _added(phi_1, 1.0, phi_2))
+        phi_1 = _added(_product(power, phi_1), 0.5, phi_1)
         power = _product(power, power)
-    return power, duration * _product(phi_1, b), duration * _product(phi_2, b)
+    return power, _scaled(_product(phi_1, b), duration, 0.0), _scaled(_product(phi_2, b), duration, 0.0)
 
 
 def step_matrices(p: Array, dt: float, substeps: int) -> tuple[Array, Array, Array, Array]:

@@ -105,14 +105,16 @@ def _hold(x, memories, p, slewed, wanted, coupled, load, duration, longest_step)
     """Advance with the wanted torque held; the slew limit, if any, moves once a step."""
     count = max(1, math.ceil(duration / longest_step - 1e-9))
     limit = L.steepest(p)
-    if limit == math.inf or slewed == wanted:
-        x, memories = _steps(x, memories, p, wanted, coupled, load, duration, count)
-        return x, memories, wanted
-    h = duration / count
-    for _ in range(count):
-        reach = limit * h
-        moved = slewed + min(max(wanted - slewed, -reach), reach)
-        x, memories = _steps(x, memories, p, 0.5 * (slewed + moved), coupled, load, h, 1)
+    slews = limit != math.inf and slewed != wanted
+    parts, steps = (count, 1) if slews else (1, count)
+    h = duration / parts
+    for _ in range(parts):
+        moved, acting = wanted, wanted
+        if slews:
+            reach = limit * h
+            moved = slewed + min(max(wanted - slewed, -reach), reach)
+            acting = 0.5 * (slewed + moved)
+        x, memories = _steps(x, memories, p, acting, coupled, load, h, steps)
         slewed = moved
     return x, memories, slewed
 
@@ -135,7 +137,9 @@ def outputs(x, memories, p, slewed, coupled, load, row):  # type: ignore[no-unty
     chain, acting = chain_of(p), acting_of(p)
     m = E.motion(x, chain, memories, p)
     torque = x[X.LAGGED] if chain.torque_lag > 0.0 else slewed
-    outside = L.vehicle_load(m, chain, memories, p) if coupled else load
+    outside = load
+    if coupled:
+        outside += L.vehicle_load(m, chain, memories, p)
     row[OUT_MOTOR_SPEED] = relative_speed(x)
     row[OUT_WHEEL_SPEED] = x[X.WHEEL_SPEED]
     if chain.kind == P.RIGID:
@@ -147,7 +151,7 @@ def outputs(x, memories, p, slewed, coupled, load, row):  # type: ignore[no-unty
     row[OUT_VEHICLE_SPEED] = x[X.VEHICLE_SPEED]
     row[OUT_LOAD] = outside
     if coupled and chain.kind == P.THREE_INERTIA:
-        row[OUT_LOAD] = E.tyre_torque(x, m, chain, memories, p, acting)
+        row[OUT_LOAD] = E.tyre_torque(x, m, chain, memories, p, acting) + load
 
 
 @compiled
@@ -169,10 +173,11 @@ def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel
 
 
 @compiled
-def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untyped-def]
-    """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS); vehicle coupled.
+def run(torque, load, coupled, dt, vector, start, longest_step, out):  # type: ignore[no-untyped-def]
+    """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS).
 
-    `start` has the columns START_…; its motor torque has acted before.
+    `load` (n) brakes the wheels; over a sample the mean of both its ends acts. `start` has the columns
+    START_…; its motor torque has acted before.
     """
     p = as_tuple(vector)
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
@@ -190,10 +195,11 @@ def run(torque, dt, vector, start, longest_step, out):  # type: ignore[no-untype
         start[START_WHEEL_ANGLE],
     )
     for k in range(torque.shape[0]):
-        outputs(x, memories, p, slewed, True, 0.0, out[k])
+        outputs(x, memories, p, slewed, coupled, load[k], out[k])
         new = torque[k - whole] if k >= whole else before
         old = torque[k - whole - 1] if k > whole else before
-        x, memories, slewed = sample(x, memories, p, slewed, old, new, late, dt, True, 0.0, longest_step)
+        mean = 0.5 * (load[k] + load[min(k + 1, load.shape[0] - 1)])
+        x, memories, slewed = sample(x, memories, p, slewed, old, new, late, dt, coupled, mean, longest_step)
 
 
 def empty_output(samples: int) -> np.ndarray:

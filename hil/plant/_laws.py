@@ -85,10 +85,15 @@ def _place(id_: str) -> _Place:
     effect = next(one for one in P.ACTING if one.id == id_)
     first = P.FIRST[id_]
     acts = None
-    for name in effect.acting():
-        one = _differs(P.place(id_, name), effect.off)
+    for slot, off in _numbers_of(effect):
+        one = _differs(slot, off)
         acts = one if acts is None else _either(acts, one)
     return _Place(first, first + len(effect.parameters), X.MEMORY.get(id_, -1), acts)
+
+
+def _numbers_of(effect: Effect) -> list[tuple[int, float]]:
+    """(slot, value when off) of the numbers by which an effect acts."""
+    return [(P.place(effect.id, name), float(effect.off)) for name in effect.acting()]
 
 
 def _differs(slot: int, off: float) -> Any:
@@ -110,14 +115,20 @@ def _having(name: str) -> list[Effect]:
 
 
 def _any_of(*names: str) -> Any:
+    """Whether any of the effects with such laws does anything: asked before a loop, so one short function."""
+    numbers = [number for name in names for effect in _having(name) for number in _numbers_of(effect)]
+    slots, offs = tuple(slot for slot, _ in numbers), tuple(off for _, off in numbers)
+
     def acts(p):  # type: ignore[no-untyped-def]
+        for i in range(len(slots)):  # noqa: SIM110 - no generators in compiled code
+            if p[slots[i]] != offs[i]:
+                return True
         return False
 
-    result = _compile(acts)
-    for name in names:
-        for effect in _having(name):
-            result = _either(result, _place(effect.id).acts)
-    return result
+    def never(p):  # type: ignore[no-untyped-def]
+        return False
+
+    return _compile(acts if numbers else never)
 
 
 def _force(effect: Effect, law: Any) -> Any:

@@ -48,6 +48,7 @@ def simulate_many(
     sensors: Array,
     block: int = 1,
     angles: Array | None = None,
+    load_nm: Array | None = None,
 ) -> Array:
     """Channels of many packed models for one torque request, each the mean of `block` samples.
 
@@ -60,6 +61,8 @@ def simulate_many(
         sensors: sets x 3 channels x (gain, offset, delay in s, step), as from `ideal_sensors`.
         angles: n x 2, wheel and rotor angle in rad that ripples follow (as measured); when left out, the
             simulated ones.
+        load_nm: shape (n,), brakes the wheels (the load where there is no wheel), straight from sample to
+            sample; none when left out.
 
     Returns:
         sets x (n // block) x 3, in the order of `CHANNELS`. A diverged set shows as NaN or huge numbers.
@@ -89,6 +92,7 @@ def simulate_many(
         varies,
         (transition, torque, held, rising),
         np.zeros((0, 2)) if angles is None else np.ascontiguousarray(angles, dtype=float),
+        None if load_nm is None else np.ascontiguousarray(load_nm, dtype=float),
         out,
     )
     return out
@@ -189,7 +193,7 @@ def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type
         old = acting[max(k - whole - 1, 0)]
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
-        fine[k, SHAFT] = F.shaft_torque(x, F.NONE, p, shown[k], False)
+        fine[k, SHAFT] = F.shaft_torque(x, F.NONE, 0.0, p, shown[k], False)
         for sub in range(substeps):
             x = _moved(x, sub, old, new, column, transition)
 
@@ -204,9 +208,19 @@ def _pushed(y, f, held, moves_tyre):  # type: ignore[no-untyped-def]
     return y
 
 
+@inlined
+def _braked(y, begins, rises, held, rising, has_wheel):  # type: ignore[no-untyped-def]
+    """State with the effect of a torque that brakes the wheels, which changes by `rises` over a step."""
+    y = plus_row(plus_row(y, begins, held, F.LOAD), rises, rising, F.LOAD)
+    if has_wheel:  # what the tyre takes beside brakes the wheel and pushes the vehicle
+        y = plus_row(plus_row(y, begins, held, F.TYRE), rises, rising, F.TYRE)
+    return y
+
+
 @compiled
-def _run_forced(drive, whole, p, first, varies, h, substeps, column, transition, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
     acting, shown = drive
+    transition, column, held, rising = matrices
     x, memories = first
     chain = chain_of(p)
     dry, turns, moves_tyre = L.may_stick(p), L.turns(p), L.moves_tyre(p)
@@ -215,14 +229,21 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, column, transition,
     at = F.first_angles(angles, x, p)
     m = motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
     f = F.forces(m, chain, memories, p)
+    has_wheel = chain.kind == P.THREE_INERTIA
+    brakes, rises = 0.0, 0.0
     for k in range(acting.shape[0]):
+        if load is not None:
+            brakes = load[k]
+            rises = (load[min(k + 1, load.shape[0] - 1)] - brakes) / substeps
         new = acting[max(k - whole, 0)]
         old = acting[max(k - whole - 1, 0)]
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
-        fine[k, SHAFT] = F.shaft_torque(x, f, p, shown[k], dry)
+        fine[k, SHAFT] = F.shaft_torque(x, f, brakes, p, shown[k], dry)
         for sub in range(substeps):
             y = _pushed(_moved(x, sub, old, new, column, transition), f, held, moves_tyre)
+            if load is not None:
+                y = _braked(y, brakes + sub * rises, rises, held, rising, has_wheel)
             before = relative_speed(x)
             if dry:
                 level = F.level(before, chain, memories, p)
@@ -250,7 +271,7 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, column, transition,
 
 
 @compiled
-def _run(torque, dt, vector, start, substeps, varies, transition, column, held, rising, angles, fine):  # type: ignore[no-untyped-def]
+def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
     """One model over the whole recording into `fine` (n x 3)."""
     p = as_tuple(vector)
     acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(torque.shape[0])
@@ -259,17 +280,15 @@ def _run(torque, dt, vector, start, substeps, varies, transition, column, held, 
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     _shown(acting, ends, dt, whole, p, shown)
     drive = (acting, shown)
-    if varies or L.pushes(p):
+    if varies or L.pushes(p) or load is not None:
         h = dt / substeps
-        _run_forced(
-            drive, whole, p, first, varies, h, substeps, column, transition, held, rising, angles, fine
-        )
+        _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine)
     else:
-        _run_linear(drive, whole, p, first[0], substeps, column, transition, fine)
+        _run_linear(drive, whole, p, first[0], substeps, matrices[1], matrices[0], fine)
 
 
 @compiled_parallel
-def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, matrices, angles, out):  # type: ignore[no-untyped-def]
+def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, matrices, angles, load, out):  # type: ignore[no-untyped-def]
     transition, column, held, rising = matrices
     for s in prange(parameters.shape[0]):
         fine = np.empty((torque.shape[0], 3))
@@ -280,11 +299,9 @@ def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, m
             starts[s],
             substeps[s],
             varies[s],
-            transition[s],
-            column[s],
-            held[s],
-            rising[s],
+            (transition[s], column[s], held[s], rising[s]),
             angles,
+            load,
             fine,
         )
         for channel in range(fine.shape[1]):

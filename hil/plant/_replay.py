@@ -47,12 +47,14 @@ def simulate(
     sample_time_s: float,
     start: Start | None = None,
     longest_step_s: float = LONGEST_STEP_S,
+    load_nm: Array | None = None,
 ) -> dict[str, Array]:
     """Channels of `model` for a torque request held for `sample_time_s` from sample to sample.
 
     Args:
         torque_ref_nm: shape (n,), N m.
         start: initial speeds and shaft torque; standstill when left out.
+        load_nm: shape (n,), N m: brakes the wheels beside the model's own vehicle; none when left out.
 
     Returns:
         motor_torque_nm, motor_speed_rad_s, wheel_speed_rad_s and shaft_torque_nm, each of shape (n,)
@@ -75,7 +77,8 @@ def simulate(
                 start.wheel_angle_rad,
             ]
         )
-        _kernel.run(torque, sample_time_s, parameters, begin, longest_step_s, out)
+        load = np.zeros(len(torque)) if load_nm is None else np.ascontiguousarray(load_nm, dtype=float)
+        _kernel.run(torque, load, True, sample_time_s, parameters, begin, longest_step_s, out)
         channels = {
             "motor_torque_nm": out[:, _kernel.OUT_MOTOR_TORQUE].copy(),
             "motor_speed_rad_s": out[:, _kernel.OUT_MOTOR_SPEED].copy(),
@@ -88,31 +91,52 @@ def simulate(
 def replay(model: Model, recording: Recording) -> Recording:
     """`model` driven by a recording's torque request from its initial speeds, at its time stamps.
 
-    Uneven time stamps are resampled (input held, outputs interpolated); `notes` says so.
+    Where the model has a `load_input`, that channel brakes its wheels. Uneven time stamps are resampled
+    (input held, load and outputs interpolated); `notes` says so.
 
     Raises:
-        BadInputError: the simulation diverges.
+        BadInputError: the simulation diverges, or the model's load was not recorded.
     """
     time = recording.time_s
     dt = recording.sample_time_s
     torque = recording[INPUT]
+    load = load_of(model, recording)
     notes = []
     even = np.max(np.abs(np.diff(time) - dt)) <= _UNEVEN_SHARE * dt
     grid = time
     if not even:
         grid = time[0] + dt * np.arange(int(np.ceil((time[-1] - time[0]) / dt)) + 1)
         torque = torque[np.clip(np.searchsorted(time, grid + 1e-9 * dt, side="right") - 1, 0, len(time) - 1)]
+        load = None if load is None else np.interp(grid, time, load)
         notes.append(f"time stamps are uneven: simulated every {dt * 1e3:g} ms, interpolated back")
     else:
         dt = float((time[-1] - time[0]) / (len(time) - 1))
     start = start_of(recording, _gear_ratio(model))
     if _rests(model, start, float(torque[0])):
         start = dataclasses.replace(start, motor_torque_nm=0.0)
-    channels = simulate(model, torque, dt, start)
+    channels = simulate(model, torque, dt, start, load_nm=load)
     _refuse_divergence(channels, grid)
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
-    return Recording({TIME: time, INPUT: recording[INPUT], **channels}, recording.source, notes=notes)
+    inputs = {name: recording[name] for name in (INPUT, model.load_input) if name}
+    return Recording({TIME: time, **inputs, **channels}, recording.source, notes=notes)
+
+
+def load_of(model: Model, recording: Recording) -> Array | None:
+    """The recorded torque in N m that brakes a model's wheels; None for a model that takes none.
+
+    Raises:
+        BadInputError: the recording does not have it.
+    """
+    if not model.load_input:
+        return None
+    if model.load_input not in recording:
+        raise BadInputError(
+            f"has no channel {model.load_input}, and the model takes it as its load",
+            where=str(recording.source),
+            fix="record it, or take load_input out of the model file, which then has to hold the vehicle",
+        )
+    return recording[model.load_input]
 
 
 def _refuse_divergence(channels: dict[str, Array], time_s: Array) -> None:

@@ -46,7 +46,8 @@ class OpenFiles:
 def write_case(case: Case, directory: Path) -> tuple[OpenFiles, Answer]:
     """Write model.toml and the recordings as CSV; return their paths and the sealed answer."""
     model = directory / "model.toml"
-    save_model(case.model, model)
+    by_the_dyno = any(one.load_nm is not None for one in case.experiments)
+    save_model(replace(case.model, load_input=LOAD) if by_the_dyno else case.model, model)
     main, noise = _measure(case, case.experiments, 1, directory / _MAIN)
     holdout, holdout_noise = _measure(case, case.holdout, 2, directory / _HOLDOUT)
     answer = Answer(tuple((h.id, h.values) for h in case.hidden), case.share, noise, holdout_noise)

@@ -7,9 +7,7 @@ from tests.blind.later_families import LATER_FAMILIES
 from tests.blind.loops import LOOPS
 from tests.blind.other_laws import OTHER_LAWS
 
-LATER_GROUPS = ("far", "few_channels", "closed_loop", "other_laws", "too_small", "drift")
-#: Asked for by name only: the models do not take a load from outside yet.
-ON_REQUEST = ("load_side",)
+LATER_GROUPS = ("far", "few_channels", "closed_loop", "other_laws", "too_small", "drift", "load_side")
 
 #: How many channels a case of `few_channels` shows.
 COUNTS = {"one": 1, "two": 2}

@@ -18,9 +18,8 @@ from pathlib import Path
 from tests.blind.casefiles import OpenFiles, drawn_case, open_answer, seal_answer, write_case
 from tests.blind.diagnosing import Diagnose, by_command_line, says_nothing
 from tests.blind.draws import draw
-from tests.blind.later_groups import ON_REQUEST
 from tests.blind.scoring import Score, score
-from tests.blind.specs import GROUPS, Spec, full_set, on_request, subset
+from tests.blind.specs import GROUPS, Spec, full_set, subset
 from tests.blind.tables import as_markdown
 
 _RESULTS = Path("docs/reference/blind-results.md")
@@ -86,7 +85,7 @@ def _tell(one: Score, number: int, total: int) -> None:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run what the options ask for and write the results."""
     options = _options(arguments)
-    there = [*full_set(), *(on_request() if options.group else ())]
+    there = full_set()
     specs = [s for s in there if _wanted(s, options)]
     if options.cases:
         specs = subset(specs, options.cases, options.seed)
@@ -130,9 +129,7 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m tests.blind", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="another seed, other plants and noise")
     parser.add_argument("--cases", type=int, help="about this many, in the full set's proportions")
-    parser.add_argument(
-        "--group", action="append", choices=(*GROUPS, *ON_REQUEST), help="only this group; may be repeated"
-    )
+    parser.add_argument("--group", action="append", choices=GROUPS, help="only this group; may be repeated")
     parser.add_argument(
         "--only",
         action="append",

@@ -9,7 +9,7 @@ import numpy as np
 
 from tests.blind.families import FAMILIES
 from tests.blind.later_families import LATER_FAMILIES
-from tests.blind.later_groups import LATER_GROUPS, ON_REQUEST, later_specs
+from tests.blind.later_groups import LATER_GROUPS, later_specs
 from tests.blind.outsiders import LATER_OUTSIDERS, OUTSIDERS
 
 GROUPS = ("single", "pair", "none", "outside", "mismatch", "one_recording", *LATER_GROUPS)
@@ -31,11 +31,6 @@ class Spec:
     @property
     def key(self) -> str:
         return f"{self.group}/{self.subject}/{self.size}/{self.turn}"
-
-
-def on_request() -> list[Spec]:
-    """Cases that run only where their group is named."""
-    return [Spec(*parts) for parts in later_specs() if parts[0] in ON_REQUEST]
 
 
 def full_set() -> list[Spec]:

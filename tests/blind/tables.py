@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 
 from tests.blind.figures import figure_rows
-from tests.blind.later_groups import LATER_GROUPS, ON_REQUEST
+from tests.blind.later_groups import LATER_GROUPS
 from tests.blind.scoring import Score
 from tests.blind.specs import GROUPS, SIZES
 
@@ -40,7 +40,7 @@ def as_markdown(scores: Sequence[Score], how: str) -> str:
         "## Outside the registry",
         _by([s for s in scores if s.group == "outside"], lambda s: s.subject, "effect"),
     ]
-    later = [s for s in scores if s.group in (*LATER_GROUPS, *ON_REQUEST)]
+    later = [s for s in scores if s.group in LATER_GROUPS]
     parts += ["## Later groups by subject", _by(later, lambda s: f"{s.group}/{s.subject}", "subject")]
     parts += ["## Confusions", "What was named where one effect, or none, was hidden.", _confusions(scores)]
     parts += ["## Calibration of confidence", _calibration(scores)]
@@ -51,7 +51,7 @@ def as_markdown(scores: Sequence[Score], how: str) -> str:
 
 def _summary(scores: Sequence[Score]) -> list[str]:
     rows = []
-    for group in (*GROUPS, *ON_REQUEST):
+    for group in GROUPS:
         members = [s for s in scores if s.group == group]
         if not members:
             continue

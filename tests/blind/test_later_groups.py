@@ -15,12 +15,12 @@ from tests.blind.diagnosing import Reply
 from tests.blind.draws import draw
 from tests.blind.fairness import intervals_that_hold, judged_gaps
 from tests.blind.figures import figure_rows
-from tests.blind.later_groups import LATER_GROUPS, ON_REQUEST, later_specs
+from tests.blind.later_groups import LATER_GROUPS, later_specs
 from tests.blind.plant import COARSE, Truth, true_outputs
 from tests.blind.reference.controller import MEMORY, ON_MOTOR, control, motor_speed_torque
 from tests.blind.scoring import score
 from tests.blind.sensors import Sensor
-from tests.blind.specs import GROUPS, Spec, full_set, on_request
+from tests.blind.specs import Spec, full_set
 
 NOISE = dict.fromkeys(OUTPUTS, 0.01)
 BACKLASH = ("backlash", {"half_gap_rad": 0.01})
@@ -47,13 +47,11 @@ def _gaps(before, after):
     return {name: {"before": 0.01 * before, "after": 0.01 * after, "noise_floor": 0.5} for name in OUTPUTS}
 
 
-def test_the_set_grew_by_more_than_150_cases_and_a_load_runs_on_request_only():
+def test_the_set_grew_by_more_than_150_cases():
     grown = [s for s in full_set() if s.group in LATER_GROUPS]
     assert len(grown) > 150
-    assert len({s.key for s in (*full_set(), *on_request())}) == len(full_set()) + len(on_request())
-    assert {s.group for s in on_request()} == {*ON_REQUEST}
-    assert not {*ON_REQUEST} & {*GROUPS}
-    assert len(later_specs()) == len(grown) + len(on_request())
+    assert len({s.key for s in full_set()}) == len(full_set())
+    assert len(later_specs()) == len(grown)
 
 
 @pytest.mark.slow

@@ -49,6 +49,11 @@ def design_plant(model: Model) -> DesignPlant:
         BadInputError: an output is missing, the functions do not share one denominator, the order is
             beyond the RMCU's, the plant is unstable or has no oscillating pole pair.
     """
+    if model.load_input:
+        raise BadInputError(
+            f"the model takes {model.load_input} from recordings and does not hold the vehicle",
+            fix="design with a model of axle and vehicle, without load_input",
+        )
     functions, notes = transfer_functions_of(model)
     missing = [name for name in OUTPUTS if name not in functions]
     if missing:

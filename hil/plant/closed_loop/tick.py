@@ -93,8 +93,9 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
         row[LOAD_LEFT + side] = drive_load
         loads += drive_load
     truth = noise[SENSORS:]  # scratch room behind the noise
-    K.outputs(state, memories, p, w[SLEWED], coupled, loads, truth)
-    if coupled:
+    K.outputs(state, memories, p, w[SLEWED], coupled, 0.0 if coupled else loads, truth)
+    if coupled:  # the drives play the vehicle: nothing else is at the wheels
+        loads = 0.0
         row[LOAD_LEFT] = row[LOAD_RIGHT] = 0.5 * truth[K.OUT_LOAD]
     row[MOTOR_SPEED] = _sense(truth[K.OUT_MOTOR_SPEED], noise[0], sensors[0], past[0], k, dt)
     for side in range(2):

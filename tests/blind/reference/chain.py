@@ -206,9 +206,9 @@ def simulate_chain(
 ) -> np.ndarray:
     """Samples x (motor speed against housing, wheel speed, shaft torque); `ref` is completed in closed loop.
 
-    `load` is the dyno's torque in N m at each sample, `noise` (samples x outputs) what a controller reads
-    beside the truth. `wheel_speed` is the initial speed in rad/s; `seat` (-1 to 1) where in the free play the
-    flanks start.
+    `load` is the dyno's torque in N m, straight from sample to sample, `noise` (samples x outputs) what a
+    controller reads beside the truth. `wheel_speed` is the initial speed in rad/s; `seat` (-1 to 1) where in
+    the free play the flanks start.
     """
     out = np.empty((len(ref), 3))
     h = sample_s / substeps
@@ -236,7 +236,8 @@ def simulate_chain(
             before = torque
             lagged, torque = acting(p, request, lagged, before, start + 0.5 * h, h)
             mean = 0.5 * (before + torque) if smooth else torque
+            braking = load[k] + (i + 0.5) / substeps * (load[min(k + 1, len(ref) - 1)] - load[k])
             x, v, a, inner = _step(
-                p, x, v, a, inner, memory, memory_mid, patch, patch_mid, mean, load[k], start, h
+                p, x, v, a, inner, memory, memory_mid, patch, patch_mid, mean, braking, start, h
             )
     return out

@@ -59,11 +59,12 @@ def simulate_rigid(
             if i == 0:
                 pull = _acceleration(p, torque, load[k], bristle, angle, speed) / p.gear_ratio
                 out[k, 2] = p.vehicle_inertia * pull + running_resistance(p, speed / p.gear_ratio) + load[k]
+            braking = load[k] + (i + 0.5) / substeps * (load[min(k + 1, n - 1)] - load[k])
             middle = speed
             for _ in range(_ITERATIONS):
                 half = bristle_after(p, bristle, middle, 0.5 * h)
                 middle = speed + 0.5 * h * _acceleration(
-                    p, torque, load[k], half, angle + 0.5 * h * middle, middle
+                    p, torque, braking, half, angle + 0.5 * h * middle, middle
                 )
             bristle = bristle_after(p, bristle, middle, h)
             angle += h * middle

@@ -158,7 +158,9 @@ def _said(model: Model, trace: Trace) -> Array:
     start = np.array([[motor, wheel, shaft if np.isfinite(shaft) else 0.0]])
     sensors = np.stack([sensor_of(model, channel) for channel in OUTPUTS])[None]
     angles = trace.angles(ratio)
-    said = simulate_many(pack(model)[None], trace.torque, trace.dt, start, sensors, trace.block, angles)[0]
+    said = simulate_many(
+        pack(model)[None], trace.torque, trace.dt, start, sensors, trace.block, angles, trace.load
+    )[0]
     return np.where(trace.has, said, np.nan)
 
 

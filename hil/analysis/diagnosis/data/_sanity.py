@@ -43,6 +43,7 @@ from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
+from hil.plant import load_of
 
 Array = npt.NDArray[np.float64]
 
@@ -106,7 +107,8 @@ def examined(model: Model, recordings: Sequence[Recording], beside: Sequence[Tra
     """
     for recording in recordings:
         refuse_implausible(recording)
-    traces = [trace_of(part) for r in recordings for piece in unbroken(r) for part in excerpts(piece)]
+    pieces = [part for r in recordings for piece in unbroken(r) for part in excerpts(piece)]
+    traces = [trace_of(part, load=load_of(model, part)) for part in pieces]
     if not traces:
         return Examined([], np.full(3, np.nan), [])
     noise = usable_noise(noise_levels(traces))
@@ -121,7 +123,7 @@ def _kind(error: BadInputError) -> str:
 def _wrong(model: Model, traces: list[Trace], noise: Array) -> BadInputError | None:
     """What does not go together in `traces`, seen together."""
     ratio, inertia = _ratio_and_inertia(model)
-    pushes = {OUTPUTS[i]: _push(traces, i, (ratio, 1.0)[i], ratio / inertia) for i in (0, 1)}
+    pushes = {OUTPUTS[i]: _push(traces, i, ratio, ratio / inertia) for i in (0, 1)}
     fine = [OUTPUTS[i] for i in (0, 1) if not any(coarse(t, i) for t in traces if t.has[i])]
     return _speeds(traces, ratio, noise, pushes) or _pushed(pushes, fine) or _shaft(traces, ratio, noise)
 
@@ -190,20 +192,21 @@ def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
     )
 
 
-def _push(traces: list[Trace], column: int, ratio: float, per_impulse: float) -> Pair:
+def _push(traces: list[Trace], column: int, gear_ratio: float, per_impulse: float) -> Pair:
     """How far the axle turned by a speed (y), and by the torque's impulse (x), rad wheel side.
 
     Even turning and an even change of speed are left out: offsets, friction, resistance.
 
     Args:
-        ratio: of the speed to the wheel's.
         per_impulse: wheel speed for 1 N m s of motor torque.
     """
     pair = Pair()
+    ratio = (gear_ratio, 1.0)[column]
     for t in traces:
         if t.has[column]:
             count, step = len(t.measured), t.block * t.dt
-            impulse = np.cumsum(t.torque)[t.block - 1 : count * t.block : t.block] * t.dt
+            drive = t.torque if t.load is None else t.torque - t.load / gear_ratio
+            impulse = np.cumsum(drive)[t.block - 1 : count * t.block : t.block] * t.dt
             turned = np.cumsum(t.measured[:, column]) * step
             pushed = _around(2, np.cumsum(impulse) * step * per_impulse)
             if np.std(pushed) > PUSHED_RAD[column]:
@@ -245,7 +248,8 @@ def _shaft(traces: list[Trace], ratio: float, noise: Array) -> BadInputError | N
         length = max(1, round(SLOW_S / t.dt))
         count = len(t.torque) // length
         if count >= 3:
-            torque = t.torque[: count * length].reshape(count, length).mean(axis=1) * ratio
+            drive = t.torque * ratio + (0.0 if t.load is None else t.load)
+            torque = drive[: count * length].reshape(count, length).mean(axis=1)
             shaft = t.samples[: count * length, 2].reshape(count, length).mean(axis=1)
             pair.add(torque - torque.mean(), shaft - shaft.mean())
     if not pair.count or max(pair.sizes) < MOVES * noise[2]:

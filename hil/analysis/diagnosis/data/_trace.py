@@ -39,7 +39,8 @@ class Trace:
     `measured` is blocks x 3 in the order of `OUTPUTS` (NaN where a channel is missing), each the mean of
     `block` samples; `samples` is the same at full rate; `start` is motor speed, wheel speed (rad/s) and
     shaft torque (N m) at the first sample, NaN where not measured. `source` is the file, for messages.
-    `judged` says of each block whether errors count there; everywhere if None.
+    `judged` says of each block whether errors count there; everywhere if None. `load` is the torque in N m
+    that brakes the wheels at every sample; None where the model takes none.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Trace:
     first_wheel_angle_rad: float = 0.0
     source: str = ""
     judged: Flags | None = None
+    load: Array | None = None
 
     def angles(self, gear_ratio: float, sensors: Array | None = None) -> Array:
         """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
@@ -158,8 +160,11 @@ def _piece(recording: Recording, first: int, last: int) -> Recording:
     return dataclasses.replace(recording, channels=channels, source=source, notes=notes)
 
 
-def trace_of(recording: Recording, name: str = "") -> Trace:
+def trace_of(recording: Recording, name: str = "", load: Array | None = None) -> Trace:
     """Put readings on even times, each as it is; interpolate only where none is near; average to blocks.
+
+    Args:
+        load: torque in N m that brakes the wheels, at the recording's time stamps.
 
     Raises:
         BadInputError: too few samples, too short, or sampled too slowly to see a driveline.
@@ -208,6 +213,7 @@ def trace_of(recording: Recording, name: str = "") -> Trace:
         tuple(notes),
         float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
         where,
+        load=None if load is None else np.where(missing, np.interp(grid, time, load), load[nearest]),
     )
 
 

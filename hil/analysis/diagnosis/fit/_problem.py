@@ -128,7 +128,7 @@ class Problem:
         """
         self.allowance.check()
         t = self.traces[trace]
-        simulated = simulate_many(slots, t.torque, t.dt, starts, sensors, t.block, self.angles[trace])
+        simulated = simulate_many(slots, t.torque, t.dt, starts, sensors, t.block, self.angles[trace], t.load)
         return np.asarray(simulated)
 
     def errors(self, trace: int, simulated: Array) -> Array:

@@ -42,6 +42,6 @@ def simulated_samples(
     """Channels of each recording at full rate, n x 3."""
     slots, sensors = hypothesis.packed(theta)
     return [
-        simulate_many(slots[None], t.torque, t.dt, start[None], sensors[None], 1, angles)[0]
+        simulate_many(slots[None], t.torque, t.dt, start[None], sensors[None], 1, angles, t.load)[0]
         for t, start, angles in zip(problem.traces, starts, problem.angles, strict=True)
     ]

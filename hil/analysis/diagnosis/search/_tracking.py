@@ -177,6 +177,7 @@ def _windows(problem: Problem, model: Model, position: int, index: int, start: A
         sensors,
         trace.block,
         problem.angles[index],
+        trace.load,
     )
     error = problem.errors(index, around[0])
     ripple = problem.changes(index, around)

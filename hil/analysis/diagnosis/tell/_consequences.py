@@ -17,8 +17,11 @@ Array = npt.NDArray[np.float64]
 def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
     """Peak shaft torque over its steady value (%), and 8-20 Hz energy of the motor speed ((rad/s)²).
 
-    An open-loop step of 20 N m from 5 rad/s wheel speed, with the model before and after.
+    An open-loop step of 20 N m from 5 rad/s wheel speed, with the model before and after. Nothing for a
+    model whose load comes from a recording: what its wheels would meet in a step is not in it.
     """
+    if after.load_input:
+        return {}
     torque = np.concatenate([np.zeros(1000), np.full(5000, STEP_NM)])
     result: dict[str, dict[str, float]] = {
         "overshoot_shaft_torque_percent": {},

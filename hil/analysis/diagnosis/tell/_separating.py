@@ -76,8 +76,11 @@ def separating_plan(
         shaft_torque_nm: largest shaft torque that either model may reach; a share of the torque if None.
 
     Returns:
-        the plan is empty where no test would tell the two apart; the text says so.
+        the plan is empty where no test would tell the two apart, or where the models take their load from
+        recordings and so cannot foretell one; the text says so.
     """
+    if one.load_input:
+        return f"no test is foretold: the models do not hold what makes {one.load_input}", ""
     ratio = one.parameters["gear_ratio"]
     most_shaft = SHAFT_SHARE * ratio * torque_nm if shaft_torque_nm is None else shaft_torque_nm
     candidates = []
