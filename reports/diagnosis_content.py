@@ -100,7 +100,7 @@ def parts(found: Diagnosis) -> list[Part]:
             "What it does to the acceptance figures",
             "Open-loop step of 20 N m, model before and after."
             if found.consequences
-            else "The model takes its load from recordings: what its wheels would meet in a step is not in it.",
+            else "The model takes its load from recordings: what its wheels meet in a step is not in it.",
             _if_any(_consequences(found)),
         ),
         Part(

@@ -6,6 +6,7 @@ import dataclasses
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from hil.analysis.control_design import design_plant
@@ -18,7 +19,7 @@ from tests.hil.analysis.diagnosis.reference_plant import BASE
 
 LOAD = "dyno_torque_ref_nm"
 DT = 1e-3
-TIME_S = np.arange(3000) * DT
+TIME_S: npt.NDArray[np.float64] = np.arange(3000.0) * DT
 TORQUE = np.where(TIME_S > 0.5, 15.0, 0.0)
 BRAKES = 60.0 * np.sin(2 * np.pi * 4.0 * TIME_S**2)
 AXLE = {k: BASE[k] for k in ("motor_inertia", "gear_ratio", "shaft_stiffness", "shaft_damping")}
