@@ -70,6 +70,7 @@ def events(outcome: RunOutcome, kind: str) -> list[str]:
     return [event.text for event in recording.events if event.kind == kind]
 
 
+@pytest.mark.slow
 def test_its_channel_is_recorded_where_it_was_measured_and_it_becomes_safe(
     oil_unit: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -57,6 +57,7 @@ def survives_identification(change: str, shape: str, order: int | None, seed: in
         assert np.all(np.isfinite([*function.numerator, *function.denominator, function.delay_s]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("change", "shape"), FAST)
 def test_diagnosis(change: str, shape: str) -> None:
     survives_diagnosis(change, shape)

@@ -60,6 +60,7 @@ def test_a_run_writes_what_the_reference_says(finished):
     assert ElementTree.parse(out / "junit.xml").getroot().tag in ("testsuites", "testsuite")
 
 
+@pytest.mark.slow
 def test_the_report_can_be_made_again_from_the_recording_alone(finished, tmp_path):
     out, result = finished
     again = json.loads(hil("report", out / "recording.mcap", "--out", tmp_path, "--json").stdout)
@@ -68,6 +69,7 @@ def test_the_report_can_be_made_again_from_the_recording_alone(finished, tmp_pat
     hil("report", out)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", ["csv", "parquet", "mf4"])
 def test_exports_are_recordings_again(ending, finished, tmp_path):
     out, _ = finished
@@ -79,6 +81,7 @@ def test_exports_are_recordings_again(ending, finished, tmp_path):
         assert (tmp_path / "foreign" / "report.html").is_file()
 
 
+@pytest.mark.slow
 def test_simulate_writes_the_models_channels_at_the_recordings_times(finished, tmp_path):
     out, _ = finished
     model = Path(__file__).parents[3] / "benches" / "three_inertia.toml"
@@ -196,6 +199,7 @@ def test_help_names_every_command_quickly_and_each_has_its_own():
         assert "Usage" in hil(command, "--help").stdout
 
 
+@pytest.mark.slow
 def test_a_recording_that_was_cut_off_is_reported_with_its_plan(finished, tmp_path):
     out, _ = finished
     content = (out / "recording.mcap").read_bytes()

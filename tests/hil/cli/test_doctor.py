@@ -15,6 +15,7 @@ def test_a_bench_that_is_well_in_words_and_as_json():
     assert json.loads(hil("doctor", "sim", "--for", "0.5", "--json").stdout)["verdict"] == "fine"
 
 
+@pytest.mark.slow
 def test_a_bench_that_is_not_there(tmp_path):
     text = hil("sim-bench", "sim", "--port", "0", "--for", "0.1", "--json").stdout
     (tmp_path / "net.toml").write_text(json.loads(text)["bench_file"])

@@ -17,6 +17,7 @@ def test_signs_in_words_and_in_a_file(tmp_path):
     assert (tmp_path / "jog" / "recording.mcap").exists()
 
 
+@pytest.mark.slow
 def test_a_wrong_sign_is_exit_code_1(tmp_path):
     for file in SIM.source.parent.iterdir():
         if file.suffix in (".toml", ".dbc", ".eds"):

@@ -39,6 +39,7 @@ def serving(tmp_path, *options):
         process.communicate()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_cleanly_and_it_says_how_it_went(number, tmp_path):
     with serving(tmp_path) as (process, file):

@@ -125,7 +125,9 @@ def _wrong(model: Model, traces: list[Trace], noise: Array) -> BadInputError | N
     ratio, inertia = _ratio_and_inertia(model)
     pushes = {OUTPUTS[i]: _push(traces, i, ratio, ratio / inertia) for i in (0, 1)}
     fine = [OUTPUTS[i] for i in (0, 1) if not any(coarse(t, i) for t in traces if t.has[i])]
-    return _speeds(traces, ratio, noise, pushes) or _pushed(pushes, fine) or _shaft(traces, ratio, noise)
+    return (
+        _speeds(traces, ratio, noise, pushes) or _pushed(pushes, fine) or _shaft(traces, ratio, noise, model)
+    )
 
 
 def _ratio_and_inertia(model: Model) -> tuple[float, float]:
@@ -240,15 +242,20 @@ def _pushed(pushes: dict[str, Pair], fine: list[str]) -> BadInputError | None:
     return None
 
 
-def _shaft(traces: list[Trace], ratio: float, noise: Array) -> BadInputError | None:
-    """Shaft torque against motor torque at low frequency: sign and order of magnitude."""
+def _shaft(traces: list[Trace], ratio: float, noise: Array, model: Model) -> BadInputError | None:
+    """Shaft torque against motor torque at low frequency: sign and order of magnitude.
+
+    What brakes the wheels passes the shafts only as far as it brakes the rotor.
+    """
+    rotor = model.parameters["motor_inertia"] * ratio**2
+    passed = rotor / (_ratio_and_inertia(model)[1] - rotor)
     pair = Pair()
     having = [t for t in traces if t.has[2]]
     for t in having:
         length = max(1, round(SLOW_S / t.dt))
         count = len(t.torque) // length
         if count >= 3:
-            drive = t.torque * ratio + (0.0 if t.load is None else t.load)
+            drive = t.torque * ratio + (0.0 if t.load is None else passed * t.load)
             torque = drive[: count * length].reshape(count, length).mean(axis=1)
             shaft = t.samples[: count * length, 2].reshape(count, length).mean(axis=1)
             pair.add(torque - torque.mean(), shaft - shaft.mean())

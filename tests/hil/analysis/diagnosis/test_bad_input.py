@@ -233,6 +233,7 @@ def test_no_real_effect_is_taken_for_a_wrong_channel(effect: str) -> None:
             assert examine(MODEL, [recording])[1] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "truth",
     [
@@ -292,6 +293,7 @@ def rounded(recording: Recording, channel: str, step: float) -> Recording:
     return dataclasses.replace(recording, channels=channels)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", [1.0, 3.0, 6.0])
 def test_coarse_wheel_speeds_are_data(step: float) -> None:
     each = [rounded(r, WHEEL, step) for r in recordings(Truth(), 3, short=True)]

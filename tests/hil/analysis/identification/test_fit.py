@@ -45,6 +45,7 @@ def test_one_percent_noise(noisy_fit: Fit) -> None:
     assert noisy_fit.chi_square == pytest.approx(1, abs=0.1)
 
 
+@pytest.mark.slow
 def test_standard_errors_are_the_real_scatter() -> None:
     fits = [fit(exact(TRUTH, 0.01, seed), 5) for seed in range(25)]
     delays = np.array([f.modes.delay_s for f in fits])

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from hil.analysis.identification import Identification, chain_response, choose_order
 from tests.hil.analysis.conftest import GRID, exact, outputs_of
@@ -16,6 +17,7 @@ def test_paper_needs_order_five(paper_identification: Identification) -> None:
     assert by_order[5].whiteness > 0.01 > by_order[4].whiteness
 
 
+@pytest.mark.slow
 def test_two_inertias_need_order_three() -> None:
     choice = choose_order(exact(chain_response("two_inertia", TWO, GRID), 0.01), (2, 3, 4, 5))
     assert choice.best.order == 3

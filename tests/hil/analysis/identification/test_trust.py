@@ -56,6 +56,7 @@ def with_backlash(half_gap_rad: float) -> Recording:
     return Recording({"time_s": time, INPUT: MULTISINE, **noisy}, Path("backlash.csv"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("torque", [CHIRP, MULTISINE], ids=["chirp", "multisine"])
 @pytest.mark.parametrize("noise", [0.01, 0.1])
 def test_a_linear_axle_is_trusted_however_noisy(torque: np.ndarray, noise: float) -> None:
@@ -70,6 +71,7 @@ def test_an_order_that_the_data_choose_is_trusted_too() -> None:
         assert identified(paper_plant.recording(torque), order=None).verdict == "linear"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("make", "said"),
     [

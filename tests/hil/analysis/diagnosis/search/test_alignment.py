@@ -67,6 +67,7 @@ def test_without_a_ripple_nothing_is_moved(problem):
 HIGH = EffectUse("motor_order_ripple", {"order": 12.0, "amplitude_nm": 0.7, "phase_rad": 1.0})
 
 
+@pytest.mark.slow
 def test_a_phase_that_wanders_by_turns_is_followed(tmp_path):
     problem = recorded(HIGH, tmp_path, slow=0.5)
     measured = problem.angles[0][:, 1].copy()
@@ -93,6 +94,7 @@ def test_known_phase_and_order_are_left_alone(problem):
     assert np.array_equal(theta, one.theta)
 
 
+@pytest.mark.slow
 def test_a_followed_ripple_promises_more_than_one_that_is_not(tmp_path):
     problem = recorded(HIGH, tmp_path, slow=0.5)
     base = fit(problem, Hypothesis(MODEL))

@@ -34,6 +34,7 @@ def noisy(path, seed: int, memory: float) -> Problem:
     return problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("memory", [0.0, 0.98])
 def test_noise_scores_as_the_bootstrap_says(tmp_path, memory):
     scores, predicted = [], []

@@ -32,6 +32,7 @@ def test_where_a_wide_play_bounces_nobody_foretells_it() -> None:
     assert not flags[0][(time > 14.0) & (time < 15.0)].any()
 
 
+@pytest.mark.slow
 def test_elsewhere_it_is_fitted_and_judged() -> None:
     problem, base, near = fitted(0.03)
     found = where_foretold(problem, base, near)
