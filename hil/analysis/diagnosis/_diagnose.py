@@ -21,6 +21,7 @@ from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._foretold import left_out
 from hil.analysis.diagnosis.search._from_base import search_from_base
 from hil.analysis.diagnosis.search._search import Found, begun, so_far
+from hil.analysis.diagnosis.search._wandering import with_wandering
 from hil.analysis.diagnosis.tell._confidence import drop_of
 from hil.analysis.diagnosis.tell._judged import Judged
 from hil.analysis.diagnosis.tell._result import INTERRUPTED, OUT_OF_TIME, Diagnosis, Verdict
@@ -116,7 +117,7 @@ def _diagnosed(
         if min(drop_of(found, index) for index in range(len(found.best.hypothesis.terms))) <= by_chance:
             verdict = "none" if found.evidence.closed(found.base) else "unknown"
     if verdict == "named":
-        found.best = reweighted(problem, found.best)
+        found.best = with_wandering(problem, reweighted(problem, found.best))
     judged = Judged(problem, found, verdict, held, by_chance, asked.least, unfinished)
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)
 

@@ -74,15 +74,27 @@ def _dead(trace: Trace, column: int, traces: list[Trace]) -> None:
 
 
 def _below_resolution(trace: Trace, column: int, others: list[Trace]) -> bool:
-    """Whether a speed that is rounded in other recordings stands still as it moves by a step or two."""
-    other = 1 - column
-    if not others or other not in (0, 1) or not trace.has[other]:
+    """Whether a speed that is rounded in other recordings stands still as it moves by a step or two.
+
+    How far it moves is what the other speed says, or where there is none the impulse of the torque.
+    """
+    if not others or column not in (0, 1):
         return False
     elsewhere = np.concatenate([t.samples for t in others])
     step = grid_step(elsewhere[:, column])
-    size = np.std(elsewhere, axis=0)
-    moved = float(np.ptp(trace.measured[:, other]))
-    return bool(moved * size[column] < BELOW_STEPS * step * size[other])
+    if trace.has[1 - column]:
+        size = np.std(elsewhere, axis=0)
+        turned = float(np.ptp(trace.measured[:, 1 - column]))
+        return bool(turned * size[column] < BELOW_STEPS * step * size[1 - column])
+    impulses = [np.std(_impulse(t)) for t in others]
+    ratios = [np.std(t.samples[:, column]) / i for t, i in zip(others, impulses, strict=True) if i > 0.0]
+    moved = float(np.ptp(_impulse(trace))) * float(np.median(ratios)) if ratios else np.inf
+    return bool(moved < BELOW_STEPS * step)
+
+
+def _impulse(trace: Trace) -> Array:
+    """What torque has given an axle by each sample, N m s."""
+    return np.asarray(np.cumsum(trace.torque) * trace.dt)
 
 
 def _frozen(trace: Trace, column: int) -> None:

@@ -102,16 +102,12 @@ def _explained(products: Spectra, column: int, segments: float) -> tuple[Array, 
     size = products.shape[1]
     errors = [c for c in range(3) if c != column]
     others = [c for c in range(size) if c != column]
-    known, variance = np.zeros(len(products)), np.zeros(len(products))
-    for row, matrix in enumerate(products):
-        if float(matrix[column, column].real) <= 0.0:
-            continue
-        across, _ = _coherent(matrix, column, errors, segments)
-        altogether, rank = _coherent(matrix, column, others, segments)
-        shown = float(matrix[3 + column, 3 + column].real)
-        known[row] = max(across, min(altogether, across + FED_BACK * shown))
-        variance[row] = NEIGHBOURS * rank / segments**2
-    return known, variance
+    across, _ = _coherent(products, column, errors, segments)
+    altogether, rank = _coherent(products, column, others, segments)
+    shown = products[:, 3 + column, 3 + column].real
+    known = np.maximum(across, np.minimum(altogether, across + FED_BACK * shown))
+    there = products[:, column, column].real > 0.0
+    return np.where(there, known, 0.0), np.where(there, NEIGHBOURS * rank / segments**2, 0.0)
 
 
 def _is_fed_back(products: Spectra, column: int, segments: float) -> bool:
@@ -123,17 +119,24 @@ def _is_fed_back(products: Spectra, column: int, segments: float) -> bool:
     return bool(np.mean(seen) > LOOP_COHERENT + 1.0 / segments)
 
 
-def _coherent(matrix: Spectra, column: int, others: list[int], segments: float) -> tuple[float, int]:
-    """Power of `column` that goes with `others`, less what chance gives; and how many these really are."""
-    power = float(matrix[column, column].real)
-    between = matrix[np.ix_(others, others)]
-    scale = np.sqrt(np.maximum(np.diag(between).real, 1e-300))
-    values, vectors = np.linalg.eigh(between / np.outer(scale, scale))
-    kept = values > KEPT * values[-1]
-    seen = vectors[:, kept].conj().T @ (matrix[others, column] / scale)
-    share = min(float(np.sum(np.abs(seen) ** 2 / values[kept])) / power, 1.0)
-    chance = min(np.count_nonzero(kept) / segments, 0.9)
-    return power * (share - chance) / (1.0 - chance), int(np.count_nonzero(kept))
+def _coherent(
+    products: Spectra, column: int, others: list[int], segments: float
+) -> tuple[Array, npt.NDArray[np.int_]]:
+    """Power of `column` at each frequency that goes with `others`, less what chance gives.
+
+    With it how many of these there really are.
+    """
+    power = products[:, column, column].real
+    between = products[:, others][:, :, others]
+    scale = np.sqrt(np.maximum(np.diagonal(between, axis1=1, axis2=2).real, 1e-300))
+    values, vectors = np.linalg.eigh(between / (scale[:, :, None] * scale[:, None, :]))
+    kept = values > KEPT * values[:, -1:]
+    seen = vectors.conj().transpose(0, 2, 1) @ (products[:, others, column] / scale)[:, :, None]
+    parts = np.where(kept, np.abs(seen[:, :, 0]) ** 2 / np.where(kept, values, 1.0), 0.0)
+    share = np.minimum(np.sum(parts, axis=1) / np.where(power > 0.0, power, 1.0), 1.0)
+    rank = np.count_nonzero(kept, axis=1)
+    chance = np.minimum(rank / segments, 0.9)
+    return power * (share - chance) / (1.0 - chance), rank
 
 
 def _spectra(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Array]) -> Spectra:

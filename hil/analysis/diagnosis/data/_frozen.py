@@ -75,8 +75,9 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
 
 
 def _on_by_turning(other: Array, column: int, step: float, least: float, apart: float) -> str:
-    """The other speed, where it turns further about its mean than play and twist allow."""
-    about = other - np.mean(other)
+    """The other speed, where it turns further than play and twist allow; even change may be drift."""
+    at = np.linspace(-1.0, 1.0, len(other))
+    about = other - np.polynomial.Legendre.fit(at, other, 1)(at)
     turned = _slow(np.cumsum(about) * step, step)  # at a resonance shafts twist further
     return OUTPUTS[column] if np.std(turned) > apart and np.std(about) > least else ""
 

@@ -1,9 +1,10 @@
 """Data that no physics can explain: refused by name before anything is fitted.
 
-Play, twist, friction and offsets bend what two channels have to do with each other; they must not be
-taken for a wrong channel. So angles are compared, not speeds (play and twist stay within a few
+Play, twist, friction, offsets and drifts bend what two channels have to do with each other; they must not
+be taken for a wrong channel. So angles are compared, not speeds (play and twist stay within a few
 hundredths of a rad whatever the speed), a constant speed error is left out, and a factor is called
-wrong only where every way to see it says so.
+wrong only where every way to see it says so. A drift adds slow turns of any shape: where motion is no
+faster than that, only what goes in proportion tells.
 """
 
 from __future__ import annotations
@@ -20,16 +21,13 @@ from hil.analysis.diagnosis.data._mistakes import mistaken
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._pair import Pair
 from hil.analysis.diagnosis.data._thresholds import (
-    AGAINST,
     APART_RAD,
     DEAD_SHARE,
     FAST_RAD_S,
     INVERTED,
-    LIKE,
     LIKE_RPM,
     MOVES,
     NOISE_ALONE,
-    PUSHED_RAD,
     RELATED,
     SLOW_S,
     SPEED_RATIO,
@@ -38,8 +36,9 @@ from hil.analysis.diagnosis.data._thresholds import (
     TURNED_RAD,
 )
 from hil.analysis.diagnosis.data._trace import Trace, excerpts, trace_of, unbroken
+from hil.analysis.diagnosis.data._turns import around, beyond_drift, drift_degree, pushes_of, refused_push
 from hil.analysis.plausible import refuse_implausible
-from hil.core.channels import INPUT, OUTPUTS
+from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.core.recording import Recording
@@ -123,10 +122,12 @@ def _kind(error: BadInputError) -> str:
 def _wrong(model: Model, traces: list[Trace], noise: Array) -> BadInputError | None:
     """What does not go together in `traces`, seen together."""
     ratio, inertia = _ratio_and_inertia(model)
-    pushes = {OUTPUTS[i]: _push(traces, i, ratio, ratio / inertia) for i in (0, 1)}
+    pushes = {OUTPUTS[i]: pushes_of(traces, i, ratio, ratio / inertia) for i in (0, 1)}
     fine = [OUTPUTS[i] for i in (0, 1) if not any(coarse(t, i) for t in traces if t.has[i])]
     return (
-        _speeds(traces, ratio, noise, pushes) or _pushed(pushes, fine) or _shaft(traces, ratio, noise, model)
+        _speeds(traces, ratio, noise, pushes)
+        or refused_push(pushes, fine)
+        or _shaft(traces, ratio, noise, model)
     )
 
 
@@ -137,32 +138,33 @@ def _ratio_and_inertia(model: Model) -> tuple[float, float]:
     return p["gear_ratio"], inertia
 
 
-def _speeds(traces: list[Trace], ratio: float, noise: Array, pushes: dict[str, Pair]) -> BadInputError | None:
+def _speeds(
+    traces: list[Trace], ratio: float, noise: Array, pushes: dict[str, list[Pair]]
+) -> BadInputError | None:
     """Motor speed against wheel speed: sign, order of magnitude, ratio."""
-    uneven, even, plain = Pair(), Pair(), Pair()
+    uneven, brisk, even, plain = Pair(), Pair(), Pair(), Pair()
     both = [t for t in traces if t.has[0] and t.has[1] and not (coarse(t, 0) or coarse(t, 1))]
     for t in both:
         wheel, motor = t.measured[:, 1], t.measured[:, 0] / ratio
         step = t.block * t.dt
-        turns = np.column_stack([_around(1, np.cumsum(v) * step) for v in (wheel, motor)])
-        uneven.add(*turns[np.abs(turns).max(axis=1) > APART_RAD].T)
+        angles = [np.cumsum(v) * step for v in (wheel, motor)]
+        for pair, degree in ((uneven, 1), (brisk, drift_degree(angles[0], step))):
+            turns = np.column_stack([around(degree, angle) for angle in angles])
+            pair.add(*turns[np.abs(turns).max(axis=1) > APART_RAD].T)
         plain.add(wheel - wheel.mean(), motor - motor.mean())
         mean = np.array([wheel.mean()]), np.array([motor.mean()])
         if max(abs(mean[0][0]), abs(mean[1][0])) > FAST_RAD_S:
             even.add(*mean)
-    seen = [p for p in (uneven, even) if p.count]
+    turned = [p for p in (uneven, even) if p.count]
+    for column, other in ((0, 1), (1, 0)):
+        sizes = [(p.sizes[1], p.sizes[0])[column] / (p.sizes[1], p.sizes[0])[other] for p in turned]
+        if sizes and max(sizes) < DEAD_SHARE and all(_noise_alone(t, column, noise) for t in both):
+            return _dead(OUTPUTS[column])
+    seen = [*beyond_drift(uneven, brisk), *([even] if even.count else [])]
     if not seen:
         return None
-    for column, other in ((0, 1), (1, 0)):
-        sizes = [(p.sizes[1], p.sizes[0])[column] / (p.sizes[1], p.sizes[0])[other] for p in seen]
-        if max(sizes) < DEAD_SHARE and all(_noise_alone(t, column, noise) for t in both):
-            return _dead(OUTPUTS[column])
-    # a drift bends angles, and hardly speeds
     if all(p.correlation < INVERTED for p in seen) and plain.correlation < 0.0:
-        channel = min((_MOTOR, _WHEEL), key=lambda c: pushes[c].correlation)
-        if not any(p.count for p in pushes.values()):
-            channel = f"either {_MOTOR} or {_WHEEL}"
-        return BadInputError(f"{channel} looks inverted", fix="turn the sign of the channel")
+        return _inverted(pushes)
     if all(abs(p.correlation) < RELATED for p in (*seen, plain)):
         return BadInputError(
             f"{_MOTOR} and {_WHEEL} have nothing to do with each other",
@@ -174,6 +176,14 @@ def _speeds(traces: list[Trace], ratio: float, noise: Array, pushes: dict[str, P
     if all(f > SPEED_RATIO[1] for f in factors) or all(f < SPEED_RATIO[0] for f in factors):
         return _wrong_ratio(factors[0], ratio)
     return None
+
+
+def _inverted(pushes: dict[str, list[Pair]]) -> BadInputError:
+    """Of two speeds that go against each other the one that goes against the torque."""
+    channel = f"either {_MOTOR} or {_WHEEL}"
+    if any(pushes.values()):
+        channel = min((_MOTOR, _WHEEL), key=lambda c: min((p.correlation for p in pushes[c]), default=0.0))
+    return BadInputError(f"{channel} looks inverted", fix="turn the sign of the channel")
 
 
 def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
@@ -192,54 +202,6 @@ def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
         f"the model has {ratio:.3g}",
         fix="is it the model of another axle, or a speed in another unit?",
     )
-
-
-def _push(traces: list[Trace], column: int, gear_ratio: float, per_impulse: float) -> Pair:
-    """How far the axle turned by a speed (y), and by the torque's impulse (x), rad wheel side.
-
-    Even turning and an even change of speed are left out: offsets, friction, resistance.
-
-    Args:
-        per_impulse: wheel speed for 1 N m s of motor torque.
-    """
-    pair = Pair()
-    ratio = (gear_ratio, 1.0)[column]
-    for t in traces:
-        if t.has[column]:
-            count, step = len(t.measured), t.block * t.dt
-            drive = t.torque if t.load is None else t.torque - t.load / gear_ratio
-            impulse = np.cumsum(drive)[t.block - 1 : count * t.block : t.block] * t.dt
-            turned = np.cumsum(t.measured[:, column]) * step
-            pushed = _around(2, np.cumsum(impulse) * step * per_impulse)
-            if np.std(pushed) > PUSHED_RAD[column]:
-                pair.add(pushed, _around(2, turned / ratio))
-    return pair
-
-
-def _pushed(pushes: dict[str, Pair], fine: list[str]) -> BadInputError | None:
-    """Whether torque moves the axle the right way, and no more than it can.
-
-    Args:
-        fine: channels that are not rounded coarsely: the turns of others come in steps of any size.
-    """
-    told = {c: p for c, p in pushes.items() if p.count}
-    against = [c for c, p in told.items() if p.correlation < AGAINST and LIKE[0] < p.factor < LIKE[1]]
-    if len(against) == len(OUTPUTS[:2]):
-        return BadInputError(
-            f"{INPUT} looks inverted: both speeds fall when torque pushes", fix="turn the sign of the channel"
-        )
-    if against:
-        return BadInputError(
-            f"{against[0]} looks inverted: it falls when torque pushes",
-            fix=f"turn the sign of the channel, or of {INPUT}",
-        )
-    for channel, pair in told.items():
-        if channel in fine and pair.correlation > -AGAINST and pair.factor > TOO_FAST:
-            return BadInputError(
-                f"{channel} changes {pair.factor:.3g} times as fast as the torque can make it",
-                fix="is it in rpm, or the model of another axle?",
-            )
-    return None
 
 
 def _shaft(traces: list[Trace], ratio: float, noise: Array, model: Model) -> BadInputError | None:
@@ -290,9 +252,3 @@ def _dead(channel: str) -> BadInputError:
         f"{channel} looks dead: it reads nothing but noise while the axle moves",
         fix="mend the channel, or leave it out of the recordings",
     )
-
-
-def _around(degree: int, values: Array) -> Array:
-    """`values` (n,) without their best polynomial of `degree`."""
-    at = np.linspace(-1.0, 1.0, len(values))
-    return np.asarray(values - np.polynomial.Legendre.fit(at, values, min(degree, len(values) - 1))(at))

@@ -160,6 +160,12 @@ SPEED_RATIO: Annotated[
 APART_RAD: Annotated[
     float, Means("rad, wheel side", "smaller turns are lost in play and twist", "bad_input")
 ] = 0.2
+DRIFT_S: Annotated[
+    float, Means("s", "period from which on a swing of a speed may be drift of its channel", "sanity")
+] = 25.0
+IN_PROPORTION: Annotated[
+    float, Means("correlation", "from it on motion as slow as a drift tells a sign or a ratio", "sanity")
+] = 0.9
 TURNED_RAD: Annotated[float, Means("rad rms, wheel side", "a ratio needs larger turns", "bad_input")] = 0.6
 FAST_RAD_S: Annotated[
     float, Means("rad/s, wheel side", "several times any offset: mean speeds above are compared", "bad_input")
@@ -172,7 +178,7 @@ PUSHED_RAD: Annotated[
         "of motor and wheel: the torque must push further (play lies between)",
         "bad_input",
     ),
-] = (0.1, 0.02)
+] = (0.06, 0.02)
 AGAINST: Annotated[
     float, Means("correlation", "below it a speed goes against what the torque does", "bad_input")
 ] = -0.6

@@ -84,7 +84,7 @@ class Hypothesis:
                 or (name == "torque_delay" and "dead_time" in self.ids)
             ):
                 continue
-            reach, prior = self._freedom(name)
+            reach, prior = self.freedom(name)
             if name in wrong:
                 reach, prior = MISMATCH_REACH, np.inf
             found.append(Coordinate(name, -1, "log", -reach, reach, STEP, prior))
@@ -92,7 +92,7 @@ class Hypothesis:
             found += self._of_term(index, term)
         return tuple(found)
 
-    def _freedom(self, name: str) -> tuple[float, float]:
+    def freedom(self, name: str) -> tuple[float, float]:
         """How far a parameter may go, and the standard deviation of its correction, natural logarithms."""
         if self.far:
             prior = RATIO_PRIOR if name == "gear_ratio" else FAR_PRIOR

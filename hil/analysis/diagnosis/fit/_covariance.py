@@ -23,11 +23,23 @@ Array = npt.NDArray[np.float64]
 def standard_errors(problem: Problem, one: Fit) -> Array:
     """Standard error of each coordinate of a fit, the misfit that is left included.
 
-    The larger of two: that of white errors as large as those that are left, and that of the sandwich; and
-    how far other fits lie that are as good.
+    The larger of two: that of white errors as large as those that are left, and that of the sandwich; with
+    it how far other fits lie that are as good, and what a number that no fit may move may be off by.
     """
-    own = _own_errors(problem, one) if one.standard is None else one.standard
+    own = np.hypot(_own_errors(problem, one), _held(one)) if one.standard is None else one.standard
     return own if one.scatter is None else np.hypot(own, one.scatter)
+
+
+def _held(one: Fit) -> Array:
+    """What the tolerance of the model's own dead time adds to an extra one: only their sum shows."""
+    hypothesis = one.hypothesis
+    delay = hypothesis.base.parameters["torque_delay"]
+    return np.array(
+        [
+            delay * hypothesis.freedom("torque_delay")[1] if c.name == "extra_delay_s" else 0.0
+            for c in hypothesis.coordinates()
+        ]
+    )
 
 
 def _own_errors(problem: Problem, one: Fit) -> Array:

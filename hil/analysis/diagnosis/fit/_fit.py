@@ -93,7 +93,7 @@ def fit(
         if by_samples is None or done >= rounds:
             break
     matrix, _ = reduced(reached.at.normals)
-    covariance = np.asarray(np.linalg.pinv(matrix + np.diag(precision), hermitian=True), dtype=float)
+    covariance = _inverse(matrix + np.diag(precision))
     prior = float(precision @ theta**2) + (by_samples.coincidence(theta) if by_samples is not None else 0.0)
     return Fit(
         hypothesis,
@@ -141,6 +141,17 @@ def carried(parent: Fit, hypothesis: Hypothesis) -> Array:
             continue
         values[index] = known.get((c.name, term), values[index])
     return values
+
+
+def _inverse(matrix: Array) -> Array:
+    """Pseudo-inverse of normal equations, each number in its own unit.
+
+    Numbers of 1e5 N m/rad³ and of 1e-4 s stand side by side: taken as they are, the cut that leaves out what
+    nothing tells would leave out what is told in large units, as if it were known exactly.
+    """
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    even = np.linalg.pinv(matrix * np.outer(scale, scale), hermitian=True)
+    return np.asarray(even * np.outer(scale, scale), dtype=float)
 
 
 def _bounds(coordinates: tuple[Coordinate, ...]) -> tuple[Array, Array]:

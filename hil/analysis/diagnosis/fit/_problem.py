@@ -148,7 +148,8 @@ class Problem:
         Returns:
             (sets - 1) x blocks x 3, 0 where errors do not count.
         """
-        change = (simulated[1:] - simulated[0]) * self.weights[trace]
+        change = simulated[1:] - simulated[0]
+        change *= self.weights[trace]
         if self.whitening is not None:
             change = np.stack([self._whitened(one) for one in change])
         return self._counted(trace, change)

@@ -75,6 +75,10 @@ FAR: Annotated[
 DOUBT: Annotated[
     float, Means("factor of the total", "price of a fault in a sensor far from the noise", "rank")
 ] = 2.5
+EARLY: Annotated[
+    float,
+    Means("factor of the total", "price of a channel that is early: it is others that are late", "rank"),
+] = 1.005
 CONTENDER: Annotated[
     float, Means("times what the best leaves", "far from the noise its optional numbers are tried too", "far")
 ] = 1.5

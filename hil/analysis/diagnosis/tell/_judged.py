@@ -22,6 +22,7 @@ from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
 from hil.analysis.diagnosis.search._tracking import track
 from hil.analysis.diagnosis.tell._confidence import alternatives_of, confidence_of, drop_of
 from hil.analysis.diagnosis.tell._consequences import consequences
+from hil.analysis.diagnosis.tell._drift import drifts
 from hil.analysis.diagnosis.tell._least import worth_naming
 from hil.analysis.diagnosis.tell._result import Considered, Diagnosis, NamedEffect, Overlay, Start, Verdict
 from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES
@@ -65,7 +66,7 @@ class Judged:
         held_before, held_after = self._held(kept)
         effects = self._effects(kept, after, map_before, map_after, rounded) if verdict == "named" else ()
         traces = problem.traces
-        small = [e for e in effects if not worth_naming(e.use, traces, self.least)]
+        small = [e for e in effects if not worth_naming(e.use, traces, self.least, base.hypothesis.base)]
         effects = tuple(e for e in effects if e not in small)
         if verdict == "named" and not effects:
             # Small corrections were all that was found: do they explain the data?
@@ -89,9 +90,9 @@ class Judged:
             holdout_after=held_after,
             map_before=map_before,
             map_after=map_after,
-            signature=self._signature(kept, gap_after, map_after) if verdict == "unknown" else "",
+            signature=self._signature(kept, gap_after, map_after, after) if verdict == "unknown" else "",
             overlays=overlays,
-            notes=tuple(notes),
+            notes=(*notes, *(drifts(problem, after) if verdict == "none" else ())),
             seconds=seconds,
             by_chance=self.by_chance,
             consequences=consequences(base.hypothesis.base, model),
@@ -118,7 +119,7 @@ class Judged:
         names = tuple(t.name for t in self.problem.traces)
         return Start(parameters, names, channel_gaps(self.problem.traces, floor, shown))
 
-    def _signature(self, kept: Fit, gaps: dict[str, ChannelGap], by_place: GapMap) -> str:
+    def _signature(self, kept: Fit, gaps: dict[str, ChannelGap], by_place: GapMap, after: list[Array]) -> str:
         """How much stays that neither the model nor a proven noise accounts for, and what it looks like."""
         worst = max(gaps, key=lambda channel: gaps[channel].noises)
         share = f"{100.0 * gaps[worst].gap:.3g} % of {worst}"
@@ -128,7 +129,13 @@ class Judged:
             fits = [f for step in self.found.steps[:1] for f in step.fits[:1]]
             tried = fits[0].hypothesis.ids if fits else ()
         closest = f"; closest, and not close enough: {', '.join(tried)}" if tried else ""
-        return f"{size}; {signature(self.problem, kept, by_place)}{closest}"
+        drifting = drifts(self.problem, after)
+        looks = (
+            []
+            if any(words.startswith(worst) for words in drifting)
+            else [signature(self.problem, kept, by_place)]
+        )
+        return "; ".join([size, *drifting, *looks]) + closest
 
     def _open(self, kept: Fit) -> tuple[str, ...]:
         """Channels that keep more than noise is proven to be."""

@@ -7,13 +7,17 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from hil.analysis.diagnosis.data._trace import Trace
+from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
+from hil.analysis.diagnosis.tell._thresholds import TOLERANCES
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
-from hil.core.model import EffectUse
+from hil.core.model import EffectUse, Model
 
 
-def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, float]) -> bool:
+def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, float], base: Model) -> bool:
     """Whether an effect is at least as large as the smallest size worth a name.
+
+    An extra dead time adds to the model's own, and is no finding within what that may be off by.
 
     Args:
         least: sizes that a user set, by effect, in the unit of the effect's first number.
@@ -23,6 +27,10 @@ def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, fl
     size = max(abs(float(known[name]) - effect.off) for name in effect.acting())
     if use.id in least:
         return size >= least[use.id]
+    if use.id == "dead_time":
+        own = base.parameters["torque_delay"] * base.tolerance.get("torque_delay", TOLERANCE)
+        if size < TOLERANCES * own:
+            return False
     if effect.least is None:
         return True
     unit = 1.0

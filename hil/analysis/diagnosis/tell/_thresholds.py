@@ -107,6 +107,23 @@ MORE: Annotated[
     float, Means("share of the gap's power", "that each further name must close besides", "blind")
 ] = 0.001
 
+DRIFT_SHARE: Annotated[
+    float, Means("of the error's power above white noise", "that is slow: the channel drifts", "drift")
+] = 0.5
+DRIFTS_NOISES: Annotated[
+    float, Means("noise levels", "a drift that is told swings further from end to end", "drift")
+] = 3.0
+SHARED: Annotated[
+    float, Means("of one speed's slow error", "less apart from the other's: the axle moved so", "drift")
+] = 0.5
+TOLERANCES: Annotated[
+    float,
+    Means(
+        "times the tolerance of the model's own dead time",
+        "an extra dead time that is smaller is a correction of it",
+        "least",
+    ),
+] = 2.0
 WORDS_SEGMENT: Annotated[int, Means("blocks", "of a spectrum that is told in words", "words")] = 1024
 SLOW_BINS: Annotated[int, Means("frequencies", "what lies below drifts, it is no line", "words")] = 2
 LINE: Annotated[float, Means("times its neighbours", "a spectral line stands so far above them", "words")] = (

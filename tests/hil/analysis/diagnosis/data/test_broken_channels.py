@@ -30,3 +30,22 @@ def test_few_levels_are_coarse() -> None:
     trace = one_trace()
     assert not coarse(trace, 0)
     assert coarse(dataclasses.replace(trace, samples=np.sign(trace.samples)), 0)
+
+
+@pytest.mark.parametrize("push", [0.2, 4.0])
+def test_a_speed_alone_may_stand_still_where_torque_moves_it_by_less_than_its_rounding(push: float) -> None:
+    moving = one_trace()
+    alone = moving.samples * np.array([1.0, np.nan, np.nan])
+    step = float(np.ptp(alone[:, 0])) / 8.0
+    rounded = np.round(alone / step) * step
+    blocks = np.full_like(moving.measured, np.nan)
+    blocks[:, 0] = moving.measured[:, 0]
+    seen = dataclasses.replace(moving, samples=rounded, measured=blocks)
+    still = np.zeros_like(rounded) * np.array([1.0, np.nan, np.nan])
+    held = dataclasses.replace(seen, samples=still, measured=0.0 * blocks, torque=push * moving.torque)
+    noise = np.array([step / np.sqrt(12.0), np.nan, np.nan])
+    if push < 1.0:
+        refuse_broken_channels([seen, held], noise)
+    else:
+        with pytest.raises(BadInputError, match="motor_speed_rad_s looks dead"):
+            refuse_broken_channels([seen, held], noise)

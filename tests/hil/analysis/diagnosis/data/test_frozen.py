@@ -91,3 +91,10 @@ def test_no_effect_is_taken_for_a_frozen_channel(effect: str) -> None:
     for recording in recordings(truth, 4, short=True):
         if all(np.all(np.isfinite(recording[c])) for c in CHANNELS):
             assert examine(MODEL, [recording])[0]
+
+
+def test_a_wheel_that_rests_beside_a_drifting_motor_speed_is_data() -> None:
+    recording = chirp(speed=0.0, amplitude=20.0)
+    time = recording["time_s"]
+    recording.channels[MOTOR] = recording[MOTOR] + 16.0 * np.sin(2 * np.pi * time / 50.0)
+    assert examine(MODEL, [recording])[0]

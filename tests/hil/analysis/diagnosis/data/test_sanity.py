@@ -43,3 +43,33 @@ def test_a_speed_that_drifts_slowly_is_not_inverted(sign: float) -> None:
     channels["wheel_speed_rad_s"] = speed + sign * 0.4 * np.std(speed) * np.sin(2 * np.pi * time / 25.0)
     told = {**one.channels, **channels, "motor_torque_ref_nm": torque}
     examined(MODEL, [dataclasses.replace(one, channels=told)])
+
+
+@pytest.mark.parametrize("channel", ["motor_speed_rad_s", "wheel_speed_rad_s"])
+@pytest.mark.parametrize("phase", [0.0, 1.6, 3.1, 4.7])
+def test_a_drift_as_large_as_the_motion_is_no_wrong_speed(channel: str, phase: float) -> None:
+    one = recorded(seconds=40.0)
+    time = one["time_s"]
+    torque = 10.0 * np.cos(2 * np.pi * 0.4 / 0.16 * np.expm1(0.16 / 8.0 * time))  # 0.05 to 0.11 Hz
+    torque += 5.0 * np.sin(2 * np.pi * 0.7 * time)
+    clean = simulate(MODEL, torque, 1e-3)
+    rng = np.random.default_rng(7)
+    channels = {
+        name: values + 1e-3 * np.std(values) * rng.normal(size=len(time)) for name, values in clean.items()
+    }
+    swing = np.sin(2 * np.pi * time / 50.0 + phase)
+    channels[channel] = channels[channel] + 3.0 * np.std(channels[channel]) * (swing - swing[0])
+    told = {**one.channels, **channels, "motor_torque_ref_nm": torque}
+    examined(MODEL, [dataclasses.replace(one, channels=told)])
+
+
+@pytest.mark.parametrize("factor", [-1.0, 0.4, 9.55])
+def test_a_wrong_speed_is_refused_though_it_drifts(factor: float) -> None:
+    one = recorded(seconds=30.0)
+    time = one["time_s"]
+    torque = 60.0 * np.sin(2 * np.pi * (0.1 * time + 0.01 * time**2))
+    clean = simulate(MODEL, torque, 1e-3)
+    wheel = clean["wheel_speed_rad_s"] + 0.3 * np.std(clean["wheel_speed_rad_s"]) * np.sin(time / 8.0)
+    told = {**one.channels, **clean, "wheel_speed_rad_s": factor * wheel, "motor_torque_ref_nm": torque}
+    with pytest.raises(BadInputError, match="inverted|gear ratio looks wrong|looks like rpm"):
+        examined(MODEL, [dataclasses.replace(one, channels=told)])

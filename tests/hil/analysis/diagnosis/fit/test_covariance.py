@@ -9,7 +9,8 @@ from scipy.signal import lfilter
 from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._fit import Fit
-from tests.hil.analysis.diagnosis.one_recording import left, one_problem
+from hil.core.model import EffectUse
+from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
 
 BLOCKS = 5000
 
@@ -49,3 +50,13 @@ def test_a_misfit_counts_and_known_errors_win() -> None:
     assert standard_errors(problem, far)[0] == pytest.approx(20.0 * BLOCKS**-0.5, rel=0.05)
     told = dataclasses.replace(far, standard=np.full(len(far.theta), 0.5))
     assert standard_errors(problem, told)[0] == 0.5
+
+
+def test_an_extra_dead_time_is_known_no_better_than_the_models_own() -> None:
+    """Only their sum shows: 8 ms that may be off by 1.5 % leave 0.12 ms."""
+    problem = one_problem(seconds=20.0)
+    late = left(float(3 * BLOCKS), EffectUse("dead_time", {"extra_delay_s": 0.004}), rows=3 * BLOCKS)
+    late = dataclasses.replace(late, covariance=1e-12 * np.eye(len(late.theta)))
+    assert standard_errors(problem, late)[-1] == pytest.approx(
+        0.015 * MODEL.parameters["torque_delay"], rel=1e-3
+    )

@@ -14,6 +14,9 @@ MOUNT = EffectUse(
     {"housing_inertia_kg_m2": 3.0, "mount_stiffness_nm_rad": 1e4, "mount_damping_nms_rad": 10.0},
 )
 GAIN = EffectUse("sensor_gain", {"channel": OUTPUTS[0], "gain": 1.1})
+LATE, SOON = (
+    EffectUse("channel_skew", {"channel": OUTPUTS[2], "delay_s": sign * 0.002}) for sign in (1.0, -1.0)
+)
 ROWS = 300
 
 
@@ -29,6 +32,8 @@ def test_a_name_costs_by_its_numbers(effects: tuple[EffectUse, ...], more: int) 
         (left(300.0, LAG), left(300.0 - 1.9 * PRICE, MOUNT)),  # fewer numbers, unless they pay
         (left(300.0 - 2.1 * PRICE, MOUNT), left(300.0, LAG)),
         (left(1.01 * FAR * ROWS, LAG), left(1.005 * FAR * ROWS, GAIN)),  # far off a sensor is doubted
+        (left(300.0, LATE), left(299.0, SOON)),  # early is others late
+        (left(300.0, SOON), left(303.0, LATE)),
         (left(300.0, GAIN), left(303.0, LAG)),  # near the noise it is not
     ],
 )
