@@ -21,7 +21,8 @@ from hil.core.effects import EFFECTS
 from hil.core.model import parameter_unit
 from reports import quantities
 from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay
-from reports.labels import channel_label
+from reports.gap_bars import GapBars, GapRow
+from reports.labels import Label, channel_label
 from reports.parts import Cell, Map, Part, Table
 
 Array = npt.NDArray[np.float64]
@@ -33,6 +34,7 @@ _HEADLINES = {
 }
 _MOST_CONSIDERED = 20
 _MOST_WORSE = 3
+_HALF_INTERVAL = 1.96  # of 95 %, in standard errors
 _DARKEST = 30.0  # error over noise
 _FIGURES = {
     "overshoot_shaft_torque_percent": "overshoot of the shaft torque, %",
@@ -63,6 +65,25 @@ def lead(found: Diagnosis) -> str:
     )
 
 
+def _bars(found: Diagnosis) -> GapBars:
+    """The gaps that count most: of recordings not used in the fit where there are any."""
+    held = bool(found.holdout_after)
+    before, after = (
+        (found.holdout_before, found.holdout_after) if held else (found.gap_before, found.gap_after)
+    )
+    rows = tuple(
+        GapRow(
+            channel_label(channel).text,
+            100.0 * before[channel].gap,
+            100.0 * gap.gap,
+            100.0 * gap.noise_floor,
+        )
+        for channel, gap in after.items()
+    )
+    where = "recordings that the fit has not seen" if held else "the recordings that were fitted"
+    return GapBars("gap-bars", Label("How far simulation and measurement are apart"), rows, f"On {where}.")
+
+
 def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
     return {c: g.noises for c, g in gaps.items()}
 
@@ -71,6 +92,7 @@ def parts(found: Diagnosis) -> list[Part]:
     """All sections in order; one without tables, maps, figures and text has nothing to tell."""
     overlay = shown_overlay(found)
     return [
+        Part("glance", "At a glance", "", figures=(_bars(found),)),
         Part("start", "Identified first", _start_text(found), _if_any(_start(found))),
         Part("effects", "Effects named", _effects_text(found), _if_any(_effects(found))),
         Part(
@@ -98,7 +120,7 @@ def parts(found: Diagnosis) -> list[Part]:
         Part(
             "consequences",
             "What it does to the acceptance figures",
-            "Open-loop step of 20 N m, model before and after."
+            "Open-loop step of 20 N m, model before and after; ± for what the fit leaves open of its numbers."
             if found.consequences
             else "The model takes its load from recordings: what its wheels meet in a step is not in it.",
             _if_any(_consequences(found)),
@@ -273,10 +295,22 @@ def _unit(name: str) -> str:
 
 def _consequences(found: Diagnosis) -> Table:
     rows = tuple(
-        (_FIGURES.get(name, name), quantities.number(v["before"]), quantities.number(v["after"]))
+        (
+            _FIGURES.get(name, name),
+            quantities.number(v["before"]),
+            quantities.number(v["after"]),
+            _uncertain(v.get("after_standard_error")),
+        )
         for name, v in found.consequences.items()
     )
-    return Table(("figure", "before", "after"), rows)
+    return Table(("figure", "before", "after", "± (95 %)"), rows)
+
+
+def _uncertain(standard_error: float | None) -> str:
+    """Half a 95 % interval, to the two digits that it is known to."""
+    if standard_error is None:
+        return quantities.DASH
+    return quantities.number(float(f"{_HALF_INTERVAL * standard_error:.2g}"))
 
 
 def _considered(found: Diagnosis) -> Table:

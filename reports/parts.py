@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from reports import style
 from reports.figure import Figure
+from reports.gap_bars import GapBars
 from reports.pdf import _font_directory, _known_characters, _spelled_out
 from reports.svg_figure import svg_figure
 
@@ -53,7 +54,7 @@ class Part:
     text: str
     tables: tuple[Table, ...] = ()
     maps: tuple[Map, ...] = ()
-    figures: tuple[Figure, ...] = ()
+    figures: tuple[Figure | GapBars, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,7 @@ def _as_data(part: Part) -> dict[str, Any]:
         "maps": [asdict(m) for m in part.maps],
         "figures": [
             {
-                "svg": svg_figure(f).decode(),
+                "svg": (f.as_svg() if isinstance(f, GapBars) else svg_figure(f)).decode(),
                 "title": f.title.plain(),
                 "alt": f.alternative_text(),
                 "caption": f.caption,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,12 +10,11 @@ from reports import style
 from reports.envelope import envelope
 from reports.figure import Figure
 from reports.labels import Label
+from reports.svg_canvas import svg_canvas
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure as Canvas
 
-_MM_PER_INCH = 25.4
 _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
 _LEGEND_ROW_MM = 3.4
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
@@ -25,18 +22,13 @@ _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
 def svg_figure(figure: Figure) -> bytes:
     """The figure in the house style for paper, half a text line wide, or a whole one if it is `wide`."""
-    import matplotlib as mpl  # slow to import; only paper needs it
-    from matplotlib.backends.backend_svg import FigureCanvasSVG
-    from matplotlib.figure import Figure as Canvas
-
     narrow = (style.PAPER_WIDTH_MM, style.PAPER_HEIGHT_MM)
     width, height = style.PAPER_WIDE_MM if figure.wide else narrow
     rows = len(figure.traces) if len(figure.traces) > 1 else 0
     columns = 3 if figure.wide else 1
     top = _TOP_MM + _LEGEND_ROW_MM * -(-rows // columns)
-    with mpl.rc_context(style.PAPER):
-        canvas = Canvas(figsize=(width / _MM_PER_INCH, height / _MM_PER_INCH))
-        FigureCanvasSVG(canvas)
+    with svg_canvas(width, height) as picture:
+        canvas = picture.canvas
         box = (_LEFT_MM / width, _BOTTOM_MM / height, _axes_width_mm(figure) / width)
         axes = canvas.add_axes((*box, 1 - (_BOTTOM_MM + top) / height))
         _draw(axes, figure)
@@ -50,7 +42,7 @@ def svg_figure(figure: Figure) -> bytes:
                 labelspacing=0.25,
                 handlelength=1.8,
             )
-        return _svg(canvas)
+    return picture.svg
 
 
 def _axes_width_mm(figure: Figure) -> float:
@@ -108,11 +100,3 @@ def _mark(axes: Axes, figure: Figure) -> None:
     low, high = axes.get_ylim()
     if not (np.isfinite(low) and np.isfinite(high)):
         axes.set_ylim(0, 1)
-
-
-def _svg(canvas: Canvas) -> bytes:
-    out = io.BytesIO()
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # drawn as a box
-        canvas.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
-    return out.getvalue()

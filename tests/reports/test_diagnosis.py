@@ -71,7 +71,9 @@ def found() -> Diagnosis:
         signature="",
         overlays=(Overlay("one", 1e-3, np.zeros(3000), swing, 0.5 * swing, 0.99 * swing),),
         notes=("one: cut at gaps: 1",),
-        consequences={"overshoot_shaft_torque_percent": {"before": 50.0, "after": 60.0}},
+        consequences={
+            "overshoot_shaft_torque_percent": {"before": 50.0, "after": 60.0, "after_standard_error": 1.234}
+        },
     )
 
 
@@ -85,6 +87,7 @@ def test_the_page_says_what_was_found_and_links_to_every_section(found: Diagnosi
         "one <b>",
         "cut at gaps: 1",
         "held-out recordings",
+        "60.002.400",
     ):
         assert said in text
     assert "channel_skew (motor_speed_rad_s)" in text
@@ -92,7 +95,7 @@ def test_the_page_says_what_was_found_and_links_to_every_section(found: Diagnosi
     links = [a.get("href").removeprefix("#") for a in page.xpath("//nav//a")]
     assert links == [part.id for part in parts(found)]
     assert all(page.get_element_by_id(link).tag == "section" for link in links)
-    assert len(page.xpath("//figure/img[starts-with(@src, 'data:image/svg+xml') and @alt]")) == 4
+    assert len(page.xpath("//figure/img[starts-with(@src, 'data:image/svg+xml') and @alt]")) == 5
     assert not page.xpath("//script")
 
 

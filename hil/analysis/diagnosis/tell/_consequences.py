@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 from scipy import signal
@@ -14,30 +16,38 @@ from hil.plant import Start, simulate
 Array = npt.NDArray[np.float64]
 
 
-def consequences(before: Model, after: Model) -> dict[str, dict[str, float]]:
+def consequences(before: Model, after: Model, as_likely: Sequence[Model] = ()) -> dict[str, dict[str, float]]:
     """Peak shaft torque over its steady value (%), and 8-20 Hz energy of the motor speed ((rad/s)²).
 
     An open-loop step of 20 N m from 5 rad/s wheel speed, with the model before and after. Nothing for a
     model whose load comes from a recording: what its wheels would meet in a step is not in it.
+
+    Args:
+        as_likely: models that the data allow as well as `after`: their scatter is its standard error.
     """
     if after.load_input:
         return {}
-    torque = np.concatenate([np.zeros(1000), np.full(5000, STEP_NM)])
-    result: dict[str, dict[str, float]] = {
-        "overshoot_shaft_torque_percent": {},
-        "band_energy_motor_speed": {},
-    }
-    for name, model in (("before", before), ("after", after)):
-        start = Start(5.0 * model.parameters["gear_ratio"], 5.0, 0.0)
-        channels = simulate(model, torque, TICK_S, start)
-        shaft, motor = channels["shaft_torque_nm"], channels["motor_speed_rad_s"]
-        steady = float(np.mean(shaft[-2000:])) - float(np.mean(shaft[500:1000]))
-        peak = float(np.max(shaft[1000:])) - float(np.mean(shaft[500:1000]))
-        result["overshoot_shaft_torque_percent"][name] = (
-            100.0 * max(0.0, peak / steady - 1.0) if steady else 0.0
-        )
-        result["band_energy_motor_speed"][name] = _band_energy(motor[1000:])
+    figures = {"before": _figures(before), "after": _figures(after)}
+    result = {name: {when: one[name] for when, one in figures.items()} for name in figures["after"]}
+    drawn = [_figures(model) for model in as_likely]
+    if len(drawn) > 1:
+        for name, value in result.items():
+            value["after_standard_error"] = float(np.std([one[name] for one in drawn], ddof=1))
     return result
+
+
+def _figures(model: Model) -> dict[str, float]:
+    """Of one model."""
+    torque = np.concatenate([np.zeros(1000), np.full(5000, STEP_NM)])
+    start = Start(5.0 * model.parameters["gear_ratio"], 5.0, 0.0)
+    channels = simulate(model, torque, TICK_S, start)
+    shaft, motor = channels["shaft_torque_nm"], channels["motor_speed_rad_s"]
+    resting = float(np.mean(shaft[500:1000]))
+    steady, peak = float(np.mean(shaft[-2000:])) - resting, float(np.max(shaft[1000:])) - resting
+    return {
+        "overshoot_shaft_torque_percent": 100.0 * max(0.0, peak / steady - 1.0) if steady else 0.0,
+        "band_energy_motor_speed": _band_energy(motor[1000:]),
+    }
 
 
 def _band_energy(values: Array) -> float:

@@ -20,6 +20,7 @@ from hil.analysis.diagnosis.search._from_base import moved
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
 from hil.analysis.diagnosis.search._tracking import track
+from hil.analysis.diagnosis.tell._as_likely import as_likely
 from hil.analysis.diagnosis.tell._confidence import alternatives_of, confidence_of, drop_of
 from hil.analysis.diagnosis.tell._consequences import consequences
 from hil.analysis.diagnosis.tell._drift import drifts
@@ -95,7 +96,7 @@ class Judged:
             notes=(*notes, *(drifts(problem, after) if verdict == "none" else ())),
             seconds=seconds,
             by_chance=self.by_chance,
-            consequences=consequences(base.hypothesis.base, model),
+            consequences=consequences(base.hypothesis.base, model, as_likely(self.problem, kept)),
             start=self._start(kept, floor),
             open_channels=self._open(kept),
             unfinished=self.unfinished,

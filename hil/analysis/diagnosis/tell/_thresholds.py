@@ -11,6 +11,9 @@ HALF_MARGIN: Annotated[float, Means("evidence", "over a rival at which it is abo
     12.0
 )
 CONFIDENCE_FLOOR: Annotated[float, Means("probability", "doubt that always stays", "blind")] = 0.005
+DRAWN_MODELS: Annotated[
+    int, Means("models", "whose scatter is the uncertainty of a figure of the new model", "consequences")
+] = 40
 LEAST_TORQUE_NM: Annotated[
     float, Means("N m", "without more in the recordings nobody knows what a test may ask", "separating")
 ] = 0.1
