@@ -158,7 +158,9 @@ def _speeds(
     turned = [p for p in (uneven, even) if p.count]
     for column, other in ((0, 1), (1, 0)):
         sizes = [(p.sizes[1], p.sizes[0])[column] / (p.sizes[1], p.sizes[0])[other] for p in turned]
-        if sizes and max(sizes) < DEAD_SHARE and all(_noise_alone(t, column, noise) for t in both):
+        by_torque = [p.correlation > RELATED for p in pushes[OUTPUTS[other]]]
+        moves = bool(even.count) or (bool(by_torque) and all(by_torque))  # and does not only drift
+        if moves and sizes and max(sizes) < DEAD_SHARE and all(_noise_alone(t, column, noise) for t in both):
             return _dead(OUTPUTS[column])
     seen = [*beyond_drift(uneven, brisk), *([even] if even.count else [])]
     if not seen:

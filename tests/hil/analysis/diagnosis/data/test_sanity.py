@@ -46,7 +46,7 @@ def test_a_speed_that_drifts_slowly_is_not_inverted(sign: float) -> None:
 
 
 @pytest.mark.parametrize("channel", ["motor_speed_rad_s", "wheel_speed_rad_s"])
-@pytest.mark.parametrize("phase", [0.0, 1.6, 3.1, 4.7])
+@pytest.mark.parametrize("phase", [0.0, 1.6])
 def test_a_drift_as_large_as_the_motion_is_no_wrong_speed(channel: str, phase: float) -> None:
     one = recorded(seconds=40.0)
     time = one["time_s"]
@@ -73,3 +73,14 @@ def test_a_wrong_speed_is_refused_though_it_drifts(factor: float) -> None:
     told = {**one.channels, **clean, "wheel_speed_rad_s": factor * wheel, "motor_torque_ref_nm": torque}
     with pytest.raises(BadInputError, match="inverted|gear ratio looks wrong|looks like rpm"):
         examined(MODEL, [dataclasses.replace(one, channels=told)])
+
+
+def test_a_speed_that_rests_beside_a_drifting_one_is_not_dead() -> None:
+    one = recorded(seconds=8.0)
+    time = one["time_s"]
+    rng = np.random.default_rng(5)
+    torque = 0.5 * np.sin(2 * np.pi * 3.0 * time)
+    told = {**one.channels, **simulate(MODEL, torque, 1e-3), "motor_torque_ref_nm": torque}
+    told["wheel_speed_rad_s"] = told["wheel_speed_rad_s"] + rng.normal(0.0, 0.05, len(time))
+    told["motor_speed_rad_s"] = told["motor_speed_rad_s"] + 16.0 * np.sin(2 * np.pi * time / 50.0)
+    examined(MODEL, [dataclasses.replace(one, channels=told)])
