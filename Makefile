@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup kills soak test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
+.PHONY: run setup kills soak faults test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -53,6 +53,10 @@ bad-inputs: setup
 # The whole blind diagnosis set: hundreds of cases, results in docs/reference/blind-results.md.
 blind: setup
 	$(BIN)/python -m tests.blind
+
+# Every fault in every phase of a run: docs/reference/faults.md.
+faults: setup
+	$(BIN)/python -m tests.faults --write
 
 # Small faults put into the code, one at a time: what do the tests notice? docs/reference/mutants.md.
 mutants: setup

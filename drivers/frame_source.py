@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,7 @@ from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.signals import Signal, bits_at, number_at
 
 _NONE_YET = -1
+_STANDARD_IDS = 2048
 _OTHER_KINDS = EXTENDED | ERROR_FRAME  # an extended frame of the same number is another message
 _SETTLED_S = 0.003  # frames older than this, before the newest of the slowest bus, have all arrived
 
@@ -42,6 +43,29 @@ class CountedBy:
     opens: bool = False
 
 
+class WholeFrames:
+    """Leaves out what is shorter than the signals that are read of it: half a frame says nothing.
+
+    Args:
+        signals: those read of a frame, by its identifier.
+    """
+
+    def __init__(self, signals: Mapping[int, Iterable[Signal]]) -> None:
+        self._least = np.zeros(_STANDARD_IDS, np.uint8)
+        for number, several in signals.items():
+            self._least[number] = max((_bytes_of(signal) for signal in several), default=0)
+
+    def of(self, block: FrameBlock) -> FrameBlock:
+        """The block without them."""
+        short = block["length"] < self._least[block["id"] % _STANDARD_IDS]
+        return block[~short] if short.any() else block
+
+
+def _bytes_of(signal: Signal) -> int:
+    """How many bytes a frame must have for the signal to be in it."""
+    return 8 - signal.shift // 8 if signal.big_endian else -(-(signal.shift + signal.length) // 8)
+
+
 class FrameSource:
     """Decodes the bound signals of every frame, in blocks, and counts.
 
@@ -68,12 +92,22 @@ class FrameSource:
             )
             for bus, _ in frames
         }
+        self._whole = {
+            bus: WholeFrames(
+                {
+                    b.frame_id: [o.signal for o in bindings if o.frame_id == b.frame_id and o.bus == bus]
+                    for b in bindings
+                    if b.bus == bus
+                }
+            )
+            for bus in self._decoders
+        }
         self._waiting: list[Samples] = []
 
     def take(self, bus: str, block: FrameBlock) -> None:
         """Take the frames of one bus."""
         if bus in self._decoders:
-            self._waiting += self._decoders[bus].decode(block)
+            self._waiting += self._decoders[bus].decode(self._whole[bus].of(block))
 
     def samples(self) -> list[Samples]:
         """What has come since the last call."""

@@ -31,6 +31,7 @@ from hil.core.signals import Payloads
 _LOG = logging.getLogger(__name__)
 
 _LONGEST_DATA = 8
+_JUMP_S = 0.5  # no frame is so late, and no adapter's clock drifts so far between two looks
 _OTHER_CLOCK_S = 10.0  # stamps that are further off are none since 1970, but of the adapter's own clock
 
 # What drivers and adapters say of why nothing passes, in words
@@ -52,6 +53,7 @@ _REASONS = {
 _FIX = (
     "check the CAN adapter, its cable and terminators (120 ohm at both ends), and the bit rate of all nodes"
 )
+_CLOCK_FIX = "let nothing set the time of the computer in the middle of a run; slew it (chrony, ntpd -x)"
 _FULL_WORDS = ("buffer full", "queue full", "queue is full", "buffer overflow", "QXMTFULL", "XMTFULL")
 
 
@@ -90,6 +92,9 @@ class Wire:
         self._epoch_offset_s, self._time_scale = epoch_offset_s, time_scale
         self._health = health or BusHealth(name)
         self._stamped = False
+        # By how much stamps are behind the clock, when that was looked at last, and what is added to them
+        self._lag_s, self._drained_s, self._jumped_s = 0.0, -np.inf, 0.0
+        self._jumps: list[str] = []
         self._left_out: set[str] = set()
         self._sent: list[tuple[float, int, int, int, int]] = []
         self._sent_ahead: list[FrameBlock] = []
@@ -139,8 +144,30 @@ class Wire:
             block: FrameBlock = self._take_block() if self._take_stamped is not None else self._take()
         except (can.CanError, OSError) as error:
             raise self._failed("receiving", error) from error
+        if len(block):
+            block = self._steady(block)
         sent = self._taken_sent()
         return block if sent is None else inserted(sent, block) if len(block) else sent
+
+    def _steady(self, block: FrameBlock) -> FrameBlock:
+        """Frames with the stamps that they would have had if the adapter's clock had not jumped.
+
+        An old frame must not be taken for news, nor news for an old frame: the way to the safe state is read
+        back by them. That it jumped is told by `check`.
+        """
+        now_s = self._clock.now_s()
+        if self._jumped_s:
+            block["time_s"] += self._jumped_s
+        lag_s = now_s - float(block["time_s"][-1])
+        jump_s = lag_s - self._lag_s
+        if abs(jump_s) > _JUMP_S + now_s - self._drained_s:
+            self._jumps.append(f"the adapter's clock has jumped by {-jump_s:.1f} s")
+            self._jumped_s += jump_s
+            beyond = np.abs(now_s - block["time_s"] - self._lag_s) > 0.5 * abs(jump_s)
+            block["time_s"][beyond] += jump_s
+            lag_s -= jump_s
+        self._lag_s, self._drained_s = lag_s, now_s
+        return block
 
     def _taken_sent(self) -> FrameBlock | None:
         """What was sent since the last call, in order of time."""
@@ -164,7 +191,7 @@ class Wire:
         """Look at what the adapter says of the bus; each fault is raised once.
 
         Raises:
-            BenchError: bus-off, error-passive, a transmit queue that is full.
+            BenchError: bus-off, error-passive, a transmit queue that is full, stamps that have jumped.
         """
         try:
             faults = self._health.new_faults(self._clock.now_s())
@@ -172,6 +199,9 @@ class Wire:
             raise self._failed("asking for its state", error) from error
         if faults:
             raise BenchError("; ".join(faults), where=f"bus '{self.name}'", fix=_FIX)
+        if self._jumps:
+            jumps, self._jumps = self._jumps, []
+            raise BenchError("; ".join(jumps), where=f"bus '{self.name}'", fix=_CLOCK_FIX)
 
     def close(self) -> None:
         """Leave the bus."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import can
@@ -12,11 +13,19 @@ from hil.core.frames import FrameBlock
 from sim_backend.bench import DYNO_BUS, RMCU_BUS, SimulatedBench
 
 _BENCHES: dict[str, SimulatedBench] = {}
+_PREPARED: dict[str, Callable[[SimulatedBench], None]] = {}
 
 
 def attach(name: str, bench: SimulatedBench) -> None:
     """Make a bench reachable under `name` in this process."""
     _BENCHES[name] = bench
+    if name in _PREPARED:
+        _PREPARED[name](bench)
+
+
+def prepare(name: str, work: Callable[[SimulatedBench], None]) -> None:
+    """Have `work` done on every bench that is made reachable under `name` from now on: to break it."""
+    _PREPARED[name] = work
 
 
 def detach(name: str) -> None:

@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.examination import Examined, Finding
-from drivers.frame_source import Binding, CountedBy, FrameSource
+from drivers.frame_source import Binding, CountedBy, FrameSource, WholeFrames
 from drivers.loop import BusLoop
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
-from hil.core.checksum import crc8_many
+from hil.core.checksum import crc8, crc8_many
 from hil.core.controller import Controller
 from hil.core.conventions import TICK_S
 from hil.core.dbc import Dbc, Names, Needed, read_dbc
@@ -27,6 +27,8 @@ _COUNTER_VALUES = 16
 _SHORTEST_COUNTER = 3  # bits; a shorter one says less than the order of the frames
 _REPLY_TIMEOUT_S = 0.2
 _SILENT_S = 0.2
+_NOT_BELIEVED_S = 0.05
+_LAST_BYTE = (56, 8)
 _READ, _WRITE, _APPLY = 0, 1, 2
 _FIRST_PARAMETER = 1
 _VERSION = ("SoftwareMajor", "SoftwareMinor", "SoftwarePatch")
@@ -41,9 +43,9 @@ _NEEDED = {
     ),
     "RMCU_Control": Needed(
         ("DrivingTorqueRef", "DrivingTorqueEst", "State", "RequestFault"),
-        whole=("State", "RequestFault", "Counter"),
+        whole=("State", "RequestFault", "Counter", "Crc"),
         texts={"State": ("off",)},
-        optional=("Counter",),
+        optional=("Counter", "Crc"),
     ),
     "RMCU_Identification": Needed((), whole=_IDENTIFICATION, optional=_IDENTIFICATION, may_miss=True),
     "RMCU_ParameterWrite": Needed(("Command", "Index", "Value"), whole=("Command", "Index")),
@@ -56,7 +58,7 @@ _NEEDED = {
 
 # What the bench does not look at, but an RMCU's frames may hold: names for it can be given too.
 _ALSO = {
-    "RMCU_Control": ("Saturated", "ParametersValid", "Crc"),
+    "RMCU_Control": ("Saturated", "ParametersValid"),
     "RCS_Vehicle": ("Counter", "Valid", "Crc"),
 }
 
@@ -101,6 +103,11 @@ class RmcuDriver:
         self.fault = ""
         self.torque_ref_nm = math.nan
         self.last_seen_s = -math.inf
+        self._damaged_s = self._stands_s = -math.inf  # when a frame came whose checksum or count was wrong
+        self._count: int | None = None
+        control = self._layouts["RMCU_Control"]
+        self._checked = "Crc" in control.signals and control.signals["Crc"].place[:2] == _LAST_BYTE
+        self._whole = WholeFrames({f.id: f.signals.values() for f in (self._layouts["RMCU_Status"], control)})
         self._identification: int | None = None
         if "RMCU_Identification" in self._layouts:
             loop.on_frame(wire, self._layouts["RMCU_Identification"].id, self._take_identification)
@@ -145,8 +152,14 @@ class RmcuDriver:
         """Not needed."""
 
     def troubles(self) -> list[str]:
-        """Its fault, if it is in one."""
-        return [f"the RMCU went to fault: {self.fault}"] if self.state == "fault" else []
+        """Its fault, if it is in one; frames that are not to be believed."""
+        found = [f"the RMCU went to fault: {self.fault}"] if self.state == "fault" else []
+        unseen = self._loop.clock.now_s() - self.last_seen_s > _NOT_BELIEVED_S
+        if unseen and self._damaged_s > self.last_seen_s:
+            found.append("the RMCU's frames come with wrong checksums")
+        if unseen and self._stands_s > self.last_seen_s:
+            found.append("the RMCU's counter stands still")
+        return found
 
     def close(self) -> None:
         """Nothing of its own is open."""
@@ -287,11 +300,24 @@ class RmcuDriver:
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus != self._wire.name:
             return
-        control, status = newest_of(block, self._shown)
-        if control is None or status is None:
+        control, status = newest_of(self._whole.of(block), self._shown)
+        if control is None or status is None or not self._is_believed(*control):
             return
         signals = self._layouts["RMCU_Control"].signals
         self.last_seen_s, payload = control
         self.state = self._state_names.get(signals["State"].raw(payload), "?")
         self.fault = self._fault_names.get(signals["RequestFault"].raw(payload), "?")
         self.torque_ref_nm = self._layouts["RMCU_Status"].signals["MotorTorqueRef"].value(status[1])
+
+    def _is_believed(self, time_s: float, payload: int) -> bool:
+        """Whether a control frame is whole, and not the one that came before."""
+        control = self._layouts["RMCU_Control"]
+        if self._checked and control.signals["Crc"].raw(payload) != crc8(control.id, payload):
+            self._damaged_s = time_s
+            return False
+        counter = control.signals.get("Counter")
+        before, self._count = self._count, counter.raw(payload) if counter else None
+        if self._count is not None and self._count == before:
+            self._stands_s = time_s
+            return False
+        return True

@@ -46,6 +46,7 @@ class Arming:
         self._identify()
         if not bench.simulated:
             warm_up(bench)
+        if not bench.loop.clock.virtual:
             bench.loop.every(KEEP_S, self._recorder.keep)
         bench.start_heartbeats(self._timing)
         bench.rmcu.come_up()
@@ -60,10 +61,12 @@ class Arming:
         bench.loop.run_for(_LISTEN_S)
         self._zero.before()
         self._refuse_open_interlocks()
+        self._watch.refuse_silence(bench.loop.clock.now_s())
         self._event("preflight", f"{self.names} answer")
         self.armed = True
         bench.rmcu.make_safe()
         self._leave_old_fault()
+        self._refuse_torque()
         bench.dyno.enable(bench.file.dyno.speed_ramp_m_s2 / bench.file.vehicle.wheel_radius_m)
         self._watch.active = True
         self._event("arm", "drives enabled")
@@ -72,6 +75,17 @@ class Arming:
         for reached, text in self._watch.standing():
             if reached.message:
                 raise BenchError(text, where=f"interlock '{reached.name}'", fix=reached.message)
+
+    def _refuse_torque(self) -> None:
+        """No drive is enabled before the RMCU has said, in frames that can be believed, that it is off."""
+        rmcu = self._bench.rmcu
+        if not self._bench.loop.wait_for(rmcu.is_safe, rmcu.safe_within_s):
+            why = "; ".join(rmcu.troubles()) or f"state '{rmcu.state}'"
+            raise BenchError(
+                f"the RMCU does not say that it gives no torque: {why}",
+                where="RMCU",
+                fix="does another host ask it for torque? Look at its frames with: hil monitor",
+            )
 
     def _leave_old_fault(self) -> None:
         """A run that was killed leaves the RMCU in fault, with a count of requests that ours do not go on."""

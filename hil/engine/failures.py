@@ -37,7 +37,7 @@ class Failures:
 
     def tell(self, kind: str, text: str) -> None:
         """Record an event, if the recording still takes any."""
-        with contextlib.suppress(HilError):  # a full disk is already being reported
+        with contextlib.suppress(Exception):  # that it takes none is already being reported
             self._event(kind, text)
 
     def _with_blame(self, error: HilError) -> HilError:

@@ -112,6 +112,12 @@ class LimitWatch:
             return
         if pause_s > _PAUSE_S:
             self._stood_still(pause_s, now_s)
+        self.refuse_silence(now_s)
+
+    def refuse_silence(self, now_s: float) -> None:
+        """Raises:
+        BenchError: samples of a stream have stopped coming, or never came.
+        """
         for stream, seen_s in self._seen_s.items():
             if now_s - seen_s > stream.silence_s:
                 raise BenchError(

@@ -12,6 +12,9 @@ from hil.engine.bench import Bench
 from hil.engine.request_timing import Periodic
 from test_plans import Array, Quantity
 
+#: An RMCU takes the first request at once; what it says of that is looked at every 10 ticks.
+_FOLLOWS_WITHIN_TICKS = 100
+
 
 class Playing:
     """Sends requests; `passed` is how many ticks of the last ones have passed."""
@@ -53,12 +56,7 @@ class Playing:
                 contextlib.closing(loop.each_tick(len(payloads), send, ahead)) as ticks,
             ):
                 for passed in ticks:
-                    if rmcu.state == "fault":
-                        raise BenchError(
-                            f"the RMCU went to fault: {rmcu.fault}",
-                            where="RMCU",
-                            fix="see the recording's events",
-                        )
+                    self._refuse_deafness(passed)
                     self.passed = passed
                     if until():
                         break
@@ -68,3 +66,14 @@ class Playing:
             if sent < len(payloads) and isinstance(rmcu, TakesBack):
                 rmcu.take_back(len(payloads) - sent)
         return sent
+
+    def _refuse_deafness(self, passed: int) -> None:
+        """Raises:
+        BenchError: the RMCU went to fault, or does not do what is requested.
+        """
+        rmcu = self._bench.rmcu
+        fix = "see the recording's events"
+        if rmcu.state == "fault":
+            raise BenchError(f"the RMCU went to fault: {rmcu.fault}", where="RMCU", fix=fix)
+        if rmcu.state == "off" and passed > _FOLLOWS_WITHIN_TICKS:
+            raise BenchError("the RMCU stays off, though torque is requested", where="RMCU", fix=fix)

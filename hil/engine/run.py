@@ -100,7 +100,7 @@ class _Run:
         request, bench = self._request, self._bench
         buses = [wire.name for wire in bench.loop.wires]
         self._recorder = Recorder(
-            request.out / RECORDING, bench.streams, buses, TICK_S, promptly=not bench.simulated
+            request.out / RECORDING, bench.streams, buses, TICK_S, promptly=not bench.loop.clock.virtual
         )
         self._recorder.between = bench.loop.keep_up
         store_inputs(self._recorder, request, bench)
@@ -233,8 +233,8 @@ class _Run:
         )
         try:
             store_result(self._recorder, request, self._bench, self._conductor, result)
-        except HilError as error:
-            failures.error = failures.error or error
+        except Exception as error:  # the result is to be told all the same
+            failures.take(error)
         largest = dict(self._watch.limits.largest)
         return RunOutcome(
             result, request.out / RECORDING, failures.error, largest, tuple(self._conductor.made)
@@ -264,6 +264,6 @@ class _Run:
     def _recording(self) -> Recording | None:
         try:
             return self._recorder.finish_rows()
-        except HilError as error:
+        except Exception as error:  # what was measured until now is on the disk
             self._failures.take(error)
             return None

@@ -2,6 +2,7 @@
 
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SENSED_CHANNELS, Noise, SensorFault, SimulationSettings
+from sim_backend.bench._tampering import Tamper
 from sim_backend.bench._traffic import frame_time_s
 from sim_backend.bench._world import DYNO_BUS, RMCU_BUS, SimulatedBench, check_device_files
 
@@ -14,6 +15,7 @@ __all__ = [
     "SensorFault",
     "SimulatedBench",
     "SimulationSettings",
+    "Tamper",
     "check_device_files",
     "frame_time_s",
 ]

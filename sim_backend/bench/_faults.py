@@ -12,3 +12,7 @@ class Fault(Enum):
     DYNO_SILENT = "the left rear dyno sends nothing and hears nothing; its drive is off"
     RMCU_DEAF = "the RMCU hears no requests but keeps sending its state"
     DYNO_DEAF = "the rear dynos hear no commands but keep sending their state"
+    RMCU_RESET = "the RMCU boots for 0.3 s; then it is off, without parameters, and no request has come"
+    DYNO_RESET = "the left rear dyno boots: its drive is off, what was configured is forgotten, its SYNC too"
+    DYNO_FAULT = "the left rear drive goes to fault and tells why"
+    DYNO_RUNAWAY = "the rear drives go to a speed that nobody asked for, and cannot be switched off"

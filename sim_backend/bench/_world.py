@@ -21,6 +21,7 @@ from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SENSED_CHANNELS, SensorFault, SimulationSettings
+from sim_backend.bench._tampering import Tamper
 from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s
 from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
@@ -31,6 +32,9 @@ _LARGEST_BATCH = 4096
 _NODES_EVERY = 10  # samples between looks at heartbeats: no more are computed at once
 _NO_SAMPLES, _NO_REQUESTS = np.zeros(0, np.int64), np.zeros(0, np.uint64)
 _HEARTBEATS = range(0x701, 0x780)
+_EMCY_SHORT_CIRCUIT = 0x2320  # CiA 402: short circuit or earth leakage at the output
+_RUNAWAY_RAD_S = 200.0
+_BOOT_TICKS = 300
 _SYNC = FrameLayout("SYNC", 0x80, 0, {})
 
 
@@ -62,6 +66,8 @@ class SimulatedBench:
         self.settings = settings
         self._random = np.random.default_rng(settings.seed)
         self.faults: set[Fault] = set()
+        self.tamper: Tamper | None = None
+        self._boots_until: int | None = None
         self._samples = 0  # computed so far
         self._due = 0  # samples whose time has come
         self._now_s = 0.0
@@ -94,6 +100,8 @@ class SimulatedBench:
             ):  # what is slow the first time is over
                 self._compute()
         self._now_s = max(self._now_s, time_s)
+        if self.tamper is not None:
+            self.tamper.time_passes(self._now_s)
 
     # --- the devices ---
 
@@ -113,9 +121,11 @@ class SimulatedBench:
 
     def put(self, bus: str, frame_id: int, data: bytes) -> None:
         """A host's frame: it reaches the nodes at the next sample."""
-        self._inbox.append((self._due, bus, frame_id, int.from_bytes(data, "little"), len(data)))
-        if frame_id != self._request_id or bus != RMCU_BUS:
-            self._breaks.append(self._due)
+        sent = [(frame_id, data)] if self.tamper is None else self.tamper.to_nodes(bus, frame_id, data)
+        for number, content in sent:
+            self._inbox.append((self._due, bus, number, int.from_bytes(content, "little"), len(content)))
+            if number != self._request_id or bus != RMCU_BUS:
+                self._breaks.append(self._due)
 
     def put_ahead(
         self,
@@ -136,6 +146,10 @@ class SimulatedBench:
         """All frames that have appeared on `bus` until now and were not taken yet, in order of time."""
         self._compute()
         self._emit()
+        block = self._taken(bus)
+        return block if self.tamper is None else self.tamper.to_hosts(bus, block)
+
+    def _taken(self, bus: str) -> FrameBlock:
         blocks = self._pending[bus]
         if not blocks:
             return empty_block()
@@ -212,6 +226,8 @@ class SimulatedBench:
         """Catch up with the time."""
         while self._samples < self._due:
             first = self._samples
+            if self._boots_until is not None and first >= self._boots_until:
+                self._has_booted()
             self._deliver(first)
             end = min(
                 self._due, first - first % _NODES_EVERY + _NODES_EVERY, self._first_row + _LARGEST_BATCH
@@ -315,7 +331,32 @@ class SimulatedBench:
             self._rmcu.lose_power()
         if fault is Fault.DYNO_SILENT:
             self._dynos[0].switch_off()
+        if fault is Fault.RMCU_RESET:
+            self._rmcu.reset()
+            self._boots_until = self._samples + _BOOT_TICKS
+            self.faults.add(Fault.RMCU_SILENT)
+        if fault is Fault.DYNO_RESET:
+            self._dynos[0].reset()
+        if fault is Fault.DYNO_FAULT:
+            self._dynos[0].fail(_EMCY_SHORT_CIRCUIT)
+        if fault is Fault.DYNO_RUNAWAY:
+            for node in self._dynos[:2]:
+                node.run_away(_RUNAWAY_RAD_S)
         self._rmcu_traffic, self._dyno_traffic = self._traffic_of_rmcu(), self._traffic_of_dynos()
+
+    def _has_booted(self) -> None:
+        """The RMCU is there again."""
+        self._boots_until = None
+        self._emit()
+        self.faults -= {Fault.RMCU_SILENT, Fault.RMCU_RESET}
+        self._rmcu_traffic = self._traffic_of_rmcu()
+
+    def spoil(self, channel: str, fault: SensorFault) -> None:
+        """A sensor reads something else from now on."""
+        self._compute()
+        row = self._plant.sensors[SENSED_CHANNELS.index(channel)]
+        row[T.SENSOR_GAIN] *= fault.gain
+        row[T.SENSOR_OFFSET] = row[T.SENSOR_OFFSET] * fault.gain + fault.offset
 
     def _take_vehicle_model(self) -> None:
         left = self._dynos[0]
@@ -342,6 +383,8 @@ class SimulatedBench:
             return
         rows = self._rows[:count]
         self._last_row[:] = rows[-1]
+        if self.tamper is not None:
+            self.tamper.look(self._first_row, rows)
         self._pending[RMCU_BUS].append(self._rmcu_traffic.block(rows, self._first_row))
         if self._dyno_traffic:
             self._pending[DYNO_BUS].append(self._dyno_traffic.block(rows, self._first_row))

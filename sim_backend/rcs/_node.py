@@ -19,6 +19,7 @@ from sim_backend.rcs._power_states import PowerStates, State
 
 _OPERATIONAL = 5
 _MODES = {3: law.SPEED, 4: law.TORQUE, -1: law.VEHICLE}
+_RUNAWAY_RAD_S2 = 400.0
 _NO_MODE = 0  # CiA 402: "no mode assigned", which the EDS has as default; the drive turns free
 _EMCY_HEARTBEAT_LOST = 0x8130
 _SYNC_ID, _SYNC_PRODUCER = 0x80, 1 << 30
@@ -117,17 +118,46 @@ class DynoNode:
         self.row = row
         self.power = PowerStates()
         self._powered = True
+        self._runaway_rad_s: float | None = None
         self._network = _Network(send)
         self._dictionary, (self._command, self.values, self.status) = read_node(eds, node_id)
         self._node: Any = ServedNode(node_id, self._dictionary)
         self._node.associate_network(self._network)
         self._node.add_write_callback(self._written)
-        self._give_serial_number()
-        self._node.nmt.send_command(0)  # boots: boot-up message, then pre-operational
-        self._node.nmt.send_command(128)
+        self._boot()
         self._host_heard_s = float("inf")
         self._host_heartbeat, self._host_limit_s = -1, float("inf")
         self._follow()
+
+    def _boot(self) -> None:
+        """Boot-up message, then pre-operational; nothing is configured."""
+        self._give_serial_number()
+        self._node.nmt.send_command(0)
+        self._node.nmt.send_command(128)
+
+    def reset(self) -> None:
+        """Boot again: the drive gives no torque, what was configured is forgotten."""
+        self.power = PowerStates()
+        self._network.timers.clear()
+        self._node.data_store.clear()
+        self._host_heard_s = float("inf")
+        self._boot()
+        self._follow()
+
+    def fail(self, code: int) -> None:
+        """The drive goes to fault and tells why, by an EMCY with this error code (CiA 301)."""
+        self.power.fail()
+        self.tell(code)
+        self._follow()
+
+    def run_away(self, speed_rad_s: float) -> None:
+        """Drive to a speed whatever is asked for."""
+        self._runaway_rad_s = speed_rad_s
+        self._follow()
+
+    def tell(self, code: int) -> None:
+        """Send an EMCY with this error code."""
+        self._node.emcy.send(code, 0x01)
 
     def _give_serial_number(self) -> None:
         """Each node has another, in the identity object (CiA 301) if the EDS has it; its EDS says 0."""
@@ -222,7 +252,8 @@ class DynoNode:
         signals = self._command.signals
         self.row[law.TARGET_SPEED] = signals["Target velocity"].value(payload)
         self.row[law.TARGET_TORQUE] = signals["Target torque"].value(payload)
-        self.power.command(signals["Controlword"].raw(payload))
+        if self._runaway_rad_s is None:  # else it does not listen
+            self.power.command(signals["Controlword"].raw(payload))
         for index, name in ((0x6040, "Controlword"), (0x60FF, "Target velocity"), (0x6071, "Target torque")):
             data = signals[name].raw(payload).to_bytes(signals[name].length // 8, "little")
             self._node.data_store.setdefault(index, {})[0] = data
@@ -267,4 +298,7 @@ class DynoNode:
         wanted = _MODES.get(mode, law.FREE) if enabled else law.FREE
         if self.power.state is State.QUICK_STOP_ACTIVE:
             wanted, self.row[law.TARGET_SPEED] = law.SPEED, 0.0
+        if self._runaway_rad_s is not None:
+            wanted, self.row[law.TARGET_SPEED] = law.SPEED, self._runaway_rad_s
+            self.row[law.ACCELERATION] = _RUNAWAY_RAD_S2
         self.row[law.MODE] = wanted

@@ -154,6 +154,12 @@ class RmcuNode:
         """Off, without a torque request."""
         self._whole[R.MODE], self._real[R.REQUEST] = M.OFF, 0.0
 
+    def reset(self) -> None:
+        """Boot again: off, without parameters, and no request has ever come."""
+        self._whole[:] = M.OFF, R.NONE, 0, -1
+        self._real[:] = 0.0, -1.0, -1.0
+        self._stored.clear()
+
     def vehicle_speed_is_fresh(self, time_s: float) -> None:
         """The dyno controller's cyclic vehicle speed arrived at `time_s`."""
         self._real[R.VEHICLE_S] = time_s

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import socket
-from typing import Any
+from typing import Any, ClassVar
 
 import can
 import pytest
@@ -48,11 +48,13 @@ class Given(can.BusABC):
 
     arguments: dict[str, Any]
     messages: list[can.Message]
+    opened: ClassVar[list[can.BusABC]] = []
 
     def __init__(self, channel=None, **kwargs):
         Given.arguments = {"channel": channel, **kwargs}
         self.messages = []
         super().__init__(channel)
+        Given.opened.append(self)
 
     def send(self, msg, timeout=None):
         raise can.CanOperationError("Failed to transmit: No buffer space available", 105)
@@ -65,6 +67,9 @@ class Given(can.BusABC):
 def given(monkeypatch):
     for name in ("kvaser", "nixnet", "pcan", "gs_usb"):
         monkeypatch.setitem(can.interfaces.BACKENDS, name, (__name__, "Given"))
+    yield
+    while Given.opened:
+        Given.opened.pop().shutdown()  # else python-can complains of it in the middle of another test
 
 
 def test_channels_rates_and_timing_reach_the_adapter_as_they_are(given, monkeypatch, tmp_path):

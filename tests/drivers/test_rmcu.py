@@ -85,3 +85,74 @@ def test_a_dbc_that_lacks_something_is_refused_by_name(change, said, tmp_path):
 def test_a_missing_dbc_says_where_to_look(tmp_path):
     with running("nodbc") as bench, pytest.raises(BadInputError, match=r"\[rmcu\] dbc"):
         RmcuDriver(bench.loop, bench.loop.wires[0], tmp_path / "none.dbc")
+
+
+def changed(change):
+    """Somebody on the wire who changes what the RMCU sends."""
+
+    class Tamper:
+        on = False
+
+        def time_passes(self, now_s): ...
+
+        def look(self, first, rows): ...
+
+        def to_nodes(self, bus, frame_id, data):
+            return [(frame_id, data)]
+
+        def to_hosts(self, bus, block):
+            return change(block.copy()) if self.on and bus == "rmcu" else block
+
+    return Tamper()
+
+
+def with_wrong_checksum(block):
+    block["data"][block["id"] == 0x111] ^= np.uint64(1 << 60)
+    return block
+
+
+def with_another_state(block):
+    block["data"][block["id"] == 0x111] ^= np.uint64(1)
+    return block
+
+
+def with_one_count(block, kept=[]):  # noqa: B006 - what came first is sent again and again
+    kept = kept or kept.append(block["data"][block["id"] == 0x111][-1]) or kept
+    block["data"][block["id"] == 0x111] = kept[0]
+    return block
+
+
+def cut_short(block):
+    block["length"] = np.minimum(block["length"], 2)
+    return block
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (with_wrong_checksum, "the RMCU's frames come with wrong checksums"),
+        (with_another_state, "the RMCU's frames come with wrong checksums"),
+        (with_one_count, "the RMCU's counter stands still"),
+        (cut_short, None),  # as if nothing came
+    ],
+)
+def test_frames_that_cannot_be_believed_say_nothing(change, said):
+    with running("unbelievable") as bench:
+        tamper = attached("unbelievable").tamper = changed(change)
+        bench.loop.run_for(0.05)
+        assert bench.rmcu.is_safe()
+        for source in bench.sources:
+            list(source.samples())
+        tamper.on = True
+        seen_s = bench.rmcu.last_seen_s
+        bench.loop.run_for(0.1)
+        assert bench.rmcu.last_seen_s <= seen_s + 0.02
+        assert not bench.rmcu.is_safe()
+        assert bench.rmcu.troubles() == ([said] if said else [])
+        if not said:
+            frames = [s for s in bench.rmcu.sources[0].samples() if s.stream.channels]
+            assert frames == []
+        tamper.on = False
+        bench.loop.run_for(0.05)
+        assert bench.rmcu.troubles() == []
+        assert bench.rmcu.is_safe()

@@ -151,3 +151,21 @@ def test_a_device_that_is_not_there_is_noted(tmp_path: Path) -> None:
         at.arming.come_up()
         assert at.arming.missing == ("oil is missing: no such port",)
         assert ("missing", "oil is missing: no such port") in [(e.kind, e.text) for e in at.recorder.events]
+
+
+def test_a_device_that_fell_silent_after_its_first_word_keeps_it_from_being_armed(tmp_path: Path) -> None:
+    with stage(tmp_path, "silenced") as at:
+        at.bench.loop.run_for(0.05)
+        at.bench.loop.every(0.15, lambda: attached("silenced").fail(Fault.RMCU_SILENT))
+        with pytest.raises(BenchError, match="sends no status|has stopped coming"):
+            at.arming.come_up()
+        assert not at.arming.armed
+
+
+def test_no_drive_is_enabled_before_the_rmcu_says_that_it_is_off(tmp_path: Path) -> None:
+    with stage(tmp_path, "on") as at:
+        at.bench.rmcu.is_safe = lambda: False  # what it says cannot be believed
+        with pytest.raises(BenchError, match="does not say that it gives no torque: state 'off'"):
+            at.arming.come_up()
+        assert at.arming.armed
+        assert not any(node.power.state.name == "OPERATION_ENABLED" for node in attached("on").dynos)

@@ -82,6 +82,7 @@ def test_limits_read_a_signal_as_it_is_laid_out(length, is_float, big):
     watch = LimitWatch(source.streams, SIM.limits)
     block = np.zeros(3, FRAME)
     block["time_s"], block["id"] = [0.001, 0.002, 0.003], 0x110
+    block["length"] = 8
     block["data"] = signal.encode([-300.0, 20.0, 250.0])
     source.take("b", block)
     (samples,) = source.samples()
@@ -96,6 +97,7 @@ def test_a_speed_that_is_not_a_number_trips_its_limit():
     watch.active = True
     block = np.zeros(20, FRAME)
     block["time_s"], block["id"] = np.arange(20) * 0.001, 0x110
+    block["length"] = 8
     block["data"] = signal.encode(np.full(20, np.nan))
     source.take("b", block)
     (samples,) = source.samples()

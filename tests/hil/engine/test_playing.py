@@ -74,3 +74,11 @@ def test_an_rmcu_in_fault_ends_it_with_the_reason(bench: Any) -> None:
     with pytest.raises(BenchError, match="the RMCU went to fault: timeout") as caught:
         Playing(bench, None).send("motor_torque", np.full(500, 5.0))
     assert caught.value.where == "RMCU"
+
+
+def test_an_rmcu_that_stays_off_is_not_taken_for_one_that_follows(bench: Any) -> None:
+    attached("playing").fail(Fault.RMCU_DEAF)
+    playing = Playing(bench, None)
+    with pytest.raises(BenchError, match="the RMCU stays off, though torque is requested"):
+        playing.send("motor_torque", np.full(500, 5.0))
+    assert playing.passed < 150
