@@ -31,7 +31,10 @@ from hil.core.signals import Payloads
 _LOG = logging.getLogger(__name__)
 
 _LONGEST_DATA = 8
-_JUMP_S = 0.5  # no frame is so late, and no adapter's clock drifts so far between two looks
+# Of a stamp, before it is the clock's doing: frames come late when something is busy, but never too early.
+_AHEAD_S, _BEHIND_S = 0.5, 5.0
+_LEARNS_S = 0.1  # what came before the bus was opened says nothing of the clock
+_DRIFT = 1e-3  # no adapter's clock is worse
 _OTHER_CLOCK_S = 10.0  # stamps that are further off are none since 1970, but of the adapter's own clock
 
 # What drivers and adapters say of why nothing passes, in words
@@ -92,8 +95,9 @@ class Wire:
         self._epoch_offset_s, self._time_scale = epoch_offset_s, time_scale
         self._health = health or BusHealth(name)
         self._stamped = False
-        # By how much stamps are behind the clock, when that was looked at last, and what is added to them
-        self._lag_s, self._drained_s, self._jumped_s = 0.0, -np.inf, 0.0
+        # By how much stamps are behind at least, when that was looked at last, and what is added to them
+        self._lag_s, self._drained_s, self._jumped_s = 0.0, 0.0, 0.0
+        self._learns_until_s: float | None = None
         self._jumps: list[str] = []
         self._left_out: set[str] = set()
         self._sent: list[tuple[float, int, int, int, int]] = []
@@ -159,15 +163,24 @@ class Wire:
         if self._jumped_s:
             block["time_s"] += self._jumped_s
         lag_s = now_s - float(block["time_s"][-1])
+        since_s, self._drained_s = now_s - self._drained_s, now_s
+        if self._learns_until_s is None:
+            self._learns_until_s, self._lag_s = now_s + _LEARNS_S, lag_s
         jump_s = lag_s - self._lag_s
-        if abs(jump_s) > _JUMP_S + now_s - self._drained_s:
-            self._jumps.append(f"the adapter's clock has jumped by {-jump_s:.1f} s")
-            self._jumped_s += jump_s
-            beyond = np.abs(now_s - block["time_s"] - self._lag_s) > 0.5 * abs(jump_s)
-            block["time_s"][beyond] += jump_s
-            lag_s -= jump_s
-        self._lag_s, self._drained_s = lag_s, now_s
+        if now_s < self._learns_until_s or not self._is_jump(jump_s, since_s):
+            # Frames may be late by any cause, and in time again: the least lag is what the clock says.
+            self._lag_s += min(jump_s, _DRIFT * since_s)
+            return block
+        self._jumps.append(f"the adapter's clock has jumped by {-jump_s:.1f} s")
+        self._jumped_s += jump_s
+        beyond = np.abs(now_s - block["time_s"] - self._lag_s) > 0.5 * abs(jump_s)
+        block["time_s"][beyond] += jump_s
         return block
+
+    @staticmethod
+    def _is_jump(jump_s: float, since_s: float) -> bool:
+        """Whether stamps are further ahead than any delay explains, or further behind."""
+        return jump_s < -_AHEAD_S or jump_s > _BEHIND_S + since_s
 
     def _taken_sent(self) -> FrameBlock | None:
         """What was sent since the last call, in order of time."""

@@ -35,10 +35,10 @@ def lag_s(one: Wire, clock: SteppedClock) -> float:
     return clock.now_s() - float(one.drain()["time_s"][-1])
 
 
-@pytest.mark.parametrize("jump_s", [3600.0, -3600.0, 0.7, -0.7])
+@pytest.mark.parametrize("jump_s", [3600.0, -3600.0, 0.7, -7.0])
 def test_a_jump_is_told_once_and_undone(jump_s: float) -> None:
     one, adapter, clock = wire()
-    for _ in range(5):
+    for _ in range(60):
         assert lag_s(one, clock) == pytest.approx(0.001)
     one.check()
     adapter.ahead_s = jump_s
@@ -52,7 +52,9 @@ def test_a_jump_is_told_once_and_undone(jump_s: float) -> None:
 def test_frames_that_are_late_or_an_own_pause_are_no_jump() -> None:
     one, adapter, clock = wire()
     assert lag_s(one, clock) == pytest.approx(0.001)
-    for late_s in (0.4, 0.001, 0.3, 0.0):
+    for _ in range(60):
+        lag_s(one, clock)
+    for late_s in (0.4, 0.001, 2.0, 0.7, 0.0):  # held up, and in time again
         adapter.late_s = late_s
         assert lag_s(one, clock) == pytest.approx(late_s)
     clock.sleep_until(clock.now_s() + 2.0)  # nobody looked meanwhile, and the oldest frames were kept
