@@ -129,7 +129,7 @@ def _content(file: Path) -> str:
 @cache
 def _imports(module: str, file: Path) -> tuple[tuple[str, Path], ...]:
     """Modules of the same project that a file imports, with their files."""
-    project = file.parents[module.count(".")]
+    project = file.parents[module.count(".") + (file.name == "__init__.py")]
     found = []
     if _FINDS_SIBLINGS in _content(file):
         package = module.rpartition(".")[0]

@@ -36,6 +36,7 @@ CHECKS = {
     "by_chance": _TESTS.format("search/test_by_chance.py"),
     "evidence": _TESTS.format("search/test_evidence.py"),
     "foretold": _TESTS.format("search/test_foretold.py"),
+    "laws": _TESTS.format("search/test_laws_of_others.py"),
     "orders": _TESTS.format("search/test_orders.py"),
     "quantization": _TESTS.format("search/test_quantization.py"),
     "rank": _TESTS.format("search/test_rank.py"),

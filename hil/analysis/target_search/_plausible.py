@@ -87,7 +87,10 @@ def candidates(
 
 
 def plausible(effect: Effect, scene: Scene) -> tuple[Number, ...]:
-    """The range of each number of an effect that is to be searched; the others keep their defaults."""
+    """The range of each number of an effect that is to be searched; the others keep their defaults.
+
+    A figure or three tell no form of a law from another.
+    """
     assert effect.probes is not None
     if any(parameter.name == "amplitude_nm" for parameter in effect.parameters):
         return _ripple(effect, scene)
@@ -98,6 +101,8 @@ def plausible(effect: Effect, scene: Scene) -> tuple[Number, ...]:
                 seen.setdefault(name, []).append(float(value))
     numbers = []
     for parameter in effect.parameters:
+        if parameter.choices or parameter.beside:
+            continue
         sizes = [*seen.get(parameter.name, []), *_opened(parameter)]
         low, high = _bounded(parameter, sizes)
         if high > low:

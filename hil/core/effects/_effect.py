@@ -63,6 +63,8 @@ class Parameter:
         fitted: whether a fit may move it.
         opens: an optional number is tried from these values once its effect is found.
         rough: errors are rough in it, since contact comes and goes.
+        choices: values between which a diagnosis chooses, for a number that no fit moves.
+        beside: the optional number that it is opened together with: without it, it means little or nothing.
     """
 
     name: str
@@ -78,6 +80,8 @@ class Parameter:
     fitted: bool = True
     opens: tuple[float, ...] = ()
     rough: bool = False
+    choices: tuple[float, ...] = ()
+    beside: str = ""
 
 
 @dataclass(frozen=True)

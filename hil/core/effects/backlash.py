@@ -11,22 +11,32 @@ e = exp(-2·ζ/√(1 - ζ²)·atan(√(1 - ζ²)/ζ)), d = 2·ζ·√(k·m), for
 (for ζ above 1, e below 0.135: √(ζ² - 1) and atanh). Damping strikes with the speed of approach: flanks that
 give back little strike hard. Below 0.1 nothing is told apart; what is given there acts as 0.1. With both a
 damping and a restitution, the two dampings add.
+
+Other authors' flanks stand beside it. With `tension` 1 they bear all the pull of the dampings, as an oil film
+does until they part, and shafts that are free are untwisted at once: contact is where the twist is beyond the
+gap, k·δ + (c + d)·δ' (Kelvin and Voigt). `depth_damping_nms_rad2` λ adds λ·δ·δ' to the spring, which alone
+never pulls (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42, 1975). Between 0 and 1 tension mixes both.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from hil.core.chain import TWO_INERTIA, Chain
 from hil.core.effects._effect import Effect, Memory, Parameter, Stage
 from hil.core.effects._law import Law, Motion, Values
-from hil.core.effects._probe import Probe, Scene, sized
+from hil.core.effects._probe import STRETCH, Direction, Probe, Scene, sized
+from hil.core.effects._probe import Values as Named
 
 _SEATED_NM = 2.0  # a first shaft torque that surely is in contact
 _HALVINGS = 60
 _CRITICAL = 1e-6
 _LEAST_RESTITUTION = 0.1
+_STEPS, _STEPS_UNDER_TENSION = 2, 3
+_SIZES = 12  # of gaps that a diagnosis tries first
+_DAMPED = 0.5  # of the shafts' damping, in the flanks of a probe
+_MOST_DAMPED = 4.0  # times that
 
 
 def parting_share(ratio: float) -> float:
@@ -52,21 +62,38 @@ def damping_of(restitution: float, chain: Chain) -> float:
 
 
 def _prepare(chain: Chain, values: Values) -> Values:
-    half_gap, contact_damping, restitution = values
+    half_gap, contact_damping, restitution, depth_damping, tension = values
     if restitution < 1.0:
         contact_damping += damping_of(restitution, chain)
-    return half_gap, contact_damping, 1.0
+    return half_gap, contact_damping, 1.0, depth_damping, tension
 
 
 def _shaft(motion: Motion, chain: Chain, seat: float, values: Values) -> float:
     """What contact and gap take from or add to the torque of shafts without play."""
-    half_gap = values[0]
     linear = chain.shaft_stiffness * motion.twist + chain.shaft_damping * motion.twist_rate
+    return _contact(motion, chain, seat, values) - linear
+
+
+def _contact(motion: Motion, chain: Chain, seat: float, values: Values) -> float:
+    """Torque of the shafts in N m, with free play."""
+    half_gap, contact_damping, _, depth_damping, tension = values
     if -half_gap < seat < half_gap:
-        return -linear
-    damping = chain.shaft_damping + values[1]
-    torque = chain.shaft_stiffness * (motion.twist - seat) + damping * motion.twist_rate
-    return (max(0.0, torque) if seat > 0.0 else min(0.0, torque)) - linear
+        return 0.0
+    damping = (chain.shaft_damping + contact_damping) * motion.twist_rate
+    spring = chain.shaft_stiffness * (motion.twist - seat)
+    spring += depth_damping * abs(motion.twist - seat) * motion.twist_rate
+    free, held = spring + damping, spring
+    if seat > 0.0:
+        free, held = max(0.0, free), max(0.0, held)
+    else:
+        free, held = min(0.0, free), min(0.0, held)
+    return (1.0 - tension) * free + tension * (held + damping)
+
+
+def _kept(chain: Chain, values: Values, h: float) -> float:
+    """Share of a twist that shafts within the gap still have after `h` seconds."""
+    relaxing = (1.0 - values[4]) * chain.shaft_damping
+    return math.exp(-h * chain.shaft_stiffness / relaxing) if relaxing > 0.0 else 0.0
 
 
 def _stretch(twist: float, chain: Chain, seat: float, values: Values) -> float:
@@ -74,10 +101,7 @@ def _stretch(twist: float, chain: Chain, seat: float, values: Values) -> float:
 
 
 def _remember(before: Motion, after: Motion, chain: Chain, seat: float, values: Values, h: float) -> float:
-    kept = 0.0
-    if chain.shaft_damping > 0.0:
-        kept = math.exp(-h * chain.shaft_stiffness / chain.shaft_damping)
-    return min(max(after.twist - kept * (before.twist - seat), -values[0]), values[0])
+    return min(max(after.twist - _kept(chain, values, h) * (before.twist - seat), -values[0]), values[0])
 
 
 def _begin(torque: float, chain: Chain, values: Values) -> float:
@@ -86,12 +110,31 @@ def _begin(torque: float, chain: Chain, values: Values) -> float:
 
 
 def _steps(chain: Chain, values: Values, dt: float) -> int:
-    return 2
+    return _STEPS if values[4] == 0.0 else _STEPS_UNDER_TENSION  # whose torque leaps as flanks part
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
-    for step in range(12):
-        yield sized("half_gap_rad", 2e-4 * 600.0 ** (step / 11), 0.2, restitution=1.0)
+    for step in range(_SIZES):
+        gap = 2e-4 * 600.0 ** (step / (_SIZES - 1))
+        yield sized("half_gap_rad", gap, 0.2, restitution=1.0, tension=0.0)
+        yield _damped(gap, _DAMPED * scene.parameters["shaft_damping"])
+
+
+def _damped(gap: float, damping: float) -> Probe:
+    """Flanks that also pull, of any damping: without it that of the shafts would make up for a small gap."""
+    form: Named = {"half_gap_rad": gap, "restitution": 1.0, "tension": 1.0}
+
+    def start(a: Sequence[float]) -> Named:
+        size = min(max(float(a[0] + a[1]), 0.2), STRETCH[1])
+        return {
+            **form,
+            "half_gap_rad": size * gap,
+            "contact_damping_nms_rad": max(float(a[1]), 0.0) * damping,
+        }
+
+    elastic = Direction({**form, "contact_damping_nms_rad": 0.0}, -_MOST_DAMPED, STRETCH[1])
+    damped = Direction({**form, "contact_damping_nms_rad": damping}, 0.0, _MOST_DAMPED)
+    return Probe((elastic, damped), start)
 
 
 def _derived(values: Mapping[str, float]) -> dict[str, float]:
@@ -105,7 +148,8 @@ EFFECT = Effect(
     summary="Free play between gear output and shafts, wheel side.",
     signature="Shaft torque stays at zero for a while after each torque reversal, then a blow.",
     shown_by="Torque reversals at small and large amplitude, and a biased chirp that never reverses.",
-    source="Nordin, Galic and Gutman, Int. J. Adaptive Control and Signal Processing 11 (1997)",
+    source="Nordin, Galic and Gutman, Int. J. Adaptive Control and Signal Processing 11 (1997); "
+    "Hunt and Crossley, J. Appl. Mech. 42 (1975)",
     parameters=(
         Parameter("half_gap_rad", "rad", 0.0, 0.5, "half of the free play", step=30.0, rough=True),
         Parameter(
@@ -128,9 +172,37 @@ EFFECT = Effect(
             default=1.0,
             fitted=False,
         ),
+        Parameter(
+            "depth_damping_nms_rad2",
+            "N m s/rad²",
+            0.0,
+            1e6,
+            "of the flanks for each rad that they are pressed in, as Hunt and Crossley have it",
+            optional=True,
+            typical=20.0,
+            opens=(50.0, 200.0),
+            beside="contact_damping_nms_rad",
+        ),
+        Parameter(
+            "tension",
+            "1",
+            0.0,
+            1.0,
+            "share of the dampings' pull that flanks bear until they part: 0 none, 1 all (Kelvin, Voigt)",
+            optional=True,
+            fitted=False,
+            choices=(0.0, 1.0),
+        ),
     ),
     needs=("two_inertia", "three_inertia"),
-    law=Law(prepare=_prepare, shaft=_shaft, stretch=_stretch, remember=_remember, begin=_begin, steps=_steps),
+    law=Law(
+        prepare=_prepare,
+        shaft=_shaft,
+        stretch=_stretch,
+        remember=_remember,
+        begin=_begin,
+        steps=_steps,
+    ),
     memory=Memory("rad", "where the shafts stand in the gap"),
     probes=_probes,
     abrupt=True,

@@ -1,12 +1,17 @@
 """Dry friction on the rotor: Coulomb's law with a Stribeck peak, true standstill, and turning over an angle.
 
-While the rotor turns, friction is `torque + stribeck·exp(-(ω/2 rad/s)²)` against the motion. At standstill it
-is whatever holds the rotor, up to the break-away torque `torque + stribeck`: nothing creeps below it
-(B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083-1138).
+While the rotor turns, friction is `torque + stribeck·exp(-|ω/ω_s|^p)` against the motion, with ω_s = 2 rad/s
+and p = 2 (Gauss) where nothing else is given; p = 1 is J. Bo's and M. Pavelescu's (Wear 82, 1982). At
+standstill it is whatever holds the rotor, up to the break-away torque `torque + stribeck`: nothing creeps
+below it (B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (1994) 1083-1138).
 
 With an angle `turn_rad` friction does not turn around at once but as bristles bend:
 dF/dθ = (T_c/θ_t)·(1 - sgn(ω)·F/T_c). Over a step without reversal that is an exponential in the angle turned
 (P. R. Dahl, A Solid Friction Model, 1968).
+
+With a bristle damping s1 beside it the law is LuGre's: dz/dt = ω - s0·|ω|·z/g(ω), F = s0·z + s1·dz/dt, with
+s0 = T_c/θ_t and g the friction above, so that friction follows its level over the angle turned as well
+(C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky, IEEE Trans. Automatic Control 40, 1995).
 """
 
 from __future__ import annotations
@@ -20,17 +25,21 @@ from hil.core.effects._law import Law, Motion, Values
 from hil.core.effects._probe import Direction, Probe, Scene
 from hil.core.effects._probe import Values as Named
 
-_STRIBECK_WIDTH_RAD_S = 2.0
 _STIFFEST = 0.5  # largest phase in rad that bristles may swing through in a step
 _MOST_STEPS = 8
 
 
+# Of the values
+_TORQUE, _STRIBECK, _OFFSET, _TURN, _SPEED, _POWER, _BRISTLES = range(7)
+
+
 def _level(speed: float, values: Values) -> float:
     """Largest friction in N m at a speed of rotor against housing."""
-    if values[1] == 0.0:
-        return values[0]
-    ratio = speed / _STRIBECK_WIDTH_RAD_S
-    return values[0] + values[1] * math.exp(-ratio * ratio)
+    if values[_STRIBECK] == 0.0:
+        return values[_TORQUE]
+    ratio = abs(speed / values[_SPEED])
+    ratio = ratio * ratio if values[_POWER] == 2.0 else ratio ** values[_POWER]
+    return values[_TORQUE] + values[_STRIBECK] * math.exp(-ratio)
 
 
 def _dry(motion: Motion, chain: Chain, memory: float, values: Values) -> float:
@@ -40,7 +49,11 @@ def _dry(motion: Motion, chain: Chain, memory: float, values: Values) -> float:
 def _loss(motion: Motion, chain: Chain, bent: float, values: Values) -> float:
     if values[3] == 0.0:
         return values[2]
-    return values[2] + _level(motion.rotor_speed, values) * bent
+    level = _level(motion.rotor_speed, values)
+    if values[_BRISTLES] == 0.0 or values[_TORQUE] == 0.0:
+        return values[2] + level * bent
+    speed, torque = motion.rotor_speed, values[_TORQUE] * bent
+    return values[2] + torque + values[_BRISTLES] * (speed - abs(speed) * torque / level)
 
 
 def _remember(before: Motion, after: Motion, chain: Chain, bent: float, values: Values, h: float) -> float:
@@ -48,8 +61,11 @@ def _remember(before: Motion, after: Motion, chain: Chain, bent: float, values: 
     if values[3] == 0.0:
         return 0.0
     turned = 0.5 * h * (before.rotor_speed + after.rotor_speed)
-    way = math.copysign(1.0, turned)
-    return way + (bent - way) * math.exp(-abs(turned) / values[3])
+    way, turn = math.copysign(1.0, turned), values[_TURN]
+    if values[_BRISTLES] > 0.0 and values[_TORQUE] > 0.0:
+        share = _level(turned / h, values) / values[_TORQUE]
+        way, turn = way * share, turn * share
+    return way + (bent - way) * math.exp(-abs(turned) / turn)
 
 
 def _steps(chain: Chain, values: Values, dt: float) -> int:
@@ -88,7 +104,8 @@ EFFECT = Effect(
     summary="Dry friction on the rotor side, with an optional Stribeck peak, asymmetry and angle of turning.",
     signature="A constant torque against the motion; at standstill small torques move nothing.",
     shown_by="Speed reversals: an axle that always turns one way hides it.",
-    source="Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994); P. R. Dahl (1968)",
+    source="Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994); P. R. Dahl (1968); "
+    "Canudas de Wit, Olsson, Åström, Lischinsky, IEEE Trans. Automatic Control 40 (1995)",
     parameters=(
         Parameter("torque_nm", "N m", 0.0, 1e4, "friction torque", typical=0.1),
         Parameter(
@@ -120,6 +137,41 @@ EFFECT = Effect(
             optional=True,
             within=(1e-4, 10.0),
             opens=(3e-3, 0.03, 0.3),
+        ),
+        Parameter(
+            "stribeck_speed_rad_s",
+            "rad/s",
+            0.01,
+            1e3,
+            "rotor speed at which the Stribeck peak has fallen to 1/e",
+            optional=True,
+            default=2.0,
+            within=(0.2, 100.0),
+            opens=(1.0, 4.0, 15.0),
+            beside="stribeck_torque_nm",
+        ),
+        Parameter(
+            "stribeck_power",
+            "1",
+            0.5,
+            4.0,
+            "of the speed in the exponent of the peak: 2 Gauss, 1 exponential (Bo, Pavelescu)",
+            optional=True,
+            default=2.0,
+            fitted=False,
+            choices=(1.0, 2.0),
+            beside="stribeck_torque_nm",
+        ),
+        Parameter(
+            "bristle_damping_nms_rad",
+            "N m s/rad",
+            0.0,
+            1e3,
+            "of bristles while they bend, beside `turn_rad`; above 0 the law is LuGre's",
+            optional=True,
+            typical=0.05,
+            opens=(0.05, 0.3),
+            beside="turn_rad",
         ),
     ),
     least=Least(1e-4, "largest torque"),

@@ -81,6 +81,22 @@ def test_the_stamp_follows_imports_but_not_what_is_not_imported(tmp_path):
     assert stamp("1, 0", "A = 1") != first
 
 
+def test_the_stamp_follows_what_a_package_imports_and_finds_beside_it(tmp_path):
+    from hil.core.compiled import source_stamp
+
+    def stamp(law: str) -> str:
+        folder = tmp_path / law
+        effects = folder / "plant" / "effects"
+        effects.mkdir(parents=True)
+        (folder / "plant" / "_kernel.py").write_text("from plant.effects import LAWS\n")
+        (effects / "__init__.py").write_text("from plant.effects._registry import LAWS\n")
+        (effects / "_registry.py").write_text("import pkgutil\nLAWS = list(pkgutil.iter_modules([]))\n")
+        (effects / "backlash.py").write_text(f"LAW = {law!r}\n")
+        return source_stamp("plant._kernel", folder / "plant" / "_kernel.py")
+
+    assert stamp("series") != stamp("tension")
+
+
 def test_imports_are_found_as_the_parser_finds_them():
     def parsed(source):
         for node in ast.walk(ast.parse(source)):

@@ -61,15 +61,41 @@ def many(model: Model) -> np.ndarray:
     return simulate_many(pack(model)[None], torque(), DT, np.array(start), ideal_sensors(1))[0]
 
 
-@pytest.mark.parametrize("id_", USES)
-def test_both_integrators_see_the_same_effect(id_):
+FORMS = [
+    *((id_, {}) for id_ in USES),
+    ("backlash", {"tension": 1.0}),
+    ("backlash", {"tension": 0.5, "depth_damping_nms_rad2": 150.0}),
+    ("coulomb_friction", {"turn_rad": 0.0, "stribeck_torque_nm": 1.0, "stribeck_speed_rad_s": 6.0}),
+    ("coulomb_friction", {"turn_rad": 0.02, "stribeck_torque_nm": 1.0, "bristle_damping_nms_rad": 0.4}),
+]
+
+
+@pytest.mark.parametrize(("id_", "changes"), FORMS)
+def test_both_integrators_see_the_same_effect(id_, changes):
     """Formulas are shared; only their steps differ (0.1 and 1 ms)."""
-    a, b = stepped(with_effect(id_)), many(with_effect(id_))
+    a, b = stepped(with_effect(id_, **changes)), many(with_effect(id_, **changes))
     plain = stepped(THREE)
     between = np.sqrt(np.mean((a - b) ** 2, axis=0))
     effect = np.sqrt(np.mean((a - plain) ** 2, axis=0))
     assert np.all(effect > 0.0)
     assert np.all(between < 0.02 * effect + 1e-6 * np.std(plain, axis=0))
+
+
+@pytest.mark.parametrize(
+    ("id_", "before", "spelt_out"),
+    [
+        ("backlash", {}, {"depth_damping_nms_rad2": 0.0, "tension": 0.0}),
+        (
+            "coulomb_friction",
+            {"stribeck_torque_nm": 0.5},
+            {"stribeck_speed_rad_s": 2.0, "stribeck_power": 2.0, "bristle_damping_nms_rad": 0.0},
+        ),
+    ],
+)
+def test_what_a_model_file_leaves_out_changes_nothing(id_, before, spelt_out):
+    for kernel in (stepped, many):
+        plain, told = kernel(with_effect(id_, **before)), kernel(with_effect(id_, **before, **spelt_out))
+        assert np.array_equal(plain, told)
 
 
 def reference(slope, states: int) -> np.ndarray:

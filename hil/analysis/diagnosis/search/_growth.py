@@ -19,6 +19,7 @@ from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._foretold import where_foretold
 from hil.analysis.diagnosis.search._hidden_speeds import with_hidden_speeds
+from hil.analysis.diagnosis.search._optional import little, refined
 from hil.analysis.diagnosis.search._places import placed
 from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
@@ -28,7 +29,6 @@ from hil.analysis.diagnosis.search._thresholds import (
     HOPE,
     LEAST_EVIDENCE,
     NEARLY,
-    OPTIONAL_LEAVES,
     OTHER_SIZES,
     OUT_OF_RACE,
     PLAIN,
@@ -42,7 +42,7 @@ from hil.analysis.diagnosis.search._thresholds import (
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
 from hil.analysis.diagnosis.search._width import width_of, with_likely_width
-from hil.core.effects import EFFECTS, Parameter
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
@@ -126,10 +126,10 @@ def _contended(problem: Problem, evidence: Evidence, fits: list[Fit]) -> list[Fi
     if evidence.all_but(fits[0]):
         return fits
     if fits[0].total < FAR * floor:
-        return [_refined(problem, evidence, fits[0]), *fits[1:]]
+        return [refined(problem, evidence, fits[0]), *fits[1:]]
     least = CONTENDER * (fits[0].total - floor) + floor
-    refined = [_refined(problem, evidence, one) for one in fits if one.total < least]
-    return sorted([*refined, *fits[len(refined) :]], key=rank)
+    contenders = [refined(problem, evidence, one) for one in fits if one.total < least]
+    return sorted([*contenders, *fits[len(contenders) :]], key=rank)
 
 
 def _followed(problem: Problem, parent: Fit, scores: list[Score]) -> list[Score]:
@@ -162,7 +162,7 @@ def _better(scores: list[Score], others: list[Score]) -> list[Score]:
 def _foretold(problem: Problem, parent: Fit, scores: list[Score]) -> tuple[Problem, Fit] | None:
     """Where the promising effects foretell the motion: the first that does not everywhere, fitted there."""
     for score in _chosen(scores):
-        hypothesis = parent.hypothesis.with_term(score.use)
+        hypothesis = _with_moved(parent.hypothesis.with_term(score.use))
         theta = _with_width(problem, parent, hypothesis)
         if theta is None:
             continue
@@ -195,7 +195,8 @@ def _race(problem: Problem, step: Step) -> None:
     best = min((f.total for f in against), default=floor)
     for index, one in enumerate(step.fits[first:], first):
         if one.rounds >= RACE_ROUNDS and one.total - floor < OUT_OF_RACE * (best - floor) + RACE_SLACK:
-            step.fits[index] = fit(problem, one.hypothesis, one.starts, one.theta)
+            enough = little(problem, one)
+            step.fits[index] = fit(problem, one.hypothesis, one.starts, one.theta, enough=enough)
 
 
 def _chosen(scores: list[Score]) -> list[Score]:
@@ -213,7 +214,7 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
     The base model's parameters may have been bent to make up for what is missing: their nominal values are
     tried as well.
     """
-    hypothesis = parent.hypothesis.with_term(use)
+    hypothesis = _with_moved(parent.hypothesis.with_term(use))
     if hypothesis.far:
         hypothesis = _either_way(hypothesis)
     bent = carried(parent, hypothesis)
@@ -225,6 +226,17 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
     first = cheapest(problem, hypothesis, tried, parent.starts)
     starts = with_hidden_speeds(problem, hypothesis, first, parent.starts)
     return fit(problem, hypothesis, starts, first, rounds=rounds)
+
+
+def _with_moved(hypothesis: Hypothesis) -> Hypothesis:
+    """With the optional numbers of the newest effect open that its probe has off their defaults."""
+    term = hypothesis.terms[-1]
+    moved = {
+        p.name
+        for p in EFFECTS[term.id].parameters
+        if p.optional and p.fitted and term.values[p.name] != p.default
+    }
+    return replace(hypothesis, open=tuple(sorted({*hypothesis.open, *moved})))
 
 
 def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
@@ -241,38 +253,6 @@ def _sizes(hypothesis: Hypothesis, theta: Array) -> list[Array]:
         other[own[0]] = np.clip(size, c.lower, c.upper)
         found.append(other)
     return found
-
-
-def _refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
-    """Optional numbers of the effects, where they pay."""
-    for term in best.hypothesis.terms:
-        for parameter in EFFECTS[term.id].parameters:
-            if not parameter.opens or parameter.name in best.hypothesis.open:
-                continue
-            tried = _opened(problem, best, term.id, parameter)
-            if evidence.left(tried) < OPTIONAL_LEAVES * evidence.left(best) and (
-                evidence.between(best, tried) > LEAST_EVIDENCE
-            ):
-                best = tried
-    return best
-
-
-def _opened(problem: Problem, best: Fit, id_: str, parameter: Parameter) -> Fit:
-    """`best` with one optional number more, from the most promising of its first values."""
-    hypothesis = replace(best.hypothesis, open=(*best.hypothesis.open, parameter.name))
-    theta = carried(best, hypothesis)
-    own = next(
-        i
-        for i, c in enumerate(hypothesis.coordinates())
-        if c.name == parameter.name and c.term >= 0 and hypothesis.terms[c.term].id == id_
-    )
-    tried = []
-    for value in parameter.opens:
-        other = theta.copy()
-        other[own] = value if parameter.typical is not None else np.log(value)
-        tried.append(other)
-    first = cheapest(problem, hypothesis, tried, best.starts)
-    return fit(problem, hypothesis, with_hidden_speeds(problem, hypothesis, first, best.starts), first)
 
 
 def _polished(evidence: Evidence, best: Fit) -> Fit:
@@ -296,5 +276,6 @@ def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors
     for factor in factors:
         other = theta.copy()
         other[index] += np.log(factor)
-        best = min(best, fit(problem, best.hypothesis, evidence.base.starts, other), key=rank)
+        starts, enough = evidence.base.starts, little(problem, best)
+        best = min(best, fit(problem, best.hypothesis, starts, other, enough=enough), key=rank)
     return best

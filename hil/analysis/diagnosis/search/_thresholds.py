@@ -203,6 +203,13 @@ OUT_OF_RACE: Annotated[
 OPTIONAL_LEAVES: Annotated[
     float, Means("of the remaining gap", "an optional number must leave less", "hidden")
 ] = 0.8
+UNTOLD_SIGMAS: Annotated[
+    float, Means("standard errors", "an optional number nearer to its default is closed again", "laws")
+] = 3.0
+LITTLE_GAINED: Annotated[
+    float,
+    Means("of the error beyond noise", "the last step of a fit that is one of many gains less", "laws"),
+] = 1e-3
 WORTH_POLISH: Annotated[
     float,
     Means("of the whole gap", "an abrupt effect that closes less is not fitted from other sizes", "hidden"),

@@ -35,7 +35,7 @@ small = st.floats(-0.1, 0.1)
 def test_flanks_in_contact_push_and_never_pull(twist, rate, seat, damping):
     motion = STILL._replace(twist=twist, twist_rate=rate)
     linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
-    torque = linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, damping, 1.0))
+    torque = linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, damping, 1.0, 0.0, 0.0))
     assert torque * seat >= -1e-9
     free = CHAIN.shaft_stiffness * (twist - seat) + (CHAIN.shaft_damping + damping) * rate
     assert torque == pytest.approx(max(0.0, free) if seat > 0 else min(0.0, free), abs=1e-9)
@@ -45,8 +45,10 @@ def test_flanks_in_contact_push_and_never_pull(twist, rate, seat, damping):
 def test_within_the_gap_nothing_is_carried(twist, rate, seat):
     motion = STILL._replace(twist=twist, twist_rate=rate)
     linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
-    assert linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, 10.0, 1.0)) == pytest.approx(0.0, abs=1e-9)
-    assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0)) == 0.0
+    assert linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0)) == pytest.approx(
+        0.0, abs=1e-9
+    )
+    assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0)) == 0.0
 
 
 @pytest.mark.parametrize("restitution", [0.1, 0.2, 0.5, 0.9])
@@ -71,15 +73,53 @@ def test_what_gives_back_next_to_nothing_acts_as_a_tenth():
 
 
 def test_an_elastic_blow_has_no_damping_of_its_own():
-    assert BACKLASH.prepare(CHAIN, (0.02, 7.0, 1.0)) == (0.02, 7.0, 1.0)
+    elastic = (0.02, 7.0, 1.0, 0.0, 0.0)
+    assert BACKLASH.prepare(CHAIN, elastic) == elastic
     two = CHAIN._replace(kind=TWO_INERTIA)
-    assert BACKLASH.prepare(two, (0.02, 7.0, 0.5))[1] > BACKLASH.prepare(CHAIN, (0.02, 7.0, 0.5))[1] > 7.0
+    half = (0.02, 7.0, 0.5, 0.0, 0.0)
+    assert BACKLASH.prepare(two, half)[1] > BACKLASH.prepare(CHAIN, half)[1] > 7.0
+
+
+def contact(twist: float, rate: float, seat: float, **others: float) -> float:
+    """Torque in N m of shafts with a half gap of 0.02 rad."""
+    law = {"contact_damping_nms_rad": 0.0, "restitution": 1.0, "depth_damping_nms_rad2": 0.0, "tension": 0.0}
+    motion = STILL._replace(twist=twist, twist_rate=rate)
+    linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
+    return linear + float(BACKLASH.shaft(motion, CHAIN, seat, (0.02, *(law | others).values())))
+
+
+@given(
+    depth=st.floats(0.0, 0.1), rate=st.floats(-5, 5), damping=st.floats(0, 100), side=st.sampled_from([-1, 1])
+)
+def test_flanks_under_tension_are_kelvins_and_voigts_spring_and_damper(depth, rate, damping, side):
+    got = contact(
+        side * (0.02 + depth), side * rate, side * 0.02, contact_damping_nms_rad=damping, tension=1.0
+    )
+    assert side * got == pytest.approx(6000.0 * depth + (20.0 + damping) * rate, abs=1e-9)
+
+
+@given(
+    depth=st.floats(0.0, 0.1), rate=st.floats(-5, 5), factor=st.floats(0, 500), side=st.sampled_from([-1, 1])
+)
+def test_flanks_that_are_damped_by_their_depth_are_hunts_and_crossleys(depth, rate, factor, side):
+    got = contact(side * (0.02 + depth), side * rate, side * 0.02, depth_damping_nms_rad2=factor, tension=1.0)
+    pushing = max(0.0, 6000.0 * depth + factor * depth * rate)
+    assert side * got == pytest.approx(pushing + 20.0 * rate, abs=1e-9)
+    alone = contact(side * (0.02 + depth), side * rate, side * 0.02, depth_damping_nms_rad2=factor)
+    assert side * alone == pytest.approx(max(0.0, (6000.0 + factor * rate) * depth + 20.0 * rate), abs=1e-9)
+
+
+@given(twist=small)
+def test_shafts_under_tension_are_in_contact_where_their_twist_is_beyond_the_gap(twist):
+    motion = STILL._replace(twist=twist)
+    seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, (0.02, 5.0, 1.0, 0.0, 1.0), 1e-4)
+    assert seat == min(max(twist, -0.02), 0.02)
 
 
 @given(angle=st.floats(1e-4, 1.0), turn=st.floats(1e-3, 1.0))
 def test_friction_turns_around_over_its_angle(angle, turn):
     """Dahl's closed form after a reversal: F = T_c·(1 - 2·exp(-θ/θ_t))."""
-    values = (2.0, 0.0, 0.0, turn)
+    values = (2.0, 0.0, 0.0, turn, 2.0, 2.0, 0.0)
     h = 1e-3
     moving = STILL._replace(rotor_speed=angle / h)
     bent = COULOMB.remember(moving, moving, CHAIN, -1.0, values, h)
@@ -88,10 +128,39 @@ def test_friction_turns_around_over_its_angle(angle, turn):
 
 
 def test_friction_that_turns_at_once_sticks_and_keeps_nothing():
-    values = (2.0, 0.5, 0.3, 0.0)
+    values = (2.0, 0.5, 0.3, 0.0, 2.0, 2.0, 0.0)
     assert COULOMB.dry(STILL, CHAIN, 0.0, values) == 2.5
     assert COULOMB.loss(STILL, CHAIN, 0.7, values) == 0.3
     assert COULOMB.remember(STILL, STILL, CHAIN, 0.7, values, 1e-3) == 0.0
+
+
+@pytest.mark.parametrize("power", [0.7, 1.0, 2.0])
+def test_the_peak_at_rest_falls_with_a_power_of_the_speed(power):
+    values = (2.0, 0.5, 0.0, 0.0, 4.0, power, 0.0)
+    for speed in (0.0, 0.3, 4.0, 9.0):
+        told = 2.0 + 0.5 * math.exp(-((speed / 4.0) ** power))
+        for way in (-1.0, 1.0):
+            level = COULOMB.dry(STILL._replace(rotor_speed=way * speed), CHAIN, 0.0, values)
+            assert level == pytest.approx(told)
+
+
+@pytest.mark.parametrize("speed", [-6.0, -0.5, 0.2, 3.0])
+def test_damped_bristles_are_lugres(speed):
+    """dz/dt = v - s0·|v|·z/g(v), F = s0·z + s1·dz/dt, at a constant speed by an integrator of others."""
+    torque, stribeck, turn, width, damping = 2.0, 0.8, 0.05, 1.5, 0.3
+    stiffness = torque / turn
+    level = torque + stribeck * math.exp(-((speed / width) ** 2))
+
+    def rate(bristle: float) -> float:
+        return speed - stiffness * abs(speed) * bristle / level
+
+    bent_for_s = 0.02
+    lugre = solve_ivp(lambda t, z: [rate(z[0])], (0, bent_for_s), [-0.01], rtol=1e-10, atol=1e-13)
+    told = stiffness * lugre.y[0, -1] + damping * rate(lugre.y[0, -1])
+    values = (torque, stribeck, 0.1, turn, width, 2.0, damping)
+    moving = STILL._replace(rotor_speed=speed)
+    bent = COULOMB.remember(moving, moving, CHAIN, -0.01 * stiffness / torque, values, bent_for_s)
+    assert COULOMB.loss(moving, CHAIN, bent, values) == pytest.approx(told + 0.1, rel=1e-7)
 
 
 @given(st.floats(1e-3, 1.0), st.floats(-50, 50))

@@ -17,10 +17,24 @@ CONTRACT = {
     "torque_saturation": ("limit_nm",),
     "torque_rate_limit": ("limit_nm_s",),
     "torque_deadband": ("half_width_nm",),
-    "backlash": ("half_gap_rad", "contact_damping_nms_rad", "restitution"),
+    "backlash": (
+        "half_gap_rad",
+        "contact_damping_nms_rad",
+        "restitution",
+        "depth_damping_nms_rad2",
+        "tension",
+    ),
     "shaft_cubic_stiffness": ("coefficient_nm_rad3",),
     "shaft_hysteresis": ("stiffness_nm_rad", "slip_rad"),
-    "coulomb_friction": ("torque_nm", "stribeck_torque_nm", "offset_nm", "turn_rad"),
+    "coulomb_friction": (
+        "torque_nm",
+        "stribeck_torque_nm",
+        "offset_nm",
+        "turn_rad",
+        "stribeck_speed_rad_s",
+        "stribeck_power",
+        "bristle_damping_nms_rad",
+    ),
     "viscous_drag": ("coefficient_nms_rad",),
     "mount_mode": ("housing_inertia_kg_m2", "mount_stiffness_nm_rad", "mount_damping_nms_rad"),
     "tyre_compliance": ("wheel_inertia", "tyre_stiffness", "tyre_damping"),
@@ -89,6 +103,25 @@ def test_optional_numbers_have_defaults_within_their_bounds(effect: Effect):
             assert parameter.optional
             assert parameter.fitted
             assert low <= value <= high
+
+
+@every
+def test_a_choice_is_between_the_default_and_other_values_and_no_fit_moves_it(effect: Effect):
+    for parameter in effect.parameters:
+        if parameter.choices:
+            assert parameter.optional
+            assert not parameter.fitted
+            assert not parameter.opens
+            assert parameter.default in parameter.choices
+            assert all(parameter.lower <= value <= parameter.upper for value in parameter.choices)
+
+
+@every
+def test_a_number_that_needs_another_needs_an_optional_one_that_is_tried(effect: Effect):
+    for parameter in effect.parameters:
+        if parameter.beside:
+            assert parameter.optional
+            assert effect.parameter(parameter.beside).opens
 
 
 @every
