@@ -24,9 +24,12 @@ from hil.core.model import EffectUse
 
 
 def refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
-    """Optional numbers of the effects, and choices between forms of their laws, where they pay."""
+    """Optional numbers of the effects, and choices between forms of their laws, where they pay.
+
+    The form of a law comes before its numbers: in a wrong form they make up for it.
+    """
     for index, term in enumerate(best.hypothesis.terms):
-        for parameter in EFFECTS[term.id].parameters:
+        for parameter in sorted(EFFECTS[term.id].parameters, key=_after_forms):
             of_form = bool(parameter.choices or parameter.beside)
             if of_form and evidence.closed(best):  # nothing that another form could explain
                 continue
@@ -39,6 +42,10 @@ def refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
                 ):
                     best = one
     return _told(problem, best)
+
+
+def _after_forms(parameter: Parameter) -> bool:
+    return not parameter.choices or bool(parameter.beside)
 
 
 def _told(problem: Problem, best: Fit) -> Fit:
