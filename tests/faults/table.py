@@ -27,6 +27,7 @@ from tests.faults.third_party import Oil
 
 SILENT, NO_ANSWER = "stopped coming", "no answer|no heartbeat|sends no|heartbeat lost|did not bring"
 RMCU_FAULT = "the RMCU went to fault"
+CRITERION = 1  # exit code of a run with a criterion that is not met
 KEPT_S = 0.3  # a disk is heard of when it is written to
 
 
@@ -333,12 +334,14 @@ _OF_CODE = (
         lambda: I.Code(I.in_step, I.raises),
         "LookupError",
         phases=LIVE[2:],
+        within_s=None,  # it is made in the next step, when the torque of this one is over
     ),
     row(
         "criterion",
         "mistake in a criterion",
         lambda: I.Code(I.in_metric, I.raises),
-        "LookupError",
+        code=CRITERION,  # verdict and reason stand in the result, the bench is well
+        within_s=None,
         phases=ALL,
     ),
     row(
