@@ -18,6 +18,8 @@ CELLS = [(fault, phase) for fault in FAULTS for phase in fault.phases]
 QUICK = {("rmcu-silent", "stepping"), ("dyno-fault", "holding speed"), ("sigterm", "stepping"),
          ("device-beat", "stepping"), ("disk-full", "stepping"), ("stamps-later", "stepping")}  # fmt: skip
 AT_LEAST = 30
+#: Of each fault one phase, another from fault to fault: the slow set. All: `make faults`, `make hunt`.
+ONE_EACH = {(fault.id, fault.phases[index % len(fault.phases)]) for index, fault in enumerate(FAULTS)}
 
 
 @pytest.fixture(scope="module")
@@ -30,12 +32,16 @@ def named(cell: tuple[FaultRow, str]) -> str:
     return f"{cell[0].id} / {cell[1]}"
 
 
+def _marks(cell: tuple[FaultRow, str]) -> list[pytest.MarkDecorator]:
+    place = cell[0].id, cell[1]
+    if place in QUICK:
+        return []
+    return [pytest.mark.slow if place in ONE_EACH else pytest.mark.hunt]
+
+
 @pytest.mark.parametrize(
     "cell",
-    [
-        pytest.param(cell, id=named(cell), marks=[] if (cell[0].id, cell[1]) in QUICK else pytest.mark.slow)
-        for cell in CELLS
-    ],
+    [pytest.param(cell, id=named(cell), marks=_marks(cell)) for cell in CELLS],
 )
 def test_a_cell(cell: tuple[FaultRow, str], place: Path) -> None:
     fault, phase = cell
