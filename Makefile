@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup kills soak faults test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
+.PHONY: run setup kills soak faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -57,6 +57,10 @@ blind: setup
 # Every fault in every phase of a run: docs/reference/faults.md.
 faults: setup
 	$(BIN)/python -m tests.faults --write
+
+# Damaged files and frames at every parser for an hour, chosen by what code they reach: docs/reference/fuzzing.md.
+fuzz: setup
+	$(BIN)/python -m tests.fuzz
 
 # Small faults put into the code, one at a time: what do the tests notice? docs/reference/mutants.md.
 mutants: setup

@@ -1,8 +1,11 @@
 """Settings of all tests."""
 
 import os
+import signal
 import tempfile
+from collections.abc import Iterator
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 # What outlives a process is not to outlive the tests, nor to meet what others keep.
@@ -13,3 +16,11 @@ settings.register_profile(
     "project", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("project")
+
+
+@pytest.fixture
+def heard_hangups() -> Iterator[None]:
+    """SIGHUP as a shell gives it to a command: `nohup` and some CI start everything with it ignored."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)

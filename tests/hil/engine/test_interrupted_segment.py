@@ -19,6 +19,8 @@ from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM, plan, sim_bench
 from tests.operators import Answering
 
+pytestmark = pytest.mark.usefixtures("heard_hangups")
+
 STEPS = """
   - set_controller: {file: phase_stabilization.toml}
   - hold_speed: {speed_km_h: 10, duration_s: 0.2}

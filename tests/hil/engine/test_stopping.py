@@ -10,6 +10,8 @@ import pytest
 
 from hil.engine.stopping import STOP_SIGNALS, StopRequest
 
+pytestmark = pytest.mark.usefixtures("heard_hangups")
+
 
 def test_whoever_works_is_told_at_once_and_each_time() -> None:
     stop, told = StopRequest(), list[str]()
