@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from typing import Any
 
 import canopen
@@ -19,6 +20,8 @@ class LoopNetwork(canopen.Network):  # type: ignore[misc]
 
     def __init__(self, loop: BusLoop, wire: Wire) -> None:
         self.loop, self._wire = loop, wire  # canopen's constructor already subscribes
+        #: What is wrong with frames that came, by identifier: too short for what CiA 301 sends there.
+        self.damaged: dict[int, str] = {}
         super().__init__()
 
     def send_message(self, can_id: int, data: Any, remote: bool = False) -> None:
@@ -33,7 +36,10 @@ class LoopNetwork(canopen.Network):  # type: ignore[misc]
             self.loop.on_frame(self._wire, can_id, self._forward)
 
     def _forward(self, frame_id: int, data: bytes, time_s: float) -> None:
-        self.notify(frame_id, bytearray(data), time_s)
+        try:
+            self.notify(frame_id, bytearray(data), time_s)
+        except struct.error:  # the library unpacks what it expects
+            self.damaged[frame_id] = f"frame 0x{frame_id:03X} with {len(data)} bytes: too short for CANopen"
 
 
 class LoopNode(RemoteNode):  # type: ignore[misc]

@@ -67,7 +67,7 @@ class DynoDriver:
     ) -> None:
         self._loop, self._wire, self._host, self._stop_codes = loop, wire, nodes.host, stop_codes
         self.vehicle = vehicle
-        network = LoopNetwork(loop, wire)
+        self._network = network = LoopNetwork(loop, wire)
         self.left = DynoNode(network, wire.name, nodes.rear_left, "rear left", eds)
         self.right = DynoNode(network, wire.name, nodes.rear_right, "rear right", eds)
         self.rear = (self.left, self.right)
@@ -156,7 +156,7 @@ class DynoDriver:
         return all(n.in_state(SWITCH_ON_DISABLED) or n.in_state(FAULT) for n in self.rear)
 
     def troubles(self) -> list[str]:
-        """What is wrong now: faults, lost heartbeats, emergencies since the start."""
+        """What is wrong now: faults, lost heartbeats; emergencies and damaged frames since the start."""
         now_s = self._loop.clock.now_s()
         found = []
         for node in self._watched:
@@ -164,7 +164,7 @@ class DynoDriver:
                 found.append(f"{node.name}: heartbeat lost")
             found += [f"{node.name}: {text}" for text in node.emergencies]
         found += [f"{node.name}: drive in fault" for node in self.rear if node.in_state(FAULT)]
-        return found
+        return found + list(self._network.damaged.values())
 
     @property
     def emergency(self) -> str:

@@ -43,13 +43,17 @@ def file_cases() -> Iterator[Case]:
     for command, argument, name, other in FILE_ARGUMENTS:
         arguments = usual(command, argument)
         swap = functools.partial(_swap, name, other)
-        yield _case(command, f"{argument} is {other} by name of {name}", arguments, swap)
+        # To `hil verify` a file that cannot be read is evidence that is not there.
+        allowed = (FAILED, REFUSED) if command == "verify" else (REFUSED,)
+        yield _case(command, f"{argument} is {other} by name of {name}", arguments, swap, allowed)
         missing = f"missing{Path(name).suffix}"
         yield _case(command, f"{argument} is missing", with_other(arguments, name, missing))
         # Where another command reads the same kind of file, one look is enough.
         again = (command, argument) in READ_ELSEWHERE
         for what, mangle in _MANGLED[:1] if again else _MANGLED:
-            yield _case(command, f"{argument} is {what}", arguments, functools.partial(_on, name, mangle))
+            yield _case(
+                command, f"{argument} is {what}", arguments, functools.partial(_on, name, mangle), allowed
+            )
         for what, damage in () if again else _DAMAGED:
             # What is left of a text can still be right, and of a recording much can be read.
             harm = functools.partial(_on, name, damage)

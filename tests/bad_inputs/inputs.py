@@ -27,6 +27,7 @@ NAMES = (
     "rcs_dyno.eds",
     "model.toml",
     "recording.mcap",
+    "torn.mcap",
     "short.csv",
     "done",
     "key.pem",
@@ -59,6 +60,8 @@ def make_inputs(folder: Path) -> None:
     for name in ("recording.mcap", "result.json", "junit.xml"):
         shutil.copy(folder / "whole" / name, folder / "done" / name)
     shutil.copy(folder / "whole" / "recording.mcap", folder / "recording.mcap")
+    shutil.copy(folder / "whole" / "recording.mcap", folder / "torn.mcap")
+    cut(folder / "torn.mcap")
     shutil.rmtree(folder / "whole")
     for sidecar in folder.glob("short.csv.*"):
         sidecar.unlink()

@@ -1,7 +1,9 @@
+import numpy as np
 import pytest
 
 from drivers import BusLoop, DynoDriver, DynoNodes, VehicleParameters, Wire
 from hil.core.errors import BadInputError, BenchError
+from hil.core.frames import FRAME
 from sim_backend.bench import Fault
 from sim_backend.can_interface import SimulatedBus, attached
 from tests.benches_for_tests import SIM, running
@@ -80,3 +82,15 @@ def test_emergencies_are_told():
         world.dynos[0]._node.emcy.send(0x4310, 1)
         bench.loop.run_for(0.05)
         assert any("0x4310" in text for text in bench.dyno.troubles())
+
+
+@pytest.mark.parametrize(("identifier", "length"), [(0x083, 3), (0x703, 0)])
+def test_a_frame_too_short_for_canopen_is_told_and_stops_nothing_else(identifier, length):
+    with running("short") as bench:
+        frame = np.zeros(1, FRAME)
+        frame["id"], frame["length"], frame["time_s"] = identifier, length, bench.loop.clock.now_s()
+        bench.loop.hand_out("dyno", frame)
+        bench.loop.run_for(0.02)
+        assert bench.dyno.troubles() == [
+            f"frame 0x{identifier:03X} with {length} bytes: too short for CANopen"
+        ]
