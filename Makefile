@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup kills soak faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
+.PHONY: run setup compile kills soak faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -29,9 +29,14 @@ lint: setup
 	$(BIN)/lint-imports
 	$(BIN)/mypy
 
-test: lint
+# What is compiled on a machine's first run is compiled beside the checks of the text.
+test: setup
+	$(MAKE) --no-print-directory -j2 lint compile
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow and not hunt"
 	@$(BIN)/python -m tests.can_vm --tell
+
+compile: setup
+	@$(BIN)/python -m tests.precompile
 
 # Real frames on emulated CAN controllers, in a machine that is emulated for it. As root on Debian what it needs is
 # installed; elsewhere it says what is missing and does nothing.
