@@ -15,19 +15,19 @@ damping and a restitution, the two dampings add.
 Other authors' flanks stand beside it. With `tension` 1 they bear all the pull of the dampings, as an oil film
 does until they part, and shafts that are free are untwisted at once: contact is where the twist is beyond the
 gap, k·δ + (c + d)·δ' (Kelvin and Voigt). `depth_damping_nms_rad2` λ adds λ·δ·δ' to the spring, which alone
-never pulls (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42, 1975). Between 0 and 1 tension mixes both.
+never pulls (K. H. Hunt, F. R. E. Crossley, J. Appl. Mech. 42, 1975). Between 0 and 1 tension mixes both. A
+diagnosis does not try these two: where it did, a gap of the usual kind came out 14 % small.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 from hil.core.chain import TWO_INERTIA, Chain
 from hil.core.effects._effect import Effect, Memory, Parameter, Stage
 from hil.core.effects._law import Law, Motion, Values
-from hil.core.effects._probe import STRETCH, Direction, Probe, Scene, sized
-from hil.core.effects._probe import Values as Named
+from hil.core.effects._probe import Probe, Scene, sized
 
 _SEATED_NM = 2.0  # a first shaft torque that surely is in contact
 _HALVINGS = 60
@@ -35,8 +35,6 @@ _CRITICAL = 1e-6
 _LEAST_RESTITUTION = 0.1
 _STEPS, _STEPS_UNDER_TENSION = 2, 3
 _SIZES = 12  # of gaps that a diagnosis tries first
-_DAMPED = 0.5  # of the shafts' damping, in the flanks of a probe
-_MOST_DAMPED = 4.0  # times that
 
 
 def parting_share(ratio: float) -> float:
@@ -117,24 +115,6 @@ def _probes(scene: Scene) -> Iterator[Probe]:
     for step in range(_SIZES):
         gap = 2e-4 * 600.0 ** (step / (_SIZES - 1))
         yield sized("half_gap_rad", gap, 0.2, restitution=1.0, tension=0.0)
-        yield _damped(gap, _DAMPED * scene.parameters["shaft_damping"])
-
-
-def _damped(gap: float, damping: float) -> Probe:
-    """Flanks that also pull, of any damping: without it that of the shafts would make up for a small gap."""
-    form: Named = {"half_gap_rad": gap, "restitution": 1.0, "tension": 1.0}
-
-    def start(a: Sequence[float]) -> Named:
-        size = min(max(float(a[0] + a[1]), 0.2), STRETCH[1])
-        return {
-            **form,
-            "half_gap_rad": size * gap,
-            "contact_damping_nms_rad": max(float(a[1]), 0.0) * damping,
-        }
-
-    elastic = Direction({**form, "contact_damping_nms_rad": 0.0}, -_MOST_DAMPED, STRETCH[1])
-    damped = Direction({**form, "contact_damping_nms_rad": damping}, 0.0, _MOST_DAMPED)
-    return Probe((elastic, damped), start)
 
 
 def _derived(values: Mapping[str, float]) -> dict[str, float]:
@@ -180,8 +160,6 @@ EFFECT = Effect(
             "of the flanks for each rad that they are pressed in, as Hunt and Crossley have it",
             optional=True,
             typical=20.0,
-            opens=(50.0, 200.0),
-            beside="contact_damping_nms_rad",
         ),
         Parameter(
             "tension",
@@ -191,7 +169,6 @@ EFFECT = Effect(
             "share of the dampings' pull that flanks bear until they part: 0 none, 1 all (Kelvin, Voigt)",
             optional=True,
             fitted=False,
-            choices=(0.0, 1.0),
         ),
     ),
     needs=("two_inertia", "three_inertia"),

@@ -94,7 +94,7 @@ def test_an_effect_that_the_kind_cannot_have_is_refused():
 
 def test_optional_parameters_of_an_effect_get_their_defaults():
     data = two_inertia() | {"effects": [{"id": "coulomb_friction", "torque_nm": 1.5}]}
-    optional = {
+    optional: dict[str, float | str] = {
         "stribeck_torque_nm": 0.0,
         "offset_nm": 0.0,
         "turn_rad": 0.0,
@@ -102,7 +102,7 @@ def test_optional_parameters_of_an_effect_get_their_defaults():
         "stribeck_power": 2.0,
         "bristle_damping_nms_rad": 0.0,
     }
-    expected = EffectUse("coulomb_friction", {"torque_nm": 1.5} | optional)
+    expected = EffectUse("coulomb_friction", {"torque_nm": 1.5, **optional})
     assert model_from_dict(data, "m.toml").effects == (expected,)
 
 

@@ -48,23 +48,6 @@ def test_values_that_a_probe_leaves_out_are_the_defaults() -> None:
     assert {values["contact_damping_nms_rad"] for values in used if values["tension"] == 0.0} == {0.0}
 
 
-def test_flanks_that_pull_are_tried_with_a_damping_of_their_own() -> None:
-    problem = one_problem()
-    pulling = [
-        p
-        for p in probes(problem, fit(problem, Hypothesis(MODEL), rounds=0))
-        if p.id == "backlash" and p.directions[0].values["tension"] == 1.0
-    ]
-    assert pulling
-    for probe in pulling:
-        gap, damping = (
-            float(probe.directions[1].values[n]) for n in ("half_gap_rad", "contact_damping_nms_rad")
-        )
-        values = probe.use([-1.0, 2.0]).values
-        assert values["half_gap_rad"] == pytest.approx(gap)
-        assert values["contact_damping_nms_rad"] == pytest.approx(2.0 * damping)
-
-
 def test_effects_on_top_of_an_added_third_inertia_have_its_tyre() -> None:
     two = Model(
         "two_inertia", {n: v for n, v in MODEL.parameters.items() if "tyre" not in n and n != "wheel_inertia"}
