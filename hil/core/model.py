@@ -210,6 +210,20 @@ def _no_others(table: Mapping[str, Any], known: tuple[str, ...], prefix: str, wh
             )
 
 
+def refuse_without_vehicle(model: Model, where: str, fix: str) -> None:
+    """Refuse a model that takes its load from recordings where the vehicle is needed; `fix` is what to do.
+
+    Raises:
+        BadInputError: it has a `load_input`.
+    """
+    if model.load_input:
+        raise BadInputError(
+            f"the model takes {model.load_input} from recordings and does not hold the vehicle",
+            where=where,
+            fix=f"{fix} with a model of axle and vehicle, without load_input",
+        )
+
+
 def _load_input(value: Any, kind: str, where: str) -> str:
     if value == "":
         return ""

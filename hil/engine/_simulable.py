@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from drivers import DynoTable, RmcuTable
 from hil.core.errors import BadInputError
-from hil.core.model import Model
+from hil.core.model import Model, refuse_without_vehicle
 from hil.core.printable import printable
 from hil.engine.bench_tables import BenchFile
 from sim_backend.bench import Noise, SensorFault, SimulatedBench, SimulationSettings, check_device_files
@@ -49,12 +49,7 @@ def simulated(bench: BenchFile, model: Model) -> SimulatedBench:
         BadInputError: something of it cannot be simulated.
     """
     assert bench.simulation is not None
-    if model.load_input:
-        raise BadInputError(
-            f"the model takes {model.load_input} from recordings and does not hold the vehicle",
-            where=str(bench.simulation.model),
-            fix="simulate a bench with a model of axle and vehicle, without load_input",
-        )
+    refuse_without_vehicle(model, str(bench.simulation.model), "simulate a bench")
     rmcu, dyno, noise = rmcu_of(bench), dyno_of(bench), bench.simulation.noise
     return SimulatedBench(
         SimulationSettings(

@@ -177,7 +177,8 @@ def run(torque, load, coupled, dt, vector, start, longest_step, out):  # type: i
     """Replay `torque` (n samples, held for `dt` each) into `out` (n x OUTPUT_COLUMNS).
 
     `load` (n) brakes the wheels; over a sample the mean of both its ends acts. `start` has the columns
-    START_…; its motor torque has acted before.
+    START_…; its motor torque has acted before. `coupled` is given, and not always true, so that the bench's
+    closed loop and this share what is compiled.
     """
     p = as_tuple(vector)
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)

@@ -11,7 +11,7 @@ from hil.analysis.identification import transfer_functions_of
 from hil.core.channels import OUTPUTS
 from hil.core.controller import LARGEST_ORDER, Plant
 from hil.core.errors import BadInputError
-from hil.core.model import Model, TransferFunction
+from hil.core.model import Model, TransferFunction, refuse_without_vehicle
 
 Array = npt.NDArray[np.float64]
 
@@ -49,11 +49,7 @@ def design_plant(model: Model) -> DesignPlant:
         BadInputError: an output is missing, the functions do not share one denominator, the order is
             beyond the RMCU's, the plant is unstable or has no oscillating pole pair.
     """
-    if model.load_input:
-        raise BadInputError(
-            f"the model takes {model.load_input} from recordings and does not hold the vehicle",
-            fix="design with a model of axle and vehicle, without load_input",
-        )
+    refuse_without_vehicle(model, "", "design")
     functions, notes = transfer_functions_of(model)
     missing = [name for name in OUTPUTS if name not in functions]
     if missing:

@@ -8,6 +8,7 @@ from itertools import product
 
 import numpy as np
 
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
@@ -24,12 +25,9 @@ from hil.core.model import EffectUse
 
 
 def refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
-    """Optional numbers of the effects, and choices between forms of their laws, where they pay.
-
-    The form of a law comes before its numbers: in a wrong form they make up for it.
-    """
+    """Optional numbers of the effects, and choices between forms of their laws, where they pay."""
     for index, term in enumerate(best.hypothesis.terms):
-        for parameter in sorted(EFFECTS[term.id].parameters, key=_after_forms):
+        for parameter in EFFECTS[term.id].parameters:
             of_form = bool(parameter.choices or parameter.beside)
             if of_form and evidence.closed(best):  # nothing that another form could explain
                 continue
@@ -44,10 +42,6 @@ def refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
     return _told(problem, best)
 
 
-def _after_forms(parameter: Parameter) -> bool:
-    return not parameter.choices or bool(parameter.beside)
-
-
 def _told(problem: Problem, best: Fit) -> Fit:
     """Without the optional numbers that others made needless: as near to their defaults as their errors."""
     for c, value, error in zip(best.hypothesis.coordinates(), best.theta, best.white_errors, strict=True):
@@ -56,10 +50,8 @@ def _told(problem: Problem, best: Fit) -> Fit:
         parameter = EFFECTS[best.hypothesis.terms[c.term].id].parameter(c.name)
         if abs(value - parameter.default) > UNTOLD_SIGMAS * error:
             continue
-        terms = list(best.hypothesis.terms)
-        terms[c.term] = EffectUse(terms[c.term].id, {**terms[c.term].values, c.name: parameter.default})
         still = tuple(name for name in best.hypothesis.open if name != c.name)
-        fewer = replace(best.hypothesis, terms=tuple(terms), open=still)
+        fewer = replace(_with_value(best.hypothesis, c.term, c.name, parameter.default), open=still)
         one = fit(problem, fewer, best.starts, carried(best, fewer), enough=little(problem, best))
         best = min(best, one, key=rank)
     return best
@@ -74,10 +66,15 @@ def _others(best: Fit, index: int, parameter: Parameter) -> list[float]:
 
 def _chosen_as(problem: Problem, best: Fit, index: int, parameter: Parameter, value: float) -> Fit:
     """`best` with another choice."""
-    terms = list(best.hypothesis.terms)
-    terms[index] = EffectUse(terms[index].id, {**terms[index].values, parameter.name: value})
-    hypothesis = replace(best.hypothesis, terms=tuple(terms))
+    hypothesis = _with_value(best.hypothesis, index, parameter.name, value)
     return fit(problem, hypothesis, best.starts, carried(best, hypothesis), enough=little(problem, best))
+
+
+def _with_value(hypothesis: Hypothesis, index: int, name: str, value: float) -> Hypothesis:
+    """The hypothesis with another value of its effect number `index`."""
+    terms = list(hypothesis.terms)
+    terms[index] = EffectUse(terms[index].id, {**terms[index].values, name: value})
+    return replace(hypothesis, terms=tuple(terms))
 
 
 def _opened(problem: Problem, best: Fit, index: int, parameter: Parameter) -> Fit:
