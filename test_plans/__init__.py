@@ -1,5 +1,6 @@
 """Test plans: what a plan is, the stimuli it plays, the metrics and criteria it is judged by."""
 
+from test_plans.choices import Choices, controller_choices
 from test_plans.conductor import PROMPT_TIMEOUT_S, Array, Conductor, PlannedSegment, Quantity, Work
 from test_plans.criteria import Criterion
 from test_plans.judging import judge
@@ -15,6 +16,7 @@ __all__ = [
     "PROMPT_TIMEOUT_S",
     "STEPS",
     "Array",
+    "Choices",
     "Conductor",
     "Criterion",
     "Metric",
@@ -26,6 +28,7 @@ __all__ = [
     "Quantity",
     "Step",
     "Work",
+    "controller_choices",
     "estimate_duration_s",
     "judge",
     "library_plans",

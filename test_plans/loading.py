@@ -10,6 +10,7 @@ from typing import Any
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from test_plans.building import brief, build, list_at, mapping_at
+from test_plans.choices import Choices
 from test_plans.criteria import EXAMPLE as CRITERION_EXAMPLE
 from test_plans.criteria import Criterion, criterion_at
 from test_plans.plan import Plan, PlanKeys, estimate_duration_s
@@ -31,14 +32,19 @@ def library_plans() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in LIBRARY.glob("*.yaml")))
 
 
-def load_plan(name_or_path: str | Path) -> Plan:
+def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
     """Read a plan from a file, or a built-in one by its name.
+
+    With `choices` the plan's text is the one that was chosen: what is carried out, recorded and reported.
 
     Raises:
         BadInputError: no such plan, or what is wrong with it: file, line, key, and what to do.
     """
     path = _path_of(name_or_path)
-    plan = plan_from_text(read_text(path), str(path), path.parent)
+    text = read_text(path)
+    if choices is not None:
+        text = choices.applied(text, read_yaml(text, str(path)))
+    plan = plan_from_text(text, str(path), path.parent)
     logger.info("plan %s: %d steps, %d criteria", path, len(plan.steps), len(plan.criteria))
     return plan
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import yaml
 
@@ -31,11 +31,15 @@ _NOT_FINITE = re.compile(r"([-+]?)\.(inf|nan)", re.IGNORECASE)
 
 @dataclass(frozen=True)
 class Document:
-    """Plain values (dict, list, str, int, float, bool, None) and the line of each key and item."""
+    """Plain values (dict, list, str, int, float, bool, None) and the line of each key and item.
+
+    `spans` are the places of scalar values in the text: first character, and the one behind the last.
+    """
 
     where: str
     value: object
     lines: Mapping[KeyPath, int]
+    spans: Mapping[KeyPath, tuple[int, int]] = field(default_factory=dict)
 
     def place(self, path: KeyPath) -> str:
         """File, line and key of `path`, for a message; a key that is not there has its parent's line."""
@@ -55,7 +59,9 @@ def read_yaml(text: str, where: str) -> Document:
     try:
         node = yaml.compose(text, Loader=_PlainLoader)
         lines: dict[KeyPath, int] = {(): 1}
+        spans: dict[KeyPath, tuple[int, int]] = {}
         value = _value(node, (), lines, where) if node is not None else None
+        _span(node, (), spans)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         place = f"{where}: line {mark.line + 1}" if mark else where
@@ -64,7 +70,7 @@ def read_yaml(text: str, where: str) -> Document:
         raise BadInputError("is nested too deeply", where=where) from error
     except (yaml.YAMLError, ValueError, OverflowError) as error:  # escapes beyond Unicode are ValueErrors
         raise BadInputError(f"not YAML: {str(error).splitlines()[0]}", where=where) from error
-    return Document(where, value, lines)
+    return Document(where, value, lines, spans)
 
 
 class _PlainLoader(yaml.SafeLoader):
@@ -89,6 +95,18 @@ def _value(node: yaml.Node, path: KeyPath, lines: dict[KeyPath, int], where: str
     if isinstance(node, yaml.SequenceNode):
         return [_value(item, (*path, i), lines, where) for i, item in enumerate(node.value)]
     return _scalar(node, where)
+
+
+def _span(node: yaml.Node | None, path: KeyPath, spans: dict[KeyPath, tuple[int, int]]) -> None:
+    """Where scalar values stand; the document is known to be sound."""
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            _span(value, (*path, key.value), spans)
+    elif isinstance(node, yaml.SequenceNode):
+        for index, item in enumerate(node.value):
+            _span(item, (*path, index), spans)
+    elif isinstance(node, yaml.ScalarNode):
+        spans[path] = node.start_mark.index, node.end_mark.index
 
 
 def _mapping(

@@ -5,16 +5,19 @@ from __future__ import annotations
 import difflib
 import functools
 import importlib
+import importlib.metadata
 import inspect
 import logging
 import sys
 import traceback
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Annotated, Any, get_type_hints
 
 import typer
 
+from hil.cli._completion import completion_wanted
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._log import LOG
 from hil.cli._several import each_with_its_option
@@ -44,7 +47,9 @@ _COMMANDS = {
     "monitor": "Decoded channels and bus load live, touching nothing.",
     "jog": "Turn the axle at low torque and check the sign of every sensor.",
     "reset": "Let a bench be armed again after an emergency stop.",
-    "schema": "JSON schema of plan files, for editors.",
+    "list": "What there is: plans, benches, effects, steps, metrics, devices.",
+    "init": "A folder of one's own, ready to run: plan, bench, model, test.",
+    "schema": "JSON schemas of plan, bench, model and controller files, for editors.",
 }
 
 
@@ -66,6 +71,9 @@ def run_command_line() -> int:
 
 
 def _dispatch(arguments: list[str]) -> int:
+    if completion_wanted(arguments):
+        _app_of(*_COMMANDS)(arguments, prog_name="hil")
+        return 0
     if not arguments:
         raise BadInputError(
             "name a command", fix=f"one of {', '.join(_COMMANDS)}; hil --help tells about them"
@@ -73,19 +81,33 @@ def _dispatch(arguments: list[str]) -> int:
     if arguments[0] in ("-h", "--help"):
         print(_help())
         return 0
+    if arguments[0] == "--version":
+        print(f"hil {importlib.metadata.version('eaxle-hil')}")
+        return 0
     _refuse_empty_out(arguments)
     name = arguments[0]
     if name not in _COMMANDS:
         near = difflib.get_close_matches(name, _COMMANDS, 1)
         hint = f"did you mean '{near[0]}'?" if near else "see hil --help"
         raise BadInputError(f"there is no command '{name}'", fix=hint)
-    module = importlib.import_module(f"hil.cli.commands.{name.replace('-', '_')}")
-    command = module.command
-    app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-    settings = {"help_option_names": ["-h", "--help"]}
-    app.command(name, help=command.__doc__, context_settings=settings)(_with_exit_code(command))
-    app(list(each_with_its_option(arguments[1:], getattr(module, "SEVERAL", ()))), prog_name=f"hil {name}")
+    several = getattr(_module(name), "SEVERAL", ())
+    _app_of(name)(list(each_with_its_option(arguments[1:], several)), prog_name=f"hil {name}")
     return 0
+
+
+def _module(name: str) -> ModuleType:
+    return importlib.import_module(f"hil.cli.commands.{name.replace('-', '_')}")
+
+
+def _app_of(*names: str) -> typer.Typer:
+    """Commands as typer has them."""
+    several = len(names) > 1
+    app = typer.Typer(add_completion=several, rich_markup_mode=None, pretty_exceptions_enable=False)
+    settings = {"help_option_names": ["-h", "--help"]}
+    for name in names:
+        command = _module(name).command
+        app.command(name, help=command.__doc__, context_settings=settings)(_with_exit_code(command))
+    return app
 
 
 def _refuse_empty_out(arguments: list[str]) -> None:
@@ -131,7 +153,9 @@ def _help() -> str:
     head = (
         "Usage: hil COMMAND [ARGS]...\n\nHardware-in-the-loop bench service for electric axles.\n\nCommands:"
     )
-    return "\n".join([head, *lines, "", "hil COMMAND --help tells about one of them."])
+    return "\n".join(
+        [head, *lines, "", "hil COMMAND --help tells about one of them, hil --version which version this is."]
+    )
 
 
 def guarded(arguments: list[str]) -> int:

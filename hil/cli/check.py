@@ -14,17 +14,19 @@ from hil.engine import load_bench
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.forecast import Forecast, forecast
 from hil.engine.preflight import preflight
-from test_plans import Pace, Plan, estimate_duration_s, load_plan
+from test_plans import Choices, Pace, Plan, controller_choices, estimate_duration_s, load_plan
 
 
 def carry_out(
     *,
     plan: str,
     bench: str,
+    controller: list[str] | None,
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    checked, file = load_plan(plan), load_bench(bench)
+    choices = Choices(controller_choices(controller or [], "--controller"))
+    checked, file = load_plan(plan, choices), load_bench(bench)
     with tempfile.TemporaryDirectory() as directory:
         today = datetime.datetime.now(datetime.UTC).date()
         accepted_expiry(file, today, "")

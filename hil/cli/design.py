@@ -20,7 +20,7 @@ _PAPER = DesignSpec()
 def carry_out(
     *,
     model: Path,
-    out: Path,
+    out: Path | None,
     optimize: bool,
     objective: str,
     lead_deg: float,
@@ -64,7 +64,12 @@ def carry_out(
     responses = frf or (beside if beside.is_file() else None)
     inputs = [model, *([responses] if responses else [])]
     with results_in(
-        out, ("controller.toml", "design.json"), inputs=inputs, overwrite=overwrite, summary="design.json"
+        out,
+        ("controller.toml", "design.json"),
+        inputs=inputs,
+        overwrite=overwrite,
+        default="design",
+        summary="design.json",
     ) as place:
         with progress("control design") as show:
             measured = frf_from_csv(responses) if responses else None
@@ -82,7 +87,7 @@ def carry_out(
     if json_:
         print_json(summary)
     else:
-        print(text_of(found, paper, out))
+        print(text_of(found, paper, place.folder))
     return 0
 
 

@@ -26,7 +26,7 @@ def carry_out(
     *,
     recordings: list[Path],
     model: Path,
-    out: Path,
+    out: Path | None,
     holdout: list[Path] | None,
     noise: list[str] | None,
     least: list[str] | None,
@@ -39,7 +39,9 @@ def carry_out(
     known, smallest = named_numbers(noise or [], "--noise"), named_numbers(least or [], "--least")
     _refuse_twice(recordings, holdout or [])
     inputs = [model, *recordings, *(holdout or [])]
-    with results_in(out, _FILES, inputs=inputs, overwrite=overwrite, summary="diagnosis.json") as place:
+    with results_in(
+        out, _FILES, inputs=inputs, overwrite=overwrite, default="diagnose", summary="diagnosis.json"
+    ) as place:
         with progress("diagnosis") as show:
             read = _read(recordings, base, show)
             held = _read(holdout or [], base, show)
@@ -55,7 +57,7 @@ def carry_out(
     if json_:
         print_json(_summary(found, files))
     else:
-        print(text_of(found, out))
+        print(text_of(found, place.folder))
     return EXIT_CODE if interrupted else 0
 
 

@@ -20,7 +20,7 @@ _LEAST_SAMPLES = 100
 def carry_out(
     *,
     recordings: list[Path],
-    out: Path,
+    out: Path | None,
     segment: list[str] | None,
     input_channel: str,
     from_hz: float | None,
@@ -38,7 +38,7 @@ def carry_out(
         refuse_missing(path)
     names = ("identification.json", "model.toml", "physical.toml", "frf.csv")
     with results_in(
-        out, names, inputs=recordings, overwrite=overwrite, summary="identification.json"
+        out, names, inputs=recordings, overwrite=overwrite, default="identify", summary="identification.json"
     ) as place:
         with progress("identification") as show:
             experiments = _experiments(recordings, segment or [], input_channel, to_hz, hold_ms, show)
@@ -61,7 +61,7 @@ def carry_out(
     if json_:
         print_json(summary)
     else:
-        print(text_of(found, summary, out))
+        print(text_of(found, summary, place.folder))
     return 0
 
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+from hil.cli._browser import show_in_browser
 from hil.cli._interrupts import INTERRUPTS
 from hil.cli._output import (
     Show,
@@ -34,7 +35,7 @@ from hil.engine import RECORDING, RunOutcome, RunRequest, StopRequest, load_benc
 from hil.engine.border import analysed_apart
 from hil.engine.disk_room import remark_on_room
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
-from test_plans import Plan, load_plan
+from test_plans import Choices, Plan, controller_choices, load_plan
 
 logger = logging.getLogger(__name__)
 T = TypeVar("T")
@@ -47,15 +48,18 @@ def carry_out(
     bench: str,
     out: Path | None,
     model: Path | None,
+    controller: list[str] | None,
     operator: str,
     yes: str,
     confirm: str,
     accept_expired: str,
     overwrite: bool,
+    show: bool,
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    checked, bench_file = load_plan(plan), load_bench(bench)
+    controllers = controller_choices(controller or [], "--controller")
+    checked, bench_file = load_plan(plan, Choices(controllers)), load_bench(bench)
     stop = StopRequest()
     request = RunRequest(
         plan=checked,
@@ -71,6 +75,7 @@ def carry_out(
         stop=stop,
     )
     inputs = [bench_file.source, *([Path(plan)] if Path(plan).is_file() else []), *([model] if model else [])]
+    inputs += controllers.values()
     with (
         results_in(
             out, NAMES, inputs=inputs, overwrite=overwrite, default=checked.name, summary=RESULT
@@ -81,15 +86,17 @@ def carry_out(
         remark = remark_on_room(checked, place.folder)
         if remark:
             warn(remark)
-        with progress(f"{checked.name} on {bench_file.name}{_keys(request)}") as show:
-            request.progress = lambda share, text: show(text, share)
+        with progress(f"{checked.name} on {bench_file.name}{_keys(request)}") as tell:
+            request.progress = lambda share, text: tell(text, share)
             outcome = run_plan(request)
-        with progress(f"{checked.name} on {bench_file.name}") as show:
-            result = _Conclusion(place, outcome, stop).write(show)
+        with progress(f"{checked.name} on {bench_file.name}") as tell:
+            result = _Conclusion(place, outcome, stop).write(tell)
         if as_json:
             print_json(result.model_dump(mode="json"))
         else:
             _print(result, place.folder)
+        if show and "html" in result.files:
+            show_in_browser(place.folder / result.files["html"])
         return _exit_code(outcome, result)
 
 

@@ -2,9 +2,24 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Callable
+from typing import Any
+
 from hil.cli._output import print_json
+from hil.core.controller import controller_schema
 from hil.core.errors import BadInputError
+from hil.core.model_schema import model_schema
+from hil.core.printable import printable
+from hil.engine.bench_schema import bench_schema
 from test_plans import plan_schema
+
+_SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
+    "plan": plan_schema,
+    "bench": bench_schema,
+    "model": model_schema,
+    "controller": controller_schema,
+}
 
 
 def carry_out(
@@ -12,7 +27,11 @@ def carry_out(
     kind: str,
 ) -> int:
     """Carry the command out; its exit code."""
-    if kind != "plan":
-        raise BadInputError(f"there is no schema for '{kind}'", fix="known: plan")
-    print_json(plan_schema())
+    if kind not in _SCHEMAS:
+        near = difflib.get_close_matches(kind, _SCHEMAS, 1)
+        hint = f"did you mean '{near[0]}'? " if near else ""
+        raise BadInputError(
+            f"there is no schema for '{printable(kind, 60)}'", fix=f"{hint}known: {', '.join(_SCHEMAS)}"
+        )
+    print_json(_SCHEMAS[kind]())
     return 0

@@ -137,6 +137,12 @@ def _checked(data: dict[str, Any], where: str) -> Controller:
         raise BadInputError(f"{key}: {first['msg']}", where=where) from error
 
 
+def controller_schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of a controller file, for editors."""
+    draft = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    return {**draft, **Controller.model_json_schema(), "title": "Controller file"}
+
+
 def save_controller(controller: Controller, path: Path) -> None:
     """Write a controller file that `load_controller` reads back."""
     write_atomically(path, controller_to_toml(controller))

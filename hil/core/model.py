@@ -34,7 +34,8 @@ _PARAMETER = {
     "viscous_drag": ("N m s/rad", True),
     "torque_delay": ("s", True),
 }
-_KINDS: dict[str, tuple[str, ...]] = {
+#: Kinds of model, and the parameters of each in file order.
+MODEL_KINDS: dict[str, tuple[str, ...]] = {
     "rigid": ("motor_inertia", "gear_ratio", "vehicle_inertia", "viscous_drag", "torque_delay"),
     "two_inertia": (
         "motor_inertia",
@@ -71,7 +72,8 @@ _KEYS = (
 LOAD_INPUTS = ("dyno_torque_ref_nm",)
 _LARGEST_DELAY_S = 1.0
 _LARGEST_TOLERANCE = 5.0  # relative: known to a factor of six
-_RADII_M = (0.01, 10.0)  # of a wheel
+#: Smallest and largest radius of a wheel.
+WHEEL_RADII_M = (0.01, 10.0)
 _SIZES = (1e-12, 1e12)  # of a parameter in SI units: beyond, a unit is wrong and arithmetic overflows
 
 
@@ -130,7 +132,7 @@ class Model:
 
 def parameter_names(kind: str) -> tuple[str, ...]:
     """Names of the parameters that a model of `kind` has, in file order."""
-    return _KINDS[kind]
+    return MODEL_KINDS[kind]
 
 
 def kind_of(kind: str, uses: Iterable[EffectUse]) -> str:
@@ -161,8 +163,10 @@ def model_from_dict(data: Mapping[str, Any], where: str) -> Model:
     """Check the contents of a model file; `where` names it in messages."""
     _no_others(data, _KEYS, "", where)
     kind = data.get("kind")
-    if not isinstance(kind, str) or kind not in _KINDS:
-        raise BadInputError(f"kind is {shown(kind)}", where=where, fix=f"kind is one of: {', '.join(_KINDS)}")
+    if not isinstance(kind, str) or kind not in MODEL_KINDS:
+        raise BadInputError(
+            f"kind is {shown(kind)}", where=where, fix=f"kind is one of: {', '.join(MODEL_KINDS)}"
+        )
     functions = _functions(data.get("transfer_functions"), kind, where)
     meta = data.get("meta", {})
     if not isinstance(meta, dict):
@@ -242,8 +246,8 @@ def _load_input(value: Any, kind: str, where: str) -> str:
 
 def _wheel_radius(data: Mapping[str, Any], where: str) -> float:
     radius = _finite(data.get("wheel_radius_m", WHEEL_RADIUS_M), "wheel_radius_m", "m", where)
-    if not _RADII_M[0] <= radius <= _RADII_M[1]:
-        low, high = _RADII_M
+    if not WHEEL_RADII_M[0] <= radius <= WHEEL_RADII_M[1]:
+        low, high = WHEEL_RADII_M
         raise BadInputError(
             f"wheel_radius_m = {radius:g} m", where=where, fix=f"give metres, from {low:g} to {high:g}"
         )
@@ -253,7 +257,7 @@ def _wheel_radius(data: Mapping[str, Any], where: str) -> float:
 def _parameters(table: Any, kind: str, where: str) -> dict[str, float]:
     if not isinstance(table, dict):
         raise BadInputError("[parameters] is not a table", where=where)
-    names = _KINDS[kind]
+    names = MODEL_KINDS[kind]
     _no_others(table, names, "parameters.", where)
     checked = {}
     for name in names:
@@ -266,7 +270,7 @@ def _parameters(table: Any, kind: str, where: str) -> dict[str, float]:
 def _tolerance(table: Any, kind: str, where: str) -> dict[str, float]:
     if not isinstance(table, dict):
         raise BadInputError("[tolerance] is not a table", where=where)
-    _no_others(table, _KINDS[kind], "tolerance.", where)
+    _no_others(table, MODEL_KINDS[kind], "tolerance.", where)
     checked = {}
     for name, given in table.items():
         value = _finite(given, f"tolerance.{name}", "1 (0.05 for 5 %)", where)
@@ -353,11 +357,11 @@ def _about(use: EffectUse) -> tuple[str, str]:
 def _check_mismatch(use: EffectUse, kind: str, where: str) -> None:
     """A wrong value is one of a parameter that the model has, and must itself be possible."""
     name = str(use.values["parameter"])
-    if name not in _KINDS[kind]:
+    if name not in MODEL_KINDS[kind]:
         raise BadInputError(
             f"effect 'parameter_mismatch': a '{kind}' model has no parameter '{name}'",
             where=where,
-            fix=f"it has: {', '.join(_KINDS[kind]) or 'none'}",
+            fix=f"it has: {', '.join(MODEL_KINDS[kind]) or 'none'}",
         )
     _checked_parameter(name, use.values["value"], f"effect 'parameter_mismatch': {name}", where)
 

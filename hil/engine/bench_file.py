@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import importlib.resources
 import tomllib
 from pathlib import Path
@@ -14,8 +15,8 @@ from hil.core.files import read_text
 from hil.core.printable import printable
 from hil.engine._bench_checks import contradictions, device_mistakes, unprintable
 from hil.engine._bench_lines import line_of
-from hil.engine._device_tables import device_tables, told
 from hil.engine.bench_tables import BenchFile
+from hil.engine.device_kinds import device_tables, told
 
 DEFAULT_BENCH = "sim"
 
@@ -100,11 +101,18 @@ def _shipped_bench(name: str) -> Path:
             return path
     except (OSError, ValueError):  # no file can have such a name
         pass
-    known = sorted(p.stem for p in path.parent.glob("*.toml") if "[buses." in p.read_text("utf-8"))
+    near = difflib.get_close_matches(name, shipped_benches(), 1)
+    hint = f"did you mean '{near[0]}'? " if near else ""
     raise BadInputError(
         f"there is no bench '{printable(name)}'",
-        fix=f"shipped: {', '.join(known)}; or give a file, whose name ends in .toml",
+        fix=f"{hint}shipped: {', '.join(shipped_benches())}; or give a file, whose name ends in .toml",
     )
+
+
+def shipped_benches() -> tuple[str, ...]:
+    """Names of the shipped bench files."""
+    files = shipped("sim.toml").parent.glob("*.toml")
+    return tuple(sorted(path.stem for path in files if "[buses." in path.read_text("utf-8")))
 
 
 def shipped(name: str) -> Path:

@@ -16,6 +16,8 @@ USUAL: dict[str, tuple[str, ...]] = {
     "recover": ("torn.mcap", "--out", "out.mcap"),
     "reset": ("bench.toml", "--by", "A. Tester"),
     "schema": ("plan",),
+    "list": ("plans",),
+    "init": ("new",),
     "compare": ("done", "recording.mcap", "--out", "out"),
     "explain": (
         "--target", "c.peak_shaft_torque=120", "--plan", "plan.yaml", "--bench", "bench.toml",

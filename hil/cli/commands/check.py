@@ -6,12 +6,26 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_bench, shipped_plan
 from hil.cli._lean_imports import import_python_can
+
+SEVERAL = ("--controller",)
 
 
 def command(
-    plan: Annotated[str, typer.Argument(help="plan file, or the name of a shipped plan")],
-    bench: Annotated[str, typer.Option(help="bench file, or the name of a shipped bench")] = "sim",
+    plan: Annotated[
+        str, typer.Argument(help="plan file, or the name of a shipped plan", autocompletion=shipped_plan())
+    ],
+    bench: Annotated[
+        str, typer.Option(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
+    ] = "sim",
+    controller: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[NAME=]FILE",
+            help="controller file in place of the one that the plan loads; of several, in place of NAME's",
+        ),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
@@ -24,4 +38,4 @@ def command(
     import_python_can()
     from hil.cli.check import carry_out
 
-    return carry_out(plan=plan, bench=bench, as_json=as_json)
+    return carry_out(plan=plan, bench=bench, controller=controller, as_json=as_json)

@@ -10,7 +10,10 @@ import typer
 
 def command(
     model: Annotated[Path, typer.Option("--model", help="Model file of any kind.")],
-    out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Directory for the results; default: out/design-001 and so on."),
+    ] = None,
     optimize: Annotated[
         bool, typer.Option("--optimize", help="Search lead and pole for the lowest sensitivity in 8-20 Hz.")
     ] = False,

@@ -16,7 +16,10 @@ def command(
         list[Path], typer.Argument(help="Recordings to explain (.mcap, .csv, .parquet, .mf4).")
     ],
     model: Annotated[Path, typer.Option("--model", help="Model file to start from.")],
-    out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Directory for the results; default: out/diagnose-001 and so on."),
+    ] = None,
     holdout: Annotated[
         list[Path] | None,
         typer.Option(

@@ -12,7 +12,10 @@ def command(
     recordings: Annotated[
         list[Path], typer.Argument(help="Recordings (.mcap, .csv, .parquet, .mf4); several are merged.")
     ],
-    out: Annotated[Path, typer.Option("--out", help="Directory for the results.")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Directory for the results; default: out/identify-001 and so on."),
+    ] = None,
     segment: Annotated[
         list[str] | None,
         typer.Option("--segment", help="Id of a segment to use; default: every chirp and multisine."),

@@ -6,11 +6,14 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_bench
 from hil.cli._lean_imports import import_python_can
 
 
 def command(
-    bench: Annotated[str, typer.Argument(help="bench file, or the name of a shipped bench")],
+    bench: Annotated[
+        str, typer.Argument(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
+    ],
     by: Annotated[str, typer.Option("--by", metavar="NAME", help="who has made sure that it is safe; kept")],
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")

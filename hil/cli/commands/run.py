@@ -7,19 +7,35 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_bench, shipped_plan
 from hil.cli._lean_imports import import_python_can
+
+SEVERAL = ("--controller",)
 
 
 def command(
     plan: Annotated[
-        str, typer.Argument(help="plan file, or the name of a shipped plan: acceptance, identification")
+        str,
+        typer.Argument(
+            help="plan file, or the name of a shipped plan: acceptance, identification",
+            autocompletion=shipped_plan(),
+        ),
     ],
-    bench: Annotated[str, typer.Option(help="bench file, or the name of a shipped bench")] = "sim",
+    bench: Annotated[
+        str, typer.Option(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
+    ] = "sim",
     out: Annotated[
         Path | None,
         typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
     ] = None,
     model: Annotated[Path | None, typer.Option(help="model file for the simulated bench")] = None,
+    controller: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[NAME=]FILE",
+            help="controller file in place of the one that the plan loads; of several, in place of NAME's",
+        ),
+    ] = None,
     operator: Annotated[str, typer.Option(help="who runs the bench; stands in the report")] = "",
     yes: Annotated[
         str,
@@ -41,6 +57,9 @@ def command(
         ),
     ] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
+    show: Annotated[
+        bool, typer.Option("--open", help="show the report in a browser, if there is one")
+    ] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print result.json on stdout, nothing else")
     ] = False,
@@ -53,6 +72,7 @@ def command(
     from hil.cli.run import carry_out
 
     return carry_out(
-        plan=plan, bench=bench, out=out, model=model, operator=operator, yes=yes,
-        confirm=confirm, accept_expired=accept_expired, overwrite=overwrite, as_json=as_json
+        plan=plan, bench=bench, out=out, model=model, controller=controller, operator=operator, yes=yes,
+        confirm=confirm, accept_expired=accept_expired, overwrite=overwrite, show=show,
+        as_json=as_json,
     )  # fmt: skip

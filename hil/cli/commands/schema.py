@@ -6,11 +6,24 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import one_of
+from hil.cli._lean_imports import import_python_can
+
 
 def command(
-    kind: Annotated[str, typer.Argument(help="what the schema is for: plan")] = "plan",
+    kind: Annotated[
+        str,
+        typer.Argument(
+            help="what the schema is for: plan, bench, model or controller",
+            autocompletion=one_of("plan", "bench", "model", "controller"),
+        ),
+    ] = "plan",
 ) -> int:
-    """Print the JSON schema of plan files (yaml-language-server and others complete and check with it)."""
+    """Print the JSON schema of plan, bench, model or controller files.
+
+    Editors complete and check with it: yaml-language-server for plans, Taplo (Even Better TOML) for the rest.
+    """
+    import_python_can()
     from hil.cli.schema import carry_out
 
     return carry_out(kind=kind)

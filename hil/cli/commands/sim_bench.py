@@ -7,13 +7,19 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_bench
 from hil.cli._lean_imports import import_python_can
 
 SEVERAL = ("--hide", "--interface")
 
 
 def command(
-    bench: Annotated[str, typer.Argument(help="bench file with [simulation], or the name of a shipped one")],
+    bench: Annotated[
+        str,
+        typer.Argument(
+            help="bench file with [simulation], or the name of a shipped one", autocompletion=shipped_bench()
+        ),
+    ],
     time_scale: Annotated[
         float,
         typer.Option(help="seconds of bench time in a second; less than 1 where full rate cannot be held"),

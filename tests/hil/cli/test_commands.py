@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -15,6 +16,7 @@ from pypdf import PdfReader
 from hil.core.recording import read_recording
 
 HIL = Path(sys.executable).parent / "hil"
+CONTROLLERS = Path(__file__).parents[3] / "test_plans/library/controllers"
 QUICK = """
 name: quick
 steps:
@@ -208,3 +210,32 @@ def test_a_recording_that_was_cut_off_is_reported_with_its_plan(finished, tmp_pa
     assert (cut["verdict"], cut["plan"], cut["safe_state"]) == ("error", "quick", "not_confirmed")
     assert cut["segments"][0]["id"] == "s"
     assert "cut off" in (tmp_path / "report.html").read_text()
+
+
+def test_the_report_is_opened_and_nothing_said_where_no_browser_is(tmp_path, monkeypatch):
+    browser = tmp_path / "browser"
+    browser.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/opened\n')
+    browser.chmod(0o755)
+    (tmp_path / "quick.yaml").write_text(QUICK.replace("LIMIT", "400"))
+    monkeypatch.setenv("BROWSER", f"{browser} %s")
+    hil("run", tmp_path / "quick.yaml", "--out", tmp_path / "out", "--open")
+    for _ in range(100):
+        if (tmp_path / "opened").exists() and (tmp_path / "opened").read_text():
+            break
+        time.sleep(0.1)
+    assert (tmp_path / "opened").read_text().strip() == (tmp_path / "out/report.html").as_uri()
+    monkeypatch.setenv("BROWSER", "no-such-browser")
+    monkeypatch.setenv("PATH", "/nowhere")
+    assert not hil("run", tmp_path / "quick.yaml", "--out", tmp_path / "again", "--open").stderr
+
+
+def test_a_controller_in_place_of_the_plans_is_loaded_recorded_and_reported(tmp_path):
+    own = tmp_path / "own.toml"
+    text = (CONTROLLERS / "gain_stabilization.toml").read_text().replace('name = "gain"', 'name = "own"')
+    own.write_text(text)
+    (tmp_path / "quick.yaml").write_text(QUICK.replace("LIMIT", "400"))
+    hil("run", tmp_path / "quick.yaml", "--out", tmp_path / "out", "--controller", own)
+    recording = read_recording(tmp_path / "out/recording.mcap")
+    assert tomllib.loads(recording.attachments["controller/own.toml"].decode())["name"] == "own"
+    assert f'file: "{own}"' in recording.attachments["plan.yaml"].decode()
+    assert "controller/phase.toml" not in recording.attachments

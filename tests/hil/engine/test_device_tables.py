@@ -9,7 +9,7 @@ import pytest
 from pydantic import BaseModel, ValidationError
 
 from drivers import DynoTable, RmcuTable
-from hil.engine._device_tables import KINDS, device_tables, told
+from hil.engine.device_kinds import KINDS, device_tables, told
 from tests.benches_for_tests import SIM
 
 

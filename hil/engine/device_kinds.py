@@ -14,7 +14,8 @@ from test_plans.registry import Registry
 #: Kinds of device by name; those of other packages are entry points of `hil.devices`.
 KINDS: Registry[DeviceTable] = Registry("kind of device", "hil.devices", DeviceTable, OWN_KINDS)
 
-_DEFAULTS = {"rmcu": "rmcu-can", "dyno": "rcs-canopen"}
+#: Kinds of the tables that need not name theirs.
+DEFAULT_KINDS = {"rmcu": "rmcu-can", "dyno": "rcs-canopen"}
 
 
 def device_tables(data: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
@@ -24,7 +25,7 @@ def device_tables(data: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """
     mistakes: list[str] = []
     found: dict[str, Any] = {}
-    for key, default in _DEFAULTS.items():
+    for key, default in DEFAULT_KINDS.items():
         if isinstance(data.get(key), dict):
             found[key] = _checked(key, data[key], default, mistakes)
     if isinstance(found.get("dyno"), DeviceTable) and not isinstance(found["dyno"], LoadTable):

@@ -1,0 +1,48 @@
+"""Completion in shells, by typer: `hil --install-completion`, or `hil --show-completion` to see it first."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+OPTIONS = ("--install-completion", "--show-completion")
+_VARIABLE = "_HIL_COMPLETE"
+
+Complete = Callable[[str], list[str]]
+
+
+def completion_wanted(arguments: list[str]) -> bool:
+    """Whether a shell asks what can stand here, or a person for the shell's script."""
+    return _VARIABLE in os.environ or arguments[:1] in ([option] for option in OPTIONS)
+
+
+def one_of(*words: str) -> Complete:
+    """Completes with fixed words."""
+    return _completing(lambda: words)
+
+
+def shipped_plan() -> Complete:
+    """Completes with the names of built-in plans; the shell offers files where none fits."""
+    return _completing(lambda: _stems("test_plans", "library/*.yaml"))
+
+
+def shipped_bench() -> Complete:
+    """Completes with the names of shipped benches; the shell offers files where none fits."""
+    return _completing(lambda: _stems("benches", "*.toml", "[buses."))
+
+
+def _completing(words: Callable[[], Iterable[str]]) -> Complete:
+    def complete(incomplete: str) -> list[str]:
+        return [word for word in words() if word.startswith(incomplete)]
+
+    return complete
+
+
+def _stems(package: str, pattern: str, holding: str = "") -> list[str]:
+    """Names of a package's files, which is not imported for it: that takes longer than a key press."""
+    spec = importlib.util.find_spec(package)
+    folders = [Path(place) for place in spec.submodule_search_locations or ()] if spec else []
+    files = sorted(path for folder in folders for path in folder.glob(pattern))
+    return [path.stem for path in files if holding in path.read_text(encoding="utf-8")]

@@ -1,0 +1,32 @@
+"""`hil list`: what there is to choose from."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from hil.cli._completion import one_of
+from hil.cli._lean_imports import import_python_can
+
+
+def command(
+    what: Annotated[
+        str,
+        typer.Argument(
+            help="plans, benches, effects, steps, metrics or devices",
+            autocompletion=one_of("plans", "benches", "effects", "steps", "metrics", "devices"),
+        ),
+    ],
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
+    ] = False,
+) -> int:
+    """List built-in plans and benches, effects of models, or what plans and bench files may use.
+
+    Steps, metrics and devices of installed packages stand there too.
+    """
+    import_python_can()
+    from hil.cli.list import carry_out
+
+    return carry_out(what=what, as_json=as_json)

@@ -1,0 +1,61 @@
+"""`hil init`: a folder of one's own, ready to run."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+from hil.cli._output import print_json
+from hil.cli._place import results_in
+from hil.core.errors import BadInputError
+from hil.engine.bench_file import DEFAULT_BENCH, shipped
+from test_plans.loading import LIBRARY
+
+_STARTER = Path(__file__).parent / "starter"
+_OWN = ("README.md", "plan.yaml", "test_plan.py")
+_NAME = "my_bench"
+_SHIPPED_MODEL = "three_inertia.toml"
+
+
+def carry_out(
+    *,
+    folder: Path,
+    as_json: bool,
+) -> int:
+    """Carry the command out; its exit code."""
+    _refuse_used(folder)
+    files = _files()
+    with results_in(folder, files) as place:
+        place.write(files)
+    if as_json:
+        print_json({"folder": str(folder), "files": list(files)})
+    else:
+        print(f"{folder}: {', '.join(files)}")
+        print(f"next: cd {shlex.quote(str(folder))} && hil check plan.yaml --bench bench.toml")
+    return 0
+
+
+def _files() -> dict[str, bytes]:
+    """The new folder's files by name."""
+    own = {name: (_STARTER / name).read_bytes() for name in _OWN}
+    devices = {name: shipped(name).read_bytes() for name in ("rmcu.dbc", "rcs_dyno.eds")}
+    return {
+        **own,
+        "bench.toml": _bench(),
+        "model.toml": shipped(_SHIPPED_MODEL).read_bytes(),
+        "controller.toml": (LIBRARY / "controllers" / "phase_stabilization.toml").read_bytes(),
+        **devices,
+    }
+
+
+def _bench() -> bytes:
+    """The shipped simulated bench under a name of its own, with the model beside it."""
+    text = shipped(f"{DEFAULT_BENCH}.toml").read_text(encoding="utf-8")
+    text = text.replace(f'name = "{DEFAULT_BENCH}"', f'name = "{_NAME}"')
+    text = text.replace(f'channel = "{DEFAULT_BENCH}/', f'channel = "{_NAME}/')
+    return text.replace(f'model = "{_SHIPPED_MODEL}"', 'model = "model.toml"').encode()
+
+
+def _refuse_used(folder: Path) -> None:
+    if folder.is_dir() and any(folder.iterdir()):
+        raise BadInputError("is not empty", where=str(folder), fix="name a new folder")

@@ -1,0 +1,128 @@
+"""`hil list`: what there is to choose from."""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+from pydantic import BaseModel
+
+from hil.cli._output import console, plain_table, print_json
+from hil.core.effects import EFFECTS
+from hil.core.errors import BadInputError
+from hil.core.printable import printable
+from hil.engine import load_bench
+from hil.engine.bench_file import shipped_benches
+from hil.engine.device_kinds import KINDS
+from test_plans import METRICS, STEPS, estimate_duration_s, library_plans, load_plan
+from test_plans.building import key_names
+from test_plans.registry import Registry
+
+Row = dict[str, Any]
+
+
+def carry_out(
+    *,
+    what: str,
+    as_json: bool,
+) -> int:
+    """Carry the command out; its exit code."""
+    if what not in _LISTS:
+        near = difflib.get_close_matches(what, _LISTS, 1)
+        hint = f"did you mean '{near[0]}'? " if near else ""
+        raise BadInputError(
+            f"there is no list of '{printable(what, 60)}'", fix=f"{hint}known: {', '.join(_LISTS)}"
+        )
+    rows = _LISTS[what]()
+    if as_json:
+        print_json({what: rows})
+    else:
+        _tell(rows)
+    return 0
+
+
+def _plans() -> list[Row]:
+    plans = [load_plan(name) for name in library_plans()]
+    return [
+        {
+            "name": plan.source.stem,
+            "title": plan.title,
+            "duration_s": round(estimate_duration_s(plan), 1),
+            "segments": [segment.id for segment in plan.segments],
+        }
+        for plan in plans
+    ]
+
+
+def _benches() -> list[Row]:
+    benches = {name: load_bench(name) for name in shipped_benches()}
+    return [
+        {"name": name, "title": bench.title, "simulated": bench.simulation is not None}
+        for name, bench in benches.items()
+    ]
+
+
+def _effects() -> list[Row]:
+    return [
+        {
+            "name": effect.id,
+            "title": effect.title,
+            "parameters": [
+                *effect.text_parameters,
+                *(f"{p.name}{'?' if p.optional else ''}" for p in effect.parameters),
+            ],
+            "models": list(effect.needs),
+        }
+        for effect in EFFECTS.values()
+    ]
+
+
+def _classes(registry: Registry[Any], left_out: tuple[str, ...] = ()) -> list[Row]:
+    """Each class of a registry with what it is for and the keys of its table."""
+    return [
+        {
+            "name": name,
+            "title": (inspect.getdoc(found) or "").partition("\n")[0],
+            "keys": [key for key in _keys(found) if key not in left_out],
+        }
+        for name in registry.names()
+        for found in [registry.find(name)]
+    ]
+
+
+def _keys(found: type[BaseModel] | None) -> list[str]:
+    if found is None:
+        return []
+    required = [field.is_required() for field in found.model_fields.values()]
+    named = zip(key_names(found), required, strict=True)
+    return [name if needed else f"{name}?" for name, needed in named]
+
+
+_LISTS: dict[str, Callable[[], list[Row]]] = {
+    "plans": _plans,
+    "benches": _benches,
+    "effects": _effects,
+    "steps": lambda: _classes(STEPS),
+    "metrics": lambda: _classes(METRICS),
+    "devices": lambda: _classes(KINDS, ("kind", "kind?")),
+}
+
+
+def _tell(rows: list[Row]) -> None:
+    table = plain_table()
+    for key in rows[0]:
+        table.add_column(key.replace("_s", ", s"), no_wrap=key == "name")
+    for row in rows:
+        table.add_row(*(_cell(value) for value in row.values()))
+    page = console()
+    page.print(table)
+    if "keys" in rows[0] or "parameters" in rows[0]:
+        page.print("\nwith ?: may be left out", style="dim", highlight=False)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return ", ".join(value) if isinstance(value, list) else str(value)
