@@ -57,8 +57,18 @@ class WholeFrames:
 
     def of(self, block: FrameBlock) -> FrameBlock:
         """The block without them."""
-        short = block["length"] < self._least[block["id"] % _STANDARD_IDS]
-        return block[~short] if short.any() else block
+        if _short(block["id"], block["length"], self._least):
+            block = block[block["length"] >= self._least[block["id"] % _STANDARD_IDS]]
+        return block
+
+
+@compiled
+def _short(ids, lengths, least):  # type: ignore[no-untyped-def]
+    """How many are shorter."""
+    count = 0
+    for frame in range(ids.shape[0]):
+        count += lengths[frame] < least[ids[frame] % _STANDARD_IDS]
+    return count
 
 
 def _bytes_of(signal: Signal) -> int:

@@ -33,6 +33,9 @@ class Watchkeeping:
         self.limits = LimitWatch(bench.streams, file.limits, file.interlocks, self._answer)
         self.zero = ZeroCheck(bench.streams, file.zero)
         self.hold = Holding(bench.loop, operator, self.limits.standing, event, recorder.recording_time)
+        self._sources = bench.sources
+        # asked of the class once: a look at a protocol's names costs more than all else here
+        self._say_emergency = [device for device in bench.devices if isinstance(device, SaysEmergency)]
         self.going_safe = self.rows_finished = False
         bench.loop.on_block(recorder.take_frames)
         bench.loop.on_drained(self._take_samples)
@@ -63,9 +66,12 @@ class Watchkeeping:
     def _supervise(self) -> None:
         if self.limits.standing_still(self._bench.loop.clock.now_s()):
             return  # what came meanwhile is to be looked at first
-        for device in self._bench.devices if not self.going_safe else ():
-            if isinstance(device, SaysEmergency) and device.emergency:
-                raise EmergencyStopError(device.emergency, by=device.name)
+        if self.going_safe:
+            return
+        for one in self._say_emergency:
+            if one.emergency:
+                raise EmergencyStopError(one.emergency, by=one.name)
+        for device in self._bench.devices:
             troubles = device.troubles()
             if troubles:
                 raise BenchError("; ".join(troubles), where=device.name, fix=f"look at: {device.name}")
@@ -73,7 +79,7 @@ class Watchkeeping:
     def _take_samples(self) -> None:
         """Whoever measured: all is recorded, all is watched."""
         now_s = self._bench.loop.clock.now_s()
-        for source in self._bench.sources:
+        for source in self._sources:
             for samples in source.samples():
                 for computed in self._bench.computed:
                     computed.take(samples)
