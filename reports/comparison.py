@@ -28,7 +28,7 @@ def comparison_html(found: Comparison) -> str:
 
 
 def comparison_pdf(found: Comparison) -> bytes:
-    """The same on paper: PDF/A-2b."""
+    """The same on paper: PDF/A-2a and PDF/UA-1."""
     return page_pdf(_page(found))
 
 

@@ -20,7 +20,7 @@ def diagnosis_html(found: Diagnosis, title: str) -> str:
 
 
 def diagnosis_pdf(found: Diagnosis, title: str) -> bytes:
-    """The same on paper: PDF/A-2b. Every text reaches Typst as data."""
+    """The same on paper: PDF/A-2a and PDF/UA-1. Every text reaches Typst as data."""
     return page_pdf(_page(found, title))
 
 

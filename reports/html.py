@@ -17,6 +17,7 @@ from reports.labels import sentence_html
 from reports.plotly_figure import plotly_figure
 
 _LARGEST_INPUT_FILE = 200_000
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")
 
 
 def write_html(recording: Recording, result: RunResult | None, path: Path) -> Path:
@@ -102,7 +103,9 @@ def _json_in_script(value: object) -> str:
 
 
 def _plotly_js() -> str:
-    return resources.files("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8")
+    """The library, without control characters: HTML forbids them, JavaScript reads them spelled out too."""
+    text = resources.files("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8")
+    return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def _template(name: str) -> str:

@@ -27,12 +27,17 @@ def write_junit(recording: Recording, result: RunResult, path: Path) -> Path:
 
 
 def junit_text(recording: Recording, result: RunResult) -> bytes:
-    """One test case for each criterion, one for the run itself and one for the bench's safe state."""
+    """One test case for each criterion, one for the run itself and one for the bench's safe state.
+
+    A criterion's class is its segment, its time the length of that segment on the bench; value, limits,
+    unit and margin are its properties.
+    """
     suite = ET.Element("testsuite", name=_clean(result.plan))
     _properties(suite, recording, result)
+    lengths = {segment.id: segment.end_s - segment.start_s for segment in result.segments}
     for criterion in result.criteria:
-        _criterion(suite, criterion, result.plan)
-    run = _case(suite, result.plan, "run")
+        _criterion(suite, criterion, result.plan, lengths)
+    run = _case(suite, result.plan, "run", result.bench_time_s)
     if result.verdict == "error":
         _outcome(run, "error", result.reason or "the run did not come to its end")
     safe = _case(suite, result.plan, "safe_state")
@@ -67,14 +72,16 @@ def _properties(suite: ET.Element, recording: Recording, result: RunResult) -> N
     }
     for table in _PROPERTY_TABLES:
         values |= {f"{table}.{key}": text for key, text in recording.metadata.get(table, {}).items()}
-    properties = ET.SubElement(suite, "properties")
-    for name, value in values.items():
-        ET.SubElement(properties, "property", name=_clean(name), value=_clean(value))
+    _list(suite, values)
 
 
-def _criterion(suite: ET.Element, criterion: CriterionResult, plan: str) -> None:
-    group, _, metric = criterion.id.rpartition(".")
-    case = _case(suite, f"{plan}.{group}" if group else plan, metric)
+def _criterion(suite: ET.Element, criterion: CriterionResult, plan: str, lengths: dict[str, float]) -> None:
+    segment, _, metric = criterion.id.partition(".")
+    if metric:
+        case = _case(suite, f"{plan}.{segment}", metric, lengths.get(segment, 0.0))
+    else:
+        case = _case(suite, plan, criterion.id)
+    _list(case, _figures(criterion))
     if criterion.failed:
         _outcome(case, "failure", in_words(criterion), criterion.definition)
     elif criterion.verdict == "error":
@@ -84,8 +91,29 @@ def _criterion(suite: ET.Element, criterion: CriterionResult, plan: str) -> None
         ET.SubElement(case, "skipped", message=_clean(reason))
 
 
-def _case(suite: ET.Element, classname: str, name: str) -> ET.Element:
-    return ET.SubElement(suite, "testcase", classname=_clean(classname), name=_clean(name), time="0")
+def _figures(criterion: CriterionResult) -> dict[str, str]:
+    """What was found and what was allowed, as in `result.json`; nothing of what there is not."""
+    numbers = {
+        "value": criterion.value,
+        "lower_limit": criterion.lower,
+        "upper_limit": criterion.upper,
+        "margin": criterion.margin,
+    }
+    told = {name: repr(value) for name, value in numbers.items() if value is not None}
+    words = {"unit": criterion.unit, "below": criterion.below, "definition": criterion.definition}
+    return {**told, **{name: text for name, text in words.items() if text}, "verdict": criterion.verdict}
+
+
+def _case(suite: ET.Element, classname: str, name: str, time_s: float = 0.0) -> ET.Element:
+    return ET.SubElement(
+        suite, "testcase", classname=_clean(classname), name=_clean(name), time=f"{time_s:.3f}"
+    )
+
+
+def _list(of: ET.Element, values: dict[str, str]) -> None:
+    properties = ET.SubElement(of, "properties")
+    for name, value in values.items():
+        ET.SubElement(properties, "property", name=_clean(name), value=_clean(value))
 
 
 def _outcome(case: ET.Element, kind: str, message: str, text: str = "") -> None:

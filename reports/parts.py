@@ -1,6 +1,6 @@
 """Reports made of parts, sections of text, tables, maps (shaded tables) and figures, on screen and on paper.
 
-One file without scripts on screen, figures drawn into it; PDF/A-2b on paper. Both are made from one `Page`.
+One file without scripts on screen, figures drawn into it; PDF/A-2a and PDF/UA-1 on paper. Both are made from one `Page`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from importlib import resources
 from typing import Any, Literal
 
-from reports import style
+from reports import shades, style
 from reports.figure import Figure
 from reports.gap_bars import GapBars
 from reports.pdf import _font_directory, _known_characters, _spelled_out
@@ -34,6 +34,11 @@ class Cell:
 
     text: str
     shade: float
+
+    @property
+    def level(self) -> int:
+        """Its shade in steps that can be told apart."""
+        return shades.level(self.shade)
 
 
 @dataclass(frozen=True)
@@ -90,12 +95,14 @@ def page_html(page: Page) -> str:
         parts=[_with_pictures(part) for part in page.parts],
         light=style.css_variables("light"),
         dark=style.css_variables("dark"),
+        shades_light=shades.css_classes("light"),
+        shades_dark=shades.css_classes("dark"),
         css=resources.files("reports").joinpath("templates/report.css").read_text(encoding="utf-8"),
     )
 
 
 def page_pdf(page: Page) -> bytes:
-    """The same on paper: PDF/A-2b. Every text reaches Typst as data."""
+    """The same on paper: PDF/A-2a and PDF/UA-1. Every text reaches Typst as data."""
     import typst
 
     data: dict[str, Any] = {
@@ -114,7 +121,7 @@ def page_pdf(page: Page) -> bytes:
         font_paths=[_font_directory()],
         ignore_system_fonts=True,
         sys_inputs={"report": json.dumps(data, ensure_ascii=False)},
-        pdf_standards=["a-2b"],
+        pdf_standards=["a-2a", "ua-1"],
     )
     return bytes(pdf)
 
@@ -132,7 +139,7 @@ def _as_data(part: Part) -> dict[str, Any]:
         "title": part.title,
         "text": part.text,
         "tables": [asdict(t) for t in part.tables],
-        "maps": [asdict(m) for m in part.maps],
+        "maps": [_map_as_data(m) for m in part.maps],
         "figures": [
             {
                 "svg": (f.as_svg() if isinstance(f, GapBars) else svg_figure(f)).decode(),
@@ -144,3 +151,13 @@ def _as_data(part: Part) -> dict[str, Any]:
             for f in part.figures
         ],
     }
+
+
+def _map_as_data(m: Map) -> dict[str, Any]:
+    rows = [(name, [_cell_as_data(cell) for cell in cells]) for name, cells in m.rows]
+    return {"title": m.title, "head": m.head, "rows": rows}
+
+
+def _cell_as_data(cell: Cell) -> dict[str, Any]:
+    background, ink = shades.colours(cell.level, "light")
+    return {"text": cell.text, "level": cell.level, "background": background, "ink": ink}

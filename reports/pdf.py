@@ -1,4 +1,4 @@
-"""The report for signing: PDF/A-2b by Typst, from the same content as the page for the screen.
+"""The report for signing: PDF/A-2a and PDF/UA-1 by Typst, from the same content as the page for the screen.
 
 Every text from a file reaches Typst as JSON data and is never parsed as markup.
 """
@@ -63,7 +63,7 @@ def _compiled(data: dict[str, Any], started_at: str, *, system_fonts: bool) -> b
         template,
         font_paths=typst.Fonts(include_system_fonts=system_fonts, font_paths=[str(_font_directory())]),
         sys_inputs={"report": json.dumps(data, ensure_ascii=False)},
-        pdf_standards=["a-2b"],
+        pdf_standards=["a-2a", "ua-1"],
         timestamp=_timestamp(started_at),
     )
     return bytes(pdf)

@@ -24,7 +24,7 @@ def explanation_html(found: Explanation) -> str:
 
 
 def explanation_pdf(found: Explanation) -> bytes:
-    """The same on paper: PDF/A-2b."""
+    """The same on paper: PDF/A-2a and PDF/UA-1."""
     return page_pdf(_page(found))
 
 

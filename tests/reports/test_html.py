@@ -52,8 +52,12 @@ def test_every_figure_has_its_place_data_and_alternative_text(acceptance: dict[s
     assert [plot.get("id") for plot in plots] == list(data)
     assert len(plots) == 13
     for plot in plots:
-        assert plot.get("role") == "img"
+        assert plot.get("role") == "group"  # an image could hold no buttons
         assert plot.get("aria-label").startswith("Line chart: ")
+
+
+def test_no_character_is_in_it_that_html_forbids(acceptance: dict[str, Path]) -> None:
+    assert not re.search("[\\x00-\\x08\\x0b\\x0e-\\x1f\\x7f]", acceptance["html"].read_text(encoding="utf-8"))
 
 
 def test_links_lead_somewhere_and_ids_are_unique(acceptance: dict[str, Path]) -> None:

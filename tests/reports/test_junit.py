@@ -104,3 +104,34 @@ def test_what_counts_as_neither_is_skipped_and_what_never_settled_fails_its_limi
     assert skipped.get("message") == "not judged: stopped"
     (failed,) = [c for c in found.iter("testcase") if c.find("failure") is not None]
     assert failed.get("classname") == "acceptance.b"
+
+
+def test_a_case_carries_value_limits_unit_and_the_length_of_its_segment(
+    recording: Recording, result: RunResult, tmp_path: Path
+) -> None:
+    criterion, segment = result.criteria[0], result.segments[0]
+    found = next(suite(recording, result, tmp_path).iter("testcase"))
+    told = {p.get("name"): p.get("value") for p in found.iterfind("properties/property")}
+    assert float(told["value"] or "") == criterion.value
+    assert float(told["upper_limit"] or "") == criterion.upper
+    assert (told["unit"], told["verdict"]) == (criterion.unit, criterion.verdict)
+    assert criterion.id.startswith(f"{segment.id}.")
+    assert float(found.get("time", "")) == round(segment.end_s - segment.start_s, 3) > 0
+
+
+def test_a_relative_criterion_is_of_its_own_segment(
+    recording: Recording, result: RunResult, tmp_path: Path
+) -> None:
+    """Its id has three dots; what it is held against is a property."""
+    criterion = CriterionResult(
+        id="phase_0kmh.peak_shaft_torque.below.gain_0kmh",
+        value=1.0,
+        unit="N m",
+        upper=2.0,
+        below="gain_0kmh",
+        verdict="pass",
+    )
+    found = suite(recording, result.model_copy(update={"criteria": (criterion,)}), tmp_path)
+    (one,) = [c for c in found.iter("testcase") if c.get("classname") == "acceptance.phase_0kmh"]
+    assert one.get("name") == "peak_shaft_torque.below.gain_0kmh"
+    assert one.find("properties/property[@name='below']").get("value") == "gain_0kmh"

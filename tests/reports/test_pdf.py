@@ -21,7 +21,8 @@ def test_it_is_pdf_a_with_the_fonts_inside(acceptance: dict[str, Path]) -> None:
     assert metadata is not None
     packet = metadata.stream.get_data().decode()
     assert re.search(r"pdfaid:part>2<", packet)
-    assert re.search(r"pdfaid:conformance>B<", packet)
+    assert re.search(r"pdfaid:conformance>A<", packet)
+    assert re.search(r"pdfuaid:part>1<", packet)
     assert "/OutputIntents" in reader.root_object
     for page in reader.pages:
         fonts = cast("dict[str, Any]", cast("dict[str, Any]", page["/Resources"])["/Font"])

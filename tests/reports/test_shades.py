@@ -1,0 +1,22 @@
+from __future__ import annotations
+
+import pytest
+
+from reports import shades
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("level", range(shades.DARKEST + 1))
+def test_every_shade_can_be_read(level: int, theme: shades.Theme) -> None:
+    background, ink = shades.colours(level, theme)
+    assert shades.contrast(background, ink) >= 4.5
+
+
+def test_contrast_is_that_of_the_guidelines() -> None:
+    assert shades.contrast("#000000", "#FFFFFF") == pytest.approx(21.0)
+    assert shades.contrast("#777777", "#FFFFFF") == pytest.approx(4.48, abs=0.005)  # their own example
+
+
+def test_shades_go_from_none_to_the_darkest() -> None:
+    assert [shades.level(s) for s in (0.0, 0.04, 0.5, 1.0)] == [0, 0, 5, 10]
+    assert len({shades.colours(level, "light")[0] for level in range(11)}) == 11
