@@ -106,7 +106,7 @@ def parts(found: Diagnosis) -> list[Part]:
         Part(
             "map",
             "Where the gap is",
-            f"Error over noise. White: noise alone (1). Darkest: {_DARKEST:g} times the noise or more.",
+            f"Error over noise. No shade: noise alone (1). Darkest: {_DARKEST:g} times the noise or more.",
             maps=_maps(found),
         ),
         Part(
