@@ -1,6 +1,6 @@
 """Reports made of parts, sections of text, tables, maps (shaded tables) and figures, on screen and on paper.
 
-One file without scripts on screen, figures drawn into it; PDF/A-2a and PDF/UA-1 on paper; both from one `Page`.
+One file without scripts on screen, figures inside; PDF/A-2a and PDF/UA-1 on paper, from the same `Page`.
 """
 
 from __future__ import annotations
