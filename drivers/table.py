@@ -102,6 +102,10 @@ class DeviceTable(BaseModel):
         """Those of `identifiers` that only a host sends: who sends them drives this bench."""
         return ()
 
+    def files(self) -> list[Path]:
+        """The files that the table names, such as a DBC: a recording keeps them."""
+        return [value for _, value in self if isinstance(value, Path)]
+
     def beside(self, directory: Path) -> Self:
         """The table with its paths relative to a directory made absolute."""
         paths = {key: directory / value for key, value in self if isinstance(value, Path)}

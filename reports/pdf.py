@@ -104,7 +104,7 @@ def _figure(figure: Figure) -> dict[str, Any]:
 def _timestamp(started_at: str) -> datetime.datetime:
     """The document's date: the start of the run, so that a report made again is the same document."""
     try:
-        moment = datetime.datetime.fromisoformat(started_at)
+        moment = datetime.datetime.fromisoformat(started_at).replace(microsecond=0)  # as PDF counts
     except ValueError:
         return datetime.datetime.now(datetime.UTC).replace(microsecond=0)
     return moment if moment.tzinfo else moment.replace(tzinfo=datetime.UTC)

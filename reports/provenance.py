@@ -217,10 +217,11 @@ def _date(text: str) -> datetime.date | None:
 
 
 def _moment(text: str) -> str:
-    """'2026-03-04T09:15:00+01:00' as '2026-03-04 09:15:00 +01:00'; another text as it is."""
+    """'2026-03-04T09:15:00.250+01:00' as '2026-03-04 09:15:00.250 +01:00'; another text as it is."""
     try:
         moment = datetime.datetime.fromisoformat(text)
     except ValueError:
         return text
     zone = moment.strftime("%z")
-    return f"{moment:%Y-%m-%d %H:%M:%S} {zone[:3]}:{zone[3:5]}" if zone else f"{moment:%Y-%m-%d %H:%M:%S}"
+    told = moment.replace(tzinfo=None).isoformat(" ", "milliseconds" if moment.microsecond else "seconds")
+    return f"{told} {zone[:3]}:{zone[3:5]}" if zone else told

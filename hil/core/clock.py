@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import datetime
 import time
 from typing import Protocol
+
+
+def utc(since_1970_ns: int) -> str:
+    """A moment as ISO 8601, to the millisecond and with its zone."""
+    moment = datetime.datetime.fromtimestamp(since_1970_ns // 1_000_000 / 1e3, datetime.UTC)
+    return moment.isoformat(timespec="milliseconds")
 
 
 class Clock(Protocol):

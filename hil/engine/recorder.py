@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from drivers import SampleAssembler, Samples, Stream
 from hil.core.channels import TIME
+from hil.core.clock import utc
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock
 from hil.core.recording import Event, Recording, RecordingWriter, read_as_written
@@ -32,6 +33,7 @@ class Recorder:
     Args:
         promptly: the recording is of a bench that nobody can repeat: `keep` will be called every `KEEP_S`,
             and what it has written survives a power cut a quarter of a second later.
+        clock_0_ns: wall-clock time at the zero of the bench clock, ns since 1970.
     """
 
     def __init__(
@@ -42,9 +44,13 @@ class Recorder:
         sample_time_s: float,
         *,
         promptly: bool = False,
+        clock_0_ns: int = 0,
     ) -> None:
         self._assembler = SampleAssembler(streams, sample_time_s)
-        self.writer = RecordingWriter(path, self._assembler.names, buses, durable=promptly)
+        self.writer = RecordingWriter(
+            path, self._assembler.names, buses, durable=promptly, clock_0_ns=clock_0_ns
+        )
+        self._clock_0_ns = clock_0_ns
         self._base = streams[0]
         self._chunks: list[npt.NDArray[np.float64]] | None = []  # None: too many, the file has them
         self._kept_bytes = 0
@@ -131,6 +137,8 @@ class Recorder:
         return {
             "time_s": "counts the samples of the time base",
             "raw_frames": "stamps of the adapter on the bench clock",
+            "row_0_at": utc(self._clock_0_ns + round(row_0_s * 1e9)),
+            "bench_clock_0_at": utc(self._clock_0_ns),
             "bench_clock_at_row_0_s": f"{row_0_s:.6f}",
             "bench_clock_s_per_time_s": f"{1 + clocks[0].drift_ppm * 1e-6:.7f}",
         }

@@ -99,11 +99,17 @@ class _Run:
     def _prepare(self) -> None:
         request, bench = self._request, self._bench
         buses = [wire.name for wire in bench.loop.wires]
+        clock = bench.loop.clock
         self._recorder = Recorder(
-            request.out / RECORDING, bench.streams, buses, TICK_S, promptly=not bench.loop.clock.virtual
+            request.out / RECORDING,
+            bench.streams,
+            buses,
+            TICK_S,
+            promptly=not clock.virtual,
+            clock_0_ns=time.time_ns() - round(clock.now_s() * 1e9),
         )
         self._recorder.between = bench.loop.keep_up
-        store_inputs(self._recorder, request, bench)
+        self._inputs = store_inputs(self._recorder, request, bench)
         if self._expired:
             store_expiry(self._recorder, self._expired)
         # In virtual time nothing can be late.
@@ -232,7 +238,7 @@ class _Run:
             reason=str(failures.error) if failures.error else "",
         )
         try:
-            store_result(self._recorder, request, self._bench, self._conductor, result)
+            store_result(self._recorder, self._inputs, self._conductor, result)
         except Exception as error:  # the result is to be told all the same
             failures.take(error)
         largest = dict(self._watch.limits.largest)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import datetime
+import time
 
+from hil.core.clock import utc
 from hil.core.model import model_to_toml
 from hil.core.recording import ACCEPTED_EXPIRY
 from hil.core.result import AcceptedExpiry, RunResult
@@ -14,12 +15,16 @@ from hil.engine.provenance import hashes, versions
 from hil.engine.recorder import Recorder
 
 
-def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> None:
-    """What is known at the start stands at the start: also a recording that is cut off has it."""
+def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> dict[str, bytes]:
+    """What is known at the start stands at the start: also a recording that is cut off has it.
+
+    Returns:
+        The files as stored, for their hashes.
+    """
     writer = recorder.writer
-    for name, content in _inputs(request, bench).items():
+    inputs = _inputs(request, bench)
+    for name, content in inputs.items():
         writer.attach(name, content)
-    started_at = datetime.datetime.now(datetime.UTC)
     confirmed = {
         "prompts_confirmed_by": request.confirmed_by,
         "hazard_confirmed_by": request.hazard_confirmed_by,
@@ -31,7 +36,7 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> None:
             "title": request.plan.title,
             "bench": request.bench.title or request.bench.name,
             "operator": request.operator or request.bench.operator,
-            "started_at": started_at.isoformat(timespec="seconds"),
+            "started_at": utc(time.time_ns()),
             "simulated": str(bench.simulated).lower(),
             **{key: name for key, name in confirmed.items() if name},
         },
@@ -40,6 +45,7 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> None:
     writer.describe("versions", versions())
     dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
     writer.describe("calibration", dates)
+    return inputs
 
 
 def store_expiry(recorder: Recorder, expired: AcceptedExpiry) -> None:
@@ -48,7 +54,7 @@ def store_expiry(recorder: Recorder, expired: AcceptedExpiry) -> None:
 
 
 def store_result(
-    recorder: Recorder, request: RunRequest, bench: Bench, conductor: BenchConductor, result: RunResult
+    recorder: Recorder, inputs: dict[str, bytes], conductor: BenchConductor, result: RunResult
 ) -> None:
     """The result, what was made on the way, and hashes of all; closes the recording."""
     writer = recorder.writer
@@ -58,7 +64,7 @@ def store_result(
         writer.attach(name, content)
     controllers = {f"controller/{name}.toml": text.encode() for name, text in conductor.controllers.items()}
     writer.describe("time", recorder.time_base())
-    writer.describe("hashes", hashes(_inputs(request, bench) | controllers | attachments))
+    writer.describe("hashes", hashes(inputs | controllers | attachments))
     writer.close()
 
 
@@ -66,4 +72,14 @@ def _inputs(request: RunRequest, bench: Bench) -> dict[str, bytes]:
     inputs = {"plan.yaml": request.plan.text.encode(), "bench.toml": request.bench.text.encode()}
     if bench.model is not None:
         inputs["model.toml"] = model_to_toml(bench.model).encode()
-    return inputs
+    return inputs | _descriptions(bench)
+
+
+def _descriptions(bench: Bench) -> dict[str, bytes]:
+    """DBC, EDS and whatever else says what the devices' frames mean, by device: raw frames need them."""
+    return {
+        f"device/{key}/{path.name}": path.read_bytes()
+        for key, table in bench.file.device_tables.items()
+        for path in table.files()
+        if path.is_file()
+    }

@@ -158,12 +158,12 @@ class McapFile:
             part = slice(start, start + at_once)
             self._add(channel, times[part], payloads[part])
 
-    def attach(self, name: str, media_type: str, content: bytes) -> None:
-        """Store a file."""
+    def attach(self, name: str, media_type: str, content: bytes, stored_ns: int) -> None:
+        """Store a file; `stored_ns` since 1970."""
         offset = self._output.tell()
-        length = self._put(_written(mcap.Attachment(0, 0, name, media_type, content)))
+        length = self._put(_written(mcap.Attachment(stored_ns, stored_ns, name, media_type, content)))
         self._index.attachments.append(
-            mcap.AttachmentIndex(offset, length, 0, 0, len(content), name, media_type)
+            mcap.AttachmentIndex(offset, length, stored_ns, stored_ns, len(content), name, media_type)
         )
 
     def describe(self, name: str, table: dict[str, str]) -> None:

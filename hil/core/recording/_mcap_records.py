@@ -32,11 +32,12 @@ class Chunk:
 
 @dataclass(frozen=True)
 class Attachment:
-    """A stored file; `content` is None if its checksum disagrees."""
+    """A stored file, when it was stored; `content` is None if its checksum disagrees."""
 
     name: str
     content: bytes | None
     media_type: str = "text/plain"
+    stored_ns: int = 0
 
 
 @dataclass(frozen=True)
@@ -230,11 +231,12 @@ def _chunk(fields: _Fields) -> Chunk | None:
 
 
 def _attachment(fields: _Fields, body: memoryview) -> Attachment:
-    fields.take(16)
+    stored_ns = fields.number(8)
+    fields.take(8)
     name = str(fields.take(fields.number(4)), "utf-8", "replace")
     media_type = str(fields.take(fields.number(4)), "utf-8", "replace")
     content = fields.take(fields.number(8))
     checksum = fields.number(4)
     fields.end()
     intact = checksum == 0 or checksum == zlib.crc32(body[:-4])
-    return Attachment(name, bytes(content) if intact else None, media_type)
+    return Attachment(name, bytes(content) if intact else None, media_type, stored_ns)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import time
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -39,6 +40,7 @@ class RecordingWriter:
 
     Args:
         durable: a power cut too costs no more than what was added in the last quarter of a second before.
+        clock_0_ns: wall-clock time, ns since 1970, at which the frames' stamps are 0: what other tools show.
 
     Attributes:
         row_0_s: time of the frames' stamps at which `time_s` is 0: rows and events are logged on their base.
@@ -52,8 +54,10 @@ class RecordingWriter:
         *,
         chunk_bytes: int = CHUNK_BYTES,
         durable: bool = False,
+        clock_0_ns: int = 0,
     ) -> None:
         self.path = path
+        self._clock_0_ns = clock_0_ns
         self.row_0_s = 0.0
         self._samples = 0
         self._hash = hashlib.sha256()
@@ -107,9 +111,8 @@ class RecordingWriter:
         self._samples += len(rows)
         self._hash.update(encoded.data)
         try:
-            self._writer.add(
-                self._channels, np.rint((rows[:, 0] + self.row_0_s) * 1e9).astype(np.int64), encoded
-            )
+            logged_ns = np.rint((rows[:, 0] + self.row_0_s) * 1e9).astype(np.int64) + self._clock_0_ns
+            self._writer.add(self._channels, logged_ns, encoded)
         except OSError as error:
             raise self._failed(error) from error
 
@@ -125,7 +128,7 @@ class RecordingWriter:
     def attach(self, name: str, content: bytes, media_type: str = "text/plain") -> None:
         """Store a file with the data."""
         try:
-            self._writer.attach(name, media_type, content)
+            self._writer.attach(name, media_type, content, time.time_ns())
         except OSError as error:
             raise self._failed(error) from error
 
@@ -161,7 +164,7 @@ class RecordingWriter:
             self._file.close()
 
     def _add(self, channel: int, time_s: float, message: bytes) -> None:
-        stamps = np.array([round(time_s * 1e9)], np.int64)
+        stamps = np.array([self._clock_0_ns + round(time_s * 1e9)], np.int64)
         try:
             self._writer.add(channel, stamps, np.frombuffer(message, np.uint8).reshape(1, -1))
         except OSError as error:

@@ -157,8 +157,9 @@ def _tell(mdf: Any, recording: Recording) -> None:
     header = mdf.header
     header.project, header.author = run.get("title", ""), run.get("operator", "")
     header.subject = " ".join(filter(None, (dut.get("name"), dut.get("serial"))))
-    with contextlib.suppress(KeyError, ValueError):
-        header.start_time = datetime.datetime.fromisoformat(run["started_at"])
+    started = recording.metadata.get("time", {}).get("row_0_at") or run.get("started_at", "")
+    with contextlib.suppress(ValueError):
+        header.start_time = datetime.datetime.fromisoformat(started)
     for event in recording.events:
         block = EventBlock(sync_base=round(event.time_s * _EVENT_TICKS), sync_factor=1.0 / _EVENT_TICKS)
         block.name, block.comment = event.kind, event.text

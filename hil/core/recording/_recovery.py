@@ -119,8 +119,8 @@ class _Copy:
             case mcap.Chunk():
                 for inside in records_inside(record.content):
                     self._take_messages(inside)
-            case mcap.Attachment(name, content, media_type) if content is not None:
-                self._file.attach(name, media_type, content)
+            case mcap.Attachment(name, content, media_type, stored_ns) if content is not None:
+                self._file.attach(name, media_type, content, stored_ns)
             case mcap.Metadata(name, table) if name not in (CHANNELS_TABLE, RECOVERY_TABLE):
                 self._file.describe(name, table)
             case _:

@@ -39,7 +39,7 @@ def made_run(tmp_path: Path) -> Iterator[Any]:
     )
     with running("files") as bench:
         recorder = Recorder(tmp_path / "r.mcap", bench.streams, list(bench.file.buses), 0.001)
-        store_inputs(recorder, request, bench)
+        inputs = store_inputs(recorder, request, bench)
         recorder.begin()
 
         def take() -> None:
@@ -51,7 +51,7 @@ def made_run(tmp_path: Path) -> Iterator[Any]:
         bench.loop.run_for(0.3)
         recorder.finish_rows()
         stored = SimpleNamespace(
-            recorder=recorder, request=request, bench=bench, path=tmp_path / "r.mcap", closed=False
+            recorder=recorder, request=request, inputs=inputs, path=tmp_path / "r.mcap", closed=False
         )
         yield stored
         if not stored.closed:
@@ -60,7 +60,7 @@ def made_run(tmp_path: Path) -> Iterator[Any]:
 
 def finish(stored: Any, made: dict[str, bytes], controllers: dict[str, str]) -> Any:
     conductor: Any = SimpleNamespace(made=made, controllers=controllers)
-    store_result(stored.recorder, stored.request, stored.bench, conductor, RESULT)
+    store_result(stored.recorder, stored.inputs, conductor, RESULT)
     stored.closed = True
     return read_recording(stored.path, allow_missing=True)
 
@@ -74,6 +74,9 @@ def test_inputs_are_there_though_the_run_never_ends(stored: Any, tmp_path: Path)
     assert left.attachments["plan.yaml"].decode() == stored.request.plan.text
     assert left.attachments["bench.toml"].decode() == stored.request.bench.text
     assert b"three_inertia" in left.attachments["model.toml"]
+    rmcu, dyno = stored.request.bench.rmcu, stored.request.bench.dyno
+    assert left.attachments["device/rmcu/rmcu.dbc"] == rmcu.dbc.read_bytes()
+    assert left.attachments["device/dyno/rcs_dyno.eds"] == dyno.eds.read_bytes()
     assert "run.json" not in left.attachments
     run = left.metadata["run"]
     assert (run["plan"], run["operator"], run["simulated"]) == ("test", "O. Perator", "true")
@@ -88,7 +91,7 @@ def test_the_result_is_stored_whole_with_a_hash_of_every_file(stored: Any) -> No
     assert RunResult.model_validate_json(recording.attachments["run.json"]) == RESULT
     assert recording.attachments["made/frf.csv"] == b"a,b\n"
     hashes = recording.metadata["hashes"]
-    for name in ("plan.yaml", "bench.toml", "model.toml", "run.json", "made/frf.csv"):
+    for name in ("plan.yaml", "bench.toml", "model.toml", "device/rmcu/rmcu.dbc", "run.json", "made/frf.csv"):
         assert hashes[name] == sha256(recording.attachments[name]).hexdigest(), name
     assert hashes["controller/phase.toml"] == sha256(b"kind = 1\n").hexdigest()
     assert set(hashes) == {*recording.attachments, "controller/phase.toml"}

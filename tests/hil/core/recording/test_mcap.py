@@ -52,6 +52,24 @@ def test_frames_from_before_the_clock_began_keep_their_stamps(tmp_path):
     np.testing.assert_array_equal(read_frames(tmp_path / "early.mcap")["rmcu"], early)
 
 
+def test_messages_carry_the_time_of_day(tmp_path):
+    """`log_time` counts from 1970, as other tools show it; stamps and `time_s` stay as they are."""
+    began_ns = 1_800_000_000_123_000_000
+    writer = RecordingWriter(tmp_path / "r.mcap", NAMES, ["rmcu"], clock_0_ns=began_ns)
+    writer.row_0_s = 0.5
+    writer.add_frames("rmcu", frames(10))
+    writer.add_rows(np.array([[0.25] + [0.0] * (len(NAMES) - 1)]))
+    writer.add_event(0.3, "arm", "drives enabled")
+    writer.close()
+    with (tmp_path / "r.mcap").open("rb") as file:
+        logged = {c.topic: m.log_time for _, c, m in make_reader(file).iter_messages()}
+    assert logged["/channels"] == began_ns + 750_000_000
+    assert logged["/events"] == began_ns + 800_000_000
+    assert logged["/can/rmcu"] == began_ns + 9_000_000
+    np.testing.assert_array_equal(read_frames(tmp_path / "r.mcap")["rmcu"], frames(10))
+    assert read_recording(tmp_path / "r.mcap", least_samples=1).time_s[0] == 0.25
+
+
 def test_everything_comes_back(tmp_path):
     rows = write(tmp_path / "r.mcap")
     read = read_recording(tmp_path / "r.mcap")
