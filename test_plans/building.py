@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from typing import Any, NoReturn, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
 
 from hil.core.errors import BadInputError
-from test_plans.registry import did_you_mean
+from hil.core.suggestion import closest, did_you_mean
+from test_plans.mistakes import plan_error
 from test_plans.yaml_document import Document, KeyPath
 
 M = TypeVar("M", bound=BaseModel)
@@ -30,7 +32,7 @@ def build(
     """Make a `model` of `values`, which stand at `path` of the document.
 
     Raises:
-        BadInputError: names file, line and key of the first wrong value, and what would be right.
+        PlanError: names file, line and key of every wrong value, and what would be right.
     """
     try:
         return model.model_validate(dict(values), context=context)
@@ -76,22 +78,31 @@ def key_names(model: type[BaseModel]) -> list[str]:
 
 
 def _refuse(model: type[BaseModel], error: ValidationError, document: Document, path: KeyPath) -> NoReturn:
-    # An unknown key is told first: it is often the misspelling of the key that is missing.
-    first = min(error.errors(), key=lambda e: e["type"] != "extra_forbidden")
-    where = document.place((*path, *first["loc"]))
-    key = str(first["loc"][0]) if first["loc"] else ""
+    # An unknown key is often the misspelling of one that is missing, which then need not be told.
+    unknown = [mistake for mistake in error.errors() if mistake["type"] == "extra_forbidden"]
+    meant = {closest(str(mistake["loc"][-1]), key_names(model)) for mistake in unknown}
+    others = [mistake for mistake in error.errors() if mistake["type"] != "extra_forbidden"]
+    found = [*unknown, *(m for m in others if m["type"] != "missing" or str(m["loc"][-1]) not in meant)]
+    raise plan_error([_in_words(model, mistake, document, path) for mistake in found]) from error
+
+
+def _in_words(
+    model: type[BaseModel], mistake: ErrorDetails, document: Document, path: KeyPath
+) -> BadInputError:
+    where = document.place((*path, *mistake["loc"]))
+    key = str(mistake["loc"][0]) if mistake["loc"] else ""
     meaning = _meaning(model, key)
-    match first["type"]:
+    match mistake["type"]:
         case "extra_forbidden":
             what, fix = f"unknown key {key!r}", did_you_mean(key, key_names(model))
         case "missing":
             what, fix = f"the key '{key}' is missing", f"{key}: {meaning}" if meaning else ""
         case "value_error" | "assertion_error":
-            what, fix = str(first["ctx"]["error"]), ""
+            what, fix = str(mistake["ctx"]["error"]), ""
         case _:
-            message = first["msg"].removeprefix("Input ")
-            what, fix = f"{brief(first['input'])} {message}", f"{key}: {meaning}" if meaning else ""
-    raise BadInputError(what, where=where, fix=fix) from error
+            message = mistake["msg"].removeprefix("Input ")
+            what, fix = f"{brief(mistake['input'])} {message}", f"{key}: {meaning}" if meaning else ""
+    return BadInputError(what, where=where, fix=fix)
 
 
 def _meaning(model: type[BaseModel], key: str) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
-from test_plans.registry import did_you_mean
+from hil.core.suggestion import did_you_mean
 from test_plans.yaml_document import Document, KeyPath
 
 _STEP, _FILE = "set_controller", "file"

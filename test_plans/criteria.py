@@ -7,10 +7,10 @@ from typing import Any
 from pydantic import BaseModel, Field
 
 from hil.core.errors import BadInputError
+from hil.core.suggestion import did_you_mean
 from test_plans.building import Strict, build, key_names, mapping_at
 from test_plans.conductor import PlannedSegment
 from test_plans.metrics import METRICS, Metric
-from test_plans.registry import did_you_mean
 from test_plans.yaml_document import Document, KeyPath
 
 EXAMPLE = "{segment: gain_0kmh, metric: peak_shaft_torque, upper: 723, unit: N m}"
@@ -52,8 +52,8 @@ class Criterion(Strict):
         return self.metric.definition + compared
 
 
-def criterion_at(value: object, document: Document, path: KeyPath, segments: Segments) -> Criterion:
-    """Make the criterion that stands at `path`.
+def criterion_at(value: object, document: Document, path: KeyPath, segments: Segments | None) -> Criterion:
+    """Make the criterion that stands at `path`; without `segments` it is not asked whether its own exist.
 
     Raises:
         BadInputError: names line and key of what is unknown, missing or contradictory.
@@ -65,7 +65,8 @@ def criterion_at(value: object, document: Document, path: KeyPath, segments: Seg
     _refuse_unknown(parameters, metric_class, document, path)
     keys = build(CriterionKeys, own, document, path)
     metric = build(metric_class, parameters, document, path)
-    _check_segments(keys, metric, segments, document, path)
+    if segments is not None:
+        _check_segments(keys, metric, segments, document, path)
     _check_limits(keys, metric, document, path)
     default_id = f"{keys.segment}.{keys.metric}" + (f".below.{keys.below}" if keys.below else "")
     return Criterion(

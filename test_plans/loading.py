@@ -9,12 +9,14 @@ from typing import Any
 
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
+from hil.core.suggestion import closest, did_you_mean
 from test_plans.building import brief, build, list_at, mapping_at
 from test_plans.choices import Choices
+from test_plans.conductor import PlannedSegment
 from test_plans.criteria import EXAMPLE as CRITERION_EXAMPLE
 from test_plans.criteria import Criterion, criterion_at
+from test_plans.mistakes import PlanMistakes
 from test_plans.plan import Plan, PlanKeys, estimate_duration_s
-from test_plans.registry import did_you_mean
 from test_plans.steps import STEPS, FileSearch, Step
 from test_plans.yaml_document import Document, KeyPath, read_yaml
 
@@ -38,7 +40,7 @@ def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
     With `choices` the plan's text is the one that was chosen: what is carried out, recorded and reported.
 
     Raises:
-        BadInputError: no such plan, or what is wrong with it: file, line, key, and what to do.
+        BadInputError: no such plan, or all that is wrong with it: file, line, key, and what to do.
     """
     path = _path_of(name_or_path)
     text = read_text(path)
@@ -69,33 +71,61 @@ class _Reader:
         self._files = FileSearch((base_dir, LIBRARY / "controllers"), files_required)
 
     def plan(self, text: str) -> Plan:
-        document = self._document
+        document, mistakes = self._document, PlanMistakes()
         content = mapping_at(document.value, document, (), "name: my_plan, then steps:")
+        keys: PlanKeys | None = None
+        steps: tuple[Step, ...] | None = None
+        end_steps: tuple[Step, ...] = ()
+        criteria: tuple[Criterion, ...] = ()
         for key in content:
-            if key not in _KEYS:
-                raise BadInputError(
-                    f"unknown key {key!r}", where=document.place((key,)), fix=did_you_mean(key, _KEYS)
-                )
-        keys = build(PlanKeys, {k: v for k, v in content.items() if k in PlanKeys.model_fields}, document, ())
+            with mistakes.collected():
+                self._refuse_unknown(key)
+        with mistakes.collected():
+            keys = build(
+                PlanKeys, {k: content[k] for k in content if k in PlanKeys.model_fields}, document, ()
+            )
+        with mistakes.collected():
+            if not any(closest(key, _KEYS) == "steps" for key in content if key not in _KEYS):
+                steps = self._first_steps(content)
+        with mistakes.collected():
+            end_steps = self._steps(_or_empty(content, "finally"), ("finally",))
+            self._refuse_segments_at_the_end(end_steps)
+        with mistakes.collected():
+            criteria = self._criteria(_or_empty(content, "criteria"), steps)
+        mistakes.refuse()
+        assert keys is not None
+        assert steps is not None
+        source = Path(document.where)
+        plan = Plan(
+            **keys.model_dump(), steps=steps, finally_=end_steps, criteria=criteria, text=text, source=source
+        )
+        self._refuse_endless(plan)
+        return plan
+
+    def _refuse_unknown(self, key: str) -> None:
+        if key not in _KEYS:
+            raise BadInputError(
+                f"unknown key {key!r}", where=self._document.place((key,)), fix=did_you_mean(key, _KEYS)
+            )
+
+    def _first_steps(self, content: dict[str, Any]) -> tuple[Step, ...]:
         if not content.get("steps"):
             raise BadInputError(
                 "a plan needs at least one step",
-                where=document.place(("steps",)),
+                where=self._document.place(("steps",)),
                 fix=f"write under steps: {_STEP_EXAMPLE}",
             )
         steps = self._steps(content["steps"], ("steps",))
-        end_steps = self._steps(_or_empty(content, "finally"), ("finally",))
-        self._refuse_segments_at_the_end(end_steps)
         self._refuse_same_segments(steps)
-        plan = Plan(
-            **keys.model_dump(), steps=steps, finally_=end_steps, text=text, source=Path(document.where)
-        )
-        self._refuse_endless(plan)
-        return plan.model_copy(update={"criteria": self._criteria(_or_empty(content, "criteria"), plan)})
+        return steps
 
     def _steps(self, value: object, path: KeyPath) -> tuple[Step, ...]:
-        entries = list_at(value, self._document, path, _STEP_EXAMPLE)
-        return tuple(self._step(entry, (*path, index)) for index, entry in enumerate(entries))
+        mistakes, steps = PlanMistakes(), []
+        for index, entry in enumerate(list_at(value, self._document, path, _STEP_EXAMPLE)):
+            with mistakes.collected():
+                steps.append(self._step(entry, (*path, index)))
+        mistakes.refuse()
+        return tuple(steps)
 
     def _step(self, value: object, path: KeyPath) -> Step:
         document = self._document
@@ -119,22 +149,32 @@ class _Reader:
         nested = {key: self._steps(values[key], (*here, key)) for key in step_class.nested if key in values}
         return build(step_class, values | nested, document, here, self._files)
 
-    def _criteria(self, value: object, plan: Plan) -> tuple[Criterion, ...]:
-        document = self._document
-        segments = {segment.id: segment for segment in plan.segments}
-        seen: dict[str, int] = {}
+    def _criteria(self, value: object, steps: tuple[Step, ...] | None) -> tuple[Criterion, ...]:
+        """The criteria; where the steps have mistakes, nobody knows which segments there will be."""
+        segments = None if steps is None else {one.id: one for step in steps for one in step.segments()}
+        mistakes, seen = PlanMistakes(), dict[str, int]()
         criteria = []
-        for index, entry in enumerate(list_at(value, document, ("criteria",), f"- {CRITERION_EXAMPLE}")):
-            criterion = criterion_at(entry, document, ("criteria", index), segments)
-            if criterion.id in seen:
-                raise BadInputError(
-                    f"the criterion '{criterion.id}' stands twice, as number {seen[criterion.id]} too",
-                    where=document.place(("criteria", index)),
-                    fix="give one of them an 'id' of its own",
-                )
-            seen[criterion.id] = index + 1
-            criteria.append(criterion)
+        for index, entry in enumerate(
+            list_at(value, self._document, ("criteria",), f"- {CRITERION_EXAMPLE}")
+        ):
+            with mistakes.collected():
+                criteria.append(self._criterion(entry, index, segments, seen))
+        mistakes.refuse()
         return tuple(criteria)
+
+    def _criterion(
+        self, entry: object, index: int, segments: dict[str, PlannedSegment] | None, seen: dict[str, int]
+    ) -> Criterion:
+        path: KeyPath = ("criteria", index)
+        criterion = criterion_at(entry, self._document, path, segments)
+        if criterion.id in seen:
+            raise BadInputError(
+                f"the criterion '{criterion.id}' stands twice, as number {seen[criterion.id]} too",
+                where=self._document.place(path),
+                fix="give one of them an 'id' of its own",
+            )
+        seen[criterion.id] = index + 1
+        return criterion
 
     def _refuse_same_segments(self, steps: tuple[Step, ...]) -> None:
         seen: set[str] = set()

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 from importlib import metadata
 from typing import Generic, TypeVar
 
 from hil.core.errors import BadInputError
+from hil.core.suggestion import did_you_mean
 
 T = TypeVar("T")
 
@@ -61,11 +61,3 @@ class Registry(Generic[T]):
                 f"is no {self._what}: a class derived from {self._base.__name__} is needed", where=where
             )
         return loaded
-
-
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """The closest of `known`, and the whole list."""
-    choices = list(known)
-    close = difflib.get_close_matches(word, choices, n=1)
-    hint = f"did you mean '{close[0]}'? " if close else ""
-    return f"{hint}known: {', '.join(choices) or 'none'}"

@@ -10,7 +10,9 @@ from rich.table import Table
 
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress
 from hil.core.channels import CHANNELS
-from hil.engine import load_bench
+from hil.core.errors import BadInputError
+from hil.core.mistakes import all_of
+from hil.engine import BenchFile, load_bench
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.forecast import Forecast, forecast
 from hil.engine.preflight import preflight
@@ -26,7 +28,7 @@ def carry_out(
 ) -> int:
     """Carry the command out; its exit code."""
     choices = Choices(controller_choices(controller or [], "--controller"))
-    checked, file = load_plan(plan, choices), load_bench(bench)
+    checked, file = _loaded(plan, choices, bench)
     with tempfile.TemporaryDirectory() as directory:
         today = datetime.datetime.now(datetime.UTC).date()
         accepted_expiry(file, today, "")
@@ -41,6 +43,21 @@ def carry_out(
     else:
         _tell(checked, file.name, duration_s, predicted)
     return 0 if predicted.fits else 1
+
+
+def _loaded(plan: str, choices: Choices, bench: str) -> tuple[Plan, BenchFile]:
+    """Plan and bench file; what is wrong with either is told at once."""
+    refused = []
+    try:
+        checked = load_plan(plan, choices)
+    except BadInputError as error:
+        refused.append(error)
+    try:
+        file = load_bench(bench)
+    except BadInputError as error:
+        refused.append(error)
+    all_of(refused)
+    return checked, file
 
 
 def _json(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> dict[str, object]:

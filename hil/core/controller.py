@@ -13,9 +13,10 @@ from typing import Any, Literal
 import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
-from hil.core.toml_file import load_toml, parse_toml
+from hil.core.mistakes import keyed, refuse
+from hil.core.table_mistakes import told
+from hil.core.toml_file import parse_toml, toml_text
 
 logger = logging.getLogger(__name__)
 
@@ -116,25 +117,24 @@ def load_controller(path: Path) -> Controller:
     """Read a controller file.
 
     Raises:
-        BadInputError: names the key that is unknown, missing or out of range.
+        BadInputError: names every key that is unknown, missing or out of range.
     """
-    controller = _checked(load_toml(path), str(path))
+    controller = controller_from_toml(toml_text(path), str(path))
     logger.debug("controller %s", path)
     return controller
 
 
 def controller_from_toml(text: str, where: str) -> Controller:
-    """Check the text of a controller file; `where` names it in messages."""
-    return _checked(parse_toml(text, where), where)
+    """Check the text of a controller file; `where` names it in messages.
 
-
-def _checked(data: dict[str, Any], where: str) -> Controller:
+    Raises:
+        BadInputError: not TOML, or every key that is unknown, missing or out of range.
+    """
     try:
-        return Controller.model_validate(data)
+        return Controller.model_validate(parse_toml(text, where))
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise BadInputError(f"{key}: {first['msg']}", where=where) from error
+        refuse(where, map(keyed, told(error, Controller)), text)
+        raise
 
 
 def controller_schema() -> dict[str, Any]:

@@ -14,11 +14,11 @@ from hil.core.files import read_text
 LARGEST_BYTES = 5_000_000
 
 
-def load_toml(path: Path) -> dict[str, Any]:
-    """Contents of a TOML file.
+def toml_text(path: Path) -> str:
+    """Text of a TOML file.
 
     Raises:
-        BadInputError: not readable, far too large, or not TOML, with the line where it breaks.
+        BadInputError: not readable, or far too large.
     """
     with contextlib.suppress(OSError):  # what cannot be asked cannot be read: said below
         size = path.stat().st_size
@@ -28,7 +28,7 @@ def load_toml(path: Path) -> dict[str, Any]:
                 where=str(path),
                 fix="is it a recording? Give the TOML file",
             )
-    return parse_toml(read_text(path), str(path))
+    return read_text(path)
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:

@@ -12,11 +12,12 @@ from pydantic import ValidationError
 
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
+from hil.core.mistakes import keyed, refuse
 from hil.core.printable import printable
+from hil.core.table_mistakes import told
 from hil.engine._bench_checks import contradictions, device_mistakes, unprintable
-from hil.engine._bench_lines import line_of
 from hil.engine.bench_tables import BenchFile
-from hil.engine.device_kinds import device_tables, told
+from hil.engine.device_kinds import device_tables
 
 DEFAULT_BENCH = "sim"
 
@@ -58,7 +59,8 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
     try:
         bench = BenchFile.model_validate({**data, **devices, "text": text, "source": path.resolve()})
     except ValidationError as error:
-        _refuse(where, [*mistakes, *told(error, known=mistakes)], text)
+        further = told(error, BenchFile, known=mistakes)
+        _refuse(where, [*mistakes, *(told for told in further if not _is_of(told, mistakes))], text)
         raise
     _refuse(where, mistakes or contradictions(bench), text)
     base = path.resolve().parent
@@ -75,23 +77,19 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
 
 
 def _refuse(where: str, mistakes: list[str], text: str) -> None:
-    """Tell every mistake of a file, each on a line; nothing if there is none.
-
-    Raises:
-        BadInputError: there are mistakes.
-    """
-    placed = [(line_of(text, _key(mistake)), mistake) for mistake in mistakes]
-    if len(placed) == 1:
-        line, mistake = placed[0]
-        raise BadInputError(mistake, where=f"{where}, line {line}" if line else where, fix=_FIX)
-    if placed:
-        lines = "".join(f"\n  line {line}: {told}" if line else f"\n  {told}" for line, told in placed)
-        raise BadInputError(f"{len(placed)} mistakes{lines}", where=where, fix=_FIX)
+    refuse(where, map(keyed, mistakes), text, _FIX)
 
 
-def _key(mistake: str) -> str:
-    """The key that a mistake begins with."""
-    return mistake.partition(": ")[0].partition(" = ")[0]
+def _is_of(told: str, of_devices: list[str]) -> bool:
+    """Whether it is of a device's table that has mistakes: its kind has told them."""
+    wrong = {_device(keyed(mistake).key) for mistake in of_devices}
+    return _device(keyed(told).key) in wrong
+
+
+def _device(key: str) -> str:
+    """The device's table that a key stands in."""
+    parts = key.split(".")
+    return ".".join(parts[: 2 if parts[0] == "devices" else 1])
 
 
 def _shipped_bench(name: str) -> Path:

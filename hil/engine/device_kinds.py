@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from drivers import OWN_KINDS, DeviceTable, LoadTable
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
+from hil.core.table_mistakes import told
 from test_plans.registry import Registry
 
 #: Kinds of device by name; those of other packages are entry points of `hil.devices`.
@@ -38,34 +39,6 @@ def device_tables(data: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
     return found, mistakes
 
 
-def told(error: ValidationError, key: str = "", known: list[str] | None = None) -> list[str]:
-    """Each of pydantic's errors: key, value, and what would be right.
-
-    Args:
-        key: of the table that was checked.
-        known: mistakes that were told; what is told of the same table again is left out.
-    """
-    tables = {mistake.partition(": ")[0].partition(" = ")[0] for mistake in known or ()}
-    found = []
-    for mistake in error.errors():
-        place = (key, *mistake["loc"]) if key else mistake["loc"]
-        name = printable(".".join(str(part) for part in place if part != "[key]"), 120)
-        if not any(table == name or table.startswith(f"{name}.") for table in tables):
-            found.append(_in_words(name, dict(mistake)))
-    return found
-
-
-def _in_words(name: str, mistake: dict[str, Any]) -> str:
-    if mistake["type"] == "missing":
-        return f"{name}: is missing"
-    if mistake["type"] == "extra_forbidden":
-        return f"{name}: unknown key"
-    value = mistake["input"]
-    shown = "a table" if isinstance(value, dict) else printable(repr(value), 60)
-    said = str(mistake["msg"]).removeprefix("Value error, ")
-    return f"{name} = {shown}: {said[:1].lower()}{said[1:]}"
-
-
 def _checked(key: str, table: Any, default: str, mistakes: list[str]) -> Any:
     """The table as its kind has it; itself if something is wrong with it, which is added to `mistakes`."""
     if not isinstance(table, dict):
@@ -87,5 +60,5 @@ def _checked(key: str, table: Any, default: str, mistakes: list[str]) -> Any:
     try:
         return found.model_validate({**table, "kind": kind})
     except ValidationError as error:
-        mistakes += told(error, key)
+        mistakes += told(error, found, key)
         return table

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording, read_recording
 from hil.core.result import Segment
-from hil.engine._bench_lines import line_of
+from hil.core.toml_lines import line_of
 from hil.engine.bench_tables import BenchFile
 from hil.engine.border import Progress, RunOutcome, RunRequest, Terminal
 from hil.engine.run import run_plan

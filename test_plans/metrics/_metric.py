@@ -10,9 +10,9 @@ from pydantic import AfterValidator, Field
 from hil.core.channels import CHANNELS, TIME
 from hil.core.recording import Recording
 from hil.core.result import Segment
+from hil.core.suggestion import did_you_mean
 from test_plans.building import Strict
 from test_plans.conductor import PlannedSegment
-from test_plans.registry import did_you_mean
 
 _NAMES = [name for name in CHANNELS if name != TIME]
 

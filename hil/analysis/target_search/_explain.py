@@ -16,7 +16,7 @@ from hil.analysis.target_search._targets import Targets
 from hil.analysis.target_search._trial import CarryOut, Guess, Outcome, Trial, guess_at
 from hil.core.errors import BadInputError
 from hil.core.model import Model, model_to_toml
-from test_plans.registry import did_you_mean
+from hil.core.suggestion import did_you_mean
 
 #: Rivals that are told.
 RIVALS = 4

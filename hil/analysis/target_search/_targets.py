@@ -12,9 +12,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model
-from hil.core.toml_file import load_toml
+from hil.core.suggestion import did_you_mean
+from hil.core.toml_file import parse_toml, toml_text
 from test_plans import Plan, load_plan
-from test_plans.registry import did_you_mean
 
 Range = tuple[float, float]
 
@@ -112,7 +112,7 @@ def read_targets(path: Path | None, plan: str | None, further: Mapping[str, floa
 
 
 def _keys_of(path: Path) -> _FileKeys:
-    data: dict[str, Any] = load_toml(path)
+    data: dict[str, Any] = parse_toml(toml_text(path), str(path))
     known = _FileKeys.model_fields
     for key in data:
         if key not in known:

@@ -12,6 +12,8 @@ from hil.core.channels import OUTPUTS
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probes
 from hil.core.errors import BadInputError
+from hil.core.mistakes import Mistakes
+from hil.core.suggestion import closest, did_you_mean
 
 #: What a model gives, and so what a sensor effect can bend.
 SENSED = ("motor_torque_nm", *OUTPUTS)
@@ -173,51 +175,53 @@ class Effect:
         """Return `values` complete with defaults.
 
         Raises:
-            BadInputError: an unknown or missing key, not a number, or out of the parameter's
+            BadInputError: every unknown or missing key, not a number, or out of the parameter's
                 bounds; a channel that no model gives.
         """
         known = {p.name for p in self.parameters} | set(self.text_parameters)
+        mistakes = Mistakes()
         for key in values:
             if key not in known:
-                raise BadInputError(
-                    f"effect '{self.id}' has no parameter '{key}'",
-                    where=where,
-                    fix=f"it has: {', '.join(sorted(known))}",
-                )
+                with mistakes.of(key):
+                    raise BadInputError(
+                        f"effect '{self.id}' has no parameter '{key}'", fix=did_you_mean(key, sorted(known))
+                    )
         complete: dict[str, float | str] = {}
         for name in self.text_parameters:
-            text = values.get(name)
-            if not isinstance(text, str) or not text:
-                raise BadInputError(f"effect '{self.id}' needs '{name}', a name", where=where)
-            if name == "channel" and text not in SENSED:
-                raise BadInputError(
-                    f"effect '{self.id}': a model has no channel {shown(text)}",
-                    where=where,
-                    fix=f"channels: {', '.join(SENSED)}",
-                )
-            complete[name] = text
+            with mistakes.of(name):
+                complete[name] = self._text(name, values.get(name))
+        meant = {closest(key, known) for key in values if key not in known}
         for parameter in self.parameters:
-            complete[parameter.name] = self._number(parameter, values.get(parameter.name), where)
+            if parameter.name not in values and parameter.name in meant:  # its misspelling has been told
+                continue
+            with mistakes.of(parameter.name):
+                complete[parameter.name] = self._number(parameter, values.get(parameter.name))
+        mistakes.refuse(where)
         return complete
 
-    def _number(self, parameter: Parameter, value: object, where: str) -> float:
+    def _text(self, name: str, value: object) -> str:
+        if not isinstance(value, str) or not value:
+            raise BadInputError(f"effect '{self.id}' needs '{name}', a name")
+        if name == "channel" and value not in SENSED:
+            raise BadInputError(
+                f"effect '{self.id}': a model has no channel {shown(value)}", fix=did_you_mean(value, SENSED)
+            )
+        return value
+
+    def _number(self, parameter: Parameter, value: object) -> float:
         if value is None and parameter.optional:
             return parameter.default
         if value is None:
-            raise BadInputError(
-                f"effect '{self.id}' needs '{parameter.name}' ({parameter.unit})", where=where
-            )
+            raise BadInputError(f"effect '{self.id}' needs '{parameter.name}' ({parameter.unit})")
         number = finite_number(value)
         if number is None:
             raise BadInputError(
                 f"effect '{self.id}': '{parameter.name}' is {shown(value)}, not a finite number",
-                where=where,
                 fix=f"give a plain number in {parameter.unit or 'no unit'}",
             )
         if not parameter.lower <= number <= parameter.upper:
             raise BadInputError(
                 f"effect '{self.id}': '{parameter.name}' = {number:g} {parameter.unit} is out of range",
-                where=where,
                 fix=f"it lies from {parameter.lower:g} to {parameter.upper:g} {parameter.unit}",
             )
         return number

@@ -7,7 +7,7 @@ import tomllib
 import pytest
 
 from hil.core.errors import BadInputError
-from hil.engine._bench_lines import line_of
+from hil.core.toml_lines import line_of
 from hil.engine.bench_file import bench_from_dict, load_bench
 from tests.benches_for_tests import SIM
 

@@ -1,0 +1,101 @@
+"""All that is wrong with a file, told at once: each mistake with its line, key and what would be right."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from hil.core.errors import BadInputError
+from hil.core.toml_lines import line_of
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """One of them; `key` is dotted and tells the line, `what` names it too."""
+
+    key: str
+    what: str
+    fix: str = ""
+
+
+def keyed(told: str) -> Mistake:
+    """A mistake whose words begin with its key: `limits.shaft_torque_nm = 'x': ...`."""
+    return Mistake(told.partition(": ")[0].partition(" = ")[0], told)
+
+
+class MistakesError(BadInputError):
+    """What is wrong with a file or with a part of it, one or several."""
+
+    def __init__(self, what: str, *, where: str = "", fix: str = "", found: tuple[Mistake, ...] = ()) -> None:
+        super().__init__(what, where=where, fix=fix)
+        self.found = found
+
+
+class Mistakes:
+    """What is wrong with a file, collected while the rest of it is still looked at."""
+
+    def __init__(self) -> None:
+        self._found: list[Mistake] = []
+
+    @contextlib.contextmanager
+    def of(self, key: str) -> Iterator[None]:
+        """Collect what is refused of a key, and go on behind the block."""
+        try:
+            yield
+        except MistakesError as error:
+            for mistake in error.found:
+                inner = f"{key}.{mistake.key}" if key and mistake.key else key or mistake.key
+                self._found.append(Mistake(inner, mistake.what, mistake.fix))
+        except BadInputError as error:
+            self._found.append(Mistake(key, error.what, error.fix))
+
+    def refuse(self, where: str, text: str = "") -> None:
+        """Raise what was found, if anything.
+
+        Raises:
+            MistakesError: all mistakes.
+        """
+        refuse(where, self._found, text)
+
+
+def refuse(where: str, mistakes: Iterable[Mistake], text: str = "", fix: str = "") -> None:
+    """Tell every mistake of a file, each on a line; nothing if there is none.
+
+    Args:
+        where: the file.
+        text: its text, for lines.
+        fix: what to do, where a mistake does not say it.
+
+    Raises:
+        MistakesError: there are mistakes.
+    """
+    found = tuple(dict.fromkeys(mistakes))
+    if len(found) == 1:
+        line = line_of(text, found[0].key)
+        place = f"{where}, line {line}" if line else where
+        raise MistakesError(found[0].what, where=place, fix=found[0].fix or fix, found=found)
+    if found:
+        placed = [(line_of(text, mistake.key) or 0, mistake) for mistake in found]
+        placed.sort(key=lambda one: one[0])
+        lines = (f"\n  {_on_a_line(mistake, line)}" for line, mistake in placed)
+        raise MistakesError(f"{len(found)} mistakes{''.join(lines)}", where=where, fix=fix, found=found)
+
+
+def all_of(errors: Iterable[BadInputError]) -> None:
+    """Tell what is wrong with several files; nothing if nothing is.
+
+    Raises:
+        BadInputError: the only error, or all of them.
+    """
+    found = list(errors)
+    if len(found) == 1:
+        raise found[0]
+    if found:
+        told = "".join(f"\n{error}" for error in found)
+        raise BadInputError(f"{len(found)} files cannot be used{told}")
+
+
+def _on_a_line(mistake: Mistake, line: int) -> str:
+    said = f"{mistake.what}; {mistake.fix}" if mistake.fix else mistake.what
+    return f"line {line}: {said}" if line else said
