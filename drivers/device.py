@@ -128,6 +128,15 @@ class SaysEmergency(Protocol):
 
 
 @runtime_checkable
+class SaysPowerless(Protocol):
+    """A device that gives no torque once its host has left it, though it is not in its safe state then."""
+
+    def is_powerless(self) -> bool:
+        """Whether it says that it gives no torque, and says so now; asks it nothing."""
+        ...
+
+
+@runtime_checkable
 class WheelLoad(Device, Protocol):
     """What stands under [dyno]: it turns the wheels, at a speed or like a vehicle."""
 

@@ -237,8 +237,12 @@ class RmcuDriver:
 
     def is_safe(self) -> bool:
         """Whether the RMCU says that it gives no torque, and says so now."""
+        return self.state == "off" and self.is_powerless()
+
+    def is_powerless(self) -> bool:
+        """Whether it asks for no torque now: off, or in the fault to which it goes without requests."""
         fresh = self._loop.clock.now_s() - self.last_seen_s < 0.05
-        return fresh and self.state == "off" and self.torque_ref_nm == 0.0
+        return fresh and self.state in ("off", "fault") and self.torque_ref_nm == 0.0
 
     def write_controller(self, controller: Controller) -> None:
         """Write every parameter, read each back, apply.

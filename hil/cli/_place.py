@@ -26,6 +26,8 @@ class Place:
     folder: Path
     stale: tuple[Path, ...]
     """Files of earlier results there, which --overwrite lets go."""
+    lock: int = -1
+    """Descriptor that keeps others from writing here: as long as any process has it open."""
 
     def write(self, files: Mapping[str, bytes], inputs: Iterable[Path] = ()) -> None:
         """Write all files, or none when one of them cannot be written; earlier results go.
@@ -73,7 +75,7 @@ def results_in(
     made: list[Path] = []
     folder = _numbered(default, made) if out is None else _named(out, made)
     try:
-        with alone_in(folder):
+        with alone_in(folder) as lock:
             there = [folder / name for name in dict.fromkeys((*names, *_listed(folder / summary)))]
             for path in there:
                 refuse_special(path)
@@ -84,7 +86,7 @@ def results_in(
                     f"holds results already: {there[0].name}", where=str(folder), fix=_OVERWRITE
                 )
             logger.info("results go to %s", folder)
-            yield Place(folder, tuple(there))
+            yield Place(folder, tuple(there), lock)
     finally:
         for path in reversed(made):
             with contextlib.suppress(OSError):  # not empty: the results are there
@@ -167,15 +169,18 @@ def _make(folder: Path, made: list[Path]) -> None:
 
 
 @contextlib.contextmanager
-def alone_in(folder: Path) -> Iterator[None]:
+def alone_in(folder: Path) -> Iterator[int]:
     """Refuse to work in a folder in which another command is writing.
+
+    Yields:
+        the descriptor that holds the lock.
 
     Raises:
         BadInputError: names the process.
     """
     try:
-        with lock_on(folder):
-            yield
+        with lock_on(folder) as lock:
+            yield lock
     except HeldError as error:
         raise BadInputError(
             f"another command is writing here: {error}",

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from hil.cli._browser import show_in_browser
+from hil.cli._hold import HOLDER
 from hil.cli._interrupts import INTERRUPTS
 from hil.cli._output import (
     Show,
@@ -31,7 +32,8 @@ from hil.core.model import load_model
 from hil.core.printable import printable
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
-from hil.engine import RECORDING, RunOutcome, RunRequest, StopRequest, load_bench, run_plan
+from hil.engine import RECORDING, RunOutcome, RunRequest, StopRequest, load_bench
+from hil.engine import carry_out as carried_out
 from hil.engine.border import analysed_apart
 from hil.engine.disk_room import remark_on_room
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
@@ -88,7 +90,7 @@ def carry_out(
             warn(remark)
         with progress(f"{checked.name} on {bench_file.name}{_keys(request)}") as tell:
             request.progress = lambda share, text: tell(text, share)
-            outcome = run_plan(request)
+            outcome = carried_out(request, HOLDER, keeps=[place.lock])
         with progress(f"{checked.name} on {bench_file.name}") as tell:
             result = _Conclusion(place, outcome, stop).write(tell)
         if as_json:

@@ -5,6 +5,7 @@ from hil.engine.bench_tables import BenchFile
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.run import run_plan
 from hil.engine.stopping import STOP_SIGNALS, StopRequest
+from hil.engine.supervisor import carry_out
 
 __all__ = [
     "DEFAULT_BENCH",
@@ -14,6 +15,7 @@ __all__ = [
     "RunOutcome",
     "RunRequest",
     "StopRequest",
+    "carry_out",
     "load_bench",
     "run_plan",
 ]

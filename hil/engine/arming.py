@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from drivers import TICK_S, Incomplete
 from hil.core.errors import BenchError
 from hil.core.result import Identity
@@ -14,11 +16,17 @@ from hil.engine.warming import warm_up
 from hil.engine.zero import ZeroCheck
 
 _LISTEN_S = 0.2
+#: How often the loop says to who watches it that it turns, s of the bench's clock.
+TURNED_S = 0.02
 _REPEAT_S = 0.02
 
 
 class Arming:
-    """Brings a bench up and arms it; `armed`: from now on the safe state is owed, whatever happens."""
+    """Brings a bench up and arms it; `armed`: from now on the safe state is owed, whatever happens.
+
+    Args:
+        turned: called every `TURNED_S` from when devices hear that their host lives.
+    """
 
     def __init__(
         self,
@@ -27,9 +35,10 @@ class Arming:
         watch: LimitWatch,
         zero: ZeroCheck,
         timing: RequestTiming | None,
+        turned: Callable[[], None] = lambda: None,
     ) -> None:
         self._bench, self._recorder, self._watch = bench, recorder, watch
-        self._zero, self._timing = zero, timing
+        self._zero, self._timing, self._turned = zero, timing, turned
         *others, last = [device.name for device in bench.devices]
         self.names = f"{', '.join(others)} and {last}"
         self.armed = False
@@ -49,6 +58,7 @@ class Arming:
         if not bench.loop.clock.virtual:
             bench.loop.every(KEEP_S, self._recorder.keep)
         bench.start_heartbeats(self._timing)
+        bench.loop.every(TURNED_S, self._turned)
         bench.rmcu.come_up()
         bench.dyno.come_up()
         for device in bench.further.values():

@@ -152,6 +152,23 @@ class Simulation(Table):
     )
 
 
+class Supervision(Table):
+    """Two processes that watch each other: the command, and the one that holds the bench for it.
+
+    Times are those of a bench in real time; with `time_scale` they are as much longer.
+    """
+
+    own_process: bool | None = Field(
+        None, description="whether the bench is held by a process of its own; default: if it is hardware"
+    )
+    hung_after_s: float = Field(
+        2.0, ge=0.5, le=60, description="a process whose loop does not turn for so long is ended"
+    )
+    alone_after_s: float = Field(
+        2.0, ge=0.5, le=60, description="a run that hears nothing of its command for so long is ended"
+    )
+
+
 class BenchFile(Table):
     """One bench file; paths are absolute once it is loaded."""
 
@@ -168,6 +185,7 @@ class BenchFile(Table):
     limits: Limits
     interlocks: dict[Name, Interlock] = Field({}, description="what must hold while a run goes on")
     vehicle: Vehicle = Vehicle()
+    supervision: Supervision = Supervision()
     zero: dict[str, ZeroLimit] = Field({}, description="channel: what it may read at rest")
     dut: dict[str, str] = Field({})
     calibration: dict[str, Day] = Field({}, description="sensor: valid until")

@@ -1,7 +1,7 @@
 """What passes between who asks for a run and who holds the hardware: data, and calls that carry data.
 
-On one side stand engine, drivers and recorder, on the other command, analysis and reports. Today both live in
-one process; nothing here keeps them there (docs/decisions/0011).
+On one side stand engine, drivers and recorder, on the other command, analysis and reports: on hardware in two
+processes (docs/decisions/0011 and 0017).
 """
 
 from __future__ import annotations
@@ -74,6 +74,18 @@ class Terminal(Protocol):
         ...
 
 
+class Watched(Protocol):
+    """Who watches from another process that the loop turns. Nothing here waits."""
+
+    def turned(self) -> str:
+        """The loop has turned once more; says why nobody watches any more, '' if somebody does."""
+        ...
+
+    def concluded(self, *, armed: bool, unsafe: Sequence[str]) -> None:
+        """The loop has done its part; `unsafe`: complaints of those that did not confirm their safe state."""
+        ...
+
+
 def analysed_here(work: Work, recording: Recording, directory: Path) -> Analysis:
     """Do the analysis where it is asked for: where time stands still meanwhile."""
     return Analysed(work(recording, directory))
@@ -112,6 +124,8 @@ class RunRequest:
     on; `analyse` begins the analysis of a step of the plan, while the bench is kept alive (None: in a process
     of its own on hardware, at once in virtual time).
 
+    `watched` hears that the loop turns, if another process watches it.
+
     The one call the other way is `stop`.
     """
 
@@ -127,4 +141,5 @@ class RunRequest:
     progress: Progress = lambda share, text: None
     analyse: Analyse | None = None
     replaces: tuple[Path, ...] = ()
+    watched: Watched | None = None
     stop: StopRequest = field(default_factory=StopRequest)

@@ -20,10 +20,18 @@ class Operator:
     Args:
         terminal: None: nobody is there.
         confirmed_by: who confirmed every prompt beforehand.
+        standing: called again and again while virtual time stands still, in which no loop turns.
     """
 
-    def __init__(self, loop: BusLoop, terminal: Terminal | None, confirmed_by: str) -> None:
+    def __init__(
+        self,
+        loop: BusLoop,
+        terminal: Terminal | None,
+        confirmed_by: str,
+        standing: Callable[[], None] = lambda: None,
+    ) -> None:
         self._loop, self._terminal, self._confirmed_by = loop, terminal, confirmed_by
+        self._standing = standing
         self._wants_pause = self._wants_to_go_on = False
         self._answer: str | None = None
 
@@ -120,6 +128,7 @@ class Operator:
 
     def _stand_still(self) -> None:
         time.sleep(LOOK_S)
+        self._standing()
         self.look()
         self._refuse_when_stopped()
 

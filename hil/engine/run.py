@@ -73,6 +73,7 @@ class _Run:
     def __init__(self, request: RunRequest, bench: Bench, expired: AcceptedExpiry | None) -> None:
         self._request, self._bench, self._expired = request, bench, expired
         self._unsafe: list[str] = []
+        self._unwatched = False
         self._end_steps = ""
 
     def carry_out(self) -> RunOutcome:
@@ -93,6 +94,8 @@ class _Run:
             bench.loop.shielded = True
             self._watch.end()
             self._unsafe = reach_safe_state(bench, self._failures.note) if self._arming.armed else []
+            if self._request.watched is not None:
+                self._request.watched.concluded(armed=self._arming.armed, unsafe=self._unsafe)
             self._stopped = keep_latched(self._failures.error, self._request.bench, self._request.out)
         return self._finish(time.perf_counter() - started)
 
@@ -119,7 +122,7 @@ class _Run:
             else RequestTiming(bench.loop.clock, bench.loop.wires, self._recorder.writer.add_requests)
         )
         noted = bench.torque_requests(self._timing, TICK_S) if self._timing else None
-        operator = Operator(bench.loop, request.terminal, request.confirmed_by)
+        operator = Operator(bench.loop, request.terminal, request.confirmed_by, self._turned)
         self._failures = Failures(self._event, self._blame)
         self._watch = Watchkeeping(bench, self._recorder, operator, self._failures.tell)
         self._conductor = BenchConductor(
@@ -132,7 +135,9 @@ class _Run:
             self._watch.hold,
             operator.wait_for,
         )
-        self._arming = Arming(bench, self._recorder, self._watch.limits, self._watch.zero, self._timing)
+        self._arming = Arming(
+            bench, self._recorder, self._watch.limits, self._watch.zero, self._timing, self._turned
+        )
 
     def _begin_duties(self) -> None:
         loop = self._bench.loop
@@ -141,6 +146,18 @@ class _Run:
         if self._timing:
             loop.every(COLLECT_S, self._timing.collect)
         self._expected_s = estimate_duration_s(self._request.plan)
+
+    def _turned(self) -> None:
+        """Tell who watches this process that the loop turns; nobody may drive a bench unwatched."""
+        gone = self._request.watched.turned() if self._request.watched is not None else ""
+        if not gone:
+            return
+        loop = self._bench.loop
+        if loop.shielded:
+            loop.stop_requested = True  # a prompt among the end steps is not waited for
+        elif not self._unwatched:
+            self._unwatched = True
+            raise OrderlyEndError(gone, where="supervision", fix="hil report makes the reports of this run")
 
     def _look_at_drift(self) -> None:
         """The drives are off; what comes from here on is no part of the run's rows."""

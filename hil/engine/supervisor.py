@@ -1,0 +1,313 @@
+"""Has a run carried out by a process that holds the hardware, and watches it: docs/decisions/0017.
+
+Nothing here is needed for the bench to be safe: RMCU and dynos switch off by themselves when their host is
+gone. The supervisor says so, looks whether it is so, and keeps what was measured.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from hil.core.errors import BenchError, EmergencyStopError, HilError, InterruptError
+from hil.core.recording import Recording, read_recording, run_of
+from hil.core.result import RunResult, SafeState, verdict_of
+from hil.engine.bench_tables import BenchFile
+from hil.engine.border import RECORDING, RunOutcome, RunRequest
+from hil.engine.border_data import asked_of, outcome_of
+from hil.engine.border_messages import (
+    Concluded,
+    Ended,
+    Here,
+    Logged,
+    Message,
+    Progressed,
+    Refused,
+    StopAsked,
+    Told,
+    Turned,
+    Typed,
+)
+from hil.engine.border_pipe import BorderPipe
+from hil.engine.emergency_stop import keep_latched
+from hil.engine.last_look import complaints_of
+from hil.engine.operator import EMERGENCY, LOOK_S
+from hil.engine.run import run_plan
+from test_plans import judge
+
+_HERE_S = 0.1  # how often the other process hears of this one
+#: Outside of the loop: opening compiles on a machine's first run, concluding judges hours of recording.
+_OPENING_S = _CONCLUDING_S = 900.0
+#: For a process that has told its outcome, or lost its command's end of the pipe, to end by itself.
+_LEAVING_S = 30.0
+_REAPED_S = 1.0
+_WHERE = "the process that holds the bench"
+_FIX = "cut the drives' power before you go near"
+
+logger = logging.getLogger(__name__)
+
+
+def carry_out(request: RunRequest, command: Sequence[str], keeps: Sequence[int] = ()) -> RunOutcome:
+    """Carry out a plan: on hardware in a process of its own, else in this one.
+
+    Args:
+        command: starts a process that calls `hold_hardware` with its standard input and output.
+        keeps: descriptors that it keeps open, such as the lock of the folder that it writes to.
+
+    Raises:
+        BadInputError: before anything was moved: plan, bench or place cannot be used.
+        BenchError: before anything was moved: the bench does not come up.
+    """
+    if not _apart(request.bench):
+        return run_plan(request)
+    with _started(command, keeps) as (process, pipe):
+        return _Supervisor(request, process, pipe).outcome()
+
+
+def _apart(bench: BenchFile) -> bool:
+    """Whether a process of its own is to hold it; without POSIX's pipes there is none."""
+    wanted = bench.supervision.own_process
+    return os.name == "posix" and (bench.simulation is None if wanted is None else wanted)
+
+
+@contextlib.contextmanager
+def _started(
+    command: Sequence[str], keeps: Sequence[int]
+) -> Iterator[tuple[subprocess.Popen[bytes], BorderPipe]]:
+    """The process; however this is left, it ends: by itself if it can, for it makes its bench safe."""
+    process = subprocess.Popen(
+        command,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        pass_fds=keeps,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+        start_new_session=True,  # a terminal's Ctrl-C is for this process, which tells the other once
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    logger.info("the bench is held by process %d", process.pid)
+    pipe = BorderPipe(os.dup(process.stdout.fileno()), os.dup(process.stdin.fileno()))
+    process.stdin.close()
+    process.stdout.close()
+    try:
+        yield process, pipe
+    finally:
+        pipe.close()
+        try:
+            process.wait(_LEAVING_S)
+        except subprocess.TimeoutExpired:
+            _kill(process)
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """End it at once, if it has not ended: it is a child of this process and was not waited for before."""
+    process.kill()
+    process.wait()
+
+
+class _Supervisor:
+    """Passes on what is said on both sides, until the run has ended or its process must be given up."""
+
+    def __init__(self, request: RunRequest, process: subprocess.Popen[bytes], pipe: BorderPipe) -> None:
+        self._request, self._process, self._pipe = request, process, pipe
+        settings, scale = request.bench.supervision, request.bench.time_scale
+        self._hung_after_s = settings.hung_after_s / scale
+        self._turning = False
+        self._concluded: Concluded | None = None
+        self._heard_s = self._stopped_s = time.monotonic()
+        self._here_s = -1.0
+        self._asked_s: float | None = None
+        self._told_stops = 0
+        self._emergency = False
+        self._recorded_before = _identity(request.out / RECORDING)
+
+    def outcome(self) -> RunOutcome:
+        """How the run ended, whoever says so.
+
+        Raises:
+            HilError: there was no run.
+        """
+        self._pipe.send(asked_of(self._request))
+        while True:
+            self._pipe.wait(LOOK_S)
+            self._speak()
+            gone = self._pipe.gone  # what is read after it is all there was
+            for message in self._pipe.fetch():
+                self._heard_s = time.monotonic()
+                if isinstance(message, Refused):
+                    raise message.error.as_error()
+                if isinstance(message, Ended):
+                    return outcome_of(message)
+                self._take(message)
+            why = "has ended" if gone else self._given_up()
+            if why:
+                return self._lost(why)
+
+    def _speak(self) -> None:
+        """Tell the other process what the operator wants, and that this one is here."""
+        now_s = time.monotonic()
+        terminal, stop = self._request.terminal, self._request.stop
+        for line in terminal.typed() if terminal is not None else ():
+            self._emergency |= line.strip().lower() == EMERGENCY
+            self._pipe.send(Typed(line=line))
+        if stop.times > self._told_stops:
+            self._told_stops = stop.times
+            self._asked_s = self._asked_s or now_s
+            self._pipe.send(StopAsked(times=stop.times))
+        if now_s - self._here_s > _HERE_S:
+            self._here_s = now_s
+            self._pipe.send_if_idle(Here())
+        self._pipe.push()
+
+    def _take(self, message: Message) -> None:
+        if isinstance(message, Turned):
+            self._turning = self._concluded is None
+        elif isinstance(message, Progressed):
+            self._request.progress(message.share, message.text)
+        elif isinstance(message, Told) and self._request.terminal is not None:
+            self._request.terminal.tell(message.text)
+        elif isinstance(message, Logged):
+            _log(message)
+        elif isinstance(message, Concluded):
+            self._concluded, self._turning = message, False
+
+    def _given_up(self) -> str:
+        """Why the other process is given up; '' if it is not."""
+        now_s = time.monotonic()
+        silent_s = now_s - self._heard_s
+        stopped = _is_stopped(self._process.pid)
+        self._stopped_s = self._stopped_s if stopped else now_s
+        if stopped and now_s - self._stopped_s > self._hung_after_s:
+            return f"was stopped, and stood still for {now_s - self._stopped_s:.1f} s"
+        if self._turning:
+            return (
+                f"hung: its loop did not turn for {silent_s:.1f} s" if silent_s > self._hung_after_s else ""
+            )
+        if self._concluded is None and self._asked_s is not None:
+            # It looks only from its loop; nothing has been commanded before that turns.
+            waits_s = now_s - max(self._asked_s, self._heard_s)
+            return "was still opening the bench" if waits_s > self._hung_after_s else ""
+        longest_s = _OPENING_S if self._concluded is None else _CONCLUDING_S
+        return f"hung: nothing was heard of it for {silent_s:.0f} s" if silent_s > longest_s else ""
+
+    def _lost(self, why: str) -> RunOutcome:
+        """What can be said of a run whose process has been given up, or has ended without a word.
+
+        Raises:
+            HilError: it had not begun to record.
+        """
+        if why == "has ended":
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._process.wait(_REAPED_S)
+            why = _ending(self._process.poll())
+        _kill(self._process)
+        logger.error("%s %s", _WHERE, why)
+        safe, said = self._safe_state()
+        error = self._error(why, said if safe != "not_needed" else "nothing was commanded")
+        stopped = keep_latched(error, self._request.bench, self._request.out)
+        recording = self._recording()
+        if recording is None:
+            raise error
+        result = self._result(recording, safe, error)
+        result = result.model_copy(update={"emergency_stop": stopped})
+        return RunOutcome(result, self._request.out / RECORDING, error, {})
+
+    def _safe_state(self) -> tuple[SafeState, str]:
+        """As the process has read it back before it was lost, or as the bench itself says now."""
+        concluded, bench = self._concluded, self._request.bench
+        if concluded is not None and not concluded.armed:
+            return "not_needed", ""
+        if concluded is None and (not self._turning or bench.simulation is not None):
+            return "not_needed", ""
+        complaints = list(concluded.unsafe) if concluded is not None else complaints_of(bench)
+        if complaints:
+            return "not_confirmed", f"safe: not confirmed ({'; '.join(complaints)})"
+        return "confirmed", "safe: confirmed"
+
+    def _error(self, why: str, said: str) -> HilError:
+        if self._asked_s is not None and not self._turning and self._concluded is None:
+            return InterruptError(f"stopped by the operator, when {_WHERE} {why}")
+        out = self._request.out
+        fix = f"hil recover {out} makes a whole recording of what was measured, and hil report its reports"
+        if "not confirmed" in said:
+            fix = f"{_FIX}; {fix}"
+        what = f"{why}; {said}"
+        if self._emergency:
+            return EmergencyStopError(f"the operator typed e; {_WHERE} {what}", by="the operator", fix=fix)
+        return BenchError(what, where=_WHERE, fix=fix)
+
+    def _recording(self) -> Recording | None:
+        """What was recorded; None if nothing was."""
+        path = self._request.out / RECORDING
+        if _identity(path) in (None, self._recorded_before):
+            return None
+        try:
+            return read_recording(path, least_samples=0, allow_missing=True)
+        except HilError as error:
+            logger.warning("the recording cannot be read: %s", error)
+            return None
+
+    def _result(self, recording: Recording, safe: SafeState, error: HilError) -> RunResult:
+        plan, bench = self._request.plan, self._request.bench
+        stored = run_of(recording)
+        empty = RunResult(
+            verdict="error", plan=plan.name, bench=bench.name, real_time_factor=0.0, bench_time_s=0.0,
+            safe_state=safe,
+        )  # fmt: skip
+        result = stored or empty
+        criteria = judge(plan, recording, result.segments)
+        return result.model_copy(
+            update={
+                "plan": plan.name,
+                "bench": bench.name,
+                "criteria": criteria,
+                "verdict": verdict_of(criteria, stopped=True),
+                "safe_state": safe,
+                "reason": str(error),
+            }
+        )
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """What tells a file from an earlier one of its name; None if there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_ctime_ns
+
+
+def _log(line: Logged) -> None:
+    """A line of the other process's log, as if it were of this one's."""
+    log = logging.getLogger(line.logger)
+    record = log.makeRecord(line.logger, line.level, "", 0, line.text, (), None)
+    if line.traceback:
+        record.exc_info = (BenchError, BenchError(line.text), None)
+        record.exc_text = line.traceback
+    log.handle(record)
+
+
+def _is_stopped(number: int) -> bool:
+    """Whether a child of this process has been stopped (SIGSTOP) and not continued; it stays waited for."""
+    with contextlib.suppress(OSError):
+        return os.waitid(os.P_PID, number, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
+    return False
+
+
+def _ending(code: int | None) -> str:
+    """How a process ended, in words."""
+    if code is None:
+        return "does not speak any more"
+    if code >= 0:
+        return f"ended with code {code} and without a word"
+    try:
+        return f"was ended by {signal.Signals(-code).name}"
+    except ValueError:
+        return f"was ended by signal {-code}"

@@ -1,0 +1,25 @@
+"""Whether a bench is safe that nobody holds any more: by listening alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hil.engine import RunRequest, run_plan
+from hil.engine.last_look import complaints_of
+from tests.benches_for_tests import SIM, plan
+from tests.hil.engine.test_wall_clock import bench_in_real_time
+
+
+def test_a_bench_that_was_left_is_heard_and_one_without_power_is_not(tmp_path: Path) -> None:
+    with bench_in_real_time("left") as (bench, unplugged, _):
+        run_plan(RunRequest(plan("[{hold_speed: {speed_km_h: 1, duration_s: 0.1}}]"), bench, tmp_path))
+        assert complaints_of(bench) == []
+        unplugged.set()
+        assert [text.partition(":")[0] for text in complaints_of(bench)] == ["RMCU", "dynos"]
+
+
+def test_a_bus_that_cannot_be_opened_is_a_complaint_of_its_own() -> None:
+    bus = SIM.buses["rmcu"].model_copy(update={"interface": "socketcan", "channel": "none9"})
+    bench = SIM.model_copy(update={"buses": {"rmcu": bus, "dyno": bus}, "simulation": None})
+    found = complaints_of(bench)
+    assert [text.partition(":")[0] for text in found] == ["bus 'rmcu'", "bus 'dyno'", "rmcu", "dyno"]
