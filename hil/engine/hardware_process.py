@@ -15,6 +15,7 @@ from hil.engine.border_messages import (
     Concluded,
     ErrorData,
     Logged,
+    Message,
     Progressed,
     Refused,
     RunAsked,
@@ -44,10 +45,10 @@ def hold_hardware(pipe: BorderPipe) -> str:
     stop = StopRequest()
     with stop.by_signals():
         _log_to(pipe)
-        asked = _asked(pipe)
+        command = _Command(pipe, stop)
+        asked = command.asked()
         if asked is None:
             return ""
-        command = _Command(pipe, stop)
         said = "there was no run"
         try:
             request = request_of(asked)
@@ -75,16 +76,24 @@ class _Command:
         self._heard_s = time.monotonic()
         self.alone_after_s = float("inf")
 
+    def asked(self) -> RunAsked | None:
+        """The run that is asked for; None if the command is gone before it has asked."""
+        until_s = time.monotonic() + _ASKED_WITHIN_S
+        found = None
+        while found is None and not self._pipe.gone and time.monotonic() < until_s:
+            self._pipe.wait(1.0)
+            for message in self._pipe.fetch():
+                if isinstance(message, RunAsked):
+                    found = message
+                else:
+                    self._take(message)
+        return found
+
     def turned(self) -> str:
         """Say that the loop has turned, and take what the command has said."""
         self._pipe.send_if_idle(Turned())
         for message in self._pipe.fetch():
-            self._heard_s = time.monotonic()
-            if isinstance(message, Typed):
-                self._lines.append(message.line)
-            elif isinstance(message, StopAsked):
-                while self._stop.times < message.times:
-                    self._stop.ask()
+            self._take(message)
         if self._pipe.gone:
             return "the command that asked for this run has ended"
         silent_s = time.monotonic() - self._heard_s
@@ -108,6 +117,14 @@ class _Command:
         lines, self._lines = self._lines, []
         return lines
 
+    def _take(self, message: Message) -> None:
+        self._heard_s = time.monotonic()
+        if isinstance(message, Typed):
+            self._lines.append(message.line)
+        elif isinstance(message, StopAsked):
+            while self._stop.times < message.times:
+                self._stop.ask()
+
 
 class _LogLines(logging.Handler):
     """The log goes to the command, which knows what becomes of it."""
@@ -130,17 +147,6 @@ def _log_to(pipe: BorderPipe) -> None:
     for name in _PACKAGES:
         logging.getLogger(name).setLevel(logging.DEBUG)
         logging.getLogger(name).addHandler(handler)
-
-
-def _asked(pipe: BorderPipe) -> RunAsked | None:
-    """The first message; None if the command is gone before it has come."""
-    until_s = time.monotonic() + _ASKED_WITHIN_S
-    while not pipe.gone and time.monotonic() < until_s:
-        pipe.wait(1.0)
-        for message in pipe.fetch():
-            if isinstance(message, RunAsked):
-                return message
-    return None
 
 
 def _fault_of_ours(error: Exception) -> BenchError:

@@ -24,7 +24,7 @@ import pytest
 
 from drivers import read_rmcu
 from hil.core.frames import SENT_BY_HOST, FrameBlock, joined
-from hil.core.recording import Recording, read_recording
+from hil.core.recording import Recording, read_recording, run_of
 from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import HIL
 from tests.hil.cli.test_sim_bench import serving
@@ -94,6 +94,25 @@ def stand_in(tmp_path: Path) -> Iterator[tuple[Any, Path, Observer]]:
         observer = Observer(tomllib.loads(file.read_text())["buses"]["rmcu"]["channel"])
         yield process, file, observer
         observer.close()
+
+
+def holder_of(run: subprocess.Popen[str]) -> int:
+    """The process that holds the bench for a command."""
+    for _ in range(600):
+        for child in Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split():
+            if b"hil.cli._hold" in Path(f"/proc/{child}/cmdline").read_bytes():
+                return int(child)
+        assert run.poll() is None, run.communicate()
+        time.sleep(0.05)
+    raise AssertionError("there is none")
+
+
+def is_running(number: int) -> bool:
+    """Whether there is such a process that is more than an entry in a table."""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def started(file: Path, folder: Path, text: str = PLAN) -> subprocess.Popen[str]:
@@ -166,9 +185,12 @@ def test_a_run_that_is_killed_leaves_no_torque_and_at_most_half_a_second_is_lost
 ) -> None:
     _, file, observer = stand_in
     run = with_torque_on(stand_in, tmp_path)
-    run.kill()
-    run.communicate()
+    os.kill(holder_of(run), signal.SIGKILL)
     time.sleep(0.5 / TIME_SCALE)
+    result = result_of(run, 3)
+    assert "the process that holds the bench: was ended by SIGKILL; safe: confirmed" in result["said"]
+    assert (result["verdict"], result["safe_state"]) == ("error", "confirmed")
+    assert [segment["complete"] for segment in result["segments"]] == [False]
     assert_went_to_zero_by_itself(observer)
     frames = observer.frames
     own = frames[frames["id"] == REQUEST.id]
@@ -204,15 +226,63 @@ def test_a_run_that_stands_still_says_so_and_leaves_the_bench_safe(
 ) -> None:
     _, file, observer = stand_in
     run = with_torque_on(stand_in, tmp_path)
-    os.kill(run.pid, signal.SIGSTOP)
+    holder = holder_of(run)
+    os.kill(holder, signal.SIGSTOP)
     time.sleep(0.3 / TIME_SCALE)
     assert_went_to_zero_by_itself(observer)
-    os.kill(run.pid, signal.SIGCONT)
+    os.kill(holder, signal.SIGCONT)
     result = result_of(run, 3)
     assert "own loop stood still" in result["said"]
     assert (result["verdict"], result["safe_state"]) == ("error", "confirmed")
     assert result["timing"]["longest_pause_s"] >= 0.25
     assert any(event.kind == "pause" for event in readable(tmp_path).events)
+    assert result_of(started(file, tmp_path, SHORT), 0)["safe_state"] == "confirmed"
+
+
+@pytest.mark.slow
+def test_a_run_that_stands_still_for_good_is_ended_and_what_it_measured_is_kept(
+    stand_in: tuple[Any, Path, Observer], tmp_path: Path
+) -> None:
+    _, file, observer = stand_in
+    with file.open("a") as bench:
+        bench.write("[supervision]\nhung_after_s = 0.5\n")
+    run = with_torque_on(stand_in, tmp_path)
+    holder = holder_of(run)
+    os.kill(holder, signal.SIGSTOP)
+    result = result_of(run, 3)
+    assert "stood still for 2." in result["said"]  # 0.5 s of bench time
+    assert (result["verdict"], result["safe_state"]) == ("error", "confirmed")
+    assert not is_running(holder)
+    assert_went_to_zero_by_itself(observer)
+    assert readable(tmp_path)["motor_torque_ref_nm"].max() > 5.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_command_that_is_killed_or_frozen_leaves_a_bench_that_its_process_makes_safe(
+    number: int, stand_in: tuple[Any, Path, Observer], tmp_path: Path
+) -> None:
+    _, file, observer = stand_in
+    with file.open("a") as bench:
+        bench.write("[supervision]\nalone_after_s = 0.5\n")
+    run = with_torque_on(stand_in, tmp_path)
+    holder = holder_of(run)
+    os.kill(run.pid, number)
+    for _ in range(600):
+        if not is_running(holder):
+            break
+        time.sleep(0.05)
+    assert observer.torque() == 0.0
+    stored = run_of(readable(tmp_path))
+    assert stored is not None
+    assert (stored.verdict, stored.safe_state) == ("error", "confirmed")
+    assert stored.end_steps.startswith("carried out: ramp_down")
+    words = "the command that asked for this run has ended" if number == signal.SIGKILL else "stands still"
+    assert words in stored.reason
+    if number == signal.SIGSTOP:
+        os.kill(run.pid, signal.SIGCONT)
+        assert result_of(run, 3)["safe_state"] == "confirmed"
+    run.communicate()
     assert result_of(started(file, tmp_path, SHORT), 0)["safe_state"] == "confirmed"
 
 

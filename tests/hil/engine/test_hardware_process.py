@@ -21,7 +21,17 @@ from hil.engine.arming import TURNED_S
 from hil.engine.bench_file import bench_from_dict
 from hil.engine.bench_tables import BenchFile
 from hil.engine.border_data import asked_of
-from hil.engine.border_messages import Concluded, Ended, Here, Message, Progressed, StopAsked, Told, Turned
+from hil.engine.border_messages import (
+    Concluded,
+    Ended,
+    Here,
+    Message,
+    Progressed,
+    StopAsked,
+    Told,
+    Turned,
+    Typed,
+)
 from hil.engine.border_pipe import BorderPipe
 from hil.engine.hardware_process import LAST_WORDS_S
 from hil.engine.supervisor import carry_out
@@ -172,3 +182,11 @@ def test_the_loop_says_that_it_turns(tmp_path: Path):
 def test_a_command_that_asks_for_nothing_is_not_waited_for():
     process = subprocess.run(HOLDER, stdin=subprocess.DEVNULL, capture_output=True, check=True, timeout=60)
     assert (process.stdout, process.stderr) == (b"", b"")
+
+
+def test_what_is_typed_before_it_has_started_is_heard(tmp_path: Path):
+    with held(prompted(tmp_path)) as (_, pipe):
+        pipe.send(Typed(line="q"))
+        ended = heard_until(pipe, Ended)[-1]
+    assert isinstance(ended, Ended)
+    assert ended.error.kind == "InterruptError"
