@@ -1,4 +1,4 @@
-"""`hil run` is killed at random moments with torque on, and what the bench and the recording make of it.
+"""What holds the bench is killed at random moments with torque on: what bench and recording make of it.
 
 `python -m benchmarks.kills [COUNT]`: `hil sim-bench` in another process in real time, a new one for ten runs.
 When torque is at zero is read from the stamps of the RMCU's own frames, which an observer on its bus has
@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 from hil.core.recording import read_recording
-from tests.hil.cli.test_kills import PLAN, REQUEST, STATUS, Observer
+from tests.hil.cli.test_kills import PLAN, REQUEST, STATUS, Observer, holder_of
 
 COUNT, MOST_REPEATS = 100, 30
 LARGEST_ZERO_S, LARGEST_LOSS_S = 0.1, 0.5
@@ -97,7 +97,7 @@ def with_run(folder: Path, observer: Observer, after_s: float) -> bool:
     (folder / "long.yaml").write_text(PLAN)
     command = [HIL, "run", "long.yaml", "--bench", folder / "bench.toml", "--out", "out", "--overwrite"]
     with subprocess.Popen(
-        list(map(str, command)), cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        list(map(str, command)), cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True
     ) as run:
         while observer.torque() < ON_NM:
             if run.poll() is not None:
@@ -105,8 +105,8 @@ def with_run(folder: Path, observer: Observer, after_s: float) -> bool:
             time.sleep(0.05)
         time.sleep(after_s)
         alive = run.poll() is None and observer.torque() > ON_NM
-        run.kill()
-    time.sleep(AFTERWARDS_S)
+        os.kill(holder_of(run), signal.SIGKILL)
+        time.sleep(AFTERWARDS_S)
     return alive
 
 
