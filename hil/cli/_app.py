@@ -41,7 +41,7 @@ _COMMANDS = {
     "recover": "A whole recording from what a crash left.",
     "verify": "Prove that report and recording belong together and nothing changed.",
     "sign": "Sign a run's directory: who approved it.",
-    "export": "Write a recording as CSV, Parquet or MDF4.",
+    "export": "Write a recording as CSV, Parquet or MDF4, or its frames as a CAN log.",
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
     "doctor": "What of a bench is there, what is wrong with it, and what to do.",
     "monitor": "Decoded channels and bus load live, touching nothing.",

@@ -6,13 +6,21 @@ from pathlib import Path
 
 from hil.cli._output import console, print_json, warn_of_damage
 from hil.cli._place import refuse_file
-from hil.core.recording import read_recording, write_recording, written_with
+from hil.core.recording import (
+    FRAME_LOGS,
+    Recording,
+    read_recording,
+    write_frames,
+    write_recording,
+    written_with,
+)
 
 
 def carry_out(
     *,
     recording: Path,
     out: Path,
+    frames: bool,
     overwrite: bool,
     as_json: bool,
 ) -> int:
@@ -21,6 +29,8 @@ def carry_out(
         refuse_file(file, [recording], overwrite=overwrite)
     table = read_recording(recording)
     warn_of_damage([table])
+    if frames or out.suffix.lower() in FRAME_LOGS:
+        return _frames(table, out, as_json=as_json)
     write_recording(table, out)
     if as_json:
         print_json(
@@ -38,4 +48,13 @@ def carry_out(
         console().print(
             f"{len(table.time_s)} samples of {len(table.channels)} channels: {out}", highlight=False
         )
+    return 0
+
+
+def _frames(table: Recording, out: Path, *, as_json: bool) -> int:
+    count = write_frames(table, out)
+    if as_json:
+        print_json({"file": str(out), "frames": count, "damage": table.damage, "notes": table.notes})
+    else:
+        console().print(f"{count} raw frames: {out}", highlight=False)
     return 0

@@ -10,13 +10,22 @@ import typer
 
 def command(
     recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet or .mf4")],
-    out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet or .mf4")],
+    out: Annotated[
+        Path,
+        typer.Option(help="file to write: .csv, .parquet or .mf4; raw frames: .blf, .asc or .log (candump)"),
+    ],
+    frames: Annotated[
+        bool, typer.Option("--frames", help="raw frames instead of channels also to .mf4 (ASAM bus logging)")
+    ] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Write a recording's channels as CSV, Parquet or MDF4; what was lost of them is said."""
+    """Write a recording's channels as CSV, Parquet or MDF4, or its raw frames as BLF, ASC, candump or MDF4.
+
+    What was lost of them is said.
+    """
     from hil.cli.export import carry_out
 
-    return carry_out(recording=recording, out=out, overwrite=overwrite, as_json=as_json)
+    return carry_out(recording=recording, out=out, frames=frames, overwrite=overwrite, as_json=as_json)

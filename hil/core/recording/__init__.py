@@ -11,12 +11,12 @@ import numpy as np
 from hil.core.channels import WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording._evidence import sidecar
-from hil.core.recording._formats import READ, WRITTEN, reader_of, writer_of
+from hil.core.recording._formats import FRAME_LOGS, READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_reader import read_mcap as read_as_written
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
-from hil.core.recording._run import ACCEPTED_EXPIRY, RUN, SEGMENT, run_of
+from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, RUN, SEGMENT, run_of
 from hil.core.recording._table import Event, Recording, checked
 
 logger = logging.getLogger(__name__)
@@ -77,6 +77,20 @@ def _with_wheel_angle(recording: Recording) -> Recording:
     return dataclasses.replace(recording, channels={**recording.channels, WHEEL_ANGLE: angle})
 
 
+def write_frames(recording: Recording, path: Path) -> int:
+    """Write the raw frames of a recording as `.blf`, `.asc`, `.log` (candump) or `.mf4`; how many there are.
+
+    Raises:
+        BadInputError: the recording is no MCAP file or has no frames, or `path` cannot be written.
+        BenchError: the disk is full.
+    """
+    from hil.core.recording._frame_logs import write_frame_log
+
+    frames = read_frames(recording.source) if recording.source.suffix.lower() == ".mcap" else {}
+    write_frame_log(frames, recording, path)
+    return sum(len(block) for block in frames.values())
+
+
 def written_with(path: Path) -> list[Path]:
     """The files that `write_recording` makes for a path: beside a CSV stands what it is a recording of."""
     return [path, sidecar(path)] if path.suffix.lower() == ".csv" else [path]
@@ -94,6 +108,8 @@ def write_recording(recording: Recording, path: Path) -> None:
 __all__ = [
     "ACCEPTED_EXPIRY",
     "CHUNK_BYTES",
+    "DEVICE",
+    "FRAME_LOGS",
     "RUN",
     "SEGMENT",
     "Event",
@@ -108,6 +124,7 @@ __all__ = [
     "read_recording",
     "recover_recording",
     "run_of",
+    "write_frames",
     "write_recording",
     "written_with",
 ]

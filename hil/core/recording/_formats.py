@@ -12,6 +12,8 @@ from hil.core.recording._table import Recording
 
 READ = (".mcap", ".csv", ".parquet", ".mf4")
 WRITTEN = (".csv", ".parquet", ".mf4")
+#: Logs of raw frames: BLF, ASC, candump. MDF4 may hold channels or frames.
+FRAME_LOGS = (".blf", ".asc", ".log")
 
 
 def reader_of(ending: str) -> Callable[[Path], Recording] | None:

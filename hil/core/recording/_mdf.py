@@ -153,14 +153,19 @@ def _tell(mdf: Any, recording: Recording) -> None:
     mdf.attach(
         text, EVIDENCE, comment="what the recording carries beside its samples", mime="application/json"
     )
-    run, dut = recording.metadata.get("run", {}), recording.metadata.get("dut", {})
-    header = mdf.header
-    header.project, header.author = run.get("title", ""), run.get("operator", "")
-    header.subject = " ".join(filter(None, (dut.get("name"), dut.get("serial"))))
-    started = recording.metadata.get("time", {}).get("row_0_at") or run.get("started_at", "")
-    with contextlib.suppress(ValueError):
-        header.start_time = datetime.datetime.fromisoformat(started)
+    tell_header(mdf, recording, starts_at="row_0_at")
     for event in recording.events:
         block = EventBlock(sync_base=round(event.time_s * _EVENT_TICKS), sync_factor=1.0 / _EVENT_TICKS)
         block.name, block.comment = event.kind, event.text
         mdf.events.append(block)
+
+
+def tell_header(mdf: Any, recording: Recording, *, starts_at: str) -> None:
+    """Who, what and when; `starts_at`: where the table `time` has the moment at which stamps are 0."""
+    run, dut = recording.metadata.get("run", {}), recording.metadata.get("dut", {})
+    header = mdf.header
+    header.project, header.author = run.get("title", ""), run.get("operator", "")
+    header.subject = " ".join(filter(None, (dut.get("name"), dut.get("serial"))))
+    started = recording.metadata.get("time", {}).get(starts_at) or run.get("started_at", "")
+    with contextlib.suppress(ValueError):
+        header.start_time = datetime.datetime.fromisoformat(started)

@@ -10,6 +10,8 @@ from hil.core.result import AcceptedExpiry, RunResult, Segment
 RUN = "run.json"
 #: Prefix of the metadata tables that hold the run's segments, written as each begins and as it ends.
 SEGMENT = "segment/"
+#: Prefix of the attachments that say what the devices' frames mean: DBC, EDS and the like.
+DEVICE = "device/"
 #: Metadata table with who answered for sensors whose calibration had run out.
 ACCEPTED_EXPIRY = "accepted expired calibration"
 
