@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import importlib
 import warnings
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import cantools
 import numpy as np
 import pytest
 from asammdf import MDF
+from can.io import mf4
 
 from hil.core.errors import BadInputError
 from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, frames, joined
@@ -58,8 +60,10 @@ def recorded(tmp_path: Path) -> Path:
 
 
 def read_back(path: Path) -> list[can.Message]:
-    if path.suffix == ".mf4":  # python-can's own way leaves its file open
-        with path.open("rb") as file, can.MF4Reader(file) as reader:
+    if path.suffix == ".mf4":  # not by LogReader, which leaves the file open
+        if mf4.asammdf is None:  # commands import python-can without
+            importlib.reload(mf4)
+        with path.open("rb") as file, mf4.MF4Reader(file) as reader:
             return list(reader)
     with can.LogReader(path) as reader:
         return list(reader)
