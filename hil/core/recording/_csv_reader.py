@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, TypeVar
 
 import numpy as np
 import pyarrow as pa
@@ -14,14 +13,22 @@ import pyarrow.csv as arrow_csv
 
 from hil.core.channels import CHANNELS, TIME
 from hil.core.errors import BadInputError
+from hil.core.recording._csv_encoding import as_utf8
+from hil.core.recording._csv_layout import Layout, LayoutError, layout_of
 from hil.core.recording._csv_writer import sha256_of
 from hil.core.recording._evidence import LARGEST_BYTES, sidecar, take_evidence
 from hil.core.recording._regular_file import open_regular
 from hil.core.recording._table import Array, Recording
 
+T = TypeVar("T")
+
 _BLOCK_BYTES = 8 << 20
 _LONGEST_LINE_BYTES = 1 << 20
 _BOM = b"\xef\xbb\xbf"
+_NEVER_IN_TEXT = frozenset(range(9)) | frozenset(range(14, 32))
+_SOME_BYTES = 200_000  # of rows that show the decimal sign
+_FEW_SAMPLES = 10
+_SLOW_S, _TOO_SLOW_S = 0.05, 0.5  # between samples: no command needs less than 100 Hz
 #: Spellings of a cell without a value.
 _MISSING = frozenset(
     ("", "NA", "N/A", "n/a", "NaN", "nan", "-NaN", "-nan", "NULL", "null", "None", "<NA>", "#N/A", "#NA")
@@ -32,12 +39,14 @@ def read_csv(path: Path) -> Recording:
     """Read a CSV with one header line; messages name file, line and column.
 
     Raises:
-        BadInputError: no regular UTF-8 file, no header line, a line with too few or too many cells, or a
-            cell of a known channel that is no number.
+        BadInputError: no regular text file, no header line, a line with too few or too many cells, a
+            cell of a known channel that is no number, or a layout that can be read in two ways.
     """
     with open_regular(path) as file:
         try:
-            recording = _Table(path).read(file)
+            recording = _Table(path).read(as_utf8(file))
+        except UnicodeError as error:
+            raise BadInputError("begins as UTF-16 and goes on otherwise", where=str(path)) from error
         except OSError as error:
             raise BadInputError(f"cannot be read: {error.strerror or error}", where=str(path)) from error
     _take_sidecar(recording, path)
@@ -64,6 +73,7 @@ class _Table:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._header: list[str] = []
+        self._layout = Layout([])
         self._columns: dict[int, list[Array]] = {}
         self._notes: list[str] = []
         self._blank_lines: list[int] = []
@@ -78,6 +88,7 @@ class _Table:
         channels = {}
         for column in list(self._columns):
             channels[self._header[column]] = np.concatenate([*self._columns.pop(column), np.zeros(0)])
+        self._settle_time(channels)
         return Recording(channels, self._path, notes=self._notes, blank_lines=self._blank_lines)
 
     def _blocks(self, file: BinaryIO) -> Iterator[bytes]:
@@ -97,14 +108,12 @@ class _Table:
 
     def _take(self, block: bytes) -> None:
         if not block.isascii():
-            try:
-                block.decode("utf-8")
-            except UnicodeDecodeError as error:
-                line = self._line + block.count(b"\n", 0, error.start)
-                raise self._error("not a UTF-8 text file", line) from error
+            block = self._in_utf8(block)
         if not self._header:
             header, _, block = block.removeprefix(_BOM).partition(b"\n")
             self._take_header(header)
+            block = self._without_units(block)
+            self._settle_decimal(block)
         if not block:
             return
         lines = block.count(b"\n")
@@ -114,17 +123,64 @@ class _Table:
         self._samples += len(next(iter(read.values())))
         self._line += lines
 
+    def _in_utf8(self, block: bytes) -> bytes:
+        try:
+            block.decode("utf-8")
+        except UnicodeDecodeError as error:
+            if set(block) & _NEVER_IN_TEXT:
+                line = self._line + block.count(b"\n", 0, error.start)
+                raise self._error("not a text file", line) from error
+            note = "text is not UTF-8 and was read as Latin-1"
+            self._notes += [note] if note not in self._notes else []
+            return block.decode("latin-1").encode()
+        return block
+
     def _take_header(self, line: bytes) -> None:
-        header = [cell.strip() for cell in _cells(line.decode())]
-        if TIME not in header:
-            raise self._error(f"the header line has no '{TIME}'", 1, fix="the first line names the channels")
-        duplicate = sorted({name for name in header if name and header.count(name) > 1})
-        if duplicate:
-            raise self._error(f"column '{duplicate[0]}' stands twice", 1)
-        self._header = header
+        self._layout = self._unless_in_doubt(lambda: layout_of(line.decode()), 1)
+        header = self._header = self._layout.names
         self._columns = {column: [] for column, name in enumerate(header) if name}
         self._notes += [f"column {c + 1} has no name and was left out" for c, n in enumerate(header) if not n]
         self._line = 2
+
+    def _without_units(self, block: bytes) -> bytes:
+        """The block without a line of units, where it begins with one."""
+        line, _, rest = block.partition(b"\n")
+        cells = [cell.strip() for cell in self._layout.cells(line.decode())]
+        if len(cells) != len(self._header) or not self._layout.is_of_units(cells):
+            return block
+        self._unless_in_doubt(lambda: self._layout.take_units(cells), 2)
+        self._layout.notes.append("line 2 gives units")
+        self._blank_lines.append(0)
+        self._line = 3
+        return rest
+
+    def _settle_decimal(self, block: bytes) -> None:
+        some = block[:_SOME_BYTES].decode(errors="ignore").split("\n")[:-1]
+        rows = [self._layout.cells(line) for line in some]
+        self._unless_in_doubt(lambda: self._layout.settle_decimal(rows), self._line)
+        self._notes += self._layout.notes
+
+    def _unless_in_doubt(self, look: Callable[[], T], line: int) -> T:
+        try:
+            return look()
+        except LayoutError as error:
+            raise self._error(error.what, line, error.column, error.fix) from error
+
+    def _settle_time(self, channels: dict[str, Array]) -> None:
+        """Time in seconds; without a unit it may be milliseconds under the name of seconds."""
+        time = channels.get(TIME, np.zeros(0))
+        if self._layout.per_second != 1.0:
+            channels[TIME] = time / self._layout.per_second
+        apart_s = float(np.median(np.diff(channels[TIME]))) if len(time) > _FEW_SAMPLES else 0.0
+        if apart_s >= _TOO_SLOW_S:
+            raise self._error(
+                f"samples are {apart_s:g} s apart",
+                self._line - 1,
+                TIME,
+                fix="is it in milliseconds? Name the column time_ms (or time_us), and it is converted",
+            )
+        if apart_s >= _SLOW_S:
+            self._notes.append(f"samples are {apart_s:g} s apart; a column in ms is to be named time_ms")
 
     def _fast(self, block: bytes, lines: int) -> dict[int, Array] | None:
         """The block's columns; None if anything in it needs a closer look."""
@@ -137,10 +193,12 @@ class _Table:
                     use_threads=False,
                     block_size=len(block) + 1,
                 ),
+                parse_options=arrow_csv.ParseOptions(delimiter=self._layout.separator),
                 convert_options=arrow_csv.ConvertOptions(
                     include_columns=names,
                     column_types=dict.fromkeys(names, pa.float64()),
                     null_values=sorted(_MISSING),
+                    decimal_point=self._layout.decimal,
                 ),
             )
         except pa.ArrowInvalid:
@@ -158,9 +216,9 @@ class _Table:
             if not text.strip():
                 self._blank_lines.append(samples)
                 continue
-            cells = _cells(text)
+            cells = self._layout.cells(text)
             if len(cells) != len(self._header):
-                raise self._error(f"has {len(cells)} cells, the header line names {len(self._header)}", line)
+                raise self._wrong_number_of_cells(cells, line)
             for column in list(read):
                 value = self._number(cells[column].strip(), column, line)
                 if value is None:
@@ -177,16 +235,29 @@ class _Table:
             return math.nan
         name = self._header[column]
         try:
-            value = float(cell)
             if "_" in cell or not cell.isascii():
                 raise ValueError  # Python's own spellings
+            value = float(self._with_point(cell))
         except ValueError:
             if name not in CHANNELS:
                 return None
-            raise self._error(f"{_short(cell)} is not a number", line, name) from None
+            raise self._error(f"{_short(cell)} is not a number", line, name, _about_signs(cell)) from None
         if math.isinf(value) and "inf" not in cell.lower() and name in CHANNELS:
             raise self._error(f"{_short(cell)} is beyond what a number can hold", line, name)
         return value
+
+    def _with_point(self, cell: str) -> str:
+        if self._layout.decimal == ".":
+            return cell
+        if "." in cell:
+            raise ValueError  # after commas a point separates thousands, or somebody mixed files
+        return cell.replace(",", ".")
+
+    def _wrong_number_of_cells(self, cells: list[str], line: int) -> BadInputError:
+        names = len(self._header)
+        many = self._layout.separator == "," and len(cells) > names
+        fix = "is the comma the decimal sign? Separate columns by semicolons" if many else ""
+        return self._error(f"has {len(cells)} cells, the header line names {names}", line, fix=fix)
 
     def _leave_out(self, column: int) -> None:
         del self._columns[column]
@@ -203,10 +274,10 @@ def _line_feeds(block: bytes) -> bytes:
     return block.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
 
 
-def _cells(line: str) -> list[str]:
-    if '"' not in line:
-        return line.split(",")
-    return next(csv.reader([line], skipinitialspace=True), [])
+def _about_signs(cell: str) -> str:
+    """What to do about a cell that is a number of another country."""
+    strange = cell.replace(",", "").replace(".", "").lstrip("+-").isdigit()
+    return "write numbers with one decimal sign and without thousands separators" if strange else ""
 
 
 def _short(cell: str) -> str:
