@@ -9,22 +9,23 @@ from typing import Literal
 
 from hil.analysis.diagnosis import Diagnosis
 from reports.diagnosis_content import headline, lead, parts
+from reports.origin import Origin
 from reports.parts import Page, page_html, page_pdf
 
 _Tone = Literal["pass", "error"]
 
 
-def diagnosis_html(found: Diagnosis, title: str) -> str:
+def diagnosis_html(found: Diagnosis, title: str, origin: Origin | None = None) -> str:
     """The page: one file without scripts, figures drawn into it."""
-    return page_html(_page(found, title))
+    return page_html(_page(found, title, origin))
 
 
-def diagnosis_pdf(found: Diagnosis, title: str) -> bytes:
+def diagnosis_pdf(found: Diagnosis, title: str, origin: Origin | None = None) -> bytes:
     """The same on paper: PDF/A-2a and PDF/UA-1. Every text reaches Typst as data."""
-    return page_pdf(_page(found, title))
+    return page_pdf(_page(found, title, origin))
 
 
-def _page(found: Diagnosis, title: str) -> Page:
+def _page(found: Diagnosis, title: str, origin: Origin | None) -> Page:
     return Page(
         kind="Diagnosis of a model against recordings",
         title=title,
@@ -32,7 +33,8 @@ def _page(found: Diagnosis, title: str) -> Page:
         tone=_tone(found),
         lead=lead(found),
         notes=tuple(found.notes),
-        parts=tuple(parts(found)),
+        parts=(*parts(found), *((origin.part,) if origin else ())),
+        mark=origin.mark if origin else "",
     )
 
 

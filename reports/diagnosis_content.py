@@ -113,7 +113,7 @@ def parts(found: Diagnosis) -> list[Part]:
             "overlays",
             "Measured and simulated",
             f"Recording {overlay.name}, which the new model changes most: {WINDOW_S:g} s where the old one "
-            "was worst, and the spectra of the errors.",
+            "was worst, measured minus simulated there, and the spectra of the errors.",
             figures=overlay_figures(overlay),
         ),
         Part("parameters", "Parameters of the model", "", _if_any(_parameters(found))),

@@ -19,11 +19,11 @@ def shown_overlay(found: Diagnosis) -> Overlay:
 
 
 def overlay_figures(overlay: Overlay) -> tuple[Figure, ...]:
-    """Of each measured channel: `WINDOW_S` at the worst moment, and the spectrum of the error."""
+    """Of each measured channel: `WINDOW_S` at the worst moment, the residual there, and its spectrum."""
     figures = []
     for column, channel in enumerate(OUTPUTS):
         if np.isfinite(overlay.measured[0, column]):
-            figures += [_in_time(overlay, column, channel), _in_frequency(overlay, column, channel)]
+            figures += [draw(overlay, column, channel) for draw in (_in_time, _residual, _in_frequency)]
     return tuple(figures)
 
 
@@ -34,20 +34,39 @@ def _change(overlay: Overlay) -> float:
     return float(np.max(change / (np.var(overlay.measured[:, has], axis=0) + 1e-12), initial=0.0))
 
 
-def _in_time(o: Overlay, column: int, channel: str) -> Figure:
+def _worst(o: Overlay, column: int) -> slice:
+    """The `WINDOW_S` in which the old model was worst."""
     size = min(max(10, round(WINDOW_S / o.dt)), len(o.measured))
     power = np.convolve((o.measured[:, column] - o.before[:, column]) ** 2, np.ones(size), "valid")
     first = int(np.argmax(power))
-    window = slice(first, first + size)
-    t = np.asarray(np.arange(first, first + size) * o.dt, dtype=float)
+    return slice(first, first + size)
+
+
+def _in_time(o: Overlay, column: int, channel: str) -> Figure:
+    window = _worst(o, column)
+    t = np.asarray(np.arange(window.start, window.stop) * o.dt, dtype=float)
     traces = (
-        Trace(Label("measured"), t, o.measured[window, column], "reference"),
+        Trace(Label("measured"), t, o.measured[window, column], "reference", width=4.0),
         Trace(Label("model before"), t, o.before[window, column], "phase", "dash"),
-        Trace(Label("model after"), t, o.after[window, column], "gain"),
+        Trace(Label("model after"), t, o.after[window, column], "gain", width=0.7),
     )
     unit = CHANNELS[channel].unit
     label = channel_label(channel)
-    return Figure(f"time-{channel}", Label(label.text), "Time", "s", label, unit, traces)
+    return Figure(f"time-{channel}", Label(label.text), "Time", "s", label, unit, traces, wide=True)
+
+
+def _residual(o: Overlay, column: int, channel: str) -> Figure:
+    """What is left of the measurement, in the same window."""
+    window = _worst(o, column)
+    t = np.asarray(np.arange(window.start, window.stop) * o.dt, dtype=float)
+    measured = o.measured[window, column]
+    traces = (
+        Trace(Label("residual before"), t, measured - o.before[window, column], "phase"),
+        Trace(Label("residual after"), t, measured - o.after[window, column], "gain"),
+    )
+    title = Label(f"{channel_label(channel).text}, measured minus simulated")
+    unit = CHANNELS[channel].unit
+    return Figure(f"residual-{channel}", title, "Time", "s", Label("residual"), unit, traces)
 
 
 def _in_frequency(o: Overlay, column: int, channel: str) -> Figure:

@@ -17,13 +17,17 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class Trace:
-    """One line: `x`, `y` are 1-D of one length; NaN in `y` is a gap. `role` names a tone of the style."""
+    """One line: `x`, `y` are 1-D of one length; NaN in `y` is a gap. `role` names a tone of the style.
+
+    `width` is how many times as wide as usual it is: a wide line shows beside a thin one that lies on it.
+    """
 
     label: Label
     x: Array
     y: Array
     role: str
     dash: str = "solid"
+    width: float = 1.0
 
 
 @dataclass(frozen=True)

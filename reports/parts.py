@@ -9,11 +9,11 @@ import base64
 import json
 from dataclasses import asdict, dataclass
 from importlib import resources
-from typing import Any, Literal
+from typing import Any, Literal, Protocol
 
 from reports import shades, style
 from reports.figure import Figure
-from reports.gap_bars import GapBars
+from reports.labels import Label
 from reports.pdf import _font_directory, _known_characters, _spelled_out
 from reports.svg_figure import svg_figure
 
@@ -50,6 +50,28 @@ class Map:
     rows: tuple[tuple[str, tuple[Cell, ...]], ...]
 
 
+class Picture(Protocol):
+    """What is drawn already."""
+
+    @property
+    def title(self) -> Label:
+        """Above it."""
+
+    @property
+    def caption(self) -> str:
+        """Below it."""
+
+    @property
+    def wide(self) -> bool:
+        """Whether it takes a whole line of text."""
+
+    def as_svg(self) -> bytes:
+        """The picture."""
+
+    def alternative_text(self) -> str:
+        """What it shows, in words."""
+
+
 @dataclass(frozen=True)
 class Part:
     """A section of the report."""
@@ -59,12 +81,15 @@ class Part:
     text: str
     tables: tuple[Table, ...] = ()
     maps: tuple[Map, ...] = ()
-    figures: tuple[Figure | GapBars, ...] = ()
+    figures: tuple[Figure | Picture, ...] = ()
 
 
 @dataclass(frozen=True)
 class Page:
-    """A whole report: `kind` says what it is a report of, `headline` and `lead` what came out."""
+    """A whole report: `kind` says what it is a report of, `headline` and `lead` what came out.
+
+    `mark` stands at the head and at the foot: when it was made, by what, from what.
+    """
 
     kind: str
     title: str
@@ -73,6 +98,12 @@ class Page:
     lead: str
     notes: tuple[str, ...]
     parts: tuple[Part, ...]
+    mark: str = ""
+
+
+def documents(page: Page) -> dict[str, bytes]:
+    """The page in both forms, by the names of their files."""
+    return {"report.html": page_html(page).encode(), "report.pdf": page_pdf(page)}
 
 
 def page_html(page: Page) -> str:
@@ -92,6 +123,7 @@ def page_html(page: Page) -> str:
         tone=page.tone,
         lead=page.lead,
         notes=page.notes,
+        mark=page.mark,
         parts=[_with_pictures(part) for part in page.parts],
         light=style.css_variables("light"),
         dark=style.css_variables("dark"),
@@ -112,6 +144,7 @@ def page_pdf(page: Page) -> bytes:
         "tone": page.tone,
         "lead": page.lead,
         "notes": list(page.notes),
+        "mark": page.mark,
         "parts": [_as_data(part) for part in page.parts],
         "colors": {name: tone.light for name, tone in style.SURFACE.items()},
     }
@@ -142,7 +175,7 @@ def _as_data(part: Part) -> dict[str, Any]:
         "maps": [_map_as_data(m) for m in part.maps],
         "figures": [
             {
-                "svg": (f.as_svg() if isinstance(f, GapBars) else svg_figure(f)).decode(),
+                "svg": (svg_figure(f) if isinstance(f, Figure) else f.as_svg()).decode(),
                 "title": f.title.plain(),
                 "alt": f.alternative_text(),
                 "caption": f.caption,

@@ -45,7 +45,10 @@ def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
         "meta": trace.role,
         "x": _packed(x),
         "y": _packed(y),
-        "line": {"width": style.LINE_WIDTH_PX * style.WIDER.get(trace.role, 1.0), "dash": trace.dash},
+        "line": {
+            "width": style.LINE_WIDTH_PX * style.WIDER.get(trace.role, 1.0) * trace.width,
+            "dash": trace.dash,
+        },
         "hovertemplate": f"%{{y:.4~g}}{quantities.THIN}{unit} at %{{x:.4~g}}{quantities.THIN}{x_unit}",
     }
 

@@ -56,7 +56,7 @@ def _draw(axes: Axes, figure: Figure) -> None:
         x, y = envelope(trace.x, trace.y, points, logarithmic=figure.logarithmic)
         color = style.SERIES[trace.role].light
         (drawn,) = axes.plot(x, y, _DASHES[trace.dash], color=color, label=trace.label.as_mathtext())
-        drawn.set_linewidth(drawn.get_linewidth() * style.WIDER.get(trace.role, 1.0))
+        drawn.set_linewidth(drawn.get_linewidth() * style.WIDER.get(trace.role, 1.0) * trace.width)
     if figure.logarithmic:
         axes.set_xscale("log")
         axes.set_yscale("log")

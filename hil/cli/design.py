@@ -12,7 +12,11 @@ from hil.cli._output import print_json, progress, to_json
 from hil.cli._place import results_in
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
+from reports import HTML, PDF
+from reports.design_report import design_page
+from reports.origin import origin_of
 from reports.outputs.control_design import output_files, summary_of, text_of
+from reports.parts import documents
 
 _PAPER = DesignSpec()
 
@@ -65,7 +69,7 @@ def carry_out(
     inputs = [model, *([responses] if responses else [])]
     with results_in(
         out,
-        ("controller.toml", "design.json"),
+        ("controller.toml", "design.json", HTML, PDF),
         inputs=inputs,
         overwrite=overwrite,
         default="design",
@@ -81,7 +85,9 @@ def carry_out(
                 paper = design(plant, _as_in_the_paper(found.spec, wheel_inertia), unstable_too=True)
             show("figures")
             files = output_files(found, measured)
-            summary = summary_of(found, paper, str(model), sorted(files))
+            summary = summary_of(found, paper, str(model), sorted([*files, HTML, PDF]))
+            used = {"model": [model], "measured response": [responses] if responses else []}
+            files |= documents(design_page(found, summary, files, model.name, origin_of(used)))
             files["design.json"] = (to_json(summary) + "\n").encode()
         place.write(files, inputs)
     if json_:

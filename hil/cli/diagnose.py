@@ -15,6 +15,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model, model_to_toml
 from hil.core.recording import Recording, driven_by_torque, read_recording
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
+from reports.origin import Origin, origin_of
 from reports.quantities import chance
 
 _FILES = ("model.toml", "diagnosis.json", "report.html", "report.pdf")
@@ -52,7 +53,8 @@ def carry_out(
             if interrupted:
                 INTERRUPTS.answered()
             show("writing the report")
-            files = output_files(found, model.name)
+            origin = origin_of({"model": [model], "recording": recordings, "held out": holdout or []})
+            files = output_files(found, model.name, origin)
         place.write(files, inputs)
     if json_:
         print_json(_summary(found, files))
@@ -97,12 +99,12 @@ def _read(paths: list[Path], base: Model, show: Show) -> list[Recording]:
     return parts
 
 
-def output_files(found: Diagnosis, title: str) -> dict[str, bytes]:
+def output_files(found: Diagnosis, title: str, origin: Origin | None = None) -> dict[str, bytes]:
     """Names and contents of all that the command writes."""
     files = {
         "model.toml": model_to_toml(found.model).encode(),
-        "report.html": diagnosis_html(found, title).encode(),
-        "report.pdf": diagnosis_pdf(found, title),
+        "report.html": diagnosis_html(found, title, origin).encode(),
+        "report.pdf": diagnosis_pdf(found, title, origin),
     }
     for a in found.alternatives:
         if a.plan and a.plan_text:

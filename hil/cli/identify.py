@@ -12,7 +12,11 @@ from hil.cli._output import Show, print_json, progress, to_json, warn, warn_of_d
 from hil.cli._place import refuse_missing, results_in
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
+from reports import HTML, PDF
+from reports.identification_report import identification_page
+from reports.origin import origin_of
 from reports.outputs.identification import output_files, summary_of, text_of
+from reports.parts import documents
 
 _LEAST_SAMPLES = 100
 
@@ -36,7 +40,7 @@ def carry_out(
     chosen = _method(method)
     for path in recordings:
         refuse_missing(path)
-    names = ("identification.json", "model.toml", "physical.toml", "frf.csv")
+    names = ("identification.json", "model.toml", "physical.toml", "frf.csv", HTML, PDF)
     with results_in(
         out, names, inputs=recordings, overwrite=overwrite, default="identify", summary="identification.json"
     ) as place:
@@ -53,7 +57,10 @@ def carry_out(
             )
             show("figures")
             files = output_files(found)
-            summary = summary_of(found, experiments, sorted(files))
+            summary = summary_of(found, experiments, sorted([*files, HTML, PDF]))
+            title = ", ".join(path.name for path in recordings)
+            page = identification_page(found, summary, files, title, origin_of({"recording": recordings}))
+            files |= documents(page)
             files["identification.json"] = (to_json(summary) + "\n").encode()
         place.write(files, recordings)
     for doubt in found.doubts:

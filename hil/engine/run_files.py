@@ -8,10 +8,11 @@ from hil.core.clock import utc
 from hil.core.model import model_to_toml
 from hil.core.recording import ACCEPTED_EXPIRY, DEVICE
 from hil.core.result import AcceptedExpiry, RunResult
+from hil.core.versions import versions
 from hil.engine.bench import Bench
 from hil.engine.border import RunRequest
 from hil.engine.conductor import BenchConductor
-from hil.engine.provenance import hashes, versions
+from hil.engine.provenance import hashes
 from hil.engine.recorder import Recorder
 
 

@@ -2,6 +2,17 @@
 
 from reports.drawings._bode import Curve, bode, coherence
 from reports.drawings._canvas import render
+from reports.drawings._drawing import Drawing
 from reports.drawings._loops import Loops, nyquist, sensitivity, trade_off_chart
 
-__all__ = ["Curve", "Loops", "bode", "coherence", "nyquist", "render", "sensitivity", "trade_off_chart"]
+__all__ = [
+    "Curve",
+    "Drawing",
+    "Loops",
+    "bode",
+    "coherence",
+    "nyquist",
+    "render",
+    "sensitivity",
+    "trade_off_chart",
+]

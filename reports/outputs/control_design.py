@@ -120,5 +120,5 @@ def text_of(found: Design, paper: Design | None, out: Path) -> str:
         f"{r.gain_margin_db:.1f} dB, {r.phase_margin_deg:.1f}°, stable {r.stable_share:.0%}"
     )
     lines += [f"note: {note}" for note in found.notes]
-    lines += ["", f"written to {out}: controller.toml, design.json, figures"]
+    lines += ["", f"written to {out}: controller.toml, design.json, report.html, report.pdf, figures"]
     return "\n".join(lines)

@@ -183,5 +183,8 @@ def text_of(found: Identification, summary: dict[str, Any], out: Path) -> str:
             lines.append(f"{kind:<15}{cells}{'  <- taken' if one['chosen'] else ''}")
         lines.append(summary["chain_reason"])
     lines += [f"note: {note}" for note in summary["notes"]]
-    lines += ["", f"written to {out}: model.toml, frf.csv, identification.json, figures"]
+    lines += [
+        "",
+        f"written to {out}: model.toml, frf.csv, identification.json, report.html, report.pdf, figures",
+    ]
     return "\n".join(lines)

@@ -26,6 +26,7 @@ from hil.analysis.control_design._loop import (
     hold_response,
     loop_grid,
     margins,
+    sampled_response,
 )
 from hil.analysis.control_design._optimize import MarginLimits, Objective, Optimum, optimize
 from hil.analysis.control_design._plant import DesignPlant, design_plant, resonance_hz
@@ -71,6 +72,7 @@ __all__ = [
     "pole_assignment",
     "possible_plants",
     "resonance_hz",
+    "sampled_response",
     "speed_filter",
     "trade_off",
     "tustin",

@@ -24,6 +24,7 @@ from hil.analysis.control_design._loop import (
     hold_response,
     loop_grid,
     margins,
+    sampled_response,
 )
 from hil.analysis.control_design._optimize import Optimum, optimize
 from hil.analysis.control_design._plant import DesignPlant, design_plant
@@ -75,10 +76,10 @@ def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], u
     inertia = spec.inertia_kg_m2 or plant.inertia_kg_m2
     origin_poles = 2 if motor.denominator[-1] == 0 else 1
     frequency = loop_grid(spec.sample_time_s)
-    hold = hold_response(frequency, spec.sample_time_s)
     coarse = loop_grid(spec.sample_time_s, 700)
     plants = possible_plants(model, motor, coarse)
-    held = plants.responses * hold_response(coarse, spec.sample_time_s)
+    # Aliasing is small: that of the model is that of its likely neighbours.
+    held = plants.responses * (sampled_response(motor, coarse, spec.sample_time_s) / motor.response(coarse))
     optimum = _optimum(spec, coarse, held, inertia, origin_poles, progress)
     if optimum is not None:
         spec = _with_optimum(spec, optimum)
@@ -87,10 +88,11 @@ def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], u
     wsc = wscs[spec.stabilisation]
     blocks = feedback_functions(wsc)
     response = motor.response(frequency)
-    loops = [_loop("plant", (), frequency, response, hold, spec.sample_time_s, origin_poles - 1)]
+    held_plant = sampled_response(motor, frequency, spec.sample_time_s)
+    loops = [_loop("plant", (), frequency, response, held_plant, spec.sample_time_s, origin_poles - 1)]
     for name, one in wscs.items():
         parts = feedback_functions(one)
-        loops.append(_loop(name, parts, frequency, response, hold, spec.sample_time_s, origin_poles))
+        loops.append(_loop(name, parts, frequency, response, held_plant, spec.sample_time_s, origin_poles))
     chosen = next(loop for loop in loops if loop.name == spec.stabilisation)
     if not unstable_too:
         refuse_unstable(motor, blocks, spec, chosen.margins)
@@ -208,11 +210,11 @@ def _loop(
     blocks: tuple[TransferFunction, ...],
     frequency: Array,
     response: ComplexArray,
-    hold: ComplexArray,
+    held_plant: ComplexArray,
     step: float,
     origin_poles: int,
 ) -> Loop:
-    sampled = response * hold * feedback_response(blocks, frequency, step)
+    sampled = held_plant * feedback_response(blocks, frequency, step)
     continuous = response * feedback_response(blocks, frequency, None)
     return Loop(
         name,

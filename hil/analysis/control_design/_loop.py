@@ -14,7 +14,7 @@ from hil.core.model import TransferFunction
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 
-#: Band in which the paper judges riding comfort.
+_FOLDS = 200  # of aliasing: what is left out falls with their number
 
 
 def loop_grid(sample_time_s: float = 0.001, count: int = 3000) -> Array:
@@ -42,6 +42,19 @@ def hold_response(frequency_hz: Array, sample_time_s: float) -> ComplexArray:
     """Zero-order hold: sinc(f T)·exp(-jπ f T). Computing time is part of the model's dead time."""
     x = np.asarray(frequency_hz) * sample_time_s
     return np.asarray(np.sinc(x) * np.exp(-1j * np.pi * x))
+
+
+def sampled_response(plant: TransferFunction, frequency_hz: Array, sample_time_s: float) -> ComplexArray:
+    """The plant as a sampling controller sees it: held, and with what sampling folds back (aliasing).
+
+    The sum over k of P(f + k/T) hold(f + k/T); |k| up to `_FOLDS`, beyond which both have fallen off.
+    """
+    frequency = np.asarray(frequency_hz, dtype=float)
+    total = np.zeros(frequency.shape, complex)
+    for fold in range(-_FOLDS, _FOLDS + 1):
+        folded = frequency + fold / sample_time_s
+        total += plant.response(folded) * hold_response(folded, sample_time_s)
+    return total
 
 
 @dataclass(frozen=True)

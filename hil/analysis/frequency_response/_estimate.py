@@ -83,7 +83,7 @@ def estimate(
         allowed_share=_ALLOWED_LOW_SHARE,
         where=where,
     )
-    return replace(frf, notes=tuple(dict.fromkeys([*frf.notes, *notes])))
+    return replace(frf, input_hold_s=experiments[0].hold_s, notes=tuple(dict.fromkeys([*frf.notes, *notes])))
 
 
 def _band(

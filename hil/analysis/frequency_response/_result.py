@@ -55,6 +55,7 @@ class FrequencyResponse:
         method: how it was estimated.
         notes: what was mended, merged or left out.
         realisations: of random phases that were averaged, periodic method only.
+        input_hold_s: zero-order hold of the input that is taken out of `response`; 0 if none was.
     """
 
     frequency_hz: Array
@@ -69,6 +70,7 @@ class FrequencyResponse:
     distortion: Distortion | None = None
     notes: tuple[str, ...] = field(default=())
     realisations: int = 1
+    input_hold_s: float = 0.0
 
     def of(self, output: str) -> ComplexArray:
         """Response of one output; KeyError if it was not estimated."""
@@ -84,6 +86,7 @@ class FrequencyResponse:
         return self.outputs.index(output)
 
 
+_HOLD = "input_hold_taken_out_s"
 _COLUMNS = ("real", "imag", "gain_db", "phase_deg", "standard_deviation", "coherence", "noise", "nonlinear")
 
 
@@ -91,7 +94,8 @@ def frf_to_csv(frf: FrequencyResponse) -> str:
     """The table `frf.csv`: one row a frequency, columns `<output>.<quantity>`.
 
     Quantities: real, imag, gain_db (20 log10 of output unit per N m), phase_deg (unwrapped),
-    standard_deviation, coherence, noise (unit/√Hz), nonlinear.
+    standard_deviation, coherence, noise (unit/√Hz), nonlinear. The last column, the same in every row, is the
+    zero-order hold of the input that is taken out of all responses.
     """
     columns: dict[str, Array] = {"frequency_hz": frf.frequency_hz}
     for row, output in enumerate(frf.outputs):
@@ -108,6 +112,7 @@ def frf_to_csv(frf: FrequencyResponse) -> str:
         )
         columns |= {f"{output}.{name}": value for name, value in zip(_COLUMNS, values, strict=True)}
     columns["independent_every"] = np.full(len(frf.frequency_hz), float(frf.independent_every))
+    columns[_HOLD] = np.full(len(frf.frequency_hz), frf.input_hold_s)
     text = io.StringIO()
     pd.DataFrame(columns).to_csv(text, index=False, float_format="%.9g", lineterminator="\n")
     return text.getvalue()
@@ -142,4 +147,5 @@ def frf_from_csv(path: Path) -> FrequencyResponse:
         table("nonlinear"),
         every,
         "read from a table",
+        input_hold_s=float(frame[_HOLD].iloc[0]) if _HOLD in frame else 0.0,
     )

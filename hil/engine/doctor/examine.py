@@ -14,6 +14,7 @@ from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import FrameBlock
 from hil.core.model import load_model
 from hil.core.real_time import undisturbed
+from hil.core.versions import versions
 from hil.engine.bench import bench_clock, connections_of, open_wire
 from hil.engine.bench_tables import BenchFile
 from hil.engine.bus_tally import Tally, known_identifiers
@@ -23,7 +24,6 @@ from hil.engine.doctor._dates import findings_of_dates
 from hil.engine.doctor._stops import findings_of_stops
 from hil.engine.doctor.examination import BusFacts, DeviceFacts, Examination
 from hil.engine.identification import identities_of, told, what_to_do
-from hil.engine.provenance import versions
 from hil.engine.stopping import StopRequest
 from hil.engine.zero import SENSORS, offset_told, turning, zero_of
 from hil.engine.zero import what_to_do as what_to_do_about_zero

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from pathlib import Path
 
 import pytest
 import typer
+from pypdf import PdfReader
 from typer.testing import CliRunner
 
 from hil.cli.commands import design, identify
@@ -41,13 +43,16 @@ def identified(recording: Path, tmp_path_factory: pytest.TempPathFactory) -> tup
     return out, invoke("identify", recording, "--out", out, "--json")
 
 
-def test_identify_writes_what_it_promises(identified: tuple[Path, str]) -> None:
+def test_identify_writes_what_it_promises(identified: tuple[Path, str], recording: Path) -> None:
     out, printed = identified
     summary = json.loads(printed)
     assert json.loads((out / "identification.json").read_text()) == summary
     assert summary["dead_time_s"]["value"] == pytest.approx(0.008, abs=1e-4)
     assert summary["chain"] == "three_inertia"
     assert {p.name for p in out.iterdir()} == {*summary["files"], "identification.json"}
+    page = (out / "report.html").read_text()
+    assert hashlib.sha256(recording.read_bytes()).hexdigest() in page
+    assert "pdfuaid" in str(PdfReader(out / "report.pdf").xmp_metadata.stream.get_data())
     assert load_model(out / "model.toml").kind == "transfer_function"
     assert load_model(out / "physical.toml").kind == "three_inertia"
 
@@ -57,7 +62,9 @@ def test_design_takes_either_model(identified: tuple[Path, str], tmp_path: Path)
     for name in ("model.toml", "physical.toml"):
         where = tmp_path / name
         summary = json.loads(invoke("design", "--model", out / name, "--out", where, "--json"))
-        assert {p.name for p in where.iterdir()} == {"controller.toml", "design.json", *_FIGURES}
+        assert {p.name for p in where.iterdir()} == {
+            "controller.toml", "design.json", "report.html", "report.pdf", *_FIGURES
+        }  # fmt: skip
         assert load_controller(where / "controller.toml").stabilization == "phase"
         assert summary["loops"]["phase"]["sampled"]["stable"] is True
 

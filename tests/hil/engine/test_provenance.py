@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from hil.engine.provenance import hashes, versions
+from hil.core.versions import versions
+from hil.engine.provenance import hashes
 
 
 def test_attachments_have_the_digests_that_the_standard_gives() -> None:

@@ -15,6 +15,7 @@ from hil.analysis.control_design import (
     lead,
     loop_grid,
     margins,
+    sampled_response,
 )
 from hil.core.controller import Lead, Notch, Wsc
 from hil.core.model import Model, TransferFunction
@@ -43,6 +44,18 @@ def open_loop(model: Model, parts: Wsc, step: float | None = None) -> np.ndarray
 
 def at(loop: np.ndarray, frequency_hz: float) -> complex:
     return complex(np.interp(frequency_hz, GRID, loop))
+
+
+def test_a_sampled_plant_is_the_z_transform_of_the_held_one() -> None:
+    """1/(s + a) behind a zero-order hold: (1 - e^-aT)/a/(z - e^-aT); a hold alone is far off at high f."""
+    pole, step = 30.0, 0.001
+    frequency = np.array([1.0, 50.0, 200.0, 450.0, 495.0])
+    z, decay = np.exp(2j * np.pi * frequency * step), np.exp(-pole * step)
+    exact = (1 - decay) / pole / (z - decay)
+    plant = TransferFunction((1.0,), (1.0, pole))
+    np.testing.assert_allclose(sampled_response(plant, frequency, step), exact, rtol=1.5e-3)
+    held = plant.response(frequency) * hold_response(frequency, step)
+    assert abs(held[-1] / exact[-1] - 1) > 0.2
 
 
 def test_pi_at_the_resonance(paper_model: Model) -> None:

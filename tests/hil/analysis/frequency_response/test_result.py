@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,8 @@ from hil.core.errors import BadInputError
 
 def test_table_is_read_back(tmp_path: Path, paper_frf: FrequencyResponse) -> None:
     path = tmp_path / "frf.csv"
-    path.write_text(frf_to_csv(paper_frf))
+    path.write_text(frf_to_csv(dataclasses.replace(paper_frf, input_hold_s=0.001)))
+    assert frf_from_csv(path).input_hold_s == 0.001
     again = frf_from_csv(path)
     assert again.outputs == paper_frf.outputs
     assert again.independent_every == paper_frf.independent_every

@@ -1,0 +1,109 @@
+"""The report of `hil design`: the controller, its margins, the figures behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from hil.analysis.control_design import Design
+from reports import quantities
+from reports.drawings import Drawing
+from reports.labels import Label
+from reports.origin import Origin
+from reports.parts import Page, Part, Table
+
+_LOOPS = {"plant": "plant alone", "pi": "PI", "phase": "PI and lead", "gain": "PI and notch"}
+_FIGURES = {
+    "nyquist": ("Open loops", "Nyquist diagram of the plant alone, with PI, with PI and lead, PI and notch."),
+    "sensitivity": ("Sensitivity", "|S| in decibels over frequency for the controlled loops."),
+    "trade_off": ("Trade-off of the phase lead", "Phase at the resonance against the sensitivity peak."),
+}
+
+
+def design_page(
+    found: Design, summary: Mapping[str, Any], files: Mapping[str, bytes], title: str, origin: Origin
+) -> Page:
+    """The page; `summary` is the content of `design.json`, `files` hold the figures."""
+    chosen = found.loop(found.chosen).margins
+    fine = chosen.stable and not found.warnings
+    worst = found.robustness
+    return Page(
+        kind="Control design",
+        title=title,
+        headline=f"{_LOOPS[found.chosen]}: {'stable' if chosen.stable else 'NOT stable'}",
+        tone="pass" if fine else "error",
+        lead=f"Largest sensitivity {quantities.number(chosen.sensitivity_peak, 2)} at "
+        f"{quantities.quantity(chosen.sensitivity_peak_hz, 'Hz', 1)}, gain margin "
+        f"{quantities.quantity(chosen.gain_margin_db, 'dB', 1)}, phase margin "
+        f"{quantities.number(chosen.phase_margin_deg, 1)}°; of {worst.source} at worst "
+        f"{quantities.number(worst.sensitivity_peak, 2)}.",
+        notes=(*found.warnings, *found.notes),
+        parts=(
+            Part("controller", "Controller", "", (_controller(found, summary),)),
+            Part("margins", "Margins", _MARGINS, (_margins(found), _continuous(found))),
+            Part("figures", "Figures", "", figures=_figures(files)),
+            origin.part,
+        ),
+        mark=origin.mark,
+    )
+
+
+_MARGINS = (
+    "Sampled: as the RMCU closes the loop, with its hold and with what sampling folds back from beyond half "
+    "its rate (aliasing). Continuous: the same controller without sampling. Limits are judged by the first."
+)
+
+
+def _controller(found: Design, summary: Mapping[str, Any]) -> Table:
+    wsc = found.controller.wsc
+    rows = [
+        ("proportional gain K_p", quantities.number(wsc.proportional_gain), "N m s/rad"),
+        ("integral gain K_i", quantities.number(wsc.integral_gain), "N m/rad"),
+        ("pole p", quantities.number(found.spec.pole_rad_s), "rad/s"),
+        ("inertia", quantities.number(summary["inertia_kg_m2"]), "kg m²"),
+        ("resonance of the plant", quantities.number(summary["resonance_hz"]), "Hz"),
+        ("dead time of the plant", quantities.number(1e3 * summary["dead_time_s"]), "ms"),
+    ]
+    if wsc.lead is not None:
+        rows += [
+            ("lead angle", quantities.number(found.spec.lead_deg), "°"),
+            ("lead frequency", quantities.number(found.spec.lead_hz), "Hz"),
+        ]
+    if summary["notch"] is not None:
+        rows += [
+            (f"notch, {key.replace('_', ' ')}", str(value), "") for key, value in summary["notch"].items()
+        ]
+    return Table(("quantity", "value", "unit"), tuple(rows), 1, 2)
+
+
+def _margins(found: Design) -> Table:
+    return _table("sampled", [(loop.name, loop.margins) for loop in found.loops], found.chosen)
+
+
+def _continuous(found: Design) -> Table:
+    rows = [(loop.name, loop.continuous_margins) for loop in found.loops]
+    return _table("continuous", rows, found.chosen)
+
+
+def _table(name: str, loops: list[tuple[str, Any]], chosen: str) -> Table:
+    rows = tuple(
+        (
+            _LOOPS[loop] + (" (taken)" if loop == chosen else ""),
+            quantities.number(m.sensitivity_peak, 3),
+            quantities.number(m.sensitivity_peak_hz, 1),
+            quantities.number(m.comfort_peak, 3),
+            quantities.number(m.gain_margin_db, 1),
+            quantities.number(m.phase_margin_deg, 1),
+            quantities.number(1e3 * m.delay_margin_s, 1),
+            "yes" if m.stable else "NO",
+        )
+        for loop, m in loops
+    )
+    head = (name, "|S|max", "at Hz", "max 8-20 Hz", "gain dB", "phase °", "delay ms", "stable")
+    return Table(head, rows, 1, 7)
+
+
+def _figures(files: Mapping[str, bytes]) -> tuple[Drawing, ...]:
+    return tuple(
+        Drawing(Label(title), files[f"{name}.svg"], words) for name, (title, words) in _FIGURES.items()
+    )
