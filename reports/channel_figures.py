@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,17 +63,16 @@ def sweep_section(recording: Recording, segment: Segment) -> Section:
 
 
 def overview_section(recording: Recording, segments: Sequence[Segment]) -> Section | None:
-    """The whole run in one wide figure with its segments shaded; None if there is nothing to draw."""
+    """Torque request, speed and shaft torque of the whole run, its segments shaded; None without any."""
     where = _whole(recording, "overview")
-    name = next((n for n in OUTPUTS if n in recording), INPUT)
     if where is None:
         return None
     clipped = [(max(s.start_s, where.start_s), min(s.end_s, where.end_s), s.id) for s in segments]
     bands = tuple(Band(start, end, label) for start, end, label in clipped if end > start)
-    figure = _time_figure(where, (name,), bands)
-    if figure is None:
-        return None
-    return Section("overview", "The whole run", "", (figure,))
+    names = (INPUT, *(name for name in OUTPUTS if name != "wheel_speed_rad_s"))
+    drawn = [_time_figure(where, (name,), bands) for name in names]
+    figures = tuple(replace(figure, wide=True) for figure in drawn if figure is not None)
+    return Section("overview", "The whole run", "", figures) if figures else None
 
 
 def channels_section(recording: Recording) -> Section:

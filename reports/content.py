@@ -85,6 +85,7 @@ class Content:
     banner: Banner
     run: tuple[Fact, ...]
     dut: tuple[Fact, ...]
+    laboratory: tuple[Fact, ...]
     versions: tuple[Fact, ...]
     calibration: tuple[Fact, ...]
     identification: tuple[Fact, ...]
@@ -131,6 +132,7 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         banner=_banner(result),
         run=provenance.run_facts(recording, result),
         dut=provenance.dut_facts(recording),
+        laboratory=provenance.laboratory_facts(recording, result),
         versions=provenance.table(recording, "versions"),
         calibration=calibration,
         identification=identification,

@@ -49,6 +49,16 @@ class Level:
 
 
 @dataclass(frozen=True)
+class Mark:
+    """A point that matters, such as a peak."""
+
+    x: float
+    y: float
+    label: str
+    role: str
+
+
+@dataclass(frozen=True)
 class Figure:
     """One pair of axes. Ranges of None are chosen from the data."""
 
@@ -61,6 +71,7 @@ class Figure:
     traces: tuple[Trace, ...]
     bands: tuple[Band, ...] = ()
     levels: tuple[Level, ...] = ()
+    marks: tuple[Mark, ...] = ()
     x_range: Range | None = None
     y_range: Range | None = None
     logarithmic: bool = False
@@ -92,6 +103,7 @@ class Figure:
         parts += [
             f"{level.label} at {quantities.quantity(level.value, self.y_unit)}." for level in self.levels
         ]
+        parts += [f"{mark.label}." for mark in self.marks]
         return " ".join(parts)
 
     def _visible(self, trace: Trace) -> Array:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from reports import quantities, style
 from reports.envelope import envelope
-from reports.figure import Figure, Trace
+from reports.figure import Figure, Mark, Trace
 
 #: Share of the axes' height over which the labels of bands alternate.
 _BAND_LABEL_Y = 0.985
@@ -23,7 +23,7 @@ def plotly_figure(figure: Figure) -> dict[str, Any]:
     shapes, annotations = _bands(figure)
     level_shapes, level_annotations = _levels(figure)
     return {
-        "data": [_trace(trace, figure) for trace in figure.traces],
+        "data": [*(_trace(trace, figure) for trace in figure.traces), *map(_mark, figure.marks)],
         "layout": {
             "xaxis": _axis(figure.x_title, figure.x_range, figure.logarithmic),
             "yaxis": _axis(figure.y_title.as_html(), figure.y_range, figure.logarithmic),
@@ -50,6 +50,20 @@ def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
             "dash": trace.dash,
         },
         "hovertemplate": f"%{{y:.4~g}}{quantities.THIN}{unit} at %{{x:.4~g}}{quantities.THIN}{x_unit}",
+    }
+
+
+def _mark(mark: Mark) -> dict[str, Any]:
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "name": html.escape(mark.label),
+        "meta": mark.role,
+        "x": [mark.x],
+        "y": [mark.y],
+        "marker": {"size": 8, "symbol": "circle-open", "line": {"width": 2}},
+        "hovertemplate": "%{fullData.name}<extra></extra>",
+        "showlegend": False,
     }
 
 

@@ -57,6 +57,33 @@ def dut_facts(recording: Recording) -> tuple[Fact, ...]:
     return tuple(Fact(_words(fact.name), fact.value) for fact in table(recording, "dut"))
 
 
+_NOT_STATED = "not stated"
+_LABORATORY = {
+    "laboratory": "Laboratory",
+    "report_number": "Report number",
+    "customer": "Customer",
+    "conditions": "Conditions",
+    "equipment": "Equipment",
+    "calibration": "Calibration",
+    "measurement_uncertainty": "Measurement uncertainty",
+    "decision_rule": "Decision rule",
+}
+_SIMPLE_ACCEPTANCE = "verdicts compare value and limit without a guard band (simple acceptance, ILAC-G8)"
+
+
+def laboratory_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...]:
+    """What ISO/IEC 17025 (7.8) asks of a test report beside its results, stated or not."""
+    if result is None:
+        return ()
+    stated = recording.metadata.get("report", {})
+    dates = recording.metadata.get("calibration", {})
+    told = {key: stated.get(key, "").strip() for key in _LABORATORY}
+    told["calibration"] = "; ".join(f"{_words(sensor)} until {until}" for sensor, until in dates.items())
+    if not told["decision_rule"]:
+        told["decision_rule"] = f"{_NOT_STATED}; {_SIMPLE_ACCEPTANCE}"
+    return tuple(Fact(name, told[key] or _NOT_STATED) for key, name in _LABORATORY.items())
+
+
 def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...]:
     """Who, what, where and when."""
     run = recording.metadata.get("run", {})

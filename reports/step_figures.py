@@ -12,7 +12,7 @@ from hil.core.conventions import COMFORT_BAND_HZ
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
 from reports import quantities, style
-from reports.figure import Band, Figure, Level, Section, Trace, not_drawn
+from reports.figure import Band, Figure, Level, Mark, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
 from reports.spectrum import DESCRIPTION, amplitude_spectrum
 from reports.stretch import cut, line
@@ -121,7 +121,8 @@ class _Overlay:
         return self._response("torque-request", "motor_torque_ref_nm")
 
     def shaft_torque(self) -> Figure | None:
-        return self._response("shaft-torque", _SHAFT_TORQUE, "peak_shaft_torque", "peak")
+        figure = self._response("shaft-torque", _SHAFT_TORQUE, "peak_shaft_torque", "peak")
+        return figure and self._with_peaks(figure)
 
     def shaft_torque_enlarged(self) -> Figure | None:
         figure = self._response("shaft-torque-enlarged", _SHAFT_TORQUE, until_s=_FIRST_SECONDS)
@@ -129,13 +130,33 @@ class _Overlay:
             return None
         label = channel_label(_SHAFT_TORQUE)
         reference = self._reference(-0.1, _FIRST_SECONDS)
-        return replace(
+        figure = replace(
             figure,
             title=Label(label.text, label.symbol, f", first {_FIRST_SECONDS:g}{quantities.THIN}s"),
             traces=(*figure.traces, *reference),
             levels=self._peak_limits(figure.traces),
             x_range=(-0.1, _FIRST_SECONDS),
         )
+        return self._with_peaks(figure)
+
+    def _with_peaks(self, figure: Figure) -> Figure:
+        """Where the criteria's peaks are, as far as the figure reaches."""
+        last_s = figure.x_range[1] if figure.x_range else np.inf
+        marks = [mark for mark in map(self._peak, self._members) if mark is not None and mark.x <= last_s]
+        told = "; ".join(mark.label for mark in marks)
+        return replace(figure, marks=tuple(marks), caption=f"○ {told}." if marks else figure.caption)
+
+    def _peak(self, member: Member) -> Mark | None:
+        """The largest sample from the step on, where a criterion asks for it."""
+        segment = member.segment
+        found = cut(self._recording, _SHAFT_TORQUE, segment.step_s, segment.end_s)
+        if f"{segment.id}.peak_shaft_torque" not in self._criteria or found is None:
+            return None
+        at = int(np.nanargmax(found[1]))
+        after_s, value = float(found[0][at] - segment.step_s), float(found[1][at])
+        when = quantities.quantity(after_s, "s", 3)
+        label = f"{member.name}: peak {quantities.quantity(value, 'N m', significant=4)} at {when}"
+        return Mark(after_s, value, label, member.role)
 
     def driving_torque(self) -> Figure | None:
         estimate = channel_label("driving_torque_est_nm")

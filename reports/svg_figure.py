@@ -85,6 +85,9 @@ def _mark(axes: Axes, figure: Figure) -> None:
             color=ink,
             clip_on=True,
         )
+    for mark in figure.marks:
+        color = style.SERIES[mark.role].light
+        axes.plot([mark.x], [mark.y], "o", markersize=3.2, markerfacecolor="white", color=color, zorder=5)
     for level in figure.levels:
         color = style.SERIES[level.role].light
         axes.axhline(level.value, color=color, linewidth=0.8, linestyle="--")

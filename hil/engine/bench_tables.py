@@ -169,6 +169,18 @@ class Supervision(Table):
     )
 
 
+class ReportTable(Table):
+    """What a test report has to say beside the results (ISO/IEC 17025, 7.8); left out: 'not stated'."""
+
+    laboratory: str = Field("", description="name and address")
+    report_number: str = ""
+    customer: str = Field("", description="name and contact")
+    conditions: str = Field("", description="of the environment, where they matter for the results")
+    equipment: str = Field("", description="what was measured with, by inventory or serial numbers")
+    measurement_uncertainty: str = Field("", description="of the results, in their unit, with its coverage")
+    decision_rule: str = Field("", description="how uncertainty counts in a verdict (ILAC-G8)")
+
+
 class BenchFile(Table):
     """One bench file; paths are absolute once it is loaded."""
 
@@ -188,6 +200,7 @@ class BenchFile(Table):
     supervision: Supervision = Supervision()
     zero: dict[str, ZeroLimit] = Field({}, description="channel: what it may read at rest")
     dut: dict[str, str] = Field({})
+    report: ReportTable = Field(ReportTable(), description="what the test report says of the laboratory")
     calibration: dict[str, Day] = Field({}, description="sensor: valid until")
     noise: StatedNoise = Field(
         StatedNoise(), description="as the sensors' makers state it; `hil diagnose` reads it with a recording"

@@ -43,6 +43,7 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> dict[
         },
     )
     writer.describe("dut", request.bench.dut)
+    writer.describe("report", request.bench.report.model_dump())
     writer.describe("versions", versions())
     dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
     writer.describe("calibration", dates)

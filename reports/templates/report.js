@@ -18,7 +18,8 @@
   const coloured = (figure, size) => {
     const ink = tone("ink");
     const data = figure.data.map((trace) =>
-      ({ ...trace, line: { ...trace.line, color: tone("series-" + trace.meta) } }));
+      ({ ...trace, line: { ...trace.line, color: tone("series-" + trace.meta) },
+        ...(trace.marker && { marker: { ...trace.marker, color: tone("series-" + trace.meta) } }) }));
     const shapes = figure.layout.shapes.map(({ name, ...shape }) => name === "band"
       ? { ...shape, fillcolor: tone("band") }
       : { ...shape, line: { ...shape.line, color: tone(name) } });

@@ -114,3 +114,13 @@ def test_a_run_on_an_adapter_without_echoes_says_why_nothing_was_seen_on_the_bus
     timing = Timing(clock="wall", requests=(request,))
     (fact,) = provenance.timing_facts(result.model_copy(update={"timing": timing}))
     assert "on the bus not known: the adapter gives own frames not back, 0 cycles missed" in fact.value
+
+
+def test_what_a_laboratory_says_and_what_it_does_not(recording: Recording, result: RunResult) -> None:
+    recording.metadata["report"] = {"laboratory": "Test house, Street 1", "report_number": ""}
+    told = {fact.name: fact.value for fact in provenance.laboratory_facts(recording, result)}
+    assert told["Laboratory"] == "Test house, Street 1"
+    assert told["Report number"] == told["Customer"] == told["Measurement uncertainty"] == "not stated"
+    assert "2026-11-30" in told["Calibration"]
+    assert "simple acceptance" in told["Decision rule"]
+    assert provenance.laboratory_facts(recording, None) == ()

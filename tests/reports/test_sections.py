@@ -3,9 +3,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
+from reports import quantities
 from reports.sections import sections
 
 
@@ -88,7 +90,7 @@ def test_impossible_segments_give_notes_and_unique_ids(recording: Recording, res
     ids = [section.id for section in found]
     assert len(set(ids)) == len(ids)
     assert all(" " not in name and '"' not in name for name in ids)
-    assert [len(section.figures) for section in found] == [0, 0, 0, 1]
+    assert [len(section.figures) for section in found] == [0, 0, 0, 3]
     assert all(section.notes for section in found[:3])
 
 
@@ -109,3 +111,14 @@ def test_many_unknown_channels_are_left_to_the_table(recording: Recording) -> No
 def test_an_empty_recording_has_no_figures(result: RunResult) -> None:
     empty = Recording({}, Path("empty.csv"))
     assert all(not section.figures for section in (*sections(empty, None), *sections(empty, result)))
+
+
+def test_peaks_that_criteria_judge_are_marked_where_they_are(recording: Recording, result: RunResult) -> None:
+    (section,) = [s for s in sections(recording, result) if s.id == "steps-0kmh"]
+    (figure,) = [f for f in section.figures if f.id == "steps-0kmh-shaft-torque"]
+    assert len(figure.marks) == len(figure.traces) == 2
+    for mark, trace in zip(figure.marks, figure.traces, strict=True):
+        after = trace.x >= 0
+        highest = int(np.nanargmax(trace.y[after]))
+        assert (mark.x, mark.y) == (pytest.approx(trace.x[after][highest]), trace.y[after][highest])
+        assert f"at {quantities.quantity(mark.x, 's', 3)}" in figure.caption

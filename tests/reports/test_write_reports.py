@@ -65,5 +65,5 @@ def test_a_place_that_cannot_be_written_is_named(recording: Recording, tmp_path:
 
 def test_figures_alone(recording: Recording, result: RunResult, tmp_path: Path) -> None:
     written = write_figures(recording, result, tmp_path)
-    assert len(written) == 13
+    assert len(written) == 15
     assert ET.parse(written["steps-0kmh-shaft-torque"]).getroot().tag.endswith("svg")
