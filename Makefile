@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup compile kills soak faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
+.PHONY: run setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -63,6 +63,10 @@ blind: setup
 faults: setup
 	$(BIN)/python -m tests.faults --write
 
+# Each process of a run killed or frozen in every phase, in real time: docs/reference/process-faults.md.
+process-faults: setup
+	$(BIN)/python -m tests.process_faults --write
+
 # Damaged files and frames at every parser for an hour, chosen by what code they reach: docs/reference/fuzzing.md.
 fuzz: setup
 	$(BIN)/python -m tests.fuzz
@@ -80,9 +84,10 @@ coverage: setup
 changelog: setup
 	$(BIN)/towncrier build --draft --version next
 
-# A run killed at a hundred random moments, in real time: docs/reference/kills.md.
+# A run killed at a hundred random moments, in real time, and its emergency stop: docs/reference/kills.md.
 kills: setup
 	$(BIN)/python -m benchmarks.kills
+	$(BIN)/python -m benchmarks.emergency_stop
 
 # Ten hours of bench time in virtual time: memory, time, file size.
 soak: setup

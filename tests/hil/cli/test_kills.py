@@ -96,7 +96,7 @@ def stand_in(tmp_path: Path) -> Iterator[tuple[Any, Path, Observer]]:
         observer.close()
 
 
-def holder_of(run: subprocess.Popen[str]) -> int:
+def holder_of(run: subprocess.Popen[Any]) -> int:
     """The process that holds the bench for a command."""
     for _ in range(600):
         for child in Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split():
@@ -283,7 +283,6 @@ def test_a_command_that_is_killed_or_frozen_leaves_a_bench_that_its_process_make
         os.kill(run.pid, signal.SIGCONT)
         assert result_of(run, 3)["safe_state"] == "confirmed"
     run.communicate()
-    assert result_of(started(file, tmp_path, SHORT), 0)["safe_state"] == "confirmed"
 
 
 @pytest.mark.slow
