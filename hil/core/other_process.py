@@ -12,6 +12,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -19,6 +20,7 @@ from hil.core.errors import BenchError, HilError
 
 _POLITE = 5  # added to its nice value: who started it has a bench to keep alive
 _LAST_WORDS = 500
+_LOOK_S = 1.0
 
 
 class OtherProcess:
@@ -94,8 +96,16 @@ def _carried_out() -> tuple[bool, Any]:
         return False, BenchError(what, where="analysis", fix="please report it")
 
 
+def _end_with(parent: int) -> None:
+    """Nobody waits for an answer any more once the process that asked has ended, however it did."""
+    while os.getppid() == parent:
+        time.sleep(_LOOK_S)
+    os._exit(1)
+
+
 def main() -> None:
     """Be that process."""
+    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     answer = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no answer
     with contextlib.suppress(OSError, AttributeError):

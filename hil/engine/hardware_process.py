@@ -26,7 +26,7 @@ from hil.engine.border_messages import (
 )
 from hil.engine.border_pipe import BorderPipe
 from hil.engine.run import run_plan
-from hil.engine.stopping import StopRequest
+from hil.engine.stopping import StopRequest, hear_signals
 
 _PACKAGES = ("hil", "drivers", "sim_backend", "test_plans", "reports")
 _ASKED_WITHIN_S = 60.0
@@ -44,6 +44,7 @@ def hold_hardware(pipe: BorderPipe) -> str:
     """
     stop = StopRequest()
     with stop.by_signals():
+        hear_signals()
         _log_to(pipe)
         command = _Command(pipe, stop)
         asked = command.asked()

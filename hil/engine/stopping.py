@@ -14,6 +14,22 @@ STOP_SIGNALS = tuple(
 )
 
 
+@contextlib.contextmanager
+def held_back() -> Iterator[None]:
+    """Keep the signals until this is left; a process started meanwhile keeps its own until `hear_signals`."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def hear_signals() -> None:
+    """Take the signals that were held back, and those to come."""
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
+
+
 class StopRequest:
     """How often somebody asked to stop; whoever works is told at once and decides when it can."""
 

@@ -40,6 +40,7 @@ from hil.engine.emergency_stop import keep_latched
 from hil.engine.last_look import complaints_of
 from hil.engine.operator import EMERGENCY, LOOK_S
 from hil.engine.run import run_plan
+from hil.engine.stopping import held_back
 from test_plans import judge
 
 _HERE_S = 0.1  # how often the other process hears of this one
@@ -82,14 +83,15 @@ def _started(
     command: Sequence[str], keeps: Sequence[int]
 ) -> Iterator[tuple[subprocess.Popen[bytes], BorderPipe]]:
     """The process; however this is left, it ends: by itself if it can, for it makes its bench safe."""
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        pass_fds=keeps,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-        start_new_session=True,  # a terminal's Ctrl-C is for this process, which tells the other once
-    )
+    with held_back():  # one that comes before the other process can answer it would end it without a word
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            pass_fds=keeps,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            start_new_session=True,  # a terminal's Ctrl-C is for this process, which tells the other once
+        )
     assert process.stdin is not None
     assert process.stdout is not None
     logger.info("the bench is held by process %d", process.pid)

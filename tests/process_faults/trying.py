@@ -11,7 +11,7 @@ import threading
 import time
 import tomllib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -160,7 +160,8 @@ def carry_out(fault: Fault, phase: str, folder: Path) -> Outcome | None:
     if done is None:
         return None
     done_s, holder = done
-    return _outcome(fault, folder, command, code, done_s, holder, observers[0])
+    outcome = _outcome(fault, folder, command, code, done_s, holder, observers[0])
+    return replace(outcome, missing_s=0.0) if phase == "writing" else outcome  # nothing is measured any more
 
 
 def _hit(

@@ -17,6 +17,7 @@ import pytest
 
 from hil.cli._terminal import StandardTerminal, operators_terminal
 from hil.core.recording import read_recording
+from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import HIL
 from tests.hil.cli.test_sim_bench import MOST_REPEATS, serving
 
@@ -111,6 +112,34 @@ def test_a_prompt_is_left_at_once(line: str | None, tmp_path: Path, monkeypatch:
     code, result = operator.ended()
     assert (code, result["safe_state"]) == (3 if line == "e" else 130, "confirmed")
     assert (result["emergency_stop"] is not None) == (line == "e")
+
+
+def bench_of_its_own(folder: Path) -> Path:
+    """The simulated bench, held by a process of its own as hardware is."""
+    text = SIM.text
+    for name in ("rmcu.dbc", "rcs_dyno.eds", "three_inertia.toml"):
+        text = text.replace(f'"{name}"', f'"{SIM.source.parent / name}"')
+    file = folder / "own.toml"
+    file.write_text(f"{text}\n[supervision]\nown_process = true\n")
+    return file
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("typed", "code"), [("q", 130), ("e", 3), ("\x03", 130)])
+def test_a_bench_in_a_process_of_its_own_is_led_from_the_terminal_of_its_command(
+    typed: str, code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """\\x03 is Ctrl-C as the terminal takes it: for every process in its foreground."""
+    monkeypatch.setenv("HIL_STATE", str(tmp_path / "state"))
+    operator = Operator(tmp_path, plan(timeout_s=3600), "--bench", bench_of_its_own(tmp_path))
+    operator.wait_for("Is the cage shut?")
+    operator.type(typed)
+    ended, result = operator.ended()
+    assert (ended, result["safe_state"]) == (code, "confirmed"), result["reason"]
+    assert (result["emergency_stop"] is not None) == (typed == "e")
+    assert result["end_steps"].startswith("carried out" if typed != "e" else "not carried out")
+    assert operator.seen.count("error:") == 1
+    assert "html" in result["files"]
 
 
 @contextlib.contextmanager

@@ -128,3 +128,15 @@ def test_a_single_file_never_takes_the_place_of_something_else(out: str, tmp_pat
     if out != "there.csv":
         with pytest.raises(BadInputError):
             refuse_file(tmp_path / out, [], overwrite=True)
+
+
+def test_a_place_is_held_as_long_as_a_process_that_was_given_it_lives(tmp_path):
+    with results_in(tmp_path, ("b",)) as place:
+        heir = subprocess.Popen(
+            [sys.executable, "-S", "-c", "input()"], stdin=subprocess.PIPE, pass_fds=[place.lock]
+        )
+    with pytest.raises(BadInputError, match="another command is writing here"), results_in(tmp_path, ("b",)):
+        pass
+    heir.communicate(b"\n")
+    with results_in(tmp_path, ("b",)):
+        pass

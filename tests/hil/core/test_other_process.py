@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -61,3 +64,21 @@ def test_it_can_be_killed_at_any_time() -> None:
 def test_what_cannot_be_handed_over_is_told() -> None:
     with pytest.raises(BenchError, match="internal error"):
         OtherProcess(lambda: 1).result()
+
+
+def test_it_ends_with_the_process_that_asked_for_it() -> None:
+    text = (
+        "import time\nfrom hil.core.other_process import OtherProcess\n"
+        "asked = OtherProcess(time.sleep, 600)\nprint(asked._process.pid, flush=True)\ntime.sleep(600)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True) as asking:
+        assert asking.stdout is not None
+        number = int(asking.stdout.readline())
+        time.sleep(1.0)  # it has begun
+        assert Path(f"/proc/{number}").exists()
+        asking.kill()
+    for _ in range(200):
+        if not Path(f"/proc/{number}").exists():
+            return
+        time.sleep(0.05)
+    raise AssertionError("it goes on")

@@ -34,6 +34,7 @@ from hil.engine.border_messages import (
 )
 from hil.engine.border_pipe import BorderPipe
 from hil.engine.hardware_process import LAST_WORDS_S
+from hil.engine.stopping import held_back
 from hil.engine.supervisor import carry_out
 from test_plans import Plan, plan_from_text
 from tests.benches_for_tests import SIM
@@ -182,6 +183,19 @@ def test_the_loop_says_that_it_turns(tmp_path: Path):
 def test_a_command_that_asks_for_nothing_is_not_waited_for():
     process = subprocess.run(HOLDER, stdin=subprocess.DEVNULL, capture_output=True, check=True, timeout=60)
     assert (process.stdout, process.stderr) == (b"", b"")
+
+
+def test_a_signal_that_comes_before_it_can_answer_is_answered_later(tmp_path: Path):
+    with held_back():
+        manager = held(prompted(tmp_path))
+        process, pipe = manager.__enter__()
+    try:
+        process.send_signal(signal.SIGTERM)
+        ended = heard_until(pipe, Ended)[-1]
+    finally:
+        manager.__exit__(None, None, None)
+    assert isinstance(ended, Ended)
+    assert ended.error.kind == "InterruptError"
 
 
 def test_what_is_typed_before_it_has_started_is_heard(tmp_path: Path):
