@@ -50,7 +50,7 @@ _OWN = {
     "prompting": "  - enter: {phase: prompting}\n  - operator_prompt: {text: stand clear, timeout_s: 20}\n",
     "analysing": "  - enter: {phase: analysing}\n  - muse: {for_s: 20}\n",
 }
-_END = "finally:\n  - enter: {phase: ramping down}\n  - ramp_down: {duration_s: 1.5}\n"
+_END = "finally:\n  - enter: {phase: ramping down}\n  - ramp_down: {duration_s: 4}\n"
 Run = subprocess.Popen[Any]
 _HOST_HEARTBEAT = 0x77F
 _LONGEST_S = 90.0
