@@ -5,8 +5,9 @@ from __future__ import annotations
 import shlex
 from pathlib import Path
 
-from hil.cli._output import print_json
+from hil.cli._output import print_json, progress
 from hil.cli._place import results_in
+from hil.cli._samples import sample_files
 from hil.core.errors import BadInputError
 from hil.engine.bench_file import DEFAULT_BENCH, shipped
 from test_plans.loading import LIBRARY
@@ -20,11 +21,15 @@ _SHIPPED_MODEL = "three_inertia.toml"
 def carry_out(
     *,
     folder: Path,
+    samples: bool,
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
     _refuse_used(folder)
     files = _files()
+    if samples:
+        with progress("samples") as show:
+            files |= sample_files(_STARTER / "samples.yaml", lambda share, text: show(text, share))
     with results_in(folder, files) as place:
         place.write(files)
     if as_json:

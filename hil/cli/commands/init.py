@@ -12,15 +12,20 @@ from hil.cli._lean_imports import import_python_can
 
 def command(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="a new folder, or an empty one")],
+    samples: Annotated[
+        bool,
+        typer.Option("--samples", help="recordings of an axle with backlash too, to try a diagnosis on"),
+    ] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
     """Make a folder with a plan, a simulated bench, its model, a controller and a test for pytest.
 
-    `hil check`, `hil run` and `pytest` work there as it stands; README.md in it says how.
+    `hil check`, `hil run` and `pytest` work there as it stands; README.md in it says how. --samples adds what
+    the how-to of diagnoses begins with: axle.toml, chirp_high.csv, chirp_low.csv, steps.csv, multisine.csv.
     """
     import_python_can()
     from hil.cli.init import carry_out
 
-    return carry_out(folder=folder, as_json=as_json)
+    return carry_out(folder=folder, samples=samples, as_json=as_json)

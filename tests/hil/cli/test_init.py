@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -34,6 +35,17 @@ def test_run_and_pytest_pass(folder, tmp_path):
         text=True,
     )
     assert "1 passed" in tried.stdout, tried.stdout
+
+
+@pytest.mark.slow
+def test_samples_hold_the_backlash_that_a_diagnosis_finds(tmp_path):
+    hil("init", tmp_path / "mine", "--samples")
+    files = "chirp_high.csv", "chirp_low.csv", "steps.csv", "--holdout", "multisine.csv"
+    done = hil("diagnose", "--model", "axle.toml", *files, "--json", cwd=tmp_path / "mine")
+    found = json.loads(done.stdout)
+    assert found["verdict"] == "named"
+    assert [effect["id"] for effect in found["effects"]] == ["backlash"]
+    assert found["effects"][0]["parameters"]["half_gap_rad"] == pytest.approx(0.01, rel=0.02)
 
 
 def test_what_is_in_use_stays_as_it_is(folder, tmp_path):
