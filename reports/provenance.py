@@ -91,6 +91,7 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
     bench = run.get("bench") or (result.bench if result else "")
     facts = [
         Fact("Plan", run.get("plan") or (result.plan if result else "")),
+        Fact("Variables", run.get("variables", "")),
         Fact("Bench", f"{bench} (simulated)" if simulated else bench),
         Fact("Operator", run.get("operator", "")),
         Fact("Hazard taken upon them by", run.get("hazard_confirmed_by", "")),

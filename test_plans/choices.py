@@ -10,6 +10,9 @@ from pathlib import Path
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from hil.core.suggestion import did_you_mean
+from test_plans.building import build, mapping_at
+from test_plans.variables import EXAMPLE, Variable
+from test_plans.variables import KEY as VARIABLES
 from test_plans.yaml_document import Document, KeyPath
 
 _STEP, _FILE = "set_controller", "file"
@@ -21,17 +24,20 @@ class Choices:
 
     Attributes:
         controllers: controller files by the plan's name for what each replaces; '' for the only one.
+        values: of the plan's variables, by name.
     """
 
     controllers: Mapping[str, Path] = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
 
     def applied(self, text: str, document: Document) -> str:
         """The plan's text with everything that was chosen in its place.
 
         Raises:
-            BadInputError: the plan has nothing of that name.
+            BadInputError: the plan has nothing of that name, or a value is beyond a variable's bounds.
         """
         changes = dict(_controllers(document, self.controllers))
+        changes |= dict(_values(document, self.values))
         for start, end in sorted(changes, reverse=True):
             text = text[:start] + changes[start, end] + text[end:]
         return text
@@ -58,6 +64,26 @@ def controller_choices(given: list[str], option: str) -> dict[str, Path]:
             raise BadInputError(f"{option} is given twice for the same controller", fix="give it once")
         chosen[name] = Path(file)
     return chosen
+
+
+def _values(document: Document, chosen: Mapping[str, float]) -> Iterator[tuple[tuple[int, int], str]]:
+    """Places of variables' defaults in the text, with the numbers that come there."""
+    content = document.value
+    known = content.get(VARIABLES) if isinstance(content, dict) else None
+    for name, value in chosen.items():
+        if not isinstance(known, dict) or name not in known:
+            raise BadInputError(
+                f"has no variable '{printable(name, 60)}'",
+                where=document.where,
+                fix=did_you_mean(name, known if isinstance(known, dict) else ()),
+            )
+        path: KeyPath = (VARIABLES, name)
+        variable = build(Variable, mapping_at(known[name], document, path, EXAMPLE), document, path)
+        whole = isinstance(known[name]["default"], int) and float(value).is_integer()
+        objection = variable.objection(value)
+        if objection:
+            raise BadInputError(f"{name} = {objection}", where=document.place(path))
+        yield document.spans[*path, "default"], repr(int(value) if whole else float(value))
 
 
 def _controllers(document: Document, chosen: Mapping[str, Path]) -> Iterator[tuple[tuple[int, int], str]]:

@@ -18,6 +18,8 @@ from test_plans.criteria import Criterion, criterion_at
 from test_plans.mistakes import PlanMistakes
 from test_plans.plan import Plan, PlanKeys, estimate_duration_s
 from test_plans.steps import STEPS, FileSearch, Step
+from test_plans.variables import KEY as VARIABLES
+from test_plans.variables import variables_at, with_values
 from test_plans.yaml_document import Document, KeyPath, read_yaml
 
 logger = logging.getLogger(__name__)
@@ -60,7 +62,7 @@ def plan_from_text(text: str, where: str, base_dir: Path, *, files_required: boo
     Raises:
         BadInputError: file, line, key, and what to do.
     """
-    return _Reader(read_yaml(text, where), base_dir, files_required).plan(text)
+    return _Reader(with_values(read_yaml(text, where)), base_dir, files_required).plan(text)
 
 
 class _Reader:
@@ -81,9 +83,7 @@ class _Reader:
             with mistakes.collected():
                 self._refuse_unknown(key)
         with mistakes.collected():
-            keys = build(
-                PlanKeys, {k: content[k] for k in content if k in PlanKeys.model_fields}, document, ()
-            )
+            keys = self._keys(content)
         with mistakes.collected():
             if not any(closest(key, _KEYS) == "steps" for key in content if key not in _KEYS):
                 steps = self._first_steps(content)
@@ -107,6 +107,12 @@ class _Reader:
             raise BadInputError(
                 f"unknown key {key!r}", where=self._document.place((key,)), fix=did_you_mean(key, _KEYS)
             )
+
+    def _keys(self, content: dict[str, Any]) -> PlanKeys:
+        named = {key: content[key] for key in content if key in PlanKeys.model_fields}
+        if named.get(VARIABLES) is not None:
+            named[VARIABLES] = variables_at(named[VARIABLES], self._document)
+        return build(PlanKeys, named, self._document, ())
 
     def _first_steps(self, content: dict[str, Any]) -> tuple[Step, ...]:
         if not content.get("steps"):

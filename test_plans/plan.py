@@ -7,11 +7,13 @@ from typing import Annotated
 
 from pydantic import Field
 
+from hil.core.result import VariableValue
 from test_plans.building import Strict
 from test_plans.conductor import PlannedSegment
 from test_plans.criteria import Criterion
 from test_plans.pace import Pace
 from test_plans.steps import Step
+from test_plans.variables import Variable
 
 
 class PlanKeys(Strict):
@@ -26,6 +28,9 @@ class PlanKeys(Strict):
     hazardous: bool | Annotated[str, Field(min_length=1, max_length=500)] = Field(
         default=False, description="true, or why: it is carried out only if somebody confirms it by name"
     )
+    variables: dict[str, Variable] = Field(
+        default={}, description="numbers that a run may choose, by name; $name stands for them"
+    )
 
 
 class Plan(PlanKeys):
@@ -39,6 +44,12 @@ class Plan(PlanKeys):
     criteria: tuple[Criterion, ...] = ()
     text: str
     source: Path
+
+    @property
+    def values(self) -> tuple[VariableValue, ...]:
+        """What its variables are for this run."""
+        chosen = self.variables.items()
+        return tuple(VariableValue(name=name, value=v.default, unit=v.unit) for name, v in chosen)
 
     @property
     def segments(self) -> tuple[PlannedSegment, ...]:

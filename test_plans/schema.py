@@ -10,6 +10,7 @@ from test_plans.criteria import CriterionKeys
 from test_plans.metrics import METRICS
 from test_plans.plan import PlanKeys
 from test_plans.steps import STEPS
+from test_plans.variables import NAME
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -52,6 +53,9 @@ def _step_schema(definitions: dict[str, Any]) -> dict[str, Any]:
         if step is None:
             continue
         kinds[kind] = _schema_of(step, definitions)
+        kinds[kind]["properties"] = {
+            key: _or_variable(value) for key, value in kinds[kind]["properties"].items()
+        }
         for key in step.nested:
             kinds[kind]["properties"][key]["items"] = {"$ref": "#/$defs/step"}
     return {
@@ -76,7 +80,10 @@ def _criterion_schema(definitions: dict[str, Any]) -> dict[str, Any]:
             {
                 "if": {"properties": {"metric": {"const": name}}, "required": ["metric"]},
                 "then": {
-                    "properties": keys["properties"] | own.get("properties", {}),
+                    "properties": {
+                        key: _or_variable(value)
+                        for key, value in (keys["properties"] | own.get("properties", {})).items()
+                    },
                     "required": own.get("required", []),
                     "additionalProperties": False,
                 },
@@ -88,6 +95,21 @@ def _criterion_schema(definitions: dict[str, Any]) -> dict[str, Any]:
         "required": keys["required"],
         "allOf": variants,
     }
+
+
+def _or_variable(schema: dict[str, Any]) -> dict[str, Any]:
+    """The schema of a key, which takes a variable where it takes a number."""
+    variable = {"type": "string", "pattern": f"^\\$({NAME}|\\{{{NAME}\\}})$"}
+    if schema.get("type") in ("number", "integer"):
+        meaning: dict[str, Any] = {
+            key: schema[key] for key in ("description", "default", "title") if key in schema
+        }
+        return {**meaning, "anyOf": [schema, variable]}
+    if any(one.get("type") in ("number", "integer") for one in schema.get("anyOf", ())):
+        return {**schema, "anyOf": [*schema["anyOf"], variable]}
+    if "items" in schema and isinstance(schema["items"], dict):
+        return {**schema, "items": _or_variable(schema["items"])}
+    return schema
 
 
 def _schema_of(model: type[BaseModel], definitions: dict[str, Any]) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rich.table import Table
 
+from hil.cli._choices import choices_of
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
@@ -16,18 +17,19 @@ from hil.engine import BenchFile, load_bench
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.forecast import Forecast, forecast
 from hil.engine.preflight import preflight
-from test_plans import Choices, Pace, Plan, controller_choices, estimate_duration_s, load_plan
+from test_plans import Choices, Pace, Plan, estimate_duration_s, load_plan
 
 
 def carry_out(
     *,
     plan: str,
     bench: str,
+    values: list[str] | None,
     controller: list[str] | None,
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    choices = Choices(controller_choices(controller or [], "--controller"))
+    choices = choices_of(values, controller)
     checked, file = _loaded(plan, choices, bench)
     with tempfile.TemporaryDirectory() as directory:
         today = datetime.datetime.now(datetime.UTC).date()

@@ -222,6 +222,17 @@ class StoppedInEmergency(_Frozen):
     latched: bool
 
 
+class VariableValue(_Frozen):
+    """A variable of the plan, as it was for this run."""
+
+    name: str
+    value: float
+    unit: str = ""
+
+    def __str__(self) -> str:
+        return f"{self.name} = {self.value:g} {self.unit}".rstrip()
+
+
 class AcceptedExpiry(_Frozen):
     """Who let a run measure with sensors whose calibration had run out, and why; `sensors`: until when."""
 
@@ -244,6 +255,7 @@ class RunResult(_Frozen):
     real_time_factor: float
     bench_time_s: float
     safe_state: SafeState
+    variables: tuple[VariableValue, ...] = Field((), description="of the plan, as they were for this run")
     criteria: tuple[CriterionResult, ...] = ()
     segments: tuple[Segment, ...] = ()
     clocks: tuple[StreamClock, ...] = ()

@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import tomli_w
 from pydantic import ValidationError
 
 from hil.core.errors import BadInputError
@@ -74,6 +75,13 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
     loaded = bench.model_copy(update=changes)
     _refuse(where, device_mistakes(loaded), text)
     return loaded
+
+
+def with_seed(bench: BenchFile, seed: int) -> BenchFile:
+    """A simulated bench with another seed of its noise; its text says so."""
+    data = tomllib.loads(bench.text)
+    data["simulation"]["seed"] = seed
+    return bench_from_dict(data, tomli_w.dumps(data), bench.source)
 
 
 def _refuse(where: str, mistakes: list[str], text: str) -> None:

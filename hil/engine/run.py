@@ -240,6 +240,7 @@ class _Run:
             real_time_factor=round(bench_time_s / max(wall_s, 1e-9), 2),
             bench_time_s=round(bench_time_s, 3),
             safe_state=safe,
+            variables=request.plan.values,
             criteria=criteria,
             segments=tuple(self._conductor.segments),
             clocks=self._recorder.clocks(),

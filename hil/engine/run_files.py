@@ -30,6 +30,7 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> dict[
         "prompts_confirmed_by": request.confirmed_by,
         "hazard_confirmed_by": request.hazard_confirmed_by,
     }
+    values = ", ".join(map(str, request.plan.values))
     writer.describe(
         "run",
         {
@@ -40,6 +41,7 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> dict[
             "started_at": utc(time.time_ns()),
             "simulated": str(bench.simulated).lower(),
             **{key: name for key, name in confirmed.items() if name},
+            **({"variables": values} if values else {}),
         },
     )
     writer.describe("dut", request.bench.dut)

@@ -8,8 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PAGES = (*sorted((ROOT / "docs").rglob("*.md")), ROOT / "README.md", ROOT / "hil/cli/starter/README.md")
-_BLOCK = re.compile(r"^```(?:sh|console|bash)?\n(.*?)^```", re.DOTALL | re.MULTILINE)
+_FOLDERS = ("tutorial", "how-to", "explanation", "reference")
+PAGES = (
+    *sorted(page for folder in _FOLDERS for page in (ROOT / "docs" / folder).glob("*.md")),
+    ROOT / "README.md",
+    ROOT / "hil/cli/starter/README.md",
+)
+_BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
+_SHELLS = ("", "sh", "console", "bash")
 _COMMAND = re.compile(r"(?:\.venv/bin/)?hil (.*)")
 
 
@@ -28,7 +34,9 @@ def documented() -> list[Documented]:
     """Every command line of every page, in order."""
     found = []
     for page in PAGES:
-        for block in _BLOCK.findall(page.read_text("utf-8")):
+        for language, block in _BLOCK.findall(page.read_text("utf-8")):
+            if language not in _SHELLS:
+                continue
             for line in block.replace("\\\n", " ").splitlines():
                 command = _COMMAND.fullmatch(line.strip())
                 if command:

@@ -9,7 +9,7 @@ import typer
 from hil.cli._completion import shipped_bench, shipped_plan
 from hil.cli._lean_imports import import_python_can
 
-SEVERAL = ("--controller",)
+SEVERAL = ("--controller", "--set")
 
 
 def command(
@@ -19,6 +19,14 @@ def command(
     bench: Annotated[
         str, typer.Option(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
     ] = "sim",
+    values: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="a variable of the plan",
+        ),
+    ] = None,
     controller: Annotated[
         list[str] | None,
         typer.Option(
@@ -38,4 +46,4 @@ def command(
     import_python_can()
     from hil.cli.check import carry_out
 
-    return carry_out(plan=plan, bench=bench, controller=controller, as_json=as_json)
+    return carry_out(plan=plan, bench=bench, values=values, controller=controller, as_json=as_json)

@@ -10,7 +10,7 @@ import typer
 from hil.cli._completion import shipped_bench, shipped_plan
 from hil.cli._lean_imports import import_python_can
 
-SEVERAL = ("--controller",)
+SEVERAL = ("--controller", "--set")
 
 
 def command(
@@ -29,6 +29,17 @@ def command(
         typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
     ] = None,
     model: Annotated[Path | None, typer.Option(help="model file for the simulated bench")] = None,
+    values: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="NAME=VALUE",
+            help="a variable of the plan; NAME=VALUE,VALUE,… carries it out for each",
+        ),
+    ] = None,
+    repeat: Annotated[
+        int, typer.Option(min=1, max=1000, help="how often; each in a folder of its own, with the spread")
+    ] = 1,
     controller: Annotated[
         list[str] | None,
         typer.Option(
@@ -58,7 +69,7 @@ def command(
     ] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
     show: Annotated[
-        bool, typer.Option("--open", help="show the report in a browser, if there is one")
+        bool, typer.Option("--open", help="show the report of a single run in a browser, if there is one")
     ] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print result.json on stdout, nothing else")
@@ -72,7 +83,8 @@ def command(
     from hil.cli.run import carry_out
 
     return carry_out(
-        plan=plan, bench=bench, out=out, model=model, controller=controller, operator=operator, yes=yes,
+        plan=plan, bench=bench, out=out, model=model, values=values, repeat=repeat,
+        controller=controller, operator=operator, yes=yes,
         confirm=confirm, accept_expired=accept_expired, overwrite=overwrite, show=show,
         as_json=as_json,
     )  # fmt: skip

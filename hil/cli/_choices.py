@@ -1,0 +1,53 @@
+"""What `--set` and `--controller` choose."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+
+from hil.cli._named_values import named_values
+from hil.core.errors import BadInputError
+from hil.core.printable import printable
+from test_plans import Choices, controller_choices
+
+_OPTION = "--set"
+
+
+def choices_of(values: list[str] | None, controller: list[str] | None) -> Choices:
+    """The only choice.
+
+    Raises:
+        BadInputError: no number, several numbers, no such file.
+    """
+    found = list(all_choices(values, controller))
+    if len(found) > 1:
+        raise BadInputError("has several values", where=_OPTION, fix="give one; `hil run` takes several")
+    return found[0]
+
+
+def all_choices(values: list[str] | None, controller: list[str] | None) -> Iterator[Choices]:
+    """Every combination of the values, in the order given; one choice where nothing has several.
+
+    Raises:
+        BadInputError: no number, or no such file.
+    """
+    controllers = controller_choices(controller or [], "--controller")
+    named = named_values(values or (), _OPTION, form="NAME=VALUE")
+    several = {name: [_number(name, one) for one in text.split(",")] for name, text in named.items()}
+    for combination in itertools.product(*several.values()):
+        yield Choices(controllers, dict(zip(several, combination, strict=True)))
+
+
+def _number(name: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise BadInputError(
+            f"{printable(name, 60)} = '{printable(text, 60)}' is no number",
+            where=_OPTION,
+            fix="write NAME=VALUE, with a decimal point and without a unit",
+        )
+    return value

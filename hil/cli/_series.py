@@ -1,0 +1,130 @@
+"""Several runs of one plan: a run for each combination of its variables, each as often as asked for."""
+
+from __future__ import annotations
+
+import statistics
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from hil.cli._one_run import Finished, Runs
+from hil.cli._output import console, count_in_words, plain_table, print_json, to_json
+from hil.cli._place import Place, results_in
+from hil.core.files import write_atomically
+from hil.core.result import RunResult
+from hil.engine import BenchFile
+from hil.engine.bench_file import with_seed
+from test_plans import Plan
+
+SUMMARY = "series.json"
+
+
+def repeated(bench: BenchFile, times: int) -> list[BenchFile]:
+    """The bench for each repeat; a simulated one has noise of its own each time."""
+    if bench.simulation is None or times == 1:
+        return [bench] * times
+    return [with_seed(bench, bench.simulation.seed + number) for number in range(times)]
+
+
+def carry_out_series(
+    runs: Runs, plans: Sequence[Plan], benches: Sequence[BenchFile], out: Path | None, *, as_json: bool
+) -> int:
+    """Carry out every plan on every bench, each in a numbered folder; the largest exit code.
+
+    A run that did not come to its end ends the series; what was carried out so far is kept and summed up.
+    """
+    done: list[tuple[int, Finished]] = []
+    code = 0
+    with results_in(
+        out, (SUMMARY,), inputs=runs.inputs, overwrite=runs.overwrite, default=f"{plans[0].name}-series"
+    ) as place:
+        for number, (group, plan, bench) in enumerate(_each(plans, benches), 1):
+            with runs.finished(plan, bench, place.folder / f"{number:03d}") as run:
+                done.append((group, run))
+                write_atomically(place.folder / SUMMARY, to_json(_summary(done)) + "\n")
+                if not as_json:
+                    _tell(run)
+                code = max(code, run.exit_code)
+                if run.outcome.error is not None:
+                    break
+        summary = _summary(done)
+        _tell_all(summary, place, as_json=as_json)
+    return code
+
+
+def _each(plans: Sequence[Plan], benches: Sequence[BenchFile]) -> Iterator[tuple[int, Plan, BenchFile]]:
+    for group, plan in enumerate(plans):
+        for bench in benches:
+            yield group, plan, bench
+
+
+def _summary(done: Sequence[tuple[int, Finished]]) -> dict[str, Any]:
+    groups: dict[int, list[RunResult]] = {}
+    for group, run in done:
+        groups.setdefault(group, []).append(run.result)
+    return {
+        "runs": [
+            {
+                "folder": run.folder.name,
+                "variables": _variables(run.result),
+                "verdict": run.result.verdict,
+                "criteria": {one.id: one.value for one in run.result.criteria},
+            }
+            for _, run in done
+        ],
+        "spread": [
+            {"variables": _variables(results[0]), "criteria": _spread(results)} for results in groups.values()
+        ],
+    }
+
+
+def _variables(result: RunResult) -> dict[str, float]:
+    return {variable.name: variable.value for variable in result.variables}
+
+
+def _spread(results: Sequence[RunResult]) -> dict[str, dict[str, Any]]:
+    """Of each criterion: runs with a value, mean, standard deviation (of two runs or more), ends."""
+    found = {}
+    for criterion in results[0].criteria:
+        of_runs = [one.value for result in results for one in result.criteria if one.id == criterion.id]
+        values = [value for value in of_runs if value is not None]
+        found[criterion.id] = {
+            "unit": criterion.unit,
+            "count": len(values),
+            "mean": statistics.fmean(values) if values else None,
+            "standard_deviation": statistics.stdev(values) if len(values) > 1 else None,
+            "lowest": min(values, default=None),
+            "highest": max(values, default=None),
+        }
+    return found
+
+
+def _tell(run: Finished) -> None:
+    values = ", ".join(map(str, run.result.variables))
+    console().print(
+        f"{run.folder.name}  {values}: [bold]{run.result.verdict.upper()}[/], "
+        f"{count_in_words(run.result.criteria)}",
+        highlight=False,
+    )
+
+
+def _tell_all(summary: dict[str, Any], place: Place, *, as_json: bool) -> None:
+    if as_json:
+        print_json(summary)
+        return
+    table = plain_table()
+    table.add_column("variables")
+    table.add_column("criterion", no_wrap=True)
+    for name in ("runs", "mean", "standard deviation", "lowest", "highest"):
+        table.add_column(name, justify="right")
+    table.add_column("unit")
+    for group in summary["spread"]:
+        values = ", ".join(f"{name} = {value:g}" for name, value in group["variables"].items())
+        for number, (name, spread) in enumerate(group["criteria"].items()):
+            numbers = (spread[key] for key in ("mean", "standard_deviation", "lowest", "highest"))
+            cells = ("-" if value is None else f"{value:.4g}" for value in numbers)
+            table.add_row(values if number == 0 else "", name, str(spread["count"]), *cells, spread["unit"])
+    page = console()
+    page.print()
+    page.print(table)
+    page.print(f"\nsummary: {place.folder / SUMMARY}", highlight=False)

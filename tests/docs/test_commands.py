@@ -1,0 +1,182 @@
+"""Every command line of the documents is a command line; and carried out, it does what the page says.
+
+The files that a page speaks of are there under its names, but short: `acceptance` and `identification` in the
+folder of the test stand for the built-in plans.
+"""
+
+from __future__ import annotations
+
+import shutil
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import typer
+from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
+from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat, PublicFormat
+
+from hil.cli._app import _COMMANDS, _app_of
+from tests.docs.documented import ROOT, Documented, documented
+from tests.hil.cli.test_commands import HIL, hil
+
+STEP = "quantity: driving_torque, from_nm: 0, to_nm: 200, before_s: 0.5, after_s: 2"
+CHIRP = "quantity: motor_torque, from_hz: 0.5, to_hz: 30, duration_s: 15, amplitude_nm: 15"
+PLANS = {
+    "acceptance": f"""
+name: acceptance
+steps:
+  - set_controller: {{file: gain_stabilization.toml}}
+  - step: {{segment: gain_0kmh, {STEP}}}
+  - hold_speed: {{speed_km_h: 20, duration_s: 0.5}}
+  - step: {{segment: gain_20kmh, {STEP}}}
+finally: [ramp_down: {{duration_s: 0.5}}]
+criteria: [{{segment: gain_0kmh, metric: peak_shaft_torque, upper: 500, unit: N m}}]
+""",
+    "identification": f"""
+name: identification
+steps:
+  - hold_speed: {{speed_km_h: 20, duration_s: 0.5}}
+  - chirp: {{segment: chirp_high, {CHIRP}}}
+finally: [ramp_down: {{duration_s: 0.5}}]
+""",
+}
+TARGETS = '[targets]\n"gain_0kmh.peak_shaft_torque" = 300.0\n'
+#: Without end, or with a question: ended by Ctrl-C, or answered by nobody.
+ENDLESS = ("monitor", "sim-bench")
+#: What an exit code other than 0 says of the simulated stand-ins.
+CODES = {
+    ("explain",): (0, 1),
+    ("verify",): (0, 1),  # nobody has signed yet
+    ("monitor",): (0, 2, 130),  # a simulated bench has nothing to monitor
+    ("jog",): (0, 1),
+}
+LINES = documented()
+PAGES = sorted({line.page for line in LINES})
+
+
+@pytest.mark.parametrize("line", LINES, ids=str)
+def test_it_is_a_command_line(line: Documented) -> None:
+    name, *arguments = line.arguments
+    if name in ("--install-completion", "--version"):
+        return
+    assert name in _COMMANDS
+    command = typer.main.get_command(_app_of(name))
+    several = [argument for argument in arguments if argument != "--holdout"]
+    command.make_context(name, several)
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the pages begin with."""
+    folder = tmp_path_factory.mktemp("pages")
+    hil("init", folder / "mine", "--samples")
+    for path in (folder / "mine").iterdir():
+        shutil.move(path, folder / path.name)
+    (folder / "mine").rmdir()
+    shutil.copytree(ROOT / "benches", folder / "benches")
+    (folder / "benches/paper_targets.toml").write_text(TARGETS)
+    for name, text in PLANS.items():
+        (folder / name).write_text(text)
+    for name in ("my_bench.toml", "net.toml"):
+        shutil.copy(folder / "bench.toml", folder / name)
+    shutil.copy(folder / "axle.toml", folder / "base.toml")
+    return folder
+
+
+@pytest.fixture
+def stage(files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    folder = tmp_path / "stage"
+    shutil.copytree(files, folder)
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def prepare(page: str, stage: Path) -> None:
+    """What a page speaks of as if it were there, beyond what all begin with."""
+    if page.endswith("keep-evidence.md"):
+        shutil.copy("bench.toml", "axle.toml")  # there it is a bench
+        for name in ("acceptance-001", "endurance-003"):
+            hil("run", "acceptance", "--out", f"out/{name}")
+        for name in ("report.pdf", "recording.mcap"):
+            shutil.copy(f"out/acceptance-001/{name}", name)
+        torn = Path("out/endurance-003/recording.mcap")
+        torn.write_bytes(torn.read_bytes()[: torn.stat().st_size // 2])
+        _make_key(stage / "bench_key")
+    if page.endswith("first-run.md"):
+        hil("run", "acceptance", "--out", "out/acceptance")
+    if page.endswith("diagnose.md"):
+        Path("why").mkdir()
+        shutil.copy("identification", "why/separate_running_resistance.yaml")
+    if page.endswith("own-plan.md"):
+        shutil.copy("plan.yaml", "tip-in.yaml")
+
+
+def _make_key(path: Path) -> None:
+    key = Ed25519PrivateKey.generate()
+    path.write_bytes(key.private_bytes(Encoding.PEM, PrivateFormat.OpenSSH, NoEncryption()))
+    public = key.public_key().public_bytes(Encoding.OpenSSH, PublicFormat.OpenSSH)
+    path.with_suffix(".pub").write_bytes(public)
+
+
+@pytest.fixture
+def served() -> Iterator[list[subprocess.Popen[str]]]:
+    processes: list[subprocess.Popen[str]] = []
+    yield processes
+    for process in processes:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", PAGES)
+def test_the_commands_of_a_page_work_one_after_the_other(page, stage, served):
+    prepare(page, stage)
+    for line in (line for line in LINES if line.page == page):
+        name, *arguments = line.arguments
+        if name == "--install-completion":
+            continue  # test_completion.py has the script; nobody's shell is changed here
+        began = time.monotonic()
+        if name == "sim-bench":
+            _end(served)
+            served.append(_served(line.arguments))
+        elif name == "monitor":
+            assert _interrupted(line.arguments) in CODES["monitor",]
+        else:
+            _carry_out(name, arguments)
+        print(f"{time.monotonic() - began:6.1f} s  {line}")
+
+
+def _carry_out(name: str, arguments: list[str]) -> None:
+    done = subprocess.run(
+        [HIL, name, *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600
+    )
+    assert "Traceback" not in done.stderr
+    assert done.returncode in CODES.get((name,), (0,)), done.stdout + done.stderr
+
+
+def _served(arguments: tuple[str, ...]) -> subprocess.Popen[str]:
+    """The simulated bench, once its file is there."""
+    Path("net.toml").unlink(missing_ok=True)
+    process = subprocess.Popen([HIL, *arguments, "--port", "0"], stdout=subprocess.PIPE, text=True)
+    while not Path("net.toml").exists():
+        assert process.poll() is None
+        time.sleep(0.1)
+    return process
+
+
+def _end(served: list[subprocess.Popen[str]]) -> None:
+    for process in served:
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+    served.clear()
+
+
+def _interrupted(arguments: tuple[str, ...]) -> int:
+    process = subprocess.Popen([HIL, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    time.sleep(4)
+    if process.poll() is None:
+        process.send_signal(signal.SIGINT)
+    return process.wait(timeout=60)
