@@ -63,7 +63,7 @@ def variables_at(value: object, document: Document) -> dict[str, Variable]:
         with mistakes.collected():
             if not re.fullmatch(NAME, name):
                 raise BadInputError(
-                    f"'{brief(name)}' is no name",
+                    f"{brief(name)} is no name",
                     where=document.place(path),
                     fix="letters, digits and _, a letter first",
                 )

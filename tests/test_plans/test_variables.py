@@ -105,7 +105,7 @@ def test_what_may_not_be_chosen_is_refused(values, said, tmp_path) -> None:
         ("default: 250", "default: 999", "default = 999 N m is above the largest"),
         ("default: 250", "default: much", "key 'variables.torque_nm.default'"),
         ("lower: -100", "least: -100", "unknown key 'least'"),
-        ("variables:\n", "variables:\n  2nd: {default: 1}\n", "key 'variables.2nd': ''2nd'' is no name"),
+        ("variables:\n", "variables:\n  2nd: {default: 1}\n", "key 'variables.2nd': '2nd' is no name"),
     ],
 )
 def test_mistakes_are_told_with_their_place(old, new, said) -> None:
