@@ -10,6 +10,7 @@ from test_plans.metrics.overshoot import (
     OvershootShaftTorque,
 )
 from test_plans.metrics.peak import Peak, PeakShaftTorque
+from test_plans.metrics.ride_comfort import RideComfort
 from test_plans.metrics.settling_time import SettlingShaftTorque, SettlingTime
 from test_plans.registry import Registry
 
@@ -19,6 +20,7 @@ _OWN: tuple[type[Metric], ...] = (
     OvershootPercentShaftTorque,
     SettlingShaftTorque,
     BandEnergyMotorSpeed,
+    RideComfort,
     Peak,
     Overshoot,
     OvershootPercent,
@@ -47,6 +49,7 @@ __all__ = [
     "OvershootShaftTorque",
     "Peak",
     "PeakShaftTorque",
+    "RideComfort",
     "SettlingShaftTorque",
     "SettlingTime",
     "WindowMetric",

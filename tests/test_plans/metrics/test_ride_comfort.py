@@ -1,0 +1,59 @@
+"""Ride comfort: against the weights that ISO 2631-1 tabulates, and against sines of known acceleration."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hil.core.recording import Recording
+from hil.core.result import Segment
+from test_plans.metrics import NoValueError, RideComfort
+from test_plans.metrics.ride_comfort import horizontal_weighting
+
+#: Table 3 of ISO 2631-1:1997, W_d times 1000. At 10 Hz it has 212, where its own annex A gives 202.
+TABULATED = {
+    0.2: 243, 0.25: 365, 0.315: 530, 0.4: 713, 0.5: 853, 0.63: 944, 0.8: 992, 1: 1011, 1.25: 1008, 1.6: 968,
+    2: 890, 2.5: 776, 3.15: 642, 4: 512, 5: 409, 6.3: 323, 8: 253, 12.5: 161, 16: 125, 20: 100, 25: 80,
+    31.5: 63.2, 40: 49.4, 50: 38.8, 63: 29.5, 80: 21.1, 100: 14.1,
+}  # fmt: skip
+SEGMENT = Segment(id="s", start_s=0.0, step_s=1.0, end_s=21.0)
+
+
+def recorded(speed_m_s: np.ndarray, rate_hz: float = 1000.0) -> Recording:
+    time = np.arange(len(speed_m_s)) / rate_hz
+    return Recording({"time_s": time, "vehicle_speed_m_s": speed_m_s}, Path("r.mcap"))
+
+
+@pytest.mark.parametrize(("frequency_hz", "weight"), TABULATED.items())
+def test_weights_are_those_of_the_standard(frequency_hz, weight):
+    found = 1000 * float(horizontal_weighting(np.array([frequency_hz]))[0])
+    # the table is for exact third octaves, 10**(n/10), and rounded
+    exact = 10 ** (round(10 * np.log10(frequency_hz)) / 10)
+    between = sorted(1000 * float(horizontal_weighting(np.array([f]))[0]) for f in (frequency_hz, exact))
+    assert between[0] * 0.995 <= weight <= between[1] * 1.005, found
+
+
+@pytest.mark.parametrize("frequency_hz", [0.8, 2.0, 10.6, 40.0])
+def test_a_sine_gives_its_rms_acceleration_times_its_weight(frequency_hz):
+    time = np.arange(22_000) / 1000
+    omega = 2 * np.pi * frequency_hz
+    speed = 5.0 + 0.3 * time + 0.4 / omega * np.sin(omega * time)  # 0.4 m/s² on top of 0.3
+    weight = float(horizontal_weighting(np.array([frequency_hz]))[0])
+    found = RideComfort().compute(recorded(speed), SEGMENT)
+    assert found == pytest.approx(0.4 / np.sqrt(2) * weight, rel=0.01)
+
+
+def test_constant_acceleration_does_not_count():
+    assert RideComfort().compute(recorded(0.8 * np.arange(22_000) / 1000), SEGMENT) < 1e-9
+
+
+def test_samples_too_few_for_100_hz_have_no_value():
+    with pytest.raises(NoValueError, match="do not reach 100 Hz"):
+        RideComfort().compute(recorded(np.ones(2200), rate_hz=100.0), SEGMENT)
+
+
+def test_it_is_an_acceleration():
+    assert RideComfort().unit == "m/s²"
+    assert "W_d of ISO 2631-1:1997" in RideComfort().definition
