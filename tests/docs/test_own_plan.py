@@ -1,4 +1,4 @@
-"""The how-to's example plans are sound, fit the shipped bench, and are foreseen to keep their own criteria."""
+"""The example plans of the how-to are sound, fit the shipped bench, and should keep their own criteria."""
 
 from __future__ import annotations
 
