@@ -14,11 +14,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 from hil.core.errors import BenchError, EmergencyStopError, HilError, InterruptError
-from hil.core.recording import Recording, read_recording, run_of
-from hil.core.result import RunResult, SafeState, verdict_of
+from hil.core.result import SafeState
 from hil.engine.bench_tables import BenchFile
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.border_data import asked_of, outcome_of
@@ -38,10 +36,10 @@ from hil.engine.border_messages import (
 from hil.engine.border_pipe import BorderPipe
 from hil.engine.emergency_stop import keep_latched
 from hil.engine.last_look import complaints_of
+from hil.engine.left_behind import identity_of, recording_left, result_left
 from hil.engine.operator import EMERGENCY, LOOK_S
 from hil.engine.run import run_plan
 from hil.engine.stopping import held_back
-from test_plans import judge
 
 _HERE_S = 0.1  # how often the other process hears of this one
 #: Outside of the loop: opening compiles on a machine's first run, concluding judges hours of recording.
@@ -128,7 +126,8 @@ class _Supervisor:
         self._asked_s: float | None = None
         self._told_stops = 0
         self._emergency = False
-        self._recorded_before = _identity(request.out / RECORDING)
+        self._path = request.out / RECORDING
+        self._recorded_before = identity_of(self._path)
 
     def outcome(self) -> RunOutcome:
         """How the run ended, whoever says so.
@@ -212,14 +211,14 @@ class _Supervisor:
         _kill(self._process)
         logger.error("%s %s", _WHERE, why)
         safe, said = self._safe_state()
-        error = self._error(why, said if safe != "not_needed" else "nothing was commanded")
+        recording = recording_left(self._path, self._recorded_before)
+        error = self._error(why, said or "nothing was commanded", recorded=recording is not None)
         stopped = keep_latched(error, self._request.bench, self._request.out)
-        recording = self._recording()
         if recording is None:
             raise error
-        result = self._result(recording, safe, error)
+        result = result_left(recording, self._request, safe, error)
         result = result.model_copy(update={"emergency_stop": stopped})
-        return RunOutcome(result, self._request.out / RECORDING, error, {})
+        return RunOutcome(result, self._path, error, {})
 
     def _safe_state(self) -> tuple[SafeState, str]:
         """As the process has read it back before it was lost, or as the bench itself says now."""
@@ -233,57 +232,18 @@ class _Supervisor:
             return "not_confirmed", f"safe: not confirmed ({'; '.join(complaints)})"
         return "confirmed", "safe: confirmed"
 
-    def _error(self, why: str, said: str) -> HilError:
+    def _error(self, why: str, said: str, *, recorded: bool) -> HilError:
         if self._asked_s is not None and not self._turning and self._concluded is None:
             return InterruptError(f"stopped by the operator, when {_WHERE} {why}")
         out = self._request.out
-        fix = f"hil recover {out} makes a whole recording of what was measured, and hil report its reports"
-        if "not confirmed" in said:
-            fix = f"{_FIX}; {fix}"
+        fixes = [_FIX] if "not confirmed" in said else []
+        if recorded:
+            fixes.append(f"hil recover {out} makes a whole recording of what was measured")
+        fix = "; ".join(fixes)
         what = f"{why}; {said}"
         if self._emergency:
             return EmergencyStopError(f"the operator typed e; {_WHERE} {what}", by="the operator", fix=fix)
         return BenchError(what, where=_WHERE, fix=fix)
-
-    def _recording(self) -> Recording | None:
-        """What was recorded; None if nothing was."""
-        path = self._request.out / RECORDING
-        if _identity(path) in (None, self._recorded_before):
-            return None
-        try:
-            return read_recording(path, least_samples=0, allow_missing=True)
-        except HilError as error:
-            logger.warning("the recording cannot be read: %s", error)
-            return None
-
-    def _result(self, recording: Recording, safe: SafeState, error: HilError) -> RunResult:
-        plan, bench = self._request.plan, self._request.bench
-        stored = run_of(recording)
-        empty = RunResult(
-            verdict="error", plan=plan.name, bench=bench.name, real_time_factor=0.0, bench_time_s=0.0,
-            safe_state=safe,
-        )  # fmt: skip
-        result = stored or empty
-        criteria = judge(plan, recording, result.segments)
-        return result.model_copy(
-            update={
-                "plan": plan.name,
-                "bench": bench.name,
-                "criteria": criteria,
-                "verdict": verdict_of(criteria, stopped=True),
-                "safe_state": safe,
-                "reason": str(error),
-            }
-        )
-
-
-def _identity(path: Path) -> tuple[int, int] | None:
-    """What tells a file from an earlier one of its name; None if there is none."""
-    try:
-        found = path.stat()
-    except OSError:
-        return None
-    return found.st_ino, found.st_ctime_ns
 
 
 def _log(line: Logged) -> None:
