@@ -12,7 +12,7 @@ from hil.core.result import RunResult
 from hil.engine import RunOutcome, RunRequest, load_bench
 from hil.engine.border_data import asked_of, ended_of, outcome_of, request_of
 from hil.engine.border_messages import RunAsked, from_line, to_line
-from test_plans import load_plan
+from test_plans import Choices, load_plan
 from tests.benches_for_tests import SIM, plan
 from tests.operators import Silent
 
@@ -73,3 +73,13 @@ def test_an_outcome_passes_as_it_is():
     assert (passed.result, passed.recording, passed.largest, passed.made) == (
         result, outcome.recording, outcome.largest, outcome.made,
     )  # fmt: skip
+
+
+def test_what_was_chosen_of_a_plan_passes(tmp_path: Path):
+    file = tmp_path / "p.yaml"
+    file.write_text(
+        "name: p\nvariables: {wait: {default: 1, unit: s}}\nsteps: [{wait: {duration_s: $wait}}]\n"
+    )
+    request = RunRequest(load_plan(file, Choices(values={"wait": 2.0})), SIM, tmp_path)
+    assert across(request).plan == request.plan
+    assert across(request).plan.values[0].value == 2
