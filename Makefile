@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean
+.PHONY: run setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -66,6 +66,9 @@ faults: setup
 # Each process of a run killed or frozen in every phase, in real time: docs/reference/process-faults.md.
 process-faults: setup
 	$(BIN)/python -m tests.process_faults --write
+# Readers and validators of other people on what is written: docs/reference/readers.md.
+readers: setup
+	$(BIN)/python -m tests.readers --write
 
 # Damaged files and frames at every parser for an hour, chosen by what code they reach: docs/reference/fuzzing.md.
 fuzz: setup

@@ -34,6 +34,16 @@ _ALL = (
 
 CHANNELS: dict[str, Channel] = {channel.name: channel for channel in _ALL}
 
+_UNITS = {"_rad_s": "rad/s", "_m_s": "m/s", "_nm": "N m", "_rad": "rad", "_km_h": "km/h", "_s": "s"}
+
+
+def unit_of(name: str) -> str:
+    """Unit of a channel, of one that is not in `CHANNELS` as its name ends; '' if that says none."""
+    if name in CHANNELS:
+        return CHANNELS[name].unit
+    return next((unit for ending, unit in _UNITS.items() if name.endswith(ending)), "")
+
+
 #: Not measured but integrated: the angle that order disturbances follow, from the start of a run.
 WHEEL_ANGLE = "wheel_angle_rad"
 TIME = "time_s"

@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from hil.core.channels import CHANNELS
+from hil.core.channels import unit_of
 from hil.core.recording._table import Event, Recording
 
 #: Name of the text where a format has named places: an attachment of MDF4, a key of Parquet's metadata.
@@ -82,7 +82,7 @@ def evidence_of(recording: Recording, table_sha256: str = "") -> str:
         first_time_s=float(time_s[0]) if len(time_s) else 0.0,
         last_time_s=float(time_s[-1]) if len(time_s) else 0.0,
         table_sha256=table_sha256,
-        units={name: CHANNELS[name].unit for name in recording.channels if name in CHANNELS},
+        units={name: unit_of(name) for name in recording.channels if unit_of(name)},
         metadata=recording.metadata,
         attachments={name: _attached(content) for name, content in recording.attachments.items()},
         events=[_Event(time_s=e.time_s, kind=e.kind, text=e.text) for e in recording.events],

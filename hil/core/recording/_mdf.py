@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.channels import CHANNELS, INPUT, TIME
+from hil.core.channels import CHANNELS, INPUT, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.files import replacing
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
@@ -131,7 +131,7 @@ def write_mdf(recording: Recording, path: Path) -> None:
                 samples=recording[name][first],
                 timestamps=time_s[first],
                 name=name,
-                unit=CHANNELS[name].unit if name in CHANNELS else "",
+                unit=unit_of(name),
                 comment=CHANNELS[name].meaning if name in CHANNELS else "",
             )
             for name in names

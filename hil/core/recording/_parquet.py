@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from hil.core.channels import CHANNELS
+from hil.core.channels import CHANNELS, unit_of
 from hil.core.errors import BadInputError
 from hil.core.files import replacing
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
@@ -57,10 +57,7 @@ def write_parquet(recording: Recording, path: Path) -> None:
 
     What the recording has beside its samples stands in the file's metadata.
     """
-    fields = [
-        pa.field(name, pa.float64(), metadata={"unit": CHANNELS[name].unit if name in CHANNELS else ""})
-        for name in recording.channels
-    ]
+    fields = [pa.field(name, pa.float64(), metadata={"unit": unit_of(name)}) for name in recording.channels]
     metadata = {EVIDENCE: evidence_of(recording)} if has_evidence(recording) else None
     table = pa.table(list(recording.channels.values()), schema=pa.schema(fields, metadata))
     with replacing(path) as temporary:

@@ -8,6 +8,7 @@ from asammdf import MDF
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hil.core.channels import unit_of
 from hil.core.errors import BadInputError, HilError
 from hil.core.recording import Recording, read_recording, write_recording
 
@@ -128,3 +129,8 @@ def test_a_failed_runs_recording_can_still_be_reported(tmp_path):
     read = read_recording(tmp_path / "r.csv", allow_missing=True)
     assert np.isnan(read["motor_speed_rad_s"][100])
     assert "missing" in read.notes[0]
+
+
+def test_a_channel_that_is_not_in_the_table_has_the_unit_of_its_name() -> None:
+    names = ("dyno_torque_left_nm", "wheel_speed_rad_s", "speed_m_s", "angle_rad", "delay_s", "count")
+    assert [unit_of(name) for name in names] == ["N m", "rad/s", "m/s", "rad", "s", ""]

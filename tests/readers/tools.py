@@ -1,0 +1,70 @@
+"""Tools of others, installed by name into a folder of their own; nobody needs them to use the project."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+PLACE = Path(tempfile.gettempdir()) / "eaxle-hil-readers"
+_NODE = ("axe-core", "puppeteer-core")
+_PYTHON = ("polars", "duckdb", "junitparser", "mdfreader")
+_JARS = {"nu.validator:validator": "26.5.2", "org.verapdf.apps:greenfield-apps": "1.28.2"}
+_POM = """<project xmlns="http://maven.apache.org/POM/4.0.0"><modelVersion>4.0.0</modelVersion>
+<groupId>r</groupId><artifactId>r</artifactId><version>1</version><dependencies>{}</dependencies></project>"""
+_COPY = "org.apache.maven.plugins:maven-dependency-plugin:3.6.1:copy-dependencies"
+
+
+class NotHereError(Exception):
+    """A tool cannot be had on this machine; says which, and why."""
+
+
+def ran(*command: str | Path, cwd: Path | None = None, allowed: tuple[int, ...] = (0,)) -> str:
+    """What a program prints.
+
+    Raises:
+        NotHereError: there is no such program, or it fails.
+    """
+    if shutil.which(str(command[0])) is None:
+        raise NotHereError(f"there is no {command[0]}")
+    done = subprocess.run([str(c) for c in command], cwd=cwd, capture_output=True, text=True, timeout=600)
+    if done.returncode not in allowed:
+        raise NotHereError(f"{Path(command[0]).name}: {(done.stderr or done.stdout).strip()[-300:]}")
+    return done.stdout
+
+
+def node_modules() -> Path:
+    """A folder with the tools of npm; scripts run in it."""
+    folder = PLACE / "node"
+    if not (folder / "node_modules/axe-core").is_dir():
+        folder.mkdir(parents=True, exist_ok=True)
+        ran("npm", "install", "--no-audit", "--no-fund", "--prefix", folder, *_NODE)
+    return folder
+
+
+def python_packages() -> Path:
+    """A folder with the tools of PyPI, for PYTHONPATH of a process of its own."""
+    folder = PLACE / "python"
+    if not (folder / "polars").is_dir():
+        ran(sys.executable, "-m", "pip", "install", "--quiet", "--target", folder, *_PYTHON)
+    return folder
+
+
+def jars() -> Path:
+    """A folder with the tools of Maven and all that they need."""
+    folder = PLACE / "jars"
+    if not list(folder.glob("greenfield-apps-*.jar")):
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, version in _JARS.items():
+            group, artifact = name.split(":")
+            one = f"<groupId>{group}</groupId><artifactId>{artifact}</artifactId><version>{version}</version>"
+            (folder / "pom.xml").write_text(_POM.format(f"<dependency>{one}</dependency>"))
+            ran("mvn", "-q", "-B", _COPY, f"-DoutputDirectory={folder}", cwd=folder)
+    return folder
+
+
+def version_of(artifact: str) -> str:
+    """Version of a tool of Maven."""
+    return next(v for name, v in _JARS.items() if name.endswith(f":{artifact}"))
