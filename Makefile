@@ -66,6 +66,7 @@ faults: setup
 # Each process of a run killed or frozen in every phase, in real time: docs/reference/process-faults.md.
 process-faults: setup
 	$(BIN)/python -m tests.process_faults --write
+
 # Readers and validators of other people on what is written: docs/reference/readers.md.
 readers: setup
 	$(BIN)/python -m tests.readers --write

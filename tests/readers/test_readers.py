@@ -32,7 +32,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("check", checks(), ids=lambda check: f"{check.output}-{check.tool}")
+@pytest.mark.parametrize("check", list(checks()), ids=lambda check: f"{check.output}-{check.tool}")
 def test_others_read_what_is_written(check: Check, written: Path) -> None:
     try:
         version, result = check.read(written)
