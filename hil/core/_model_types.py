@@ -96,6 +96,12 @@ class Model:
     tolerance: dict[str, float] = field(default_factory=dict)
     load_input: str = ""
 
+    @property
+    def dead_time_s(self) -> float:
+        """Dead time of the torque path by its own numbers, without effects; of functions the shortest."""
+        delays = [function.delay_s for function in self.transfer_functions.values()]
+        return min(delays) if delays else self.parameters["torque_delay"]
+
     def with_parameters(self, **changes: float) -> Model:
         """The same model with other parameter values."""
         parameters = self.parameters | changes

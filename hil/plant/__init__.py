@@ -2,7 +2,7 @@
 
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._many import ideal_sensors, simulate_many
-from hil.plant._replay import LONGEST_STEP_S, Start, load_of, replay, simulate, start_of
+from hil.plant._replay import LONGEST_STEP_S, Start, gear_ratio_of, load_of, replay, simulate, start_of
 from hil.plant._sensors import DELAY as SENSOR_DELAY
 from hil.plant._sensors import GAIN as SENSOR_GAIN
 from hil.plant._sensors import OFFSET as SENSOR_OFFSET
@@ -20,6 +20,7 @@ __all__ = [
     "Start",
     "bench_sensor",
     "chain_numbers",
+    "gear_ratio_of",
     "ideal_sensors",
     "linear_system",
     "linear_system_of",

@@ -6,6 +6,7 @@ Same equations as the step-by-step kernel; the linear part moves exactly, the no
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from functools import lru_cache
 
 import numpy as np
@@ -14,15 +15,18 @@ from numba import prange
 
 from hil.core.chain import Chain
 from hil.core.compiled import compiled, compiled_parallel, inlined
+from hil.core.model import TransferFunction
 from hil.plant import _forces as F
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._friction import mean_friction
+from hil.plant._functions import respond_many
 from hil.plant._held_linear import step_matrices
 from hil.plant._kernel import as_tuple
 from hil.plant._motion import chain_of, motion_of, relative_speed
 from hil.plant._sensors import COLUMNS, GAIN, record
+from hil.plant._torque_path import over_samples
 from hil.plant._tuples import plus_product, plus_row, put
 
 Array = npt.NDArray[np.float64]
@@ -49,6 +53,7 @@ def simulate_many(
     block: int = 1,
     angles: Array | None = None,
     load_nm: Array | None = None,
+    functions: Mapping[str, TransferFunction] | None = None,
 ) -> Array:
     """Channels of many packed models for one torque request, each the mean of `block` samples.
 
@@ -63,10 +68,13 @@ def simulate_many(
             simulated ones.
         load_nm: shape (n,), brakes the wheels (the load where there is no wheel), straight from sample to
             sample; none when left out.
+        functions: of a transfer-function model; only torque path and sensors of `parameters` count then.
 
     Returns:
         sets x (n // block) x 3, in the order of `CHANNELS`. A diverged set shows as NaN or huge numbers.
     """
+    if functions:
+        return respond_many(functions, parameters, torque_nm, dt, starts, sensors, block)
     sets = len(parameters)
     begin = np.zeros((sets, STARTS))
     begin[:, : starts.shape[1]] = starts
@@ -125,26 +133,6 @@ def _parts(parameters: Array, dt: float) -> tuple[npt.NDArray[np.int64], npt.NDA
                 cut = law.steps(Chain(*p[: P.CHAIN]), tuple(own[index]), dt)
                 steps[index] = max(steps[index], cut)
     return steps, varies
-
-
-@compiled
-def _acting(torque, dt, p, out, ends):  # type: ignore[no-untyped-def]
-    """The torque path but for its delay and lag: the torque over each sample and at its end."""
-    reach = L.steepest(p) * dt
-    slewed = 0.0
-    for k in range(torque.shape[0]):
-        wanted = L.shaped(torque[k], p)
-        if k == 0:
-            slewed = wanted
-        gap = wanted - slewed
-        if abs(gap) <= reach:  # arrives within the sample: the mean over it
-            out[k] = wanted - gap * abs(gap) / (2.0 * reach) if reach < math.inf and gap != 0.0 else wanted
-            slewed = wanted
-        else:
-            moved = slewed + math.copysign(reach, gap)
-            out[k] = 0.5 * (slewed + moved)
-            slewed = moved
-        ends[k] = slewed
 
 
 @compiled
@@ -275,7 +263,7 @@ def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fi
     """One model over the whole recording into `fine` (n x 3)."""
     p = as_tuple(vector)
     acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(torque.shape[0])
-    _acting(torque, dt, p, acting, ends)
+    over_samples(torque, dt, p, acting, ends)
     first = _first_state(p, start, acting[0])
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     _shown(acting, ends, dt, whole, p, shown)

@@ -14,8 +14,8 @@ from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import _kernel, _slots
-from hil.plant._sensors import measured
-from hil.plant._transfer_function import respond
+from hil.plant._functions import respond_many
+from hil.plant._sensors import measured, sensor_of
 
 Array = npt.NDArray[np.float64]
 
@@ -111,7 +111,7 @@ def replay(model: Model, recording: Recording) -> Recording:
         notes.append(f"time stamps are uneven: simulated every {dt * 1e3:g} ms, interpolated back")
     else:
         dt = float((time[-1] - time[0]) / (len(time) - 1))
-    start = start_of(recording, _gear_ratio(model))
+    start = start_of(recording, gear_ratio_of(model))
     if _rests(model, start, float(torque[0])):
         start = dataclasses.replace(start, motor_torque_nm=0.0)
     channels = simulate(model, torque, dt, start, load_nm=load)
@@ -183,7 +183,7 @@ def start_of(recording: Recording, gear_ratio: float | None = None) -> Start:
     )
 
 
-def _gear_ratio(model: Model) -> float | None:
+def gear_ratio_of(model: Model) -> float | None:
     """Motor over wheel speed of slow motion; None where a model's functions do not have both."""
     if "gear_ratio" in model.parameters:
         return model.parameters["gear_ratio"]
@@ -211,14 +211,13 @@ def _functions(
     path = tuple(use for use in model.effects if EFFECTS[use.id].stage is Stage.TORQUE_PATH)
     if path:
         acting = _torque_path(path, torque, dt, longest_step_s)
-    begin = {
-        "motor_speed_rad_s": start.motor_speed_rad_s,
-        "wheel_speed_rad_s": start.wheel_speed_rad_s,
-        "shaft_torque_nm": 0.0,
-    }
+    begin = np.array([[start.motor_speed_rad_s, start.wheel_speed_rad_s, start.shaft_torque_nm]])
+    sensors = np.stack([sensor_of(model.with_effects(), name) for name in OUTPUTS])[None]  # they come later
+    shown = respond_many(model.transfer_functions, _slots.pack(model)[None], torque, dt, begin, sensors, 1)[0]
     channels = {
-        name: respond(function, acting, dt, begin[name])
-        for name, function in model.transfer_functions.items()
+        name: np.ascontiguousarray(shown[:, column])
+        for column, name in enumerate(OUTPUTS)
+        if name in model.transfer_functions
     }
     return {"motor_torque_nm": acting, **channels}
 

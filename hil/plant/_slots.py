@@ -51,6 +51,8 @@ for _effect in ACTING:
     FIRST[_effect.id] = len(SLOTS)
     for _parameter in _effect.parameters:
         SLOTS.place(f"{_effect.id}.{_parameter.name}", _parameter.unit, _parameter.meaning)
+#: Dead time of the torque path before transfer functions that stands for none, s: effects may shorten theirs.
+PATH_DELAY_S = 1.0
 
 
 def place(effect: str, parameter: str) -> int:
@@ -76,13 +78,17 @@ _PLAIN = _without_effects()
 
 
 def pack(model: Model) -> npt.NDArray[np.float64]:
-    """Parameter vector of a mechanical model.
+    """Parameter vector of a mechanical model; of a transfer-function model that of its torque path.
 
     Raises:
         BadInputError: an effect stands twice where the kernel has one place for it.
     """
     vector = _PLAIN.copy()
-    chain = Chain()._asdict() | {"kind": KINDS[model.kind], "wheel_radius_m": model.wheel_radius_m}
+    chain = Chain()._asdict() | {"wheel_radius_m": model.wheel_radius_m}
+    if model.transfer_functions:
+        chain["torque_delay"] = PATH_DELAY_S
+    else:
+        chain["kind"] = KINDS[model.kind]
     chain.update(model.parameters)
     seen: set[str] = set()
     corrections, acting = [], []

@@ -19,7 +19,7 @@ from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._foretold import left_out
-from hil.analysis.diagnosis.search._from_base import search_from_base
+from hil.analysis.diagnosis.search._from_base import search_beside_functions, search_from_base
 from hil.analysis.diagnosis.search._search import Found, begun, so_far
 from hil.analysis.diagnosis.search._wandering import with_wandering
 from hil.analysis.diagnosis.tell._confidence import drop_of
@@ -27,9 +27,15 @@ from hil.analysis.diagnosis.tell._judged import Judged
 from hil.analysis.diagnosis.tell._result import INTERRUPTED, OUT_OF_TIME, Diagnosis, Verdict
 from hil.analysis.diagnosis.tell._verdict import verdict_of
 from hil.analysis.plausible import refuse_same_data, within_floating_point
-from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
+from hil.plant import gear_ratio_of
+
+ASK_FOR_CHAIN = (
+    "transfer functions have no parts: what is missing inside the axle (play, friction, a mount, a tyre) "
+    "cannot be added to them, nor can one of their numbers be corrected. Get the chain: 'hil run "
+    "identification', then 'hil identify' on its recording writes physical.toml: give that as --model"
+)
 
 
 def diagnose(
@@ -45,7 +51,7 @@ def diagnose(
     """Say which effects `model` lacks to explain `recordings`, and by how much they close the gap.
 
     Args:
-        model: rigid, two_inertia or three_inertia.
+        model: a chain; or transfer functions, to which only effects of torque path and sensors can be added.
         holdout: recordings that no fit sees, only the final figures.
         noise: standard deviation of a sample that a channel's sensor is known to have, by channel; before
             what the recordings' bench files state.
@@ -58,14 +64,8 @@ def diagnose(
 
     Raises:
         BadInputError: the recordings cannot belong to the model (inverted, swapped, dead, clipped, wrong
-            gear ratio, values that no axle gives), hold the same data twice, or the model's kind is not
-            supported.
+            gear ratio, values that no axle gives), hold the same data twice, or have no output of the model.
     """
-    if model.kind == "transfer_function":
-        raise BadInputError(
-            "a transfer_function model has no parts that an effect could be added to",
-            fix="give the chain that `hil identify` writes as physical.toml",
-        )
     refuse_same_data(recordings, holdout)
     stated = stated_noise([*recordings, *holdout])
     asked = Asked.checked({**stated, **(noise or {})}, least or {}, at_most_s)
@@ -93,15 +93,15 @@ def _diagnosed(
         if t.dt > COARSE_SAMPLE_S
     ]
     rounded = grids(traces, noise)
-    ratio = model.parameters["gear_ratio"]
     allowance = Allowance(asked.at_most_s)
     problem = problem_of(
         traces,
         coarse_noise(noise, rounded),
-        ratio,
+        gear_ratio_of(model) or 1.0,
         floor=noise,
         stated=asked.noise,
         allowance=allowance,
+        functions=model.transfer_functions,
     )
     found, unfinished = _searched(problem, Hypothesis(model, held=untold(traces)), rounded, show)
     allowance.lift()
@@ -118,6 +118,8 @@ def _diagnosed(
             verdict = "none" if found.evidence.closed(found.base) else "unknown"
     if verdict == "named":
         found.best = with_wandering(problem, reweighted(problem, found.best))
+    if problem.functions and verdict == "unknown":
+        notes.append(ASK_FOR_CHAIN)
     judged = Judged(problem, found, verdict, held, by_chance, asked.least, unfinished)
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)
 
@@ -128,7 +130,8 @@ def _searched(
     """What is found, and why the search ended before it was through, if it did."""
     known: list[Found] = []
     try:
-        return search_from_base(problem, hypothesis, show, rounded, known), ""
+        from_base = search_beside_functions if problem.functions else search_from_base
+        return from_base(problem, hypothesis, show, rounded, known), ""
     except KeyboardInterrupt:
         if not known:
             raise

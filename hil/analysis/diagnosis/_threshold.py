@@ -40,6 +40,7 @@ CHECKS = {
     "orders": _TESTS.format("search/test_orders.py"),
     "quantization": _TESTS.format("search/test_quantization.py"),
     "rank": _TESTS.format("search/test_rank.py"),
+    "transfer_functions": _TESTS.format("test_transfer_functions.py"),
     "screen": _TESTS.format("search/test_screen.py"),
     "tracking": _TESTS.format("search/test_tracking.py"),
     "width": _TESTS.format("search/test_width.py"),

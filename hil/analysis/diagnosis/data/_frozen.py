@@ -24,6 +24,7 @@ from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
+from hil.plant import gear_ratio_of
 
 Array = npt.NDArray[np.float64]
 
@@ -39,7 +40,7 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
         BadInputError: names the channel, the recording and the stretch.
     """
     step = trace.dt * trace.block
-    gear_ratio = model.parameters["gear_ratio"]
+    gear_ratio = gear_ratio_of(model) or 1.0
     stiffness = model.parameters.get("shaft_stiffness", np.inf)
     scale = np.array([1.0 / gear_ratio, 1.0, 1.0])
     values = trace.measured * scale

@@ -28,7 +28,7 @@ from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
-from hil.plant import pack, sensor_of, simulate_many
+from hil.plant import gear_ratio_of, pack, sensor_of, simulate_many
 
 Array = npt.NDArray[np.float64]
 
@@ -149,7 +149,7 @@ class _Likeness:
 
 def _said(model: Model, trace: Trace) -> Array:
     """What a model shows of a recording's torque, from its own start: blocks x 3, NaN where not measured."""
-    ratio = model.parameters["gear_ratio"]
+    ratio = gear_ratio_of(model) or 1.0
     motor, wheel, shaft = (float(value) for value in trace.start)
     if not np.isfinite(motor):
         motor = wheel * ratio if np.isfinite(wheel) else 0.0
@@ -158,8 +158,9 @@ def _said(model: Model, trace: Trace) -> Array:
     start = np.array([[motor, wheel, shaft if np.isfinite(shaft) else 0.0]])
     sensors = np.stack([sensor_of(model, channel) for channel in OUTPUTS])[None]
     angles = trace.angles(ratio)
+    functions = model.transfer_functions
     said = simulate_many(
-        pack(model)[None], trace.torque, trace.dt, start, sensors, trace.block, angles, trace.load
+        pack(model)[None], trace.torque, trace.dt, start, sensors, trace.block, angles, trace.load, functions
     )[0]
     return np.where(trace.has, said, np.nan)
 

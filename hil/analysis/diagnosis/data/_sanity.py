@@ -20,6 +20,7 @@ from hil.analysis.diagnosis.data._frozen import refuse_frozen
 from hil.analysis.diagnosis.data._mistakes import mistaken
 from hil.analysis.diagnosis.data._noise import noise_levels, usable_noise
 from hil.analysis.diagnosis.data._pair import Pair
+from hil.analysis.diagnosis.data._slow_motion import SlowMotion, slow_motion_of, with_outputs_of
 from hil.analysis.diagnosis.data._thresholds import (
     APART_RAD,
     DEAD_SHARE,
@@ -106,7 +107,8 @@ def examined(model: Model, recordings: Sequence[Recording], beside: Sequence[Tra
     """
     for recording in recordings:
         refuse_implausible(recording)
-    pieces = [part for r in recordings for piece in unbroken(r) for part in excerpts(piece)]
+    comparable = [with_outputs_of(model, recording) for recording in recordings]
+    pieces = [part for r in comparable for piece in unbroken(r) for part in excerpts(piece)]
     traces = [trace_of(part, load=load_of(model, part)) for part in pieces]
     if not traces:
         return Examined([], np.full(3, np.nan), [])
@@ -121,21 +123,13 @@ def _kind(error: BadInputError) -> str:
 
 def _wrong(model: Model, traces: list[Trace], noise: Array) -> BadInputError | None:
     """What does not go together in `traces`, seen together."""
-    ratio, inertia = _ratio_and_inertia(model)
+    slow = slow_motion_of(model)
+    if slow is None:
+        return None
+    ratio, inertia = slow.gear_ratio, slow.inertia_kg_m2
     pushes = {OUTPUTS[i]: pushes_of(traces, i, ratio, ratio / inertia) for i in (0, 1)}
     fine = [OUTPUTS[i] for i in (0, 1) if not any(coarse(t, i) for t in traces if t.has[i])]
-    return (
-        _speeds(traces, ratio, noise, pushes)
-        or refused_push(pushes, fine)
-        or _shaft(traces, ratio, noise, model)
-    )
-
-
-def _ratio_and_inertia(model: Model) -> tuple[float, float]:
-    """Gear ratio, and all that turns, wheel side, kg m²."""
-    p = model.parameters
-    inertia = p["motor_inertia"] * p["gear_ratio"] ** 2 + p.get("wheel_inertia", 0.0) + p["vehicle_inertia"]
-    return p["gear_ratio"], inertia
+    return _speeds(traces, ratio, noise, pushes) or refused_push(pushes, fine) or _shaft(traces, slow, noise)
 
 
 def _speeds(
@@ -206,13 +200,13 @@ def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
     )
 
 
-def _shaft(traces: list[Trace], ratio: float, noise: Array, model: Model) -> BadInputError | None:
+def _shaft(traces: list[Trace], slow: SlowMotion, noise: Array) -> BadInputError | None:
     """Shaft torque against motor torque at low frequency: sign and order of magnitude.
 
     What brakes the wheels passes the shafts only as far as it brakes the rotor.
     """
-    rotor = model.parameters["motor_inertia"] * ratio**2
-    passed = rotor / (_ratio_and_inertia(model)[1] - rotor)
+    ratio, rotor = slow.gear_ratio, slow.rotor_kg_m2
+    passed = rotor / (slow.inertia_kg_m2 - rotor)
     pair = Pair()
     having = [t for t in traces if t.has[2]]
     for t in having:

@@ -227,6 +227,10 @@ LEAST_BANDS: Annotated[int, Means("octaves", "that a wrong sign must show in", "
 BAND_SHARE: Annotated[float, Means("of a channel's power", "a band with less says nothing", "bad_input")] = (
     0.003
 )
+SLOW_HZ: Annotated[
+    float,
+    Means("Hz", "of functions: below every resonance, and fast enough for drag to matter little", "sanity"),
+] = 0.1
 SHOWS: Annotated[float, Means("times the noise's power", "a band with less says nothing", "bad_input")] = 10.0
 
 LEAST_SAMPLES: Annotated[int, Means("samples", "a recording with fewer is refused", "bad_input")] = 200

@@ -33,7 +33,7 @@ def standard_errors(problem: Problem, one: Fit) -> Array:
 def _held(one: Fit) -> Array:
     """What the tolerance of the model's own dead time adds to an extra one: only their sum shows."""
     hypothesis = one.hypothesis
-    delay = hypothesis.base.parameters["torque_delay"]
+    delay = hypothesis.base.dead_time_s
     return np.array(
         [
             delay * hypothesis.freedom("torque_delay")[1] if c.name == "extra_delay_s" else 0.0

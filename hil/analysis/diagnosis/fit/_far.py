@@ -29,7 +29,7 @@ def identified(problem: Problem, hypothesis: Hypothesis) -> tuple[Problem, Fit]:
     With it the problem that says how far errors are from noise: what recordings do not tell stays as it was.
     """
     freed = replace(hypothesis, far=True)
-    theta, starts = freed.start(), problem.first_starts(freed)
+    theta, starts = freed.start(), problem.first_starts()
     for seconds in COARSE_S:
         coarse = _coarser(problem, seconds)
         if coarse is None:

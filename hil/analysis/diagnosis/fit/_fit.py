@@ -12,7 +12,7 @@ from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._least_squares import descent
 from hil.analysis.diagnosis.fit._normal import reduced
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, WORTH_A_LEAP
+from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, SAME_COST, WORTH_A_LEAP
 from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
 
 Array = npt.NDArray[np.float64]
@@ -75,7 +75,7 @@ def fit(
     coordinates = hypothesis.coordinates()
     lower, upper = _bounds(coordinates)
     theta = np.clip(hypothesis.start() if theta is None else theta, lower, upper)
-    starts = [s.copy() for s in (starts or problem.first_starts(hypothesis))]
+    starts = [s.copy() for s in (starts or problem.first_starts())]
     precision = np.array([problem.misfit / c.prior**2 for c in coordinates])
     by_samples = delay_by_samples(hypothesis, problem.traces[0].dt) if rounds else None
     done = 0
@@ -116,16 +116,21 @@ def cheapest(
     precision: Array | float = 0.0,
     *,
     lead: float = 0.0,
+    inert: float = np.inf,
 ) -> Array:
     """Those of the coordinates `tried` that leave the smallest error, unfitted.
 
     Args:
         lead: what the others must gain over the first in the sum of squared errors.
+        inert: that sum where nothing has changed yet: from there no slope leads anywhere.
     """
     each = [np.tile(start, (len(tried), 1)) for start in starts]
     costs = problem.costs([hypothesis.packed(theta) for theta in tried], each)
     costs += np.array([np.sum(precision * theta**2) for theta in tried])
     costs[0] -= lead
+    acts = ~np.isclose(costs, inert, rtol=SAME_COST, atol=0.0)
+    if acts.any():
+        costs[~acts] = np.inf
     return tried[int(np.argmin(costs))]
 
 

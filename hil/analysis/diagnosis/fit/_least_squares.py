@@ -20,7 +20,7 @@ _RANK, _EXACT = 1e-13, 1e-12  # what rounding leaves of zero
 
 def box_step(matrix: Array, gradient: Array, lower: Array, upper: Array) -> Array:
     """Minimiser of ½xᵀMx - gᵀx within bounds, the smallest one where M is singular."""
-    if not (np.isfinite(matrix).all() and np.isfinite(gradient).all()):
+    if not (len(gradient) and np.isfinite(matrix).all() and np.isfinite(gradient).all()):
         return np.zeros(len(gradient))
     scale = 1.0 / np.sqrt(np.maximum(np.diag(matrix), 1e-300))
     lower, upper = lower / scale, upper / scale

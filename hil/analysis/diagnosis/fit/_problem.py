@@ -27,6 +27,7 @@ from hil.analysis.diagnosis.fit._thresholds import (
     REST_SIGMAS,
     STEP,
 )
+from hil.core.model import TransferFunction
 from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
@@ -56,8 +57,8 @@ class Problem:
     it. `misfit` is the variance of an error, in noise variances, that weighs what is known beforehand of a
     model's numbers: beside errors a thousand times the noise it would say nothing, and what the recordings
     do not tell would run away. `proven` is the largest power, (3,), that noise may have in the weighed
-    errors of each channel. Every simulation asks `allowance` first. A problem never changes: other
-    angles make another one.
+    errors of each channel. Every simulation asks `allowance` first. `functions` are those of a
+    transfer-function model. A problem never changes: other angles make another one.
     """
 
     traces: tuple[Trace, ...]
@@ -71,6 +72,7 @@ class Problem:
     whitening: Array | None = None
     misfit: float = 1.0
     allowance: Allowance = UNBOUNDED
+    functions: Mapping[str, TransferFunction] | None = None
 
     @cached_property
     def channels(self) -> int:
@@ -105,9 +107,9 @@ class Problem:
         sensors = hypothesis.packed(theta)[1]
         return self.with_angles([t.angles(self.gear_ratio, sensors) for t in self.traces])
 
-    def first_starts(self, hypothesis: Hypothesis) -> list[Array]:
+    def first_starts(self) -> list[Array]:
         """Initial values read from the recordings, completed by the model where a channel is missing."""
-        ratio = hypothesis.base.parameters["gear_ratio"]
+        ratio = self.gear_ratio
         starts: list[Array] = []
         for trace in self.traces:
             motor, wheel, shaft = trace.start
@@ -127,9 +129,15 @@ class Problem:
             OutOfTimeError: the search has used up its allowance.
         """
         self.allowance.check()
+        return self.simulated(trace, slots, sensors, starts, self.traces[trace].block)
+
+    def simulated(self, trace: int, slots: Array, sensors: Array, starts: Array, block: int) -> Array:
+        """Like `outputs` for blocks of any length, whatever is left of the allowance."""
         t = self.traces[trace]
-        simulated = simulate_many(slots, t.torque, t.dt, starts, sensors, t.block, self.angles[trace], t.load)
-        return np.asarray(simulated)
+        angles, functions = self.angles[trace], self.functions
+        return np.asarray(
+            simulate_many(slots, t.torque, t.dt, starts, sensors, block, angles, t.load, functions)
+        )
 
     def errors(self, trace: int, simulated: Array) -> Array:
         """Weighted measured minus simulated, blocks x 3, 0 where not measured or not judged."""
@@ -248,6 +256,7 @@ def problem_of(
     floor: Array | None = None,
     stated: Mapping[str, float] | None = None,
     allowance: Allowance = UNBOUNDED,
+    functions: Mapping[str, TransferFunction] | None = None,
 ) -> Problem:
     """Recordings weighed by `noise`, with the angles that their speeds give.
 
@@ -269,6 +278,7 @@ def problem_of(
         tuple(_rests(t, noise, floor) for t in traces),
         read_only(proven_noise(traces, noise, stated)),
         allowance=allowance,
+        functions=functions or None,
     )
 
 

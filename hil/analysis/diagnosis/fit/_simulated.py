@@ -7,7 +7,6 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._problem import STARTS, Problem
-from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
 
@@ -42,6 +41,6 @@ def simulated_samples(
     """Channels of each recording at full rate, n x 3."""
     slots, sensors = hypothesis.packed(theta)
     return [
-        simulate_many(slots[None], t.torque, t.dt, start[None], sensors[None], 1, angles, t.load)[0]
-        for t, start, angles in zip(problem.traces, starts, problem.angles, strict=True)
+        problem.simulated(index, slots[None], sensors[None], start[None], 1)[0]
+        for index, start in enumerate(starts)
     ]

@@ -41,6 +41,9 @@ WORTH_A_LEAP: Annotated[
     float,
     Means("squared error, noise variances", "a dead time in another sample must gain more", "whole_samples"),
 ] = 10.0
+SAME_COST: Annotated[
+    float, Means("relative", "sums of squared errors are the same: nothing has changed", "transfer_functions")
+] = 1e-9
 
 TRIALS: Annotated[tuple[float, ...], Means("of a step", "tried in each round", "least_squares")] = (1.0, 0.35)
 MOST_REFUSALS: Annotated[int, Means("steps", "refused before a fit gives up", "least_squares")] = 4

@@ -223,7 +223,7 @@ def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
     likely = _with_width(problem, parent, hypothesis)
     if likely is not None:
         tried.append(likely)
-    first = cheapest(problem, hypothesis, tried, parent.starts)
+    first = cheapest(problem, hypothesis, tried, parent.starts, inert=parent.cost)
     starts = with_hidden_speeds(problem, hypothesis, first, parent.starts)
     return fit(problem, hypothesis, starts, first, rounds=rounds)
 

@@ -30,5 +30,5 @@ def _suited(problem: Problem, hypothesis: Hypothesis, theta: Array, index: int, 
     speeds = np.array([*(-s for s in reversed(HIDDEN_SPEEDS_RAD_S)), *HIDDEN_SPEEDS_RAD_S])
     tried = np.tile(start, (1 + len(speeds), 1))
     tried[1:, MOTOR] = speeds
-    tried[1:, WHEEL] = speeds / hypothesis.base.parameters["gear_ratio"]
+    tried[1:, WHEEL] = speeds / problem.gear_ratio
     return problem.cheapest_start(index, hypothesis.packed(theta), tried)[0]

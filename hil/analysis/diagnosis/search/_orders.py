@@ -44,6 +44,8 @@ def order_lines(
     problem: Problem, fit: Fit, side: Literal["wheel", "motor"], most: int = 2
 ) -> list[OrderLine]:
     """The strongest orders of the wheel's or the rotor's turning in the errors of `fit`, strongest first."""
+    if problem.functions:  # they do not say what a torque on the shafts would show
+        return []
     angles, images, powers, speeds = [], [], [], []
     system = linear_system(fit.hypothesis.model(fit.theta))
     for index, trace in enumerate(problem.traces):

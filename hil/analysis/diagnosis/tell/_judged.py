@@ -153,17 +153,22 @@ class Judged:
     def _held(self, kept: Fit) -> tuple[dict[str, ChannelGap], dict[str, ChannelGap]]:
         if not self.holdout.traces:
             return {}, {}
-        ratio = kept.hypothesis.base.parameters["gear_ratio"]
         noise = self.holdout.noise
         colouring = self.found.evidence.colouring(self.found.best)
         weighed = np.where(np.isfinite(self.problem.noise), self.problem.noise, noise)  # rounding included
-        problem = problem_of(self.holdout.traces, weighed, ratio, floor=noise * colouring)
+        problem = problem_of(
+            self.holdout.traces,
+            weighed,
+            self.problem.gear_ratio,
+            floor=noise * colouring,
+            functions=self.problem.functions,
+        )
         gaps = []
         for hypothesis, theta in (
             (self.found.base.hypothesis, self.found.base.hypothesis.start()),
             (kept.hypothesis, kept.theta),
         ):
-            starts = settled_starts(problem, hypothesis, theta, problem.first_starts(hypothesis))
+            starts = settled_starts(problem, hypothesis, theta, problem.first_starts())
             if has_ripple(hypothesis):
                 followed = problem.following(hypothesis, theta)
                 _, problem = track(followed, hypothesis, theta, starts, order_known=True, phase_known=True)

@@ -28,7 +28,7 @@ def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, fl
     if use.id in least:
         return size >= least[use.id]
     if use.id == "dead_time":
-        own = base.parameters["torque_delay"] * base.tolerance.get("torque_delay", TOLERANCE)
+        own = base.dead_time_s * base.tolerance.get("torque_delay", TOLERANCE)
         if size < TOLERANCES * own:
             return False
     if effect.least is None:

@@ -28,7 +28,7 @@ from hil.analysis.diagnosis.tell._thresholds import (
 )
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
-from hil.plant import Start, simulate
+from hil.plant import Start, gear_ratio_of, simulate
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SAMPLE_TIME_S, Excitation, HoldSpeed
 
@@ -81,7 +81,7 @@ def separating_plan(
     """
     if one.load_input:
         return f"no test is foretold: the models do not hold what makes {one.load_input}", ""
-    ratio = one.parameters["gear_ratio"]
+    ratio = gear_ratio_of(one) or 1.0
     most_shaft = SHAFT_SHARE * ratio * torque_nm if shaft_torque_nm is None else shaft_torque_nm
     candidates = []
     for name in _WORDS:
@@ -130,9 +130,10 @@ def _rms(errors: Array) -> float:
 
 def _outputs(model: Model, test: _Test) -> Array:
     """Outputs of a model in a test, samples x 3."""
-    start = Start(test.speed * model.parameters["gear_ratio"], test.speed, 0.0, 0.0)
+    start = Start(test.speed * (gear_ratio_of(model) or 1.0), test.speed, 0.0, 0.0)
     simulated = simulate(model, test.torque, SAMPLE_TIME_S, start)
-    return np.column_stack([simulated[c] for c in OUTPUTS])
+    unknown = np.zeros(len(test.torque))  # functions need not have every output
+    return np.column_stack([simulated.get(c, unknown) for c in OUTPUTS])
 
 
 def _within(outputs: Array, speed: float, shaft: float) -> bool:

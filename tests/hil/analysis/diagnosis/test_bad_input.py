@@ -173,16 +173,6 @@ def test_held_out_recordings_are_checked_too(tables, run) -> None:
     assert "held.csv: wheel_speed_rad_s looks inverted" in refused(run, "r.csv", "--holdout", "held.csv")
 
 
-def test_a_transfer_function_has_no_parts_to_add_to(tables, run) -> None:
-    functions = {c: {"numerator": [1.0], "denominator": [1.0, 1.0], "delay": 0.0} for c in CHANNELS}
-    lines = ['kind = "transfer_function"']
-    for channel, parts in functions.items():
-        lines += [f"[transfer_functions.{channel}]", *(f"{k} = {v}" for k, v in parts.items())]
-    Path("model.toml").write_text("\n".join(lines))
-    tables["steps"].to_csv("r.csv", index=False)
-    assert "physical.toml" in refused(run, "r.csv")
-
-
 def test_a_place_that_cannot_be_written_is_said_before_the_long_work(tables, run) -> None:
     tables["steps"].to_csv("r.csv", index=False)
     Path("file").write_text("")

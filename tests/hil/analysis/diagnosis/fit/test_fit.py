@@ -39,7 +39,7 @@ def test_the_cheapest_of_several_sizes_is_taken() -> None:
     tried = [hypothesis.start() for _ in range(3)]
     for theta, value in zip(tried, (0.0, 18.0, 40.0), strict=True):
         theta[-1] = value
-    starts = problem.first_starts(hypothesis)
+    starts = problem.first_starts()
     assert cheapest(problem, hypothesis, tried, starts) is tried[1]
     assert cheapest(problem, hypothesis, tried, starts, lead=1e9) is tried[0]
 

@@ -33,7 +33,7 @@ def test_without_numbers_to_go_by_no_step_is_taken() -> None:
 def test_a_descent_lowers_the_cost_and_keeps_to_its_rounds() -> None:
     problem, hypothesis = one_problem(), Hypothesis(MODEL)
     theta = hypothesis.start() + 0.02
-    starts = problem.first_starts(hypothesis)
+    starts = problem.first_starts()
     wide = np.full(len(theta), 0.03)
     first = problem.linearised(hypothesis, theta, starts)
     reached = descent(problem, hypothesis, (theta, starts), (-wide, wide), np.zeros(len(theta)), 3, 0.0)

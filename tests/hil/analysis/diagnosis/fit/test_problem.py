@@ -14,7 +14,7 @@ RATIO = MODEL.parameters["gear_ratio"]
 
 def test_the_true_model_leaves_one_noise_variance_a_row() -> None:
     problem, hypothesis = one_problem(), Hypothesis(MODEL)
-    starts = problem.first_starts(hypothesis)
+    starts = problem.first_starts()
     at = problem.linearised(hypothesis, hypothesis.start(), starts)
     assert at.cost == pytest.approx(problem.rows, rel=0.15)
     costs = problem.costs([hypothesis.packed(hypothesis.start())], [np.stack(starts)])
@@ -25,7 +25,7 @@ def test_the_true_model_leaves_one_noise_variance_a_row() -> None:
 
 def test_a_derivative_is_what_the_error_does() -> None:
     problem, hypothesis = one_problem(), Hypothesis(MODEL)
-    theta, starts = hypothesis.start(), problem.first_starts(hypothesis)
+    theta, starts = hypothesis.start(), problem.first_starts()
     at = problem.linearised(hypothesis, theta, starts)
     index = [c.name for c in hypothesis.coordinates()].index("vehicle_inertia")
     theta[index] += 0.01
@@ -58,7 +58,7 @@ def test_an_axle_at_rest_is_held_there() -> None:
     assert moving.resting == (False,)
     assert np.all(moving.start_precision(0)[:3] == 0.0)
     assert np.all(moving.start_precision(0)[3:] < 0.1 * problem.start_precision(0)[3:])
-    assert moving.first_starts(Hypothesis(MODEL))[0] == pytest.approx([100.0, 12.0, 0.0, 0.0, 0.0])
+    assert moving.first_starts()[0] == pytest.approx([100.0, 12.0, 0.0, 0.0, 0.0])
 
 
 def test_nothing_of_a_problem_can_be_changed() -> None:

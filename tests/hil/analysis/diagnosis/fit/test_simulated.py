@@ -11,7 +11,7 @@ from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE, one_problem
 def test_settled_starts_undo_a_wrong_one() -> None:
     problem, hypothesis = one_problem(), Hypothesis(MODEL)
     theta = hypothesis.start()
-    wrong = [problem.first_starts(hypothesis)[0] + np.array([30.0, 3.0, 50.0, 0.0, 0.0])]
+    wrong = [problem.first_starts()[0] + np.array([30.0, 3.0, 50.0, 0.0, 0.0])]
     settled = settled_starts(problem, hypothesis, theta, wrong)
     error = simulated_samples(problem, hypothesis, theta, settled)[0] - problem.traces[0].samples
     assert np.std(error, axis=0) == pytest.approx(NOISE, rel=0.1)

@@ -37,9 +37,7 @@ def test_the_axle_is_found_to_have_turned_and_which_way() -> None:
     hypothesis = Hypothesis(MODEL, (FRICTION,))
     for speed in (80.0, -80.0):
         problem = _coasting(speed)
-        (start,) = with_hidden_speeds(
-            problem, hypothesis, hypothesis.start(), problem.first_starts(hypothesis)
-        )
+        (start,) = with_hidden_speeds(problem, hypothesis, hypothesis.start(), problem.first_starts())
         assert np.sign(start[0]) == np.sign(speed)
         assert start[1] == start[0] / BASE["gear_ratio"]
 
@@ -47,5 +45,5 @@ def test_the_axle_is_found_to_have_turned_and_which_way() -> None:
 def test_a_measured_speed_is_not_guessed_at() -> None:
     problem = one_problem(FRICTION, seconds=1.0)
     hypothesis = Hypothesis(MODEL, (FRICTION,))
-    starts = problem.first_starts(hypothesis)
+    starts = problem.first_starts()
     assert with_hidden_speeds(problem, hypothesis, hypothesis.start(), starts)[0] is starts[0]

@@ -27,7 +27,7 @@ def followed(id_: str, *channels: str, amplitude_nm: float = 5.0) -> np.ndarray:
     noise = usable_noise(noise_levels(traces))
     problem = problem_of(traces, noise, MODEL.parameters["gear_ratio"])
     hypothesis = Hypothesis(MODEL, (EffectUse(id_, {**RIPPLE, "amplitude_nm": amplitude_nm}),))
-    return track(problem, hypothesis, hypothesis.start(), problem.first_starts(hypothesis))[0]
+    return track(problem, hypothesis, hypothesis.start(), problem.first_starts())[0]
 
 
 @pytest.mark.parametrize("id_", ["wheel_order_disturbance", "motor_order_ripple"])

@@ -15,14 +15,14 @@ def test_a_width_is_found_from_far(guess: float) -> None:
     problem, hypothesis = with_play(0.02), supposed(guess)
     index = width_of(hypothesis)
     assert index is not None
-    starts = problem.first_starts(hypothesis)
+    starts = problem.first_starts()
     theta = with_likely_width(problem, hypothesis, hypothesis.start(), starts, index)
     assert np.exp(theta[index]) == pytest.approx(0.02, rel=0.01)
 
 
 def test_a_speed_that_is_off_throughout_says_nothing_of_a_window() -> None:
     problem, hypothesis = with_play(0.02), supposed(0.02)
-    starts = problem.first_starts(hypothesis)
+    starts = problem.first_starts()
     starts[0][:2] += np.array([8.148, 1.0]) * 2.0
     errors = window_errors(problem, hypothesis, hypothesis.start(), starts)
     assert np.median(errors) == pytest.approx(1.0, abs=0.4)
