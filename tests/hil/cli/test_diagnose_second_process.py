@@ -57,7 +57,7 @@ def test_what_a_bench_in_another_process_hides_is_named(tmp_path):
     assert effect["parameters"]["extra_delay_s"] == pytest.approx(0.002, rel=0.03)
 
 
-@pytest.mark.slow
+@pytest.mark.hunt  # minutes of searching: the loop itself is in the slow set, with dead time
 def test_free_play_is_named_from_the_identification_plan_in_real_time(tmp_path):
     recording = run_on_a_bench_that_hides(
         tmp_path, "backlash=0.01", "identification", ["1", "1", "0.5", "0.2"]

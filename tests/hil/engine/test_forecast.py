@@ -225,7 +225,7 @@ def test_an_analysis_is_shown_what_it_would_be_shown_in_a_run(tmp_path):
 def test_a_controller_that_the_plan_designs_is_used(tmp_path):
     steps = """
   - hold_speed: {speed_km_h: 10, duration_s: 0.1}
-  - chirp: {segment: c, quantity: motor_torque, from_hz: 0.5, to_hz: 30, duration_s: 10, amplitude_nm: 20}
+  - chirp: {segment: c, quantity: motor_torque, from_hz: 0.2, to_hz: 30, duration_s: 20, amplitude_nm: 20}
   - identify: {}
   - design: {name: lead, stabilization: phase}
   - set_controller: {designed: lead}
