@@ -17,7 +17,7 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from hil.cli._completion import completion_wanted
+from hil.cli._completion import completion_wanted, take_named_shell
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._log import LOG
 from hil.cli._several import each_with_its_option
@@ -72,6 +72,7 @@ def run_command_line() -> int:
 
 def _dispatch(arguments: list[str]) -> int:
     if completion_wanted(arguments):
+        take_named_shell(arguments)
         _app_of(*_COMMANDS)(arguments, prog_name="hil")
         return 0
     if not arguments:

@@ -9,6 +9,8 @@ from pathlib import Path
 
 OPTIONS = ("--install-completion", "--show-completion")
 _VARIABLE = "_HIL_COMPLETE"
+#: With it typer takes the shell that is named, and does not look which one it was started from.
+_NO_DETECTION = "_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION"
 
 Complete = Callable[[str], list[str]]
 
@@ -16,6 +18,12 @@ Complete = Callable[[str], list[str]]
 def completion_wanted(arguments: list[str]) -> bool:
     """Whether a shell asks what can stand here, or a person for the shell's script."""
     return _VARIABLE in os.environ or arguments[:1] in ([option] for option in OPTIONS)
+
+
+def take_named_shell(arguments: list[str]) -> None:
+    """Have the script made for the shell that a person names behind the option, whichever asks for it."""
+    if len(arguments) > 1 and arguments[0] in OPTIONS:
+        os.environ[_NO_DETECTION] = "1"
 
 
 def one_of(*words: str) -> Complete:

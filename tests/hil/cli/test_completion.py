@@ -39,6 +39,7 @@ def test_what_can_stand_there_is_offered(words, answer):
 def test_the_shell_takes_the_script(shell):
     script = hil("--show-completion", shell).stdout
     assert "_HIL_COMPLETE" in script
+    assert ("compdef" in script, "complete --command" in script) == (shell == "zsh", shell == "fish")
     if shell == "bash":
         subprocess.run(["bash", "-n"], input=script, text=True, check=True)
 

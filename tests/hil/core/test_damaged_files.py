@@ -223,7 +223,7 @@ def test_a_mutated_controller_is_one_or_bad_input(data: dict[str, Any]) -> None:
     try:
         controller_from_toml(text, "c.toml")
     except BadInputError as error:
-        assert error.where == "c.toml"
+        assert error.where.split(",")[0] == "c.toml"
 
 
 @given(data=st.data())
