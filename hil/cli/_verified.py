@@ -17,7 +17,7 @@ from hil.engine import RECORDING
 from reports import HTML, PDF, claim_of
 from reports.provenance import stored_files
 
-RECORDINGS = (".mcap", ".csv", ".parquet", ".mf4")
+RECORDINGS = (".mcap", ".csv", ".parquet", ".mf4", ".mat")
 REPORTS = (".html", ".pdf", ".json")
 
 

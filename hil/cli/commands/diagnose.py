@@ -13,7 +13,7 @@ SEVERAL = ("--holdout",)
 
 def command(
     recordings: Annotated[
-        list[Path], typer.Argument(help="Recordings to explain (.mcap, .csv, .parquet, .mf4).")
+        list[Path], typer.Argument(help="Recordings to explain (.mcap, .csv, .parquet, .mf4, .mat).")
     ],
     model: Annotated[Path, typer.Option("--model", help="Model file to start from.")],
     out: Annotated[

@@ -9,10 +9,12 @@ import typer
 
 
 def command(
-    recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet or .mf4")],
+    recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet, .mf4 or .mat")],
     out: Annotated[
         Path,
-        typer.Option(help="file to write: .csv, .parquet or .mf4; raw frames: .blf, .asc or .log (candump)"),
+        typer.Option(
+            help="file to write: .csv, .parquet, .mf4 or .mat; raw frames: .blf, .asc or .log (candump)"
+        ),
     ],
     frames: Annotated[
         bool, typer.Option("--frames", help="raw frames instead of channels also to .mf4 (ASAM bus logging)")
@@ -22,7 +24,7 @@ def command(
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Write a recording's channels as CSV, Parquet or MDF4, or its raw frames as BLF, ASC, candump or MDF4.
+    """Write a recording's channels as CSV, Parquet, MDF4 or MAT, or its frames as BLF, ASC, candump or MDF4.
 
     What was lost of them is said.
     """

@@ -10,7 +10,7 @@ import typer
 
 def command(
     recordings: Annotated[
-        list[Path], typer.Argument(help="Recordings (.mcap, .csv, .parquet, .mf4); several are merged.")
+        list[Path], typer.Argument(help="Recordings (.mcap, .csv, .parquet, .mf4, .mat); several are merged.")
     ],
     out: Annotated[
         Path | None,

@@ -11,7 +11,7 @@ import typer
 def command(
     model: Annotated[Path, typer.Option(help="model file")],
     source: Annotated[Path, typer.Option("--input", help="recording with motor_torque_ref_nm")],
-    out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet or .mf4")],
+    out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet, .mf4 or .mat")],
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")

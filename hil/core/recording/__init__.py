@@ -23,7 +23,7 @@ logger = logging.getLogger(__name__)
 
 
 def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = False) -> Recording:
-    """Read `.mcap`, `.csv`, `.parquet` or `.mf4`; refuse what no command could use.
+    """Read `.mcap`, `.csv`, `.parquet`, `.mf4` or `.mat`; refuse what no command could use.
 
     Args:
         allow_missing: keep channels of which much is missing, for reports of runs that failed.
@@ -97,7 +97,7 @@ def written_with(path: Path) -> list[Path]:
 
 
 def write_recording(recording: Recording, path: Path) -> None:
-    """Write `.csv`, `.parquet` or `.mf4`, whole or not at all, with all that stands beside the samples."""
+    """Write `.csv`, `.parquet`, `.mf4` or `.mat`, whole or not at all, with what stands beside it."""
     writer = writer_of(path.suffix.lower())
     if writer is None:
         raise BadInputError(f"an export ends in {', '.join(WRITTEN)}", where=str(path))

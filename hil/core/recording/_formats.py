@@ -10,8 +10,8 @@ from pathlib import Path
 
 from hil.core.recording._table import Recording
 
-READ = (".mcap", ".csv", ".parquet", ".mf4")
-WRITTEN = (".csv", ".parquet", ".mf4")
+READ = (".mcap", ".csv", ".parquet", ".mf4", ".mat")
+WRITTEN = (".csv", ".parquet", ".mf4", ".mat")
 #: Logs of raw frames: BLF, ASC, candump. MDF4 may hold channels or frames.
 FRAME_LOGS = (".blf", ".asc", ".log")
 
@@ -35,6 +35,10 @@ def reader_of(ending: str) -> Callable[[Path], Recording] | None:
             from hil.core.recording._mdf import read_mdf
 
             return read_mdf
+        case ".mat":
+            from hil.core.recording._mat import read_mat
+
+            return read_mat
     return None
 
 
@@ -53,4 +57,8 @@ def writer_of(ending: str) -> Callable[[Recording, Path], None] | None:
             from hil.core.recording._mdf import write_mdf
 
             return write_mdf
+        case ".mat":
+            from hil.core.recording._mat import write_mat
+
+            return write_mat
     return None

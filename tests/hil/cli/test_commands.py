@@ -72,7 +72,7 @@ def test_the_report_can_be_made_again_from_the_recording_alone(finished, tmp_pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("ending", ["csv", "parquet", "mf4"])
+@pytest.mark.parametrize("ending", ["csv", "parquet", "mf4", "mat"])
 def test_exports_are_recordings_again(ending, finished, tmp_path):
     out, _ = finished
     path = tmp_path / f"r.{ending}"

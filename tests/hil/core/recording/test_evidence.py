@@ -34,7 +34,7 @@ def recording(tmp_path) -> Recording:
     )
 
 
-@pytest.fixture(params=["csv", "parquet", "mf4"])
+@pytest.fixture(params=["csv", "parquet", "mf4", "mat"])
 def exported(request, tmp_path):
     path = tmp_path / f"r.{request.param}"
     write_recording(recording(tmp_path), path)

@@ -17,7 +17,7 @@ from hil.core.errors import BadInputError
 from hil.core.recording import Recording, _schema, read_frames, read_recording, write_recording
 
 NAMES = ["time_s", "motor_torque_ref_nm", "motor_speed_rad_s"]
-ENDINGS = ["csv", "parquet", "mf4", "mcap"]
+ENDINGS = ["csv", "parquet", "mf4", "mcap", "mat"]
 TIME = np.arange(100) / 1000
 
 

@@ -28,7 +28,7 @@ def recording() -> Recording:
     )
 
 
-@pytest.mark.parametrize("ending", ["csv", "parquet", "mf4"])
+@pytest.mark.parametrize("ending", ["csv", "parquet", "mf4", "mat"])
 def test_every_format_gives_back_what_was_written(ending, tmp_path):
     write_recording(recording(), tmp_path / f"r.{ending}")
     again = read_recording(tmp_path / f"r.{ending}")

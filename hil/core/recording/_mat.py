@@ -1,0 +1,153 @@
+"""MATLAB's MAT files (level 5, `save -v7`): one column vector a channel, units beside them."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.io import loadmat, savemat
+
+from hil.core.channels import CHANNELS, TIME, unit_of
+from hil.core.errors import BadInputError
+from hil.core.files import replacing
+from hil.core.recording._evidence import evidence_of, has_evidence, take_evidence
+from hil.core.recording._regular_file import refuse_unless_regular
+from hil.core.recording._table import Array, Recording
+
+_EVIDENCE, _UNITS = "hil_recording", "units"
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_LONGEST_NAME = 63  # of a variable in MATLAB
+_LEVEL_7_3 = 512  # bytes of its own that MATLAB puts before HDF5
+
+
+def read_mat(path: Path) -> Recording:
+    """Read a MAT file: vectors of one length, as variables or as the fields of one structure.
+
+    Raises:
+        BadInputError: no MAT file, a broken one, one of version 7.3, or a known channel is no vector of real
+            numbers.
+    """
+    refuse_unless_regular(path)
+    _refuse_hdf5(path)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # objects that only MATLAB knows, names that stand twice
+            held = loadmat(path, appendmat=False, squeeze_me=False, struct_as_record=True)
+    except Exception as error:  # of many kinds, for whatever is broken
+        raise BadInputError("not a MAT file, or a broken one", where=str(path)) from error
+    values = {name: value for name, value in held.items() if not name.startswith("__")}
+    evidence = _text(values.pop(_EVIDENCE, None))
+    values.pop(_UNITS, None)
+    channels: dict[str, Array] = {}
+    notes = []
+    for name, value in _vectors_of(values).items():
+        column = _column(value)
+        if column is not None:
+            channels[name] = column
+        elif name in CHANNELS:
+            raise BadInputError(
+                "is no vector of real numbers",
+                where=f"{path}: variable '{name}'",
+                fix="save it as a vector of doubles in the unit of its name",
+            )
+        else:
+            notes.append(f"variable '{name}' is no vector of real numbers and was left out")
+    channels = _of_one_length(channels, path, notes)
+    recording = Recording(channels, path, notes=notes)
+    if evidence is not None:
+        take_evidence(recording, evidence, f"its variable '{_EVIDENCE}'")
+    return recording
+
+
+def write_mat(recording: Recording, path: Path) -> None:
+    """Write level 5: a column vector a channel, a structure `units`, and what stands beside as JSON text.
+
+    Raises:
+        BadInputError: two channels would have one name in MATLAB.
+    """
+    names: dict[str, str] = {}
+    for channel in recording.channels:
+        name = _valid(channel)
+        if name in names:
+            raise BadInputError(
+                f"'{names[name]}' and '{channel}' are one name in MATLAB: '{name}'",
+                where=str(recording.source),
+                fix="rename one of the two columns",
+            )
+        names[name] = channel
+    held: dict[str, Any] = {name: recording.channels[channel] for name, channel in names.items()}
+    held[_UNITS] = {name: unit_of(channel) for name, channel in names.items()}
+    if has_evidence(recording):
+        held[_EVIDENCE] = evidence_of(recording)
+    with replacing(path) as temporary:
+        savemat(
+            temporary, held, appendmat=False, do_compression=True, long_field_names=True, oned_as="column"
+        )
+
+
+def _refuse_hdf5(path: Path) -> None:
+    with path.open("rb") as file:
+        beginning = file.read(_LEVEL_7_3 + len(_HDF5))
+    if beginning.startswith(_HDF5) or beginning[_LEVEL_7_3:] == _HDF5:
+        raise BadInputError(
+            "is a MAT file of version 7.3, which is not read",
+            where=str(path),
+            fix="save(..., '-v7') in MATLAB",
+        )
+
+
+def _vectors_of(values: dict[str, Any]) -> Mapping[str, Any]:
+    """The variables; where one structure alone holds the time, its fields."""
+    if TIME in values:
+        return values
+    holding = [v for v in values.values() if _is_structure(v) and TIME in v.dtype.names]
+    if len(holding) != 1:
+        return values
+    return {name: holding[0][name][0, 0] for name in holding[0].dtype.names}
+
+
+def _is_structure(value: Any) -> bool:
+    return isinstance(value, np.ndarray) and value.dtype.names is not None and value.shape == (1, 1)
+
+
+def _column(value: Any) -> Array | None:
+    """A vector of real numbers as doubles."""
+    if not isinstance(value, np.ndarray) or value.dtype.kind not in "fiub" or value.size != max(value.shape):
+        return None
+    return np.ascontiguousarray(value.reshape(-1), dtype=np.float64)
+
+
+def _of_one_length(channels: dict[str, Array], path: Path, notes: list[str]) -> dict[str, Array]:
+    """Those as long as the time; a known channel of another length is a mistake."""
+    if TIME not in channels:
+        return channels
+    samples = len(channels[TIME])
+    for name, values in channels.items():
+        if len(values) == samples:
+            continue
+        if name in CHANNELS:
+            raise BadInputError(
+                f"has {len(values)} values, {TIME} has {samples}",
+                where=f"{path}: variable '{name}'",
+                fix="save vectors of one length",
+            )
+        notes.append(f"variable '{name}' is not as long as {TIME} and was left out")
+    return {name: values for name, values in channels.items() if len(values) == samples}
+
+
+def _text(value: Any) -> str | None:
+    if isinstance(value, np.ndarray) and value.dtype.kind == "U" and value.size == 1:
+        return str(value.reshape(-1)[0])
+    return None
+
+
+def _valid(name: str) -> str:
+    """A name that MATLAB takes, as its own makeValidName has it."""
+    plain = re.sub(r"[^0-9A-Za-z_]", "_", name)
+    if not plain[:1].isalpha():
+        plain = f"x{plain}"
+    return plain[:_LONGEST_NAME]
