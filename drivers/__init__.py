@@ -4,7 +4,7 @@ from drivers._waiting import StreamTiming
 from drivers.bus_health import BusHealth
 from drivers.bus_load import bits_on_the_wire
 from drivers.can_adapter import CanSettings, open_can
-from drivers.device import Device, MotorControl, SaysEmergency, SaysPowerless, TakesBack, WheelLoad
+from drivers.device import Device, MotorControl, SaysEmergency, SaysPowerless, SetsSlip, TakesBack, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
 from drivers.examination import Examinable, Examined, Finding, Identifies, Incomplete
 from drivers.frame_source import Binding, CountedBy, FrameSource
@@ -56,6 +56,7 @@ __all__ = [
     "SaysEmergency",
     "SaysPowerless",
     "SerialLine",
+    "SetsSlip",
     "Stream",
     "StreamTiming",
     "TakesBack",

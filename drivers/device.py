@@ -160,3 +160,16 @@ class WheelLoad(Device, Protocol):
     def release_vehicle(self, initial_speed_m_s: float) -> None:
         """Simulate the vehicle from now on, starting at a speed in m/s."""
         ...
+
+
+@runtime_checkable
+class SetsSlip(Protocol):
+    """A `WheelLoad` whose vehicle can be told to slip. One need not be."""
+
+    def set_slip(self, slip: float) -> None:
+        """Have the vehicle slip by this share of its wheels' speed from now on, and read it back.
+
+        Raises:
+            BenchError: it does not take it.
+        """
+        ...

@@ -60,6 +60,10 @@ class Conductor(Protocol):
         """Ramp the dynos to a vehicle speed and hold it; `duration_s` counts from when it is reached."""
         ...
 
+    def set_slip(self, slip: float) -> None:
+        """Have the dynos' vehicle slip by this share of its wheels' speed, from 0 to below 1."""
+        ...
+
     def release_vehicle(self) -> None:
         """From now on the dynos simulate the vehicle, from the present speed."""
         ...

@@ -135,6 +135,11 @@ class DynoDriver:
             node.set_speed(speed_rad_s)
             node.command(_ENABLE)
 
+    def set_slip(self, slip: float) -> None:
+        """Have the vehicle slip by this share of its wheels' speed from now on."""
+        for node in self.rear:
+            node.write(0x2000, 4, slip, "slip")
+
     def release_vehicle(self, initial_speed_m_s: float) -> None:
         """Simulate the vehicle from now on, starting at a speed in m/s."""
         self.left.write(0x2000, 6, initial_speed_m_s, "initial vehicle speed")

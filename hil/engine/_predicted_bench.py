@@ -178,6 +178,11 @@ class PredictedDyno:
             self._loop.transact(_SDO_TICKS)
             closed.target_speed(side, speed_rad_s)
 
+    def set_slip(self, slip: float) -> None:
+        """Write the slip to both drives."""
+        self._loop.closed.plant.set_vehicle(slip=self._stored(slip, 4))
+        self._loop.transact(_SDO_TICKS * len(SIDES))
+
     def release_vehicle(self, initial_speed_m_s: float) -> None:
         """Simulate the vehicle from now on."""
         closed = self._loop.closed

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from drivers import TICK_S
+from drivers import TICK_S, SetsSlip
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
@@ -105,6 +105,20 @@ class BenchConductor:
                 fix="look at the dyno controller's torque limit",
             )
         return True
+
+    def set_slip(self, slip: float) -> None:
+        """Write a slip to the dynos' vehicle; read back.
+
+        Raises:
+            BenchError: the kind of dyno has none.
+        """
+        dyno = self._bench.dyno
+        if not isinstance(dyno, SetsSlip):
+            raise BenchError(
+                "has no slip that could be set", where="dyno", fix="take set_slip out of the plan"
+            )
+        dyno.set_slip(slip)
+        self._event("slip", f"the dynos' vehicle slips by {100.0 * slip:g} %")
 
     def release_vehicle(self) -> None:
         """Let the dynos simulate the vehicle."""

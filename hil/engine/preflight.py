@@ -98,6 +98,9 @@ class Rehearsal:
                 fix="lower speed_km_h; a bench's limits cannot be raised from a plan",
             )
 
+    def set_slip(self, slip: float) -> None:
+        """Nothing to compare."""
+
     def release_vehicle(self) -> None:
         """Nothing to compare."""
 

@@ -12,6 +12,7 @@ from test_plans.steps.ramp import Ramp
 from test_plans.steps.ramp_down import RampDown
 from test_plans.steps.repeat import Repeat
 from test_plans.steps.set_controller import FileSearch, SetController, designed_file
+from test_plans.steps.set_slip import SetSlip
 from test_plans.steps.stairs import Stairs
 from test_plans.steps.step import TorqueStep
 from test_plans.steps.wait import Wait
@@ -19,6 +20,7 @@ from test_plans.steps.wait import Wait
 _OWN: tuple[type[Step], ...] = (
     SetController,
     HoldSpeed,
+    SetSlip,
     TorqueStep,
     Chirp,
     Multisine,
@@ -50,6 +52,7 @@ __all__ = [
     "Repeat",
     "Seconds",
     "SetController",
+    "SetSlip",
     "Stairs",
     "Step",
     "Torque",

@@ -19,6 +19,9 @@ class NoteTaker:
     def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
         self.calls.append(("hold_speed", speed_m_s, duration_s))
 
+    def set_slip(self, slip: float) -> None:
+        self.calls.append(("set_slip", slip))
+
     def release_vehicle(self) -> None:
         self.calls.append(("release_vehicle",))
 

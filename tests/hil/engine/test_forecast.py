@@ -69,6 +69,14 @@ REPEAT = """
         - multisine: {segment: m, quantity: motor_torque, seed: 3, from_hz: 5, to_hz: 50, period_s: 0.2,
                       periods: 1, rms_nm: 5, fade_s: 0}
 """
+SLIP = """
+  - set_controller: {file: phase_stabilization.toml}
+  - hold_speed: {speed_km_h: 5, duration_s: 0.1}
+  - set_slip: {slip_percent: 10}
+  - step: {segment: slipping, quantity: driving_torque, from_nm: 0, to_nm: 200, before_s: 0.1, after_s: 0.4}
+  - set_slip: {slip_percent: 2.5}
+  - coast: {duration_s: 0.2}
+"""
 TWO_INERTIA = {
     "kind": "two_inertia",
     "parameters": {
@@ -120,7 +128,7 @@ def assert_equal(outcome, recorded, predicted):
         assert predicted.peaks[name] == pytest.approx(value, abs=1.001 * RESOLUTION[name])
 
 
-@pytest.mark.parametrize("steps", [STEPS, CHIRPS, COAST_AND_STAIRS, REPEAT])
+@pytest.mark.parametrize("steps", [STEPS, CHIRPS, COAST_AND_STAIRS, REPEAT, SLIP])
 def test_a_prediction_is_the_run_without_its_wire(tmp_path, steps):
     outcome, recorded, predicted = both(tmp_path, plan(steps))
     assert_equal(outcome, recorded, predicted)
