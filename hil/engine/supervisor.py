@@ -188,9 +188,8 @@ class _Supervisor:
         if stopped and now_s - self._stopped_s > self._hung_after_s:
             return f"was stopped, and stood still for {now_s - self._stopped_s:.1f} s"
         if self._turning:
-            return (
-                f"hung: its loop did not turn for {silent_s:.1f} s" if silent_s > self._hung_after_s else ""
-            )
+            seen = "was stopped, and stood still" if stopped else "hung: its loop did not turn"
+            return f"{seen} for {silent_s:.1f} s" if silent_s > self._hung_after_s else ""
         if self._concluded is None and self._asked_s is not None:
             # It looks only from its loop; nothing has been commanded before that turns.
             waits_s = now_s - max(self._asked_s, self._heard_s)

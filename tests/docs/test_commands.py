@@ -20,6 +20,7 @@ from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption,
 
 from hil.cli._app import _COMMANDS, _app_of
 from tests.docs.documented import ROOT, Documented, documented
+from tests.docs.test_own_plan import PLANS as PLANS_OF_PAGE
 from tests.hil.cli.test_commands import HIL, hil
 
 STEP = "quantity: driving_torque, from_nm: 0, to_nm: 200, before_s: 0.5, after_s: 2"
@@ -123,6 +124,7 @@ def prepare(page: str, stage: Path) -> None:
         shutil.copy("identification", "why/separate_running_resistance.yaml")
     if page.endswith("own-plan.md"):
         shutil.copy("plan.yaml", "tip-in.yaml")
+        Path("plan.yaml").write_text(PLANS_OF_PAGE[1])
 
 
 def _make_key(path: Path) -> None:

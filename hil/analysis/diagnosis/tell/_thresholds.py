@@ -97,9 +97,9 @@ CHANNEL_SHUT: Annotated[
         "verdict",
     ),
 ] = 0.95
-NOT_WORSE: Annotated[
-    float, Means("times the gap before", "of a channel where formulas differ: more would be worse", "verdict")
-] = 1.1
+LEFT_NOISELESS: Annotated[
+    float, Means("of a channel's gap", "more may not stay of any where formulas differ", "verdict")
+] = 1.0 / 3.0
 HALVED: Annotated[
     float, Means("of a channel's gap", "more may not stay of any, whatever the others do", "verdict")
 ] = 0.5

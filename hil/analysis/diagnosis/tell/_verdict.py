@@ -13,9 +13,9 @@ from hil.analysis.diagnosis.tell._thresholds import (
     CHANNEL_NOISES,
     CHANNEL_SHUT,
     HALVED,
+    LEFT_NOISELESS,
     MORE,
     NOISELESS,
-    NOT_WORSE,
     SHUT,
     SHUT_BY_LAW,
     SHUT_NOISELESS,
@@ -50,8 +50,8 @@ def open_channels(ids: Sequence[str], before: Array, after: Array) -> list[bool]
         before: gap over noise of each channel with the base model, shape (3,).
         after: the same with the effects.
     """
-    if float(np.max(before)) > NOISELESS:  # a matter of formulas: no channel may get worse
-        return [bool(worse) for worse in (after > NOT_WORSE * before) & (after > CHANNEL_NOISES)]
+    if float(np.max(before)) > NOISELESS:  # a matter of formulas: of each channel as much as of all
+        return [bool(more) for more in after > np.maximum(CHANNEL_NOISES, LEFT_NOISELESS * before)]
     before, after = before**2 - 1.0, after**2 - 1.0  # powers over that of the noise add, ratios do not
     least = SHUT_BY_LAW if any(id_ in _BY_LAW for id_ in ids) else CHANNEL_SHUT
     bound = np.maximum(CHANNEL_NOISES**2 - 1.0, (1.0 - least) * before)
