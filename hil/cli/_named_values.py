@@ -9,28 +9,33 @@ from hil.core.printable import printable
 
 
 def named_values(given: Iterable[str], option: str, *, form: str = "NAME=VALUE") -> dict[str, str]:
-    """Values by name, in the order given; a name given twice counts the last time.
+    """Values by name, in the order given.
 
     Args:
         form: what is to be written, for the message.
 
     Raises:
-        BadInputError: no '=' in it.
+        BadInputError: no '=' in it, or a name stands twice.
     """
-    values = {}
+    values: dict[str, str] = {}
     for text in given:
         name, sign, value = text.partition("=")
         if not sign:
             raise BadInputError(f"'{printable(text)}' has no '='", where=option, fix=f"write {option} {form}")
-        values[name.strip()] = value.strip()
+        name = name.strip()
+        if name in values:
+            raise BadInputError(
+                f"'{printable(name)}' is given twice", where=option, fix=f"give {option} once for each name"
+            )
+        values[name] = value.strip()
     return values
 
 
 def named_numbers(given: Iterable[str], option: str) -> dict[str, float]:
-    """Numbers by name; a name given twice counts the last time.
+    """Numbers by name.
 
     Raises:
-        BadInputError: not NAME=VALUE, or the value is no number.
+        BadInputError: not NAME=VALUE, a name stands twice, or the value is no number.
     """
     numbers = {}
     for name, value in named_values(given, option).items():

@@ -38,6 +38,10 @@ def carry_out(
 ) -> int:
     """Carry the command out; its exit code."""
     chosen = _method(method)
+    if from_hz is not None and to_hz is not None and from_hz >= to_hz:
+        raise BadInputError(
+            f"--from-hz {from_hz:g} is not below --to-hz {to_hz:g}", fix="give the lower frequency first"
+        )
     for path in recordings:
         refuse_missing(path)
     names = ("identification.json", "model.toml", "physical.toml", "frf.csv", HTML, PDF)

@@ -100,7 +100,11 @@ def write_recording(recording: Recording, path: Path) -> None:
     """Write `.csv`, `.parquet`, `.mf4` or `.mat`, whole or not at all, with what stands beside it."""
     writer = writer_of(path.suffix.lower())
     if writer is None:
-        raise BadInputError(f"an export ends in {', '.join(WRITTEN)}", where=str(path))
+        raise BadInputError(
+            f"an export ends in {', '.join(WRITTEN)}",
+            where=str(path),
+            fix=f"for raw frames in {', '.join(FRAME_LOGS)}",
+        )
     writer(recording, path)
     logger.info("wrote %s: %d samples, %d channels", path, len(recording.time_s), len(recording.channels))
 

@@ -90,6 +90,7 @@ def test_notch_on_the_command_line(identified: tuple[Path, str], tmp_path: Path)
         (["--input", "nothing"], "no channel 'nothing'"),
         (["--method", "magic"], "--method is 'magic'"),
         (["--from-hz", "0.001"], "too short"),
+        (["--from-hz", "30", "--to-hz", "1"], "--from-hz 30 is not below --to-hz 1"),
     ],
 )
 def test_bad_input_writes_nothing(

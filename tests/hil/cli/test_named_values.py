@@ -16,8 +16,9 @@ def test_what_is_no_number_is_refused_with_the_option(text: str) -> None:
         named_numbers([text], "--least")
 
 
-def test_values_keep_their_text_and_a_name_given_twice_counts_the_last_time() -> None:
-    given = ["a.channel = speed", "b==", "a.channel=torque"]
-    assert named_values(given, "--hide") == {"a.channel": "torque", "b": "="}
+def test_values_keep_their_text_and_a_name_given_twice_is_refused() -> None:
+    assert named_values(["a.channel = speed", "b=="], "--hide") == {"a.channel": "speed", "b": "="}
+    with pytest.raises(BadInputError, match=r"'a\.channel' is given twice"):
+        named_values(["a.channel=speed", "b=1", "a.channel = torque"], "--hide")
     with pytest.raises(BadInputError, match="EFFECT=VALUE"):
         named_values(["backlash"], "--hide", form="EFFECT=VALUE")

@@ -141,6 +141,12 @@ ORDER_SHARE: Annotated[
 DEPENDS: Annotated[
     float, Means("correlation", "of logarithms: above it what is left depends on torque or speed", "words")
 ] = 0.75
+SPEED_SPREAD: Annotated[
+    tuple[float, float], Means("percentiles", "of the speed: its slow and fast ends", "words")
+] = (20.0, 80.0)
+SPEEDS_DIFFER: Annotated[
+    float, Means("fast over slow end", "above it a line that follows the speed would have moved", "words")
+] = 1.3
 EVERYWHERE: Annotated[
     float,
     Means("times the median condition", "an effect that falls by less acts at all conditions", "words"),

@@ -22,6 +22,8 @@ from hil.analysis.diagnosis.tell._thresholds import (
     LINE,
     ORDER_SHARE,
     SLOW_BINS,
+    SPEED_SPREAD,
+    SPEEDS_DIFFER,
     WORDS_SEGMENT,
 )
 from hil.core.channels import OUTPUTS
@@ -96,7 +98,8 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
     if strongest[0] > ORDER_SHARE * excess:
         words.append(f"it follows {strongest[1]} speed at order {strongest[2]:.3g}")
     elif line:
-        words.append(f"it is a line at {frequency[top]:.3g} Hz, at whatever speed")
+        at = "at whatever speed" if _speeds_differ(problem) else "at the one speed of these recordings"
+        words.append(f"it is a line at {frequency[top]:.3g} Hz, {at}")
     else:
         share = np.cumsum(density) / density.sum()
         low, high = np.interp(BAND_SHARES, share, frequency)
@@ -105,6 +108,18 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
     words.append(f"it is strongest at: {CONDITIONS[int(np.argmax(by))]}")
     words.append(_dependence(problem, fit, column))
     return "; ".join(w for w in words if w)
+
+
+def _speeds_differ(problem: Problem) -> bool:
+    """Whether a line that follows the speed would have moved."""
+    speeds = np.concatenate(
+        [
+            np.abs(t.measured[:, 0] if t.has[0] else t.measured[:, 1] * problem.gear_ratio)
+            for t in problem.traces
+        ]
+    )
+    slow, fast = np.nanpercentile(speeds, SPEED_SPREAD) if np.isfinite(speeds).any() else (0.0, 0.0)
+    return bool(fast > SPEEDS_DIFFER * slow)
 
 
 def _dependence(problem: Problem, fit: Fit, column: int) -> str:
