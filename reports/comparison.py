@@ -11,7 +11,7 @@ from reports import quantities, style
 from reports.figure import Band, Figure, Trace
 from reports.labels import Label, channel_label, channel_unit
 from reports.parts import Page, Part, Table, page_html, page_pdf
-from reports.spectrum import DESCRIPTION, amplitude_spectrum
+from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.step_figures import SPECTRUM_WINDOW_S, controller_name
 from reports.stretch import cut, line
 
@@ -217,7 +217,7 @@ def _difference(runs: tuple[ComparedRun, ...], segment: str, channel: str) -> Fi
 
 def _spectrum(runs: tuple[ComparedRun, ...], segment: str, channel: str) -> Figure | None:
     """Amplitude spectrum in the window of the band energy, of every run."""
-    traces = []
+    traces, lengths = [], []
     for index, run in enumerate(runs):
         own = _of(run, segment)
         if own is None:
@@ -228,6 +228,7 @@ def _spectrum(runs: tuple[ComparedRun, ...], segment: str, channel: str) -> Figu
         if spectrum is None:
             continue
         shown = spectrum.frequency_hz <= 2 * _SPECTRUM_TO_HZ
+        lengths.append(own.end_s - own.step_s)
         role, dash = _role(index)
         x, y = spectrum.frequency_hz[shown], spectrum.amplitude[shown]
         traces.append(Trace(Label(run.name), x, y, role, dash))
@@ -235,7 +236,6 @@ def _spectrum(runs: tuple[ComparedRun, ...], segment: str, channel: str) -> Figu
         return None
     scale = max(float(t.y[t.x >= _SLOW_HZ].max(initial=0.0)) for t in traces)
     label, band = channel_label(channel), COMFORT_BAND_HZ
-    start, end = SPECTRUM_WINDOW_S
     return Figure(
         f"{segment}-{channel}-spectrum",
         Label("Spectrum of motor speed", label.symbol),
@@ -247,5 +247,5 @@ def _spectrum(runs: tuple[ComparedRun, ...], segment: str, channel: str) -> Figu
         bands=(Band(*band, f"{band[0]:g}{quantities.DASH}{band[1]:g}{quantities.THIN}Hz"),),
         x_range=(0.0, _SPECTRUM_TO_HZ),
         y_range=(0.0, 1.2 * scale) if scale > 0 else None,
-        caption=f"{DESCRIPTION}, Hann window, {start:g} to {end:g}{quantities.THIN}s after the step.",
+        caption=f"{DESCRIPTION}, Hann window, {stretch_in_words(SPECTRUM_WINDOW_S, lengths)}.",
     )

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+
+from reports.quantities import THIN
 
 Array = npt.NDArray[np.float64]
 
@@ -25,6 +28,13 @@ class Spectrum:
     def resolution_hz(self) -> float:
         """Distance of the frequency lines."""
         return float(self.frequency_hz[0])
+
+
+def stretch_in_words(window_s: tuple[float, float], lengths_s: Iterable[float]) -> str:
+    """What of a window after the step the spectra of stretches show that end so long after their steps."""
+    start, end = window_s
+    ends = sorted({f"{min(end, round(length, 3)):g}" for length in lengths_s}, key=float)
+    return f"{start:g} to {' or '.join(ends)}{THIN}s after the step"
 
 
 def amplitude_spectrum(time_s: Array, values: Array, *, hann: bool = True) -> Spectrum | None:

@@ -14,7 +14,7 @@ from hil.core.result import CriterionResult, Segment
 from reports import quantities, style
 from reports.figure import Band, Figure, Level, Mark, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
-from reports.spectrum import DESCRIPTION, amplitude_spectrum
+from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.stretch import cut, line
 
 SPECTRUM_WINDOW_S = (4.0, 20.0)
@@ -178,7 +178,7 @@ class _Overlay:
         if not traces:
             return None
         scale = max(float(t.y[t.x >= _SLOW_HZ].max(initial=0.0)) for t in traces)
-        start, end = SPECTRUM_WINDOW_S
+        lengths = [member.segment.end_s - member.segment.step_s for member in self._members]
         band = f"{COMFORT_BAND_HZ[0]:g}{quantities.DASH}{COMFORT_BAND_HZ[1]:g}{quantities.THIN}Hz"
         return Figure(
             id=f"{self._id}-motor-speed-spectrum",
@@ -191,8 +191,8 @@ class _Overlay:
             bands=(Band(*COMFORT_BAND_HZ, band),),
             x_range=(0.0, _SPECTRUM_TO_HZ),
             y_range=(0.0, 1.2 * scale) if scale > 0 else None,
-            caption=f"{DESCRIPTION}, Hann window, {start:g} to {end:g}{quantities.THIN}s "
-            f"after the step. The scale is set by {_SLOW_HZ:g}{quantities.THIN}Hz and above.",
+            caption=f"{DESCRIPTION}, Hann window, {stretch_in_words(SPECTRUM_WINDOW_S, lengths)}. "
+            f"The scale is set by {_SLOW_HZ:g}{quantities.THIN}Hz and above.",
         )
 
     def _spectrum(self, member: Member, name: str) -> list[Trace]:

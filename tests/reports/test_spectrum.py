@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from reports.spectrum import amplitude_spectrum
+from reports.quantities import THIN
+from reports.spectrum import amplitude_spectrum, stretch_in_words
 
 
 @pytest.mark.parametrize("hann", [True, False])
@@ -45,3 +46,16 @@ def test_uneven_samples_and_few_missing_ones_are_mended() -> None:
 )
 def test_too_little_gives_no_spectrum(time: np.ndarray, values: np.ndarray) -> None:
     assert amplitude_spectrum(time, values) is None
+
+
+@pytest.mark.parametrize(
+    ("lengths", "said"),
+    [
+        ((20.0, 20.0), "4 to 20"),
+        ((30.0,), "4 to 20"),
+        ((8.0,), "4 to 8"),
+        ((8.0, 30.0, 20.0), "4 to 8 or 20"),
+    ],
+)
+def test_a_caption_says_the_stretch_that_is_shown(lengths: tuple[float, ...], said: str) -> None:
+    assert stretch_in_words((4.0, 20.0), lengths) == f"{said}{THIN}s after the step"
