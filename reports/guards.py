@@ -32,7 +32,8 @@ def hold_facts(result: RunResult | None) -> tuple[Fact, ...]:
 
 
 def _reached(limit: LimitResult) -> str:
-    what = f"slope of {limit.channel}" if limit.of == "slope" else limit.channel
+    what = "" if limit.name == limit.channel else f"{limit.channel} "
+    what = f"slope of {limit.channel} " if limit.of == "slope" else what
     ends = (limit.lowest, limit.highest)
     if ends == (None, None):
         span = "nothing known"
@@ -40,19 +41,24 @@ def _reached(limit: LimitResult) -> str:
         low, high = (
             quantities.DASH if end is None else quantities.number(end, significant=4) for end in ends
         )
-        span = f"{low} to {high} {limit.unit}"
+        span = f"{low} to {high} {_unit(limit)}"
     within = f"{quantities.number(limit.persistence_samples, 0)} samples" if limit.persistence_samples else ""
     within = within or f"{quantities.nominal(1e3 * (limit.persistence_s or 0.0))} ms"
     taken = f"; reached {limit.reached} times" if limit.reached else ""
-    return f"{what} {span}; {_allowed(limit)}, for {within}: {limit.response.replace('_', ' ')}{taken}"
+    return f"{what}{span}; {_allowed(limit)}, for {within}: {limit.response.replace('_', ' ')}{taken}"
 
 
 def _allowed(limit: LimitResult) -> str:
     if limit.below is not None and limit.above is not None and limit.below == -limit.above:
-        return f"limit {quantities.nominal(limit.above)} {limit.unit}"
+        return f"limit {quantities.nominal(limit.above)} {_unit(limit)}"
     ends = [f"at least {quantities.nominal(limit.below)}"] if limit.below is not None else []
     ends += [f"at most {quantities.nominal(limit.above)}"] if limit.above is not None else []
-    return f"{' and '.join(ends)} {limit.unit}"
+    return f"{' and '.join(ends)} {_unit(limit)}"
+
+
+def _unit(limit: LimitResult) -> str:
+    """As the rest of a report writes it: DBC files have 'Nm'."""
+    return limit.unit.replace("Nm", "N m")
 
 
 def _state(limit: LimitResult) -> str:
