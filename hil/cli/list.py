@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import inspect
 from collections.abc import Callable
 from typing import Any
@@ -13,6 +12,7 @@ from hil.cli._output import console, plain_table, print_json
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
+from hil.core.suggestion import did_you_mean
 from hil.engine import load_bench
 from hil.engine.bench_file import shipped_benches
 from hil.engine.device_kinds import KINDS
@@ -30,11 +30,7 @@ def carry_out(
 ) -> int:
     """Carry the command out; its exit code."""
     if what not in _LISTS:
-        near = difflib.get_close_matches(what, _LISTS, 1)
-        hint = f"did you mean '{near[0]}'? " if near else ""
-        raise BadInputError(
-            f"there is no list of '{printable(what, 60)}'", fix=f"{hint}known: {', '.join(_LISTS)}"
-        )
+        raise BadInputError(f"there is no list of '{printable(what, 60)}'", fix=did_you_mean(what, _LISTS))
     rows = _LISTS[what]()
     if as_json:
         print_json({what: rows})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable
 from typing import Any
 
@@ -11,6 +10,7 @@ from hil.core.controller import controller_schema
 from hil.core.errors import BadInputError
 from hil.core.model_schema import model_schema
 from hil.core.printable import printable
+from hil.core.suggestion import did_you_mean
 from hil.engine.bench_schema import bench_schema
 from test_plans import plan_schema
 
@@ -28,10 +28,8 @@ def carry_out(
 ) -> int:
     """Carry the command out; its exit code."""
     if kind not in _SCHEMAS:
-        near = difflib.get_close_matches(kind, _SCHEMAS, 1)
-        hint = f"did you mean '{near[0]}'? " if near else ""
         raise BadInputError(
-            f"there is no schema for '{printable(kind, 60)}'", fix=f"{hint}known: {', '.join(_SCHEMAS)}"
+            f"there is no schema for '{printable(kind, 60)}'", fix=did_you_mean(kind, _SCHEMAS)
         )
     print_json(_SCHEMAS[kind]())
     return 0

@@ -19,8 +19,8 @@ from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
 from hil.analysis.diagnosis.search._foretold import left_out
-from hil.analysis.diagnosis.search._from_base import search_beside_functions, search_from_base
-from hil.analysis.diagnosis.search._search import Found, begun, so_far
+from hil.analysis.diagnosis.search._from_base import search_from_base
+from hil.analysis.diagnosis.search._search import Found, begun, search, so_far
 from hil.analysis.diagnosis.search._wandering import with_wandering
 from hil.analysis.diagnosis.tell._confidence import drop_of
 from hil.analysis.diagnosis.tell._judged import Judged
@@ -130,8 +130,9 @@ def _searched(
     """What is found, and why the search ended before it was through, if it did."""
     known: list[Found] = []
     try:
-        from_base = search_beside_functions if problem.functions else search_from_base
-        return from_base(problem, hypothesis, show, rounded, known), ""
+        # functions have no numbers that could be identified anew
+        searching = search if problem.functions else search_from_base
+        return searching(problem, hypothesis, show, rounded, known), ""
     except KeyboardInterrupt:
         if not known:
             raise

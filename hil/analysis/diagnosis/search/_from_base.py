@@ -72,21 +72,6 @@ def search_from_base(
     return _better(near, far, show)
 
 
-def search_beside_functions(
-    problem: Problem,
-    base: Hypothesis,
-    show: Callable[[str], None],
-    rounded: Sequence[EffectUse] = (),
-    known: list[Found] | None = None,
-) -> Found:
-    """Like `search_from_base` for transfer functions: they have no numbers that could be identified anew."""
-    show("fitting the base model")
-    found = begun(problem, fit(problem, base), rounded)
-    if known is not None:
-        known.append(found)
-    return found if found.settled else finished(found, show)
-
-
 def _identified(near: Found, rounded: Sequence[EffectUse], show: Callable[[str], None]) -> Found:
     show("identifying the base model anew: its numbers may be far off")
     problem, start = identified(near.evidence.problem, near.base.hypothesis)

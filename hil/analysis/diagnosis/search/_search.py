@@ -66,11 +66,22 @@ class Found:
 
 
 def search(
-    problem: Problem, base: Hypothesis, show: Callable[[str], None], rounded: Sequence[EffectUse] = ()
+    problem: Problem,
+    base: Hypothesis,
+    show: Callable[[str], None],
+    rounded: Sequence[EffectUse] = (),
+    known: list[Found] | None = None,
 ) -> Found:
-    """Find the effects that the base model lacks: the fewest that close the gap."""
+    """Find the effects that the base model lacks: the fewest that close the gap.
+
+    Args:
+        known: gets the search as it begins: what is known of it should it be interrupted.
+    """
     show("fitting the base model")
-    return finished(begun(*with_base_angles(problem, fit(problem, base)), rounded), show)
+    found = begun(*with_base_angles(problem, fit(problem, base)), rounded)
+    if known is not None:
+        known.append(found)
+    return finished(found, show)
 
 
 def begun(problem: Problem, base: Fit, rounded: Sequence[EffectUse] = ()) -> Found:

@@ -20,7 +20,9 @@ from hil.analysis.diagnosis.tell._thresholds import (
     HALF_OPEN,
     HALVED,
     LEAST_TORQUE_NM,
+    LEFT_NOISELESS,
     LESS_SURE,
+    NOISELESS,
     OPEN_CONFIDENCE,
     WORTH_A_PLAN,
 )
@@ -81,10 +83,11 @@ def confidence_of(found: Found, index: int) -> float:
 
 
 def _half_open(found: Found) -> bool:
-    """Whether any channel keeps more than half of its gap, though all together close."""
+    """Whether a channel keeps half of its gap, a third where formulas differ, though all together close."""
     base = found.given or found.base
+    most = LEFT_NOISELESS if float(np.max(found.evidence.gaps(base))) > NOISELESS else HALVED
     before, after = (np.sqrt(found.evidence.physics(f)) for f in (base, found.best))
-    return bool(np.any((after > HALVED * before) & (found.evidence.gaps(found.best) > CHANNEL_NOISES)))
+    return bool(np.any((after > most * before) & (found.evidence.gaps(found.best) > CHANNEL_NOISES)))
 
 
 def alternatives_of(found: Found, verdict: str) -> tuple[Alternative, ...]:

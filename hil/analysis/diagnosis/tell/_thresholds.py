@@ -27,7 +27,12 @@ CLOSED_FAIRLY: Annotated[float, Means("gap over noise floor", "below it a name i
 FAIRLY_SURE: Annotated[float, Means("probability", "at most, where the gap is closed fairly", "blind")] = 0.97
 LESS_SURE: Annotated[float, Means("probability", "at most, where more is left", "blind")] = 0.9
 HALF_OPEN: Annotated[
-    float, Means("probability", "at most, where a channel keeps more than half of its gap", "verdict")
+    float,
+    Means(
+        "probability",
+        "at most, where a channel keeps half of its gap, a third where formulas differ",
+        "verdict",
+    ),
 ] = 0.6
 OPEN_CONFIDENCE: Annotated[
     float, Means("probability", "of names that are told where no gap was closed", "blind")
@@ -98,8 +103,14 @@ CHANNEL_SHUT: Annotated[
     ),
 ] = 0.95
 LEFT_NOISELESS: Annotated[
-    float, Means("of a channel's gap", "more may not stay of any where formulas differ", "verdict")
+    float,
+    Means(
+        "of a channel's gap", "where formulas differ more leaves a channel open, or names unsure", "verdict"
+    ),
 ] = 1.0 / 3.0
+NOT_WORSE: Annotated[
+    float, Means("times the gap before", "of a channel that no chain meets: more would be worse", "verdict")
+] = 1.1
 HALVED: Annotated[
     float, Means("of a channel's gap", "more may not stay of any, whatever the others do", "verdict")
 ] = 0.5

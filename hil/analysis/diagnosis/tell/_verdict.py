@@ -16,6 +16,7 @@ from hil.analysis.diagnosis.tell._thresholds import (
     LEFT_NOISELESS,
     MORE,
     NOISELESS,
+    NOT_WORSE,
     SHUT,
     SHUT_BY_LAW,
     SHUT_NOISELESS,
@@ -35,23 +36,28 @@ def verdict_of(found: Found, rounded: bool) -> Verdict:
     if not ids:
         return verdict_without_effects(evidence.closed(best), rounded)
     base = found.given or found.base
-    if any(open_channels(ids, evidence.gaps(base), evidence.gaps(best))):
+    apart = evidence.problem.functions is not None
+    if any(open_channels(ids, evidence.gaps(base), evidence.gaps(best), apart)):
         return "unknown"
     if found.clear:
         return "named"
     return verdict_on(ids, evidence.worst(found.base), evidence.share(best), evidence.worst(best))
 
 
-def open_channels(ids: Sequence[str], before: Array, after: Array) -> list[bool]:
+def open_channels(ids: Sequence[str], before: Array, after: Array, apart: bool) -> list[bool]:
     """Which channels keep a gap that the named effects do not account for.
 
     Args:
         ids: of the effects.
         before: gap over noise of each channel with the base model, shape (3,).
         after: the same with the effects.
+        apart: each channel has a function of its own.
     """
-    if float(np.max(before)) > NOISELESS:  # a matter of formulas: of each channel as much as of all
-        return [bool(more) for more in after > np.maximum(CHANNEL_NOISES, LEFT_NOISELESS * before)]
+    if float(np.max(before)) > NOISELESS:
+        # A matter of formulas. One chain may miss a channel that no chain meets, but not make it worse; where
+        # each channel has its own function nothing stands between an effect and any of them.
+        most = LEFT_NOISELESS if apart else NOT_WORSE
+        return [bool(more) for more in after > np.maximum(CHANNEL_NOISES, most * before)]
     before, after = before**2 - 1.0, after**2 - 1.0  # powers over that of the noise add, ratios do not
     least = SHUT_BY_LAW if any(id_ in _BY_LAW for id_ in ids) else CHANNEL_SHUT
     bound = np.maximum(CHANNEL_NOISES**2 - 1.0, (1.0 - least) * before)

@@ -55,12 +55,18 @@ def test_with_effects(ids: tuple[str, ...], before: float, share: float, left: f
         (LAG, (20.0, 1.0, 1.0), (1.4, 1.1, 1.0), [False, False, False]),  # within the noise's own scatter
         (("backlash",), (20.0, 1.0, 1.0), (5.0, 1.0, 1.0), [False, False, False]),  # laws of contact are many
         (LAG, (20.0, 1.0, 1.0), (6.0, 1.0, 1.0), [True, False, False]),
-        (LAG, (500.0, 30.0, 1.0), (50.0, 9.0, 1.0), [False, False, False]),  # a matter of formulas
-        (LAG, (500.0, 30.0, 1.0), (50.0, 12.0, 1.0), [False, True, False]),  # and yet of each channel
+        (LAG, (500.0, 30.0, 1.0), (50.0, 28.0, 1.0), [False, False, False]),  # a matter of formulas
+        (LAG, (500.0, 30.0, 1.0), (50.0, 34.0, 1.0), [False, True, False]),  # and yet not worse
         (LAG, (500.0, 1.2, 1.0), (50.0, 1.4, 1.6), [False, False, True]),
     ],
 )
 def test_each_channel_must_close(
     ids: tuple[str, ...], before: tuple[float, ...], after: tuple[float, ...], open_: list[bool]
 ) -> None:
-    assert open_channels(ids, np.array(before), np.array(after)) == open_
+    assert open_channels(ids, np.array(before), np.array(after), apart=False) == open_
+
+
+@pytest.mark.parametrize(("left", "open_"), [(9.0, False), (12.0, True)])
+def test_where_each_channel_has_a_function_each_must_close_to_a_third(left: float, open_: bool) -> None:
+    before, after = np.array([500.0, 30.0, 1.0]), np.array([50.0, left, 1.0])
+    assert open_channels(LAG, before, after, apart=True) == [False, open_, False]
