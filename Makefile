@@ -45,7 +45,7 @@ test-can-vm: setup
 
 # What takes minutes: the fixed part of the blind diagnosis set, bad inputs, the wheel, long hunts for faults.
 test-slow: setup
-	$(BIN)/python -m pytest -n 2 -m slow
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m slow --durations 40
 
 # Hundreds of degenerate recordings through every analysis.
 hunt: setup

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
 from hil.core.errors import BadInputError
+from hil.core.field_words import needed
 from hil.core.suggestion import closest, did_you_mean
 from test_plans.mistakes import plan_error
 from test_plans.yaml_document import Document, KeyPath
@@ -100,8 +101,7 @@ def _in_words(
         case "value_error" | "assertion_error":
             what, fix = str(mistake["ctx"]["error"]), ""
         case _:
-            message = mistake["msg"].removeprefix("Input ")
-            what, fix = f"{brief(mistake['input'])} {message}", f"{key}: {meaning}" if meaning else ""
+            what, fix = f"{brief(mistake['input'])} {needed(mistake)}", f"{key}: {meaning}" if meaning else ""
     return BadInputError(what, where=where, fix=fix)
 
 

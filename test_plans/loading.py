@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from hil.core.errors import BadInputError
-from hil.core.files import read_text
+from hil.core.file_kind import refuse_other_kind
+from hil.core.files import is_file, read_text
 from hil.core.suggestion import closest, did_you_mean
 from test_plans.building import brief, build, list_at, mapping_at
 from test_plans.choices import Choices
@@ -46,6 +49,8 @@ def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
     """
     path = _path_of(name_or_path)
     text = read_text(path)
+    if path.suffix == ".toml":
+        _refuse_other_file(text, str(path))
     if choices is not None:
         text = choices.applied(text, read_yaml(text, str(path)))
     plan = plan_from_text(text, str(path), path.parent)
@@ -222,9 +227,14 @@ def _ids(steps: tuple[Step, ...]) -> Iterator[tuple[int, str]]:
             yield index, segment.id
 
 
+def _refuse_other_file(text: str, where: str) -> None:
+    with contextlib.suppress(tomllib.TOMLDecodeError):  # then it is looked at as a plan
+        refuse_other_kind(tomllib.loads(text), "plan", where)
+
+
 def _path_of(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
-    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or _is_file(path):
+    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or is_file(path):
         return path
     names = library_plans()
     if path.name in names:
@@ -233,10 +243,3 @@ def _path_of(name_or_path: str | Path) -> Path:
         f"there is no plan {brief(path.name)}, neither a file nor a built-in plan",
         fix=f"{did_you_mean(path.name, names)}; a file's name ends in .yaml",
     )
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):
-        return False

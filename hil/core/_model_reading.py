@@ -20,6 +20,7 @@ from hil.core.chain import WHEEL_RADIUS_M
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, finite_number, shown
 from hil.core.errors import BadInputError
+from hil.core.file_kind import refuse_other_kind
 from hil.core.mistakes import Mistakes
 from hil.core.suggestion import closest, did_you_mean
 
@@ -49,6 +50,7 @@ def model_from_dict(data: Mapping[str, Any], where: str, text: str = "") -> Mode
     Raises:
         BadInputError: every key that is unknown, missing or not physical.
     """
+    refuse_other_kind(data, "model", where)
     mistakes = Mistakes()
     _no_others(data, _KEYS, "", mistakes)
     kind = ""

@@ -13,6 +13,7 @@ from typing import Any, Literal
 import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from hil.core.file_kind import refuse_other_kind
 from hil.core.files import write_atomically
 from hil.core.mistakes import keyed, refuse
 from hil.core.table_mistakes import told
@@ -131,7 +132,9 @@ def controller_from_toml(text: str, where: str) -> Controller:
         BadInputError: not TOML, or every key that is unknown, missing or out of range.
     """
     try:
-        return Controller.model_validate(parse_toml(text, where))
+        data = parse_toml(text, where)
+        refuse_other_kind(data, "controller", where)
+        return Controller.model_validate(data)
     except ValidationError as error:
         refuse(where, map(keyed, told(error, Controller)), text)
         raise

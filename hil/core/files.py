@@ -16,6 +16,14 @@ from hil.core.errors import BadInputError, BenchError, HilError
 _DISK_FAILURES = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 
 
+def is_file(path: Path) -> bool:
+    """Whether there is such a file; a name that no file can have is none."""
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
 def read_text(path: Path) -> str:
     """Text of a UTF-8 file; BadInputError tells why it cannot be read."""
     try:

@@ -6,6 +6,7 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
+from hil.core.field_words import needed
 from hil.core.mistakes import keyed
 from hil.core.printable import printable
 from hil.core.suggestion import closest
@@ -40,8 +41,7 @@ def _in_words(name: str, mistake: dict[str, Any], model: type[BaseModel]) -> str
         return f"{name}: unknown key{_suggestion(mistake['loc'], model)}"
     value = mistake["input"]
     shown = "a table" if isinstance(value, dict) else printable(repr(value), 60)
-    said = str(mistake["msg"]).removeprefix("Value error, ")
-    return f"{name} = {shown}: {said[:1].lower()}{said[1:]}"
+    return f"{name} = {shown}: {needed(mistake)}"
 
 
 def _meant(error: ValidationError, model: type[BaseModel]) -> set[tuple[int | str, ...]]:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import combinations
+from pathlib import Path
 from typing import Any
 
 import can
 
 from drivers import DynoTable, RmcuTable, read_rmcu
 from hil.core.errors import BadInputError
+from hil.core.files import is_file
 from hil.core.printable import is_printable, printable
+from hil.core.suggestion import closest, did_you_mean
 from hil.engine._bus_settings import adapter_mistakes, slows_down
 from hil.engine._simulable import check_simulable, rmcu_of
 from hil.engine.bench_tables import BenchFile
@@ -56,14 +58,29 @@ def contradictions(bench: BenchFile) -> list[str]:
     ]
 
 
-def device_mistakes(bench: BenchFile) -> list[str]:
-    """What is wrong with the files of devices, and identifiers that meet on one bus."""
+def file_mistakes(devices: Mapping[str, Any], model: Path | None) -> list[str]:
+    """What is wrong with the files that a bench file names.
+
+    Args:
+        devices: tables by their keys, those under `devices` by their names.
+        model: of the simulated bench.
+    """
+    own = {key: table for key, table in devices.items() if key != "devices"}
+    tables = own | {f"devices.{printable(name)}": table for name, table in devices["devices"].items()}
     found = []
-    for key, table in bench.device_tables.items():
+    for key, table in tables.items():
         for file, error in table.unusable_files():
             name = printable(getattr(table, file).name)
             found.append(f"{key}.{file} = '{name}': {_on_one_line(error)}")
-    if not found and bench.simulation:
+    if model is not None and not is_file(model):
+        found.append(f"simulation.model = '{printable(model.name)}': there is no such file")
+    return found
+
+
+def device_mistakes(bench: BenchFile) -> list[str]:
+    """What of the devices cannot be simulated, and identifiers that meet on one bus."""
+    found: list[str] = []
+    if bench.simulation:
         try:
             check_simulable(bench)
             found += _of_held_parameters(bench)
@@ -113,8 +130,7 @@ def _of_sensors(bench: BenchFile) -> Iterator[str]:
     """Sensors that the simulated bench does not have."""
     for name in bench.simulation.sensors if bench.simulation else ():
         if name not in SENSED_CHANNELS:
-            near = difflib.get_close_matches(name, SENSED_CHANNELS, 1)
-            hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(SENSED_CHANNELS)}"
+            hint = did_you_mean(name, SENSED_CHANNELS)
             yield f"simulation.sensors.{printable(name, 60)}: the simulated bench has no such sensor; {hint}"
 
 
@@ -141,9 +157,7 @@ def _of_held_parameters(bench: BenchFile) -> Iterator[str]:
     for name, value in bench.simulation.rmcu.items():
         key = f"simulation.rmcu.{printable(name)}"
         if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
-            hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
-            yield f"{key}: the RMCU has no such parameter; {hint}"
+            yield f"{key}: the RMCU has no such parameter; {did_you_mean(name, known)}"
         elif not in_range(name, value):
             yield f"{key} = {value:g}: the RMCU does not take this value"
 
@@ -152,10 +166,8 @@ def _of_interfaces(bench: BenchFile) -> Iterator[str]:
     for name, bus in bench.buses.items():
         key = f"buses.{name}.interface = '{printable(bus.interface)}'"
         if bus.interface not in can.VALID_INTERFACES:
-            near = difflib.get_close_matches(bus.interface, can.VALID_INTERFACES, 1)
-            known = (
-                f"did you mean '{near[0]}'?" if near else f"known: {', '.join(sorted(can.VALID_INTERFACES))}"
-            )
+            near = closest(bus.interface, can.VALID_INTERFACES)
+            known = f"did you mean '{near}'?" if near else f"known: {', '.join(sorted(can.VALID_INTERFACES))}"
             yield f"{key}: python-can has no such interface; {known}"
         elif bench.simulation and bus.interface != SIMULATED:
             yield f"{key}: hardware with [simulation]; leave [simulation] out, or make it '{SIMULATED}'"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import importlib.resources
 import tomllib
 from pathlib import Path
@@ -11,12 +10,15 @@ from typing import Any
 import tomli_w
 from pydantic import ValidationError
 
+from drivers import DeviceTable
 from hil.core.errors import BadInputError
+from hil.core.file_kind import refuse_other_kind
 from hil.core.files import read_text
 from hil.core.mistakes import keyed, refuse
-from hil.core.printable import printable
+from hil.core.printable import is_printable, printable
+from hil.core.suggestion import did_you_mean
 from hil.core.table_mistakes import told
-from hil.engine._bench_checks import contradictions, device_mistakes, unprintable
+from hil.engine._bench_checks import contradictions, device_mistakes, file_mistakes, unprintable
 from hil.engine.bench_tables import BenchFile
 from hil.engine.device_kinds import device_tables
 
@@ -44,6 +46,7 @@ def load_bench(name_or_path: str | Path) -> BenchFile:
         raise BadInputError(
             f"not a TOML file: {printable(error, 200)}", where=printable(path, 200), fix=_FIX
         ) from error
+    refuse_other_kind(data, "bench file", printable(path, 200))
     return bench_from_dict(data, text, path)
 
 
@@ -56,20 +59,18 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
     where = printable(path, 200)
     unknown = [f"{key}: unknown key" for key in _LOADED if key in data]
     _refuse(where, [*unprintable(data), *unknown], text)
+    base = path.resolve().parent
     devices, mistakes = device_tables(data)
+    of_files = file_mistakes(_beside(devices, base), _model_of(data, base))
     try:
         bench = BenchFile.model_validate({**data, **devices, "text": text, "source": path.resolve()})
     except ValidationError as error:
         further = told(error, BenchFile, known=mistakes)
-        _refuse(where, [*mistakes, *(told for told in further if not _is_of(told, mistakes))], text)
+        further = [told for told in further if not _is_of(told, mistakes)]
+        _refuse(where, [*mistakes, *further, *of_files], text)
         raise
-    _refuse(where, mistakes or contradictions(bench), text)
-    base = path.resolve().parent
-    changes: dict[str, Any] = {
-        "rmcu": bench.rmcu.beside(base),
-        "dyno": bench.dyno.beside(base),
-        "devices": {name: table.beside(base) for name, table in bench.devices.items()},
-    }
+    _refuse(where, [*(mistakes or contradictions(bench)), *of_files], text)
+    changes: dict[str, Any] = _beside(devices, base)
     if bench.simulation:
         changes["simulation"] = bench.simulation.model_copy(update={"model": base / bench.simulation.model})
     loaded = bench.model_copy(update=changes)
@@ -82,6 +83,25 @@ def with_seed(bench: BenchFile, seed: int) -> BenchFile:
     data = tomllib.loads(bench.text)
     data["simulation"]["seed"] = seed
     return bench_from_dict(data, tomli_w.dumps(data), bench.source)
+
+
+def _beside(devices: dict[str, Any], base: Path) -> dict[str, Any]:
+    """The device tables that are right, with their files as they lie beside the bench file."""
+    found: dict[str, Any] = {
+        key: table.beside(base) for key, table in devices.items() if isinstance(table, DeviceTable)
+    }
+    further = devices.get("devices", {})
+    found["devices"] = {
+        name: table.beside(base) for name, table in further.items() if isinstance(table, DeviceTable)
+    }
+    return found
+
+
+def _model_of(data: dict[str, Any], base: Path) -> Path | None:
+    """The model file that the contents of a bench file name."""
+    simulation = data.get("simulation")
+    model = simulation.get("model") if isinstance(simulation, dict) else None
+    return base / model if isinstance(model, str) and model and is_printable(model) else None
 
 
 def _refuse(where: str, mistakes: list[str], text: str) -> None:
@@ -107,11 +127,10 @@ def _shipped_bench(name: str) -> Path:
             return path
     except (OSError, ValueError):  # no file can have such a name
         pass
-    near = difflib.get_close_matches(name, shipped_benches(), 1)
-    hint = f"did you mean '{near[0]}'? " if near else ""
+    shipped_ones = did_you_mean(name, shipped_benches())
     raise BadInputError(
         f"there is no bench '{printable(name)}'",
-        fix=f"{hint}shipped: {', '.join(shipped_benches())}; or give a file, whose name ends in .toml",
+        fix=f"{shipped_ones}; or give a file, whose name ends in .toml",
     )
 
 

@@ -10,6 +10,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
+from hil.core.files import is_file
 from test_plans.conductor import Conductor
 from test_plans.pace import Outlook, Pace
 from test_plans.steps._step import Name, Step
@@ -45,7 +46,7 @@ class SetController(Step):
         if file is None or not isinstance(search, FileSearch) or not search.required:
             return file
         places = [directory / file for directory in search.directories]
-        found = next((place for place in places if _is_file(place)), None)
+        found = next((place for place in places if is_file(place)), None)
         if found is None:
             raise ValueError(f"no such file: {', '.join(str(place) for place in places)}")
         try:
@@ -66,10 +67,3 @@ class SetController(Step):
 def designed_file(name: str) -> Path:
     """Relative path under which a design step's controller is kept."""
     return Path(f"controller_{name}.toml")
-
-
-def _is_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except (OSError, ValueError):  # a name that is too long, or has a NUL in it
-        return False

@@ -22,7 +22,7 @@ def test_an_unknown_key_is_told_before_a_wrong_value() -> None:
     assert str(caught.value).splitlines() == [
         "p.yaml: 2 mistakes",
         "  line 3, key 'horn.ton': unknown key 'ton'; did you mean 'tone'? known: duration_s, tone",
-        "  line 2, key 'horn.duration_s': 0 should be greater than 0; duration_s: how long, s",
+        "  line 2, key 'horn.duration_s': 0 must be more than 0; duration_s: how long, s",
     ]
 
 
@@ -30,7 +30,7 @@ def test_a_wrong_value_is_shown_with_the_keys_meaning() -> None:
     with pytest.raises(BadInputError) as caught:
         build(Horn, {"duration_s": 0}, DOCUMENT, ("horn",))
     assert str(caught.value) == (
-        "p.yaml: line 2, key 'horn.duration_s': 0 should be greater than 0\n  duration_s: how long, s"
+        "p.yaml: line 2, key 'horn.duration_s': 0 must be more than 0\n  duration_s: how long, s"
     )
 
 

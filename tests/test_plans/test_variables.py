@@ -83,7 +83,7 @@ def test_every_value_within_the_bounds_is_what_the_step_gets(value: float) -> No
         ({"torque_nm": 301.0}, "301 N m is above the largest that may be chosen, 300.5 N m"),
         ({"torque_nm": -101.0}, "-101 N m is below the smallest"),
         ({"torque": 1.0}, "has no variable 'torque'\n  did you mean 'torque_nm'?"),
-        ({"times": 2.5}, "2.5 should be a valid integer"),
+        ({"times": 2.5}, "2.5 must be a whole number"),
     ],
 )
 def test_what_may_not_be_chosen_is_refused(values, said, tmp_path) -> None:

@@ -65,7 +65,7 @@ def test_of_a_controller() -> None:
     assert str(caught.value).splitlines() == [
         "c.toml: 2 mistakes",
         "  line 15: wsc.proportional_gian: unknown key; did you mean 'proportional_gain'?",
-        "  line 20: wsc.lead.alpha = 3: input should be less than or equal to 1",
+        "  line 20: wsc.lead.alpha = 3: must be at most 1",
     ]
 
 
@@ -76,8 +76,10 @@ def test_of_a_bench_device_tables_too(tmp_path: Path) -> None:
         load_bench(tmp_path / "b.toml")
     assert str(caught.value).splitlines()[1:-1] == [
         "  line 18: rmcu.dcb: unknown key; did you mean 'dbc'?",
+        "  line 22: dyno.eds = 'rcs_dyno.eds': No such file or directory; check [dyno] eds",
         "  line 27: vehicles: unknown key; did you mean 'vehicle'?",
         "  line 38: limits.persistance_s: unknown key; did you mean 'persistence_s'?",
+        "  line 45: simulation.model = 'three_inertia.toml': there is no such file",
     ]
 
 

@@ -124,7 +124,7 @@ REAL = load_bench("rear_axle_socketcan")
     [
         ("time_scale = 0.2\n" + REAL.text, "buses.rmcu ('socketcan') may be hardware, which keeps real time"),
         ("time_scale = 0.2\n" + SIM.text, "the simulated bench computes its time; leave it out"),
-        ("time_scale = 2.0\n" + SIM.text, "time_scale = 2.0: input should be less than or equal to 1"),
+        ("time_scale = 2.0\n" + SIM.text, "time_scale = 2.0: must be at most 1"),
     ],
 )
 def test_only_a_simulated_bench_in_another_process_runs_slower(text: str, said: str, tmp_path: Any) -> None:
