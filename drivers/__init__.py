@@ -2,7 +2,7 @@
 
 from drivers._waiting import StreamTiming
 from drivers.bus_health import BusHealth
-from drivers.bus_load import bits_on_the_wire
+from drivers.bus_load import bits_on_the_wire, most_bits_on_the_wire
 from drivers.can_adapter import CanSettings, open_can
 from drivers.device import Device, MotorControl, SaysEmergency, SaysPowerless, SetsSlip, TakesBack, WheelLoad
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
@@ -64,6 +64,7 @@ __all__ = [
     "WheelLoad",
     "Wire",
     "bits_on_the_wire",
+    "most_bits_on_the_wire",
     "open_can",
     "parameters_of",
     "read_dyno",

@@ -104,6 +104,7 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
             Fact("Real-time factor", quantities.number(result.real_time_factor, significant=3)),
             Fact("Clocks", _clocks(result)),
             *timing_facts(result),
+            *_bus_load_facts(result),
         ]
     elif len(recording.channels.get("time_s", ())) > 1:
         span = float(recording.time_s[-1] - recording.time_s[0])
@@ -139,6 +140,17 @@ def timing_facts(result: RunResult) -> list[Fact]:
         longest = quantities.quantity(timing.longest_pause_s, "s", 3)
         facts.append(Fact("Own loop stood still", f"{timing.pauses} times, the longest {longest}"))
     return facts
+
+
+def _bus_load_facts(result: RunResult) -> list[Fact]:
+    return [
+        Fact(
+            f"Load of bus '{load.bus}'",
+            f"at most {100.0 * load.mean:.0f} % of {quantities.quantity(load.bit_rate / 1e3, 'kbit/s', 0)}, "
+            f"in the busiest 0.1 s {100.0 * load.busiest:.0f} %",
+        )
+        for load in result.bus_loads
+    ]
 
 
 def _request(request: PeriodicRequests) -> str:

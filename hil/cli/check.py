@@ -72,6 +72,7 @@ def _json(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> dic
         "steps": len(plan.steps),
         "segments": [segment.id for segment in plan.segments],
         "predicted": peaks,
+        "bus_loads": {name: round(load, 4) for name, load in predicted.bus_loads.items()},
         "criteria": [
             {**criterion.model_dump(exclude={"definition"}), "margin": criterion.margin}
             for criterion in predicted.criteria
@@ -87,6 +88,8 @@ def _tell(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> Non
         highlight=False,
     )
     page.print(_table(predicted.peaks))
+    loads = ", ".join(f"'{name}' at most {load:.0%}" for name, load in predicted.bus_loads.items())
+    page.print(f"\nload of bus {loads}", highlight=False)
     if predicted.criteria:
         page.print("\n[italic]criteria, predicted[/]")
         print_criteria(page, predicted.criteria)
@@ -96,6 +99,9 @@ def _tell(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> Non
 def _verdict(predicted: Forecast) -> str:
     """What the exit code says, and what it does not."""
     verdict = "fits the bench" if predicted.fits else "[bold red]beyond the bench's limits[/]"
+    if predicted.overloaded:
+        names = ", ".join(f"'{name}'" for name in predicted.overloaded)
+        verdict = f"[bold red]bus {names} cannot carry its frames; raise bit_rate[/]"
     failed = sum(criterion.failed for criterion in predicted.criteria)
     if failed:
         verdict += f"; [bold red]{failed} of {len(predicted.criteria)} criteria are predicted to fail[/]"

@@ -241,6 +241,15 @@ class AcceptedExpiry(_Frozen):
     sensors: dict[str, str]
 
 
+class BusLoad(_Frozen):
+    """Share of the time in which a bus carried frames, each with the most stuff bits that it may have."""
+
+    bus: str
+    bit_rate: int
+    mean: float = Field(description="over the whole run")
+    busiest: float = Field(description="in the busiest tenth of a second")
+
+
 class RunResult(_Frozen):
     """What `result.json` holds."""
 
@@ -260,6 +269,7 @@ class RunResult(_Frozen):
     segments: tuple[Segment, ...] = ()
     clocks: tuple[StreamClock, ...] = ()
     timing: Timing | None = None
+    bus_loads: tuple[BusLoad, ...] = ()
     identities: tuple[Identity, ...] = ()
     zeros: tuple[Zero, ...] = ()
     limits: tuple[LimitResult, ...] = ()

@@ -30,7 +30,8 @@ class PredictedWire:
 
     `first_stamp_s` is how long after its sample the frame appears that a recording's time counts from, and
     `unsettled_s` by how much earlier the earliest frame of a sample appears. `parameters` are those of the
-    RMCU that the DBC names; `dictionary` is the dynos'.
+    RMCU that the DBC names; `dictionary` is the dynos'. `loads` is the share of each bus that is
+    taken by the frames of each millisecond, with the most stuff bits that they may have.
     """
 
     rounding: Wire
@@ -38,6 +39,7 @@ class PredictedWire:
     unsettled_s: float
     parameters: frozenset[str]
     dictionary: Any
+    loads: dict[str, float]
 
 
 def wire_of(bench: BenchFile) -> PredictedWire:
@@ -73,15 +75,33 @@ def wire_of(bench: BenchFile) -> PredictedWire:
     )
     earliest_s = min(ends_s[frame] for frame in frames.values())
     named = frozenset(dbc.texts.get(("RMCU_ParameterWrite", "Index"), {}))
-    return PredictedWire(rounding, master_s, master_s - earliest_s, named, dictionary)
+    loads = _loads(bench, dbc, (*left[1:], *right[1:]))
+    return PredictedWire(rounding, master_s, master_s - earliest_s, named, dictionary, loads)
+
+
+def _cyclic(
+    bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]
+) -> list[tuple[str, list[FrameLayout]]]:
+    """What devices send in each millisecond, bus by bus."""
+    rmcu = [dbc.layouts[name] for name in ("RCS_Vehicle", "RMCU_Status", "RMCU_Control")]
+    sync = FrameLayout("SYNC", 0x80, 0, {})
+    return [(rmcu_of(bench).bus, rmcu), (dyno_of(bench).bus, [sync, *dynos])]
+
+
+def _loads(bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]) -> dict[str, float]:
+    """Share of each bus that is taken, the torque requests of the RMCU's bus included."""
+    (rmcu_bus, rmcu), of_dynos = _cyclic(bench, dbc, dynos)
+    found = dict.fromkeys(bench.buses, 0.0)
+    for bus, layouts in ((rmcu_bus, [*rmcu, dbc.layouts["RMCU_Request"]]), of_dynos):
+        rate = bench.buses[bus].bit_rate
+        found[bus] += sum(frame_time_s(layout.length, rate) for layout in layouts) / TICK_S
+    return found
 
 
 def _frame_ends_s(bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]) -> dict[int, float]:
     """When each cyclic frame of a sample has crossed its bus, by identifier, as on the simulated bench."""
-    rmcu = [dbc.layouts[name] for name in ("RCS_Vehicle", "RMCU_Status", "RMCU_Control")]
-    sync = FrameLayout("SYNC", 0x80, 0, {})
     found: dict[int, float] = {}
-    for bus, layouts in ((rmcu_of(bench).bus, rmcu), (dyno_of(bench).bus, [sync, *dynos])):
+    for bus, layouts in _cyclic(bench, dbc, dynos):
         rate = bench.buses[bus].bit_rate
         ends = accumulate(frame_time_s(layout.length, rate) for layout in layouts)
         found |= {layout.id: end_s for layout, end_s in zip(layouts, ends, strict=True)}

@@ -15,15 +15,25 @@ from test_plans import Plan, judge
 
 @dataclass(frozen=True)
 class Forecast:
-    """`peaks` has the largest magnitude of each limited channel with its limit, in the channel's unit."""
+    """`peaks` has the largest magnitude of each limited channel with its limit, in the channel's unit.
+
+    `bus_loads` has the share of each bus that the frames of every millisecond take, at most.
+    """
 
     peaks: dict[str, tuple[float, float]]
     criteria: tuple[CriterionResult, ...]
+    bus_loads: dict[str, float]
 
     @property
     def fits(self) -> bool:
-        """Whether every peak is within its limit."""
-        return all(value <= limit for value, limit in self.peaks.values())
+        """Whether every peak is within its limit, and every bus carries its frames."""
+        within = all(value <= limit for value, limit in self.peaks.values())
+        return within and not self.overloaded
+
+    @property
+    def overloaded(self) -> tuple[str, ...]:
+        """Buses that have more to carry than they can."""
+        return tuple(name for name, load in self.bus_loads.items() if load > 1.0)
 
 
 def forecast(plan: Plan, bench: BenchFile) -> Forecast:
@@ -41,4 +51,4 @@ def forecast(plan: Plan, bench: BenchFile) -> Forecast:
     found = predict(plan, bench, load_model(simulation.model))
     limits = limits_of_channels(bench.limits)
     peaks = {channel: (found.peaks[channel], limit) for channel, limit in limits.items()}
-    return Forecast(peaks, judge(plan, found.recording, found.segments))
+    return Forecast(peaks, judge(plan, found.recording, found.segments), found.bus_loads)

@@ -33,13 +33,15 @@ class Prediction:
     """What a run would record.
 
     `recording` has the channels of a run, without sensor noise; `peaks` are largest magnitudes of the
-    channels that limits watch, in their units; `made` are the files of analysis steps.
+    channels that limits watch, in their units; `made` are the files of analysis steps; `bus_loads` are
+    shares of the buses that the frames of every millisecond take, at most.
     """
 
     recording: Recording
     segments: tuple[Segment, ...]
     peaks: dict[str, float]
     made: Mapping[str, bytes]
+    bus_loads: dict[str, float]
 
 
 def predict(plan: Plan, bench: BenchFile, model: Model) -> Prediction:
@@ -60,7 +62,9 @@ def predict(plan: Plan, bench: BenchFile, model: Model) -> Prediction:
     ready.rmcu.make_safe()
     ready.dyno.make_safe()
     peaks = {name: ready.peak(name) for name in ready.wire.rounding.channels}
-    return Prediction(recorder.everything(), tuple(conductor.segments), peaks, conductor.made)
+    return Prediction(
+        recorder.everything(), tuple(conductor.segments), peaks, conductor.made, ready.wire.loads
+    )
 
 
 class PredictionConductor(BenchConductor):

@@ -28,6 +28,7 @@ from hil.core.result import (
 from hil.engine.arming import Arming
 from hil.engine.bench import Bench, open_bench, refuse_needs
 from hil.engine.border import RECORDING, RunOutcome, RunRequest, analysed_apart, analysed_here
+from hil.engine.bus_loads import BusLoads
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.conductor import BenchConductor
 from hil.engine.emergency_stop import keep_latched, refuse_latched
@@ -124,6 +125,9 @@ class _Run:
         noted = bench.torque_requests(self._timing, TICK_S) if self._timing else None
         operator = Operator(bench.loop, request.terminal, request.confirmed_by, self._turned)
         self._failures = Failures(self._event, self._blame)
+        rates = {name: request.bench.buses[name].bit_rate for name in buses}
+        self._bus_loads = BusLoads(rates, clock.now_s)
+        bench.loop.on_block(self._bus_loads.take_frames)
         self._watch = Watchkeeping(bench, self._recorder, operator, self._failures.tell)
         self._conductor = BenchConductor(
             bench,
@@ -245,6 +249,7 @@ class _Run:
             segments=tuple(self._conductor.segments),
             clocks=self._recorder.clocks(),
             timing=self._timed(),
+            bus_loads=self._bus_loads.results(),
             identities=self._arming.identities,
             zeros=self._watch.zero.zeros,
             limits=self._watch.limits.results,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import numpy.typing as npt
 
@@ -21,6 +23,29 @@ def frame_time_s(length: int, bit_rate: int) -> float:
     """Longest time of a standard data frame on the bus, stuff bits included (ISO 11898-1)."""
     bits = 8 * length
     return (bits + 47 + (34 + bits - 1) // 4) / bit_rate
+
+
+class EventSlots:
+    """When frames that answer or announce something cross a bus: one by one, behind those of every sample.
+
+    `begin_s` is how long the frames of every sample take, 0 until somebody says so.
+    """
+
+    def __init__(self, bit_rate: int) -> None:
+        self.begin_s, self.bit_rate = 0.0, bit_rate
+        self._last_s = 0.0
+
+    def next_s(self, sample: int) -> float:
+        """When the next frame of an event in a sample has crossed, in a later one where that is full."""
+        frame_s = frame_time_s(8, self.bit_rate)
+        free_s = max(sample * TICK_S + self.begin_s, self._last_s)
+        begun = math.floor(free_s / TICK_S + 1e-9) * TICK_S
+        if free_s < begun + self.begin_s:  # the next sample's own frames come first
+            free_s = begun + self.begin_s
+        if free_s + frame_s > begun + TICK_S and self.begin_s + frame_s <= TICK_S:
+            free_s = begun + TICK_S + self.begin_s
+        self._last_s = free_s + frame_s
+        return self._last_s
 
 
 class CyclicTraffic:

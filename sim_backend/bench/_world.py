@@ -22,7 +22,7 @@ from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
 from sim_backend.bench._settings import SENSED_CHANNELS, SensorFault, SimulationSettings
 from sim_backend.bench._tampering import Tamper
-from sim_backend.bench._traffic import CyclicTraffic, Shown, frame_time_s
+from sim_backend.bench._traffic import CyclicTraffic, EventSlots, Shown, frame_time_s
 from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
 
@@ -179,6 +179,8 @@ class SimulatedBench:
     def _make_nodes(self) -> None:
         s = self.settings
         dbc = read_dbc(s.dbc, NEEDED, s.names)
+        rates = ((RMCU_BUS, s.rmcu_bit_rate), (DYNO_BUS, s.dyno_bit_rate))
+        self._event_slots = {bus: EventSlots(rate) for bus, rate in rates}
         self._rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data), s.held)
         self._vehicle = dbc.layouts["RCS_Vehicle"]
         self._request_id = dbc.layouts["RMCU_Request"].id
@@ -199,6 +201,9 @@ class SimulatedBench:
         self._dyno_traffics: dict[tuple[bool, ...], CyclicTraffic] = {}  # by who is operational
         self._rmcu_traffic = self._traffic_of_rmcu()
         self._dyno_traffic = self._traffic_of_dynos()
+        request_s = frame_time_s(dbc.layouts["RMCU_Request"].length, s.rmcu_bit_rate)
+        self._event_slots[RMCU_BUS].begin_s = self._rmcu_traffic.time_s + request_s
+        self._event_slots[DYNO_BUS].begin_s = self._traffic_with(True, True).time_s
         self._refuse_slow_buses()
         m = self._rmcu.memory
         m.gains[memory.SAMPLE_TIME] = TICK_S
@@ -207,17 +212,14 @@ class SimulatedBench:
 
     def _refuse_slow_buses(self) -> None:
         """A millisecond's frames must fit into a millisecond, or they would never arrive in order."""
-        s = self.settings
-        for bus, rate, traffic in (
-            (RMCU_BUS, s.rmcu_bit_rate, self._rmcu_traffic),
-            (DYNO_BUS, s.dyno_bit_rate, self._traffic_with(True, True)),
-        ):
-            if traffic.time_s > TICK_S:
+        for bus, slots in self._event_slots.items():
+            if slots.begin_s > TICK_S:
+                least = math.ceil(slots.bit_rate * slots.begin_s / TICK_S / 1e4) * 10_000
                 raise BadInputError(
-                    f"bit_rate = {rate} bit/s is too slow: the frames of each millisecond take "
-                    f"{traffic.time_s * 1e3:.2g} ms",
+                    f"bit_rate = {slots.bit_rate} bit/s is too slow: the frames of each millisecond take "
+                    f"{slots.begin_s * 1e3:.2g} ms",
                     where=f"simulated bench, bus of the {bus}",
-                    fix=f"give at least {math.ceil(rate * traffic.time_s / TICK_S / 1e4) * 10_000} bit/s",
+                    fix=f"give at least {least} bit/s",
                 )
 
     # --- one sample ---
@@ -371,8 +373,7 @@ class SimulatedBench:
         )
 
     def _event(self, bus: str, frame_id: int, data: bytes) -> None:
-        rate = self.settings.rmcu_bit_rate if bus == RMCU_BUS else self.settings.dyno_bit_rate
-        stamp = self._samples * TICK_S + 6 * frame_time_s(8, rate)
+        stamp = self._event_slots[bus].next_s(self._samples)
         self._pending[bus].append(frames(frame_id, int.from_bytes(data, "little"), len(data), stamp))
 
     # --- frames of many samples ---

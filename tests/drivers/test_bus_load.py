@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivers import bits_on_the_wire
+from drivers import bits_on_the_wire, most_bits_on_the_wire
 from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME
 
 
@@ -44,17 +44,22 @@ def _is_run(text):
 def test_bits_are_those_of_the_standard(extended, number, data):
     number = number if extended else number % 2048
     frame = (0.0, number, EXTENDED * extended, len(data), int.from_bytes(data, "little"))
-    assert bits_on_the_wire(np.array([frame], FRAME)).tolist() == [written_down(number, extended, data)]
+    written = written_down(number, extended, data)
+    assert bits_on_the_wire(np.array([frame], FRAME)).tolist() == [written]
+    (most,) = most_bits_on_the_wire(np.array([frame], FRAME)).tolist()
+    assert written <= most <= 1.27 * written
 
 
 def test_lengths_without_and_with_the_most_stuffing():
     frames = np.array([(0, 0x555, 0, 8, 0x5555555555555555), (0, 0, 0, 8, 0)], FRAME)
     alternating, zeros = bits_on_the_wire(frames)
     assert 111 <= alternating < zeros <= 135
+    assert most_bits_on_the_wire(frames).tolist() == [135, 135]
 
 
 def test_an_error_frame_is_none():
     assert bits_on_the_wire(np.array([(0, 4, ERROR_FRAME, 8, 0)], FRAME)).tolist() == [0]
+    assert most_bits_on_the_wire(np.array([(0, 4, ERROR_FRAME, 8, 0)], FRAME)).tolist() == [0]
 
 
 @pytest.mark.parametrize("length", range(9))
