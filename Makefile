@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -84,6 +84,10 @@ coverage: setup
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow and not hunt" --cov --cov-report=
 	$(BIN)/python -m tests.coverage_by_package
 
+# The service's OpenAPI document: docs/reference/openapi.json. A test fails when it is not that of the code.
+openapi: setup
+	$(BIN)/python -m hil.service > docs/reference/openapi.json
+
 # What the next release's CHANGELOG.md will say, from the fragments in changelog.d.
 changelog: setup
 	$(BIN)/towncrier build --draft --version next
@@ -108,7 +112,7 @@ figures: setup
 # Pins every dependency with hashes and without addresses of package indexes.
 lock: $(BIN)/uv
 	printf 'uv==%s\n' "$$($(BIN)/uv --version | cut -d' ' -f2)" | $(BIN)/uv pip compile --quiet --no-header --universal --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/tool.txt -
-	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
+	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra service --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
 
 clean:
 	rm -rf $(VENV) out

@@ -43,6 +43,7 @@ _COMMANDS = {
     "sign": "Sign a run's directory: who approved it.",
     "export": "Write a recording as CSV, Parquet or MDF4, or its frames as a CAN log.",
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
+    "serve": "The bench service: a queue of runs, an API, a page that shows what benches do.",
     "doctor": "What of a bench is there, what is wrong with it, and what to do.",
     "monitor": "Decoded channels and bus load live, touching nothing.",
     "jog": "Turn the axle at low torque and check the sign of every sensor.",

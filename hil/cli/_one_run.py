@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -21,7 +22,7 @@ from hil.core.model import Model
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING, BenchFile, RunOutcome, RunRequest, StopRequest, carry_out
-from hil.engine.border import analysed_apart
+from hil.engine.border import Terminal, analysed_apart
 from hil.engine.disk_room import remark_on_room
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import Plan
@@ -60,6 +61,8 @@ class Runs:
     accept_expired: str
     inputs: tuple[Path, ...]
     overwrite: bool
+    terminal: Callable[[], Terminal | None] = operators_terminal
+    shown: Callable[[str], AbstractContextManager[Show]] = progress
 
     @contextlib.contextmanager
     def finished(self, plan: Plan, bench: BenchFile, out: Path | None) -> Iterator[Finished]:
@@ -71,7 +74,7 @@ class Runs:
             out=Path(),
             model=self.model,
             operator=self.operator,
-            terminal=operators_terminal(),
+            terminal=self.terminal(),
             confirmed_by=self.confirmed_by,
             accept_expired=self.accept_expired,
             hazard_confirmed_by=self.hazard_confirmed_by,
@@ -89,24 +92,23 @@ class Runs:
             ) as place,
             stop.by_signals(),  # from here to the result a signal only asks: nothing measured is lost
         ):
-            run = _carried_out(request, place, stop)
+            run = self._carried_out(request, place, stop)
             if run.outcome.error is not None:
                 complain("error", str(run.outcome.error))
             yield run
 
-
-def _carried_out(request: RunRequest, place: Place, stop: StopRequest) -> Finished:
-    plan, bench = request.plan, request.bench
-    request.out, request.replaces = place.folder, place.stale
-    remark = remark_on_room(plan, place.folder)
-    if remark:
-        warn(remark)
-    with progress(f"{plan.name} on {bench.name}{_keys(request)}") as tell:
-        request.progress = lambda share, text: tell(text, share)
-        outcome = carry_out(request, HOLDER, keeps=[place.lock])
-    with progress(f"{plan.name} on {bench.name}") as tell:
-        result = _Conclusion(place, outcome, stop).write(tell)
-    return Finished(outcome, result, place.folder)
+    def _carried_out(self, request: RunRequest, place: Place, stop: StopRequest) -> Finished:
+        plan, bench = request.plan, request.bench
+        request.out, request.replaces = place.folder, place.stale
+        remark = remark_on_room(plan, place.folder)
+        if remark:
+            warn(remark)
+        with self.shown(f"{plan.name} on {bench.name}{_keys(request)}") as tell:
+            request.progress = lambda share, text: tell(text, share)
+            outcome = carry_out(request, HOLDER, keeps=[place.lock])
+        with self.shown(f"{plan.name} on {bench.name}") as tell:
+            result = _Conclusion(place, outcome, stop).write(tell)
+        return Finished(outcome, result, place.folder)
 
 
 def _keys(request: RunRequest) -> str:

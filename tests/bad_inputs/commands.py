@@ -25,6 +25,7 @@ USUAL: dict[str, tuple[str, ...]] = {
     ),
     "doctor": ("bench.toml", "--for", "0.3"),
     "sim-bench": ("bench.toml", "--port", "0", "--for", "0.5"),
+    "serve": ("--data", "service", "--bench", "bench.toml", "--port", "0", "--for", "0.5"),
 }  # fmt: skip
 COMMANDS = tuple(USUAL)
 WRITING = (
@@ -71,6 +72,7 @@ FILE_ARGUMENTS = (
     ("explain", "--bench", "bench.toml", "model.toml"),
     ("doctor", "BENCH", "bench.toml", "model.toml"),
     ("sim-bench", "BENCH", "bench.toml", "model.toml"),
+    ("serve", "--bench", "bench.toml", "model.toml"),
 )
 READ_ELSEWHERE = (
     ("run", "--model"),
@@ -83,6 +85,7 @@ READ_ELSEWHERE = (
     ("explain", "--bench"),
     ("doctor", "BENCH"),
     ("sim-bench", "BENCH"),
+    ("serve", "--bench"),
 )
 #: Every numeric option.
 NUMBERS = {
@@ -103,6 +106,7 @@ NUMBERS = {
     "explain": ("--evaluations", "--seed"),
     "doctor": ("--for",),
     "sim-bench": ("--time-scale", "--port", "--seed"),
+    "serve": ("--port", "--for"),
 }
 
 

@@ -12,6 +12,7 @@ from hil.core.channels import WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording._evidence import sidecar
 from hil.core.recording._formats import FRAME_LOGS, READ, WRITTEN, reader_of, writer_of
+from hil.core.recording._mcap_following import FollowedRecording
 from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_reader import read_mcap as read_as_written
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
@@ -117,6 +118,7 @@ __all__ = [
     "RUN",
     "SEGMENT",
     "Event",
+    "FollowedRecording",
     "Missing",
     "Recording",
     "RecordingWriter",

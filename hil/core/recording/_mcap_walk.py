@@ -24,7 +24,7 @@ from hil.core.recording._mcap_records import (
 )
 
 MAGIC = b"\x89MCAP0\r\n"
-_HEAD = 9  # opcode, length
+RECORD_HEAD = 9  # opcode, length
 _SCAN_BYTES = 1 << 20
 #: What reading may resume at: records that a broken block cannot hold by chance.
 _RESUME_AT = np.zeros(256, bool)
@@ -42,7 +42,7 @@ def records(file: BinaryIO, size: int) -> Iterator[Record]:
     position = len(MAGIC)
     checksum: int | None = zlib.crc32(MAGIC)
     while position < size:
-        found = _raw_record(file, position, size)
+        found = raw_record(file, position, size)
         record = parsed(*found) if found else None
         if found is None or record is None:
             position = _next_intact(file, position, size)
@@ -50,7 +50,7 @@ def records(file: BinaryIO, size: int) -> Iterator[Record]:
             yield Break(to_end=position == size)
             continue
         opcode, body = found
-        position += _HEAD + len(body)
+        position += RECORD_HEAD + len(body)
         head = bytes([opcode]) + len(body).to_bytes(8, "little")
         if isinstance(record, DataEnd):
             yield DataEnd(_agrees(int.from_bytes(body, "little"), checksum))
@@ -71,18 +71,20 @@ def records_inside(content: bytes) -> Iterator[Record]:
     position = 0
     while position < len(content):
         opcode = content[position]
-        end = position + _HEAD + int.from_bytes(content[position + 1 : position + _HEAD], "little")
-        if end > len(content) or position + _HEAD > len(content):
+        end = (
+            position + RECORD_HEAD + int.from_bytes(content[position + 1 : position + RECORD_HEAD], "little")
+        )
+        if end > len(content) or position + RECORD_HEAD > len(content):
             yield Break(to_end=False)
             return
-        if opcode == Opcode.MESSAGE and end - position >= _HEAD + MESSAGE_HEAD:
+        if opcode == Opcode.MESSAGE and end - position >= RECORD_HEAD + MESSAGE_HEAD:
             stride = end - position
             count = _alike(data, position, stride)
             end = position + count * stride
             rows = data[position:end].reshape(count, stride)
-            yield messages(rows[:, _HEAD:])
+            yield messages(rows[:, RECORD_HEAD:])
         else:
-            yield parsed(opcode, memoryview(content)[position + _HEAD : end]) or Break(to_end=False)
+            yield parsed(opcode, memoryview(content)[position + RECORD_HEAD : end]) or Break(to_end=False)
         position = end
 
 
@@ -91,7 +93,7 @@ def _alike(data: npt.NDArray[np.uint8], position: int, stride: int) -> int:
     limit = (len(data) - position) // stride
     if limit < 2 or not _same_head(data, position, position + stride):
         return 1
-    head = data[position : position + _HEAD + 2]
+    head = data[position : position + RECORD_HEAD + 2]
     count, step = 1, 32
     while count < limit:
         ahead = min(step, limit - count)
@@ -106,19 +108,19 @@ def _alike(data: npt.NDArray[np.uint8], position: int, stride: int) -> int:
 
 def _same_head(data: npt.NDArray[np.uint8], one: int, other: int) -> bool:
     """Whether two messages are of one channel and length; faster than arrays for the many that are alone."""
-    return data[one : one + _HEAD + 2].tobytes() == data[other : other + _HEAD + 2].tobytes()
+    return data[one : one + RECORD_HEAD + 2].tobytes() == data[other : other + RECORD_HEAD + 2].tobytes()
 
 
 def _agrees(stored: int, computed: int | None) -> bool:
     return stored == 0 or computed is None or stored == computed
 
 
-def _raw_record(file: BinaryIO, position: int, size: int) -> tuple[int, memoryview] | None:
-    """Opcode and body at `position`; None if they do not fit into the file."""
+def raw_record(file: BinaryIO, position: int, size: int) -> tuple[int, memoryview] | None:
+    """Opcode and body at `position`; None if they do not fit into the file of `size` bytes."""
     file.seek(position)
-    head = file.read(_HEAD)
+    head = file.read(RECORD_HEAD)
     length = int.from_bytes(head[1:], "little")
-    if len(head) < _HEAD or length > size - position - _HEAD:
+    if len(head) < RECORD_HEAD or length > size - position - RECORD_HEAD:
         return None
     body = file.read(length)
     return (head[0], memoryview(body)) if len(body) == length else None
@@ -127,9 +129,9 @@ def _raw_record(file: BinaryIO, position: int, size: int) -> tuple[int, memoryvi
 def _next_intact(file: BinaryIO, broken: int, size: int) -> int:
     """Where reading can go on after a broken record; `size` if nowhere."""
     file.seek(broken + 1)
-    declared = broken + _HEAD + int.from_bytes(file.read(8), "little")
+    declared = broken + RECORD_HEAD + int.from_bytes(file.read(8), "little")
     for position in chain([declared] if declared < size else [], _candidates(file, broken + 1, size)):
-        found = _raw_record(file, position, size)
+        found = raw_record(file, position, size)
         record = parsed(*found) if found else None
         if record is None or (isinstance(record, Other) and not record.known):
             continue
@@ -143,8 +145,8 @@ def _candidates(file: BinaryIO, start: int, size: int) -> Iterator[int]:
     """Places from `start` on that look like the head of a record."""
     for window in range(start, size, _SCAN_BYTES):
         file.seek(window)
-        data = np.frombuffer(file.read(_SCAN_BYTES + _HEAD), np.uint8)
-        count = len(data) - _HEAD + 1
+        data = np.frombuffer(file.read(_SCAN_BYTES + RECORD_HEAD), np.uint8)
+        count = len(data) - RECORD_HEAD + 1
         if count <= 0:
             return
         looks = _RESUME_AT[data[:count]]

@@ -1,0 +1,57 @@
+"""`hil serve`: the bench service."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+SEVERAL = ("--bench", "--allow-host")
+
+
+def command(
+    data: Annotated[Path, typer.Option(metavar="DIR", help="where runs, plans and the database are kept")],
+    bench: Annotated[
+        list[str] | None, typer.Option(help="bench files, or names of shipped benches; default: sim")
+    ] = None,
+    host: Annotated[
+        str, typer.Option(help="address to listen at; another than this machine's needs tokens")
+    ] = ("127.0.0.1"),
+    port: Annotated[int, typer.Option(min=0, max=65535, help="port; 0 takes a free one")] = 8080,
+    allow_host: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="further names by which browsers may call the service"),
+    ] = None,
+    database: Annotated[
+        str, typer.Option(metavar="URL", help="database in place of SQLite in DIR: postgresql+psycopg://…")
+    ] = "",
+    for_s: Annotated[
+        float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
+    ] = None,
+    add_token: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME=ROLE",
+            help="make a token, print it, and end; roles: viewer, operator, engineer, admin",
+        ),
+    ] = "",
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else there")
+    ] = False,
+) -> int:
+    """Make benches a shared instrument: a queue of runs, an API, a page that shows what they do.
+
+    Serves until Ctrl-C or SIGTERM; runs under way are ended then, with their end steps. Without tokens it
+    listens to this machine only. Exit code: 2 bad input, 3 the port is taken or the database cannot be used,
+    130 ended by a signal; 0 its time (--for) is over.
+    """
+    import_python_can()
+    from hil.cli.serve import carry_out
+
+    return carry_out(
+        data=data, bench=bench or ["sim"], host=host, port=port, allow_host=allow_host or [],
+        database=database, for_s=for_s, add_token=add_token, as_json=as_json,
+    )  # fmt: skip

@@ -1,0 +1,74 @@
+"""`hil serve`: the bench service, until somebody ends it."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+from hil.cli._interrupts import EXIT_CODE
+from hil.cli._output import print_json
+from hil.cli._served_run import RUNNER
+from hil.core.errors import BadInputError
+from hil.engine import StopRequest
+
+_HIL = (sys.executable, "-c", "from hil.cli import main; main()")
+
+
+def carry_out(
+    *,
+    data: Path,
+    bench: list[str],
+    host: str,
+    port: int,
+    allow_host: list[str],
+    database: str,
+    for_s: float | None,
+    add_token: str,
+    as_json: bool,
+) -> int:
+    """Carry the command out; its exit code."""
+    try:
+        from hil.service.service import Commands
+        from hil.service.serving import ServeRequest, make_token, serve
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.split(".")[0] in ("hil", "reports", "test_plans"):
+            raise
+        raise BadInputError(
+            f"the service needs {error.name}, which is not installed",
+            fix="pip install 'eaxle-hil[service]'",
+        ) from error
+    if for_s is not None and not for_s > 0:
+        raise BadInputError(f"--for is {for_s:g}", fix="give seconds greater than 0, or leave it out")
+    if add_token:
+        name, _, role = add_token.rpartition("=")
+        made = make_token(data, database, name, role)
+        if as_json:
+            print_json(made.model_dump(mode="json"))
+        else:
+            print(f"# token of {made.token.name}, {made.token.role}; it is told this once\n{made.secret}")
+        return 0
+    stop = StopRequest()
+
+    def ready(url: str) -> None:
+        if as_json:
+            print_json({"url": url, "data": str(data.resolve())})
+        else:
+            print(f"The bench service is at {url} (Ctrl-C ends it); its data are in {data}")
+        sys.stdout.flush()
+
+    request = ServeRequest(
+        folder=data,
+        benches=bench,
+        commands=Commands(_HIL, RUNNER),
+        host=host,
+        port=port,
+        database=database,
+        hosts=allow_host,
+        for_s=math.inf if for_s is None else for_s,
+        ready=ready,
+        stop=stop,
+    )
+    with stop.by_signals():
+        serve(request)
+    return EXIT_CODE if stop.times else 0

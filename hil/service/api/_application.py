@@ -1,0 +1,51 @@
+"""Puts the parts of the API together."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import json
+
+from fastapi import FastAPI
+from starlette.types import ASGIApp
+
+from hil.service.api import _benches, _health, _live, _page, _people, _plans, _runs
+from hil.service.api._guard import Guard, Rates
+from hil.service.api._problems import RESPONSES, answer_problems
+from hil.service.service import Service
+
+PREFIX = "/api/v1"
+_PARTS = (_health, _benches, _live, _plans, _runs, _people)
+
+
+def application(service: Service, *, hosts: tuple[str, ...], rates: Rates | None = None) -> ASGIApp:
+    """The whole of it, guarded.
+
+    Args:
+        hosts: names by which browsers may call it; `*` for any.
+        rates: of requests that one address may send.
+    """
+    return Guard(_bare(service), hosts, rates or Rates())
+
+
+def openapi_text() -> str:
+    """The OpenAPI document, as it is kept in docs/reference/openapi.json."""
+    return json.dumps(_bare(None).openapi(), indent=1, ensure_ascii=False, sort_keys=True) + "\n"
+
+
+def _bare(service: Service | None) -> FastAPI:
+    app = FastAPI(
+        title="e-Axle HIL bench service",
+        version=importlib.metadata.version("eaxle-hil"),
+        docs_url=None,  # its page would be loaded from elsewhere
+        redoc_url=None,
+        openapi_url=f"{PREFIX}/openapi.json",
+        separate_input_output_schemas=False,
+        responses=RESPONSES,
+        generate_unique_id_function=lambda route: route.name,
+    )
+    app.state.service = service
+    for part in _PARTS:
+        app.include_router(part.router, prefix=PREFIX)
+    _page.add_to(app)
+    answer_problems(app)
+    return app

@@ -1,0 +1,95 @@
+"""Benches: what they do, stopping them, letting them move again, having one for oneself."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request
+
+from hil.service.api._access import COOKIE, Engineer, Operator, TheService, Viewer
+from hil.service.api._problems import RefusedError, missing
+from hil.service.data import BenchData, BenchName, LeaseData, LeaseWanted
+from hil.service.service import Service
+
+router = APIRouter(prefix="/benches", tags=["benches"])
+
+
+def known(service: Service, bench: str) -> str:
+    """The name of a bench that there is.
+
+    Raises:
+        RefusedError: there is none.
+    """
+    if bench not in service.benches:
+        raise missing("bench", bench)
+    return bench
+
+
+@router.get("", name="list_benches")
+async def list_benches(service: TheService, me: Viewer) -> list[BenchData]:
+    """All benches and what they do."""
+    del me
+    return [service.bench_data(name) for name in service.benches]
+
+
+@router.get("/{bench}", name="get_bench")
+async def get_bench(bench: BenchName, service: TheService, me: Viewer) -> BenchData:
+    """A bench and what it does."""
+    del me
+    return service.bench_data(known(service, bench))
+
+
+@router.post("/{bench}/emergency-stop", name="stop_in_emergency")
+async def stop_in_emergency(bench: BenchName, service: TheService, request: Request) -> BenchData:
+    """Have a bench safe at once, and keep it so until it is reset. Everybody may; no token is asked for."""
+    known(service, bench)
+    by, role = _named(service, request)
+    await service.stop_in_emergency(bench, by)
+    service.log.add(by, role, "emergency stop", bench)
+    return service.bench_data(bench)
+
+
+def _named(service: Service, request: Request) -> tuple[str, str]:
+    """Who asks, if they say so: nobody is refused here."""
+    header = request.headers.get("authorization", "")
+    secret = header[7:] if header.lower().startswith("bearer ") else request.cookies.get(COOKIE)
+    owner = service.tokens.owner_of(secret) if secret else None
+    if owner is not None:
+        return owner.name, owner.role
+    address = request.client.host if request.client else "unknown"
+    return f"somebody at {address}", ""
+
+
+@router.post("/{bench}/reset", name="reset_bench")
+async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> BenchData:
+    """Let a bench be armed again after an emergency stop."""
+    known(service, bench)
+    if service.queue.running(bench) is not None:
+        raise RefusedError(409, "a run is still being ended", where=bench, fix="wait until it is over")
+    count = service.benches[bench].reset(me.name)
+    service.log.add(me.name, me.role, "reset", bench, f"{count} stops")
+    service.queue.wake()
+    service.changed(bench)
+    return service.bench_data(bench)
+
+
+@router.put("/{bench}/lease", name="take_lease")
+async def take_lease(bench: BenchName, wanted: LeaseWanted, service: TheService, me: Operator) -> LeaseData:
+    """Have a bench for oneself for a while: runs of others wait. Ask again before it is over to go on."""
+    lease = service.leases.take(known(service, bench), me.name, wanted.for_s)
+    if lease is None:
+        raise RefusedError(409, "somebody else has it", where=bench, fix="wait until it is given back")
+    service.log.add(me.name, me.role, "lease", bench, f"{wanted.for_s:g} s")
+    service.changed(bench)
+    return lease
+
+
+@router.delete("/{bench}/lease", name="give_lease_back")
+async def give_lease_back(bench: BenchName, service: TheService, me: Operator) -> BenchData:
+    """Give a bench back; an engineer may do so for somebody else."""
+    lease = service.leases.of(known(service, bench))
+    if lease is not None and lease.holder != me.name and me.role not in ("engineer", "admin"):
+        raise RefusedError(403, f"{lease.holder} has it", where=bench)
+    service.leases.give_back(bench)
+    service.log.add(me.name, me.role, "lease given back", bench)
+    service.queue.wake()
+    service.changed(bench)
+    return service.bench_data(bench)

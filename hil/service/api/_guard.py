@@ -1,0 +1,120 @@
+"""What every request passes first: names, origins, sizes and rates; and headers that every answer has."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections import OrderedDict
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+MOST_BODY_BYTES = 256_000
+_EMERGENCY = "/emergency-stop"
+_MOST_ADDRESSES = 10_000
+_SAFE = ("GET", "HEAD", "OPTIONS")
+_POLICY = (
+    "default-src 'self'; img-src 'self' data:; object-src 'none'; base-uri 'none'; "
+    "frame-ancestors 'none'; form-action 'self'"
+)
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Requests that an address may send, a second and at once."""
+
+    a_second: float = 40.0
+    at_once: float = 200.0
+
+
+class Guard:
+    """Wraps the application. An emergency stop is never refused for its rate."""
+
+    def __init__(self, app: ASGIApp, hosts: tuple[str, ...], rates: Rates) -> None:
+        self._app, self._hosts, self._rates = app, hosts, rates
+        self._spent: OrderedDict[str, tuple[float, float]] = OrderedDict()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request, or refuse it."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        refusal = self._refusal(scope, headers)
+        if refusal is not None:
+            await _refuse(send, *refusal)
+            return
+        await self._app(scope, _Limited(receive).receive, _with_headers(send))
+
+    def _refusal(self, scope: Scope, headers: Headers) -> tuple[int, str] | None:
+        host = headers.get("host", "")
+        if "*" not in self._hosts and _name(host) not in self._hosts:
+            return 421, "the service is not called by this name; say --allow-host when it is begun"
+        origin = headers.get("origin")
+        if origin is not None and scope["method"] not in _SAFE and urlsplit(origin).netloc != host:
+            return 403, "the request comes from another site's page"
+        if not _fits(headers.get("content-length", "0")):
+            return 413, f"at most {MOST_BODY_BYTES} bytes are taken"
+        client = scope.get("client")
+        if not scope["path"].endswith(_EMERGENCY) and not self._may(client[0] if client else ""):
+            return 429, "too many requests; wait a second"
+        return None
+
+    def _may(self, address: str) -> bool:
+        """Whether an address has not sent too many; counts the request."""
+        now_s = time.monotonic()
+        spent, at_s = self._spent.pop(address, (0.0, now_s))
+        spent = max(0.0, spent - (now_s - at_s) * self._rates.a_second)
+        may = spent + 1.0 <= self._rates.at_once
+        self._spent[address] = (spent + may, now_s)
+        while len(self._spent) > _MOST_ADDRESSES:
+            self._spent.popitem(last=False)
+        return may
+
+
+class _Limited:
+    """A body that ends where it becomes too long: its size may not be known beforehand."""
+
+    def __init__(self, receive: Receive) -> None:
+        self._receive, self._left = receive, MOST_BODY_BYTES
+
+    async def receive(self) -> Message:
+        message = await self._receive()
+        self._left -= len(message.get("body", b""))
+        return message if self._left >= 0 else {"type": "http.disconnect"}
+
+
+def _name(host: str) -> str:
+    """The name of a Host header, without its port."""
+    try:
+        return urlsplit(f"//{host}").hostname or ""
+    except ValueError:
+        return ""
+
+
+def _fits(length: str) -> bool:
+    return length.isascii() and length.isdecimal() and int(length[:12]) <= MOST_BODY_BYTES
+
+
+async def _refuse(send: Send, status: int, what: str) -> None:
+    body = json.dumps({"what": what, "where": "", "fix": ""}).encode()
+    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
+    if status == 429:
+        headers.append((b"retry-after", b"1"))
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": body})
+
+
+def _with_headers(send: Send) -> Send:
+    async def sending(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            headers.setdefault("content-security-policy", _POLICY)
+            headers.setdefault("cache-control", "no-store")
+            headers["x-content-type-options"] = "nosniff"
+            headers["referrer-policy"] = "no-referrer"
+        await send(message)
+
+    return sending

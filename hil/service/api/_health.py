@@ -1,0 +1,38 @@
+"""Whether the service works, and what it counts."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import time
+
+from fastapi import APIRouter, Response
+
+from hil.service.api._access import TheService, Viewer
+from hil.service.data import Health
+
+router = APIRouter(tags=["service"])
+
+
+@router.get("/health", name="health")
+async def health(service: TheService) -> Health:
+    """Whether the service and its store work; asks for no token."""
+    service.tokens.any()
+    version = importlib.metadata.version("eaxle-hil")
+    return Health(status="ok", version=version, up_s=round(time.monotonic() - service.began_s, 1))
+
+
+@router.get("/metrics", name="metrics", response_class=Response)
+async def metrics(service: TheService, me: Viewer) -> Response:
+    """What Prometheus asks for."""
+    del me
+    lines = ["# HELP hil_runs Runs by bench and state.", "# TYPE hil_runs gauge"]
+    for (bench, state), count in sorted(service.runs.counts().items()):
+        lines.append(f'hil_runs{{bench="{bench}",state="{state}"}} {count}')
+    lines += ["# HELP hil_bench_state 1 for the state that a bench is in.", "# TYPE hil_bench_state gauge"]
+    for name in service.benches:
+        lines.append(f'hil_bench_state{{bench="{name}",state="{service.queue.state(name)[0]}"}} 1')
+    lines += ["# HELP hil_viewers Pages and programs that watch a bench.", "# TYPE hil_viewers gauge"]
+    lines += [f'hil_viewers{{bench="{name}"}} {len(some)}' for name, some in service.viewers.items()]
+    lines += ["# HELP hil_up_seconds Seconds since the service began.", "# TYPE hil_up_seconds counter"]
+    lines.append(f"hil_up_seconds {time.monotonic() - service.began_s:.1f}")
+    return Response("\n".join(lines) + "\n", media_type="text/plain; version=0.0.4")

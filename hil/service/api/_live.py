@@ -1,0 +1,155 @@
+"""What is live, as server-sent events. A viewer that is slow is sent less at a time, never what is old."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import AsyncIterator
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from fastapi import APIRouter
+from fastapi.responses import StreamingResponse
+
+from hil.service.api._access import TheService, Viewer
+from hil.service.api._benches import known
+from hil.service.api._problems import RefusedError
+from hil.service.data import BenchName
+from hil.service.live import BUCKET_S, Stretch
+from hil.service.service import OnShow, Service
+
+router = APIRouter(tags=["live"])
+#: What the page draws.
+CHANNELS = (
+    "motor_speed_rad_s",
+    "wheel_speed_rad_s",
+    "shaft_torque_nm",
+    "motor_torque_ref_nm",
+    "motor_torque_nm",
+    "vehicle_speed_m_s",
+)
+_MOST_VIEWERS = 200
+_SHORTEST_S = 0.05  # 20 updates a second
+_LONGEST_S = 10.0  # without anything to say
+_SPECTRUM_EVERY_S = 0.5
+_SHOWN_S = 30.0  # of a run that was under way before the viewer came
+_DIGITS = 6
+
+
+@router.get(
+    "/benches/{bench}/live",
+    name="live",
+    response_class=StreamingResponse,
+    responses={200: {"content": {"text/event-stream": {"schema": {"type": "string"}}}}},
+)
+async def live(bench: BenchName, service: TheService, me: Viewer) -> StreamingResponse:
+    """A bench as it changes: events `state`, `samples`, `spectrum` and `criteria` (docs/reference/api.md)."""
+    del me
+    known(service, bench)
+    if len(service.viewers[bench]) >= _MOST_VIEWERS:
+        raise RefusedError(429, f"{_MOST_VIEWERS} watch already")
+    return StreamingResponse(_Watching(service, bench).events(), media_type="text/event-stream")
+
+
+class _Watching:
+    """One viewer of one bench."""
+
+    def __init__(self, service: Service, bench: str) -> None:
+        self._service, self._bench = service, bench
+        self._run = -1
+        self._next_bucket = 0
+        self._version = -1
+        self._criteria: object = None
+        self._spectrum_s = self._spectrum_at_s = 0.0
+
+    async def events(self) -> AsyncIterator[str]:
+        """Whatever is new, as long as somebody takes it; a sender that has to wait skips nothing but time."""
+        told, viewers = asyncio.Event(), self._service.viewers[self._bench]
+        viewers.add(told)
+        try:
+            while not self._service.closing:
+                told.clear()
+                news = "".join(self._news())
+                yield news or ": still here\n\n"
+                await asyncio.sleep(_SHORTEST_S)
+                try:
+                    await asyncio.wait_for(told.wait(), _LONGEST_S)
+                except TimeoutError:
+                    continue
+        finally:
+            viewers.discard(told)
+
+    def _news(self) -> list[str]:
+        service, bench = self._service, self._bench
+        news = []
+        if service.version(bench) != self._version:
+            self._version = service.version(bench)
+            news.append(_event("state", _state(service, bench)))
+        shown = service.on_show.get(bench)
+        if shown is not None:
+            news += self._of_run(shown)
+        return news
+
+    def _of_run(self, shown: OnShow) -> list[str]:
+        news, buckets = [], shown.live.buckets
+        if shown.run != self._run:
+            self._run, self._criteria = shown.run, None
+            self._next_bucket = max(0, buckets.next - round(_SHOWN_S / BUCKET_S))
+        stretch = buckets.since(self._next_bucket)
+        if stretch is not None:
+            self._next_bucket = buckets.next
+            news.append(_event("samples", {"run": shown.run, **_samples(stretch)}))
+        if shown.criteria is not self._criteria:
+            self._criteria = shown.criteria
+            decided = [one.model_dump(mode="json", exclude={"definition"}) for one in shown.criteria]
+            news.append(_event("criteria", {"run": shown.run, "criteria": decided}))
+        return news + self._spectrum(shown)
+
+    def _spectrum(self, shown: OnShow) -> list[str]:
+        now_s = time.monotonic()
+        if now_s - self._spectrum_at_s < _SPECTRUM_EVERY_S or shown.live.time_s == self._spectrum_s:
+            return []
+        self._spectrum_at_s, self._spectrum_s = now_s, shown.live.time_s
+        found = shown.live.spectrum()
+        if found is None:
+            return []
+        values = {"step_hz": found.step_hz, "density": _numbers(found.density)}
+        return [_event("spectrum", {"run": shown.run, "band_energy": found.band_energy, **values})]
+
+
+def _state(service: Service, bench: str) -> dict[str, Any]:
+    running = service.queue.running(bench)
+    waiting = service.runs.all(bench=bench, states=("queued", "waiting_approval"), before=2**31 - 1, most=100)
+    waiting.sort(key=lambda run: (-run.priority, run.id))
+    run = service.with_progress(running.data) if running else None
+    return {
+        "bench": service.bench_data(bench).model_dump(mode="json"),
+        "running": run.model_dump(mode="json") if run else None,
+        "told": running.told if running else "",
+        "queue": [one.model_dump(mode="json") for one in waiting],
+    }
+
+
+def _samples(stretch: Stretch) -> dict[str, Any]:
+    columns = {name: stretch.names.index(name) for name in CHANNELS if name in stretch.names}
+    return {
+        "start_s": round(stretch.start_s, 3),
+        "width_s": round(stretch.width_s, 3),
+        "channels": {
+            name: {
+                "lowest": _numbers(stretch.lowest[:, column]),
+                "highest": _numbers(stretch.highest[:, column]),
+            }
+            for name, column in columns.items()
+        },
+    }
+
+
+def _numbers(values: npt.NDArray[np.float64]) -> list[float | None]:
+    return [float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None for value in values.tolist()]
+
+
+def _event(name: str, data: dict[str, Any]) -> str:
+    return f"event: {name}\ndata: {json.dumps(data, allow_nan=False, separators=(',', ':'))}\n\n"

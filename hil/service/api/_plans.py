@@ -1,0 +1,79 @@
+"""Plans, and what is known of a run of them beforehand."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Body, Request, Response
+
+from hil.service.api._access import Engineer, Operator, TheService, Viewer
+from hil.service.api._benches import known
+from hil.service.api._problems import RefusedError, missing
+from hil.service.data import ForecastData, ForecastWanted, PlanData, PlanName
+
+router = APIRouter(tags=["plans"])
+_YAML = "application/yaml"
+
+
+@router.get("/plans", name="list_plans")
+async def list_plans(service: TheService, me: Viewer) -> list[PlanData]:
+    """All plans."""
+    del me
+    return service.plans.all()
+
+
+@router.get("/plans/{plan}", name="get_plan")
+async def get_plan(plan: PlanName, service: TheService, me: Viewer) -> PlanData:
+    """A plan and its variables."""
+    del me
+    found = service.plans.get(plan)
+    if found is None:
+        raise missing("plan", plan)
+    return found
+
+
+@router.get("/plans/{plan}/text", name="get_plan_text", response_class=Response)
+async def get_plan_text(plan: PlanName, service: TheService, me: Viewer) -> Response:
+    """A plan's YAML."""
+    del me
+    text = service.plans.text(plan)
+    if text is None:
+        raise missing("plan", plan)
+    return Response(text, media_type=_YAML)
+
+
+@router.put(
+    "/plans/{plan}",
+    name="give_plan",
+    openapi_extra={"requestBody": {"required": True, "content": {_YAML: {"schema": {"type": "string"}}}}},
+)
+async def give_plan(plan: PlanName, request: Request, service: TheService, me: Engineer) -> PlanData:
+    """Give a plan (YAML), or replace one that was given."""
+    try:
+        text = (await request.body()).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise RefusedError(422, "is not UTF-8", where=plan) from error
+    found = service.plans.give(plan, text)
+    service.log.add(me.name, me.role, "plan given", plan)
+    return found
+
+
+@router.delete("/plans/{plan}", name="remove_plan", status_code=204)
+async def remove_plan(plan: PlanName, service: TheService, me: Engineer) -> None:
+    """Remove a plan that was given; its runs stay."""
+    if not service.plans.remove(plan):
+        raise missing("given plan", plan)
+    service.log.add(me.name, me.role, "plan removed", plan)
+
+
+@router.post("/forecasts", name="forecast")
+async def forecast(
+    wanted: Annotated[ForecastWanted, Body()], service: TheService, me: Operator
+) -> ForecastData:
+    """Duration, peaks and criteria as predicted; takes seconds, moves nothing."""
+    del me
+    bench = service.benches[known(service, wanted.bench)]
+    plan = service.plans.chosen(wanted.plan, wanted.values)
+    if plan is None:
+        raise missing("plan", wanted.plan)
+    return await service.forecasts.of(plan, bench.file)

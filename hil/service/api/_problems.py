@@ -1,0 +1,91 @@
+"""Errors as answers: what, where, and what to do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.exceptions import HTTPException
+
+from hil.core.errors import BadInputError, HilError
+from hil.service.data import Problem
+
+_MEANINGS = {
+    401: "a token is needed, or the one given is not valid",
+    403: "the token's role may not do this",
+    404: "there is no such thing",
+    405: "not with this method",
+    409: "not in the state that it is in",
+    413: "more than is taken",
+    421: "the service is not called by this name",
+    422: "what was given cannot be used",
+    429: "too many requests; Retry-After says when to go on",
+    503: "the bench, the store or a process of the service failed",
+}
+RESPONSES: dict[int | str, dict[str, Any]] = {
+    code: {"model": Problem, "description": meaning} for code, meaning in _MEANINGS.items()
+}
+
+
+class RefusedError(Exception):
+    """An answer with a status of HTTP."""
+
+    def __init__(self, status: int, what: str, *, where: str = "", fix: str = "") -> None:
+        super().__init__(what)
+        self.status, self.problem = status, Problem(what=what, where=where, fix=fix)
+
+
+def missing(kind: str, name: object) -> RefusedError:
+    """There is no such thing."""
+    return RefusedError(404, f"there is no {kind} '{name}'")
+
+
+def answer_problems(app: FastAPI) -> None:
+    """Have every error answered as a `Problem`."""
+    app.add_exception_handler(RefusedError, _refused)
+    app.add_exception_handler(HilError, _of_ours)
+    app.add_exception_handler(RequestValidationError, _not_valid)
+    app.add_exception_handler(HTTPException, _of_http)
+    app.add_exception_handler(SQLAlchemyError, _of_the_store)
+
+
+def _answer(status: int, problem: Problem, headers: dict[str, str] | None = None) -> JSONResponse:
+    return JSONResponse(problem.model_dump(), status, headers)
+
+
+async def _refused(request: Request, error: Exception) -> JSONResponse:
+    del request
+    assert isinstance(error, RefusedError)
+    headers = {"WWW-Authenticate": "Bearer"} if error.status == 401 else None
+    return _answer(error.status, error.problem, headers)
+
+
+async def _of_ours(request: Request, error: Exception) -> JSONResponse:
+    del request
+    assert isinstance(error, HilError)
+    status = 422 if isinstance(error, BadInputError) else 503
+    return _answer(status, Problem(what=error.what, where=error.where, fix=error.fix))
+
+
+async def _not_valid(request: Request, error: Exception) -> JSONResponse:
+    del request
+    assert isinstance(error, RequestValidationError)
+    first = error.errors()[0]
+    where = ".".join(str(part) for part in first["loc"])
+    return _answer(422, Problem(what=str(first["msg"])[:500], where=where[:200]))
+
+
+async def _of_http(request: Request, error: Exception) -> JSONResponse:
+    del request
+    assert isinstance(error, HTTPException)
+    headers = dict(error.headers) if error.headers else None
+    return _answer(error.status_code, Problem(what=str(error.detail)), headers)
+
+
+async def _of_the_store(request: Request, error: Exception) -> JSONResponse:
+    del request
+    what = f"the store failed: {type(error).__name__}"
+    return _answer(503, Problem(what=what, fix="look at the service's log, and at its disk"))

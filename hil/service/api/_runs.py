@@ -1,0 +1,174 @@
+"""Runs: wanted, watched, held, ended; and what they leave."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+from fastapi.responses import FileResponse
+from starlette.responses import Response
+
+from hil.service.api._access import Engineer, Operator, TheService, Viewer
+from hil.service.api._benches import known
+from hil.service.api._problems import RefusedError, missing
+from hil.service.data import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunWanted
+from hil.service.plans import hazard_of
+from hil.service.queue import RunningRun
+from hil.service.service import Service
+from hil.service.store import NewRun
+
+router = APIRouter(prefix="/runs", tags=["runs"])
+_LAST = 2**31 - 1
+#: Reports bring their own scripts: they may run them, and reach nothing of the service.
+_SANDBOX = "sandbox allow-scripts allow-downloads; default-src 'unsafe-inline' data: blob:"
+_MEDIA = {".html": "text/html", ".json": "application/json", ".pdf": "application/pdf", ".xml": "text/xml"}
+
+
+@router.get("", name="list_runs")
+async def list_runs(
+    service: TheService,
+    me: Viewer,
+    bench: Annotated[BenchName | None, Query()] = None,
+    state: Annotated[list[RunState] | None, Query(max_length=6)] = None,
+    before: Annotated[int, Query(ge=1, le=_LAST)] = _LAST,
+    most: Annotated[int, Query(ge=1, le=200)] = 50,
+) -> list[RunData]:
+    """Runs, newest first; `before` is the number of a run."""
+    del me
+    found = service.runs.all(bench=bench, states=state or (), before=before, most=most)
+    return [service.with_progress(run) for run in found]
+
+
+@router.post("", name="queue_run", status_code=201)
+async def queue_run(wanted: RunWanted, service: TheService, me: Operator) -> RunData:
+    """Queue a run; of a hazardous plan it waits until a second person has approved it."""
+    plan = service.plans.chosen(wanted.plan, wanted.values)
+    if plan is None:
+        raise missing("plan", wanted.plan)
+    hazard = hazard_of(plan)
+    if hazard and not me.tokens:
+        raise RefusedError(
+            403,
+            f"the plan is hazardous: {hazard}",
+            where=plan.name,
+            fix="make tokens (hil serve --add-token), so that a second person can approve it",
+        )
+    new = NewRun(
+        plan=plan.name,
+        title=plan.title,
+        plan_text=plan.text,
+        plan_source=str(plan.source),
+        bench=known(service, wanted.bench),
+        values=wanted.values,
+        requested_by=me.name,
+        priority=wanted.priority,
+        hazard=hazard,
+        confirmed_by=wanted.confirmed_by,
+        accept_expired=wanted.accept_expired,
+        key=f"{me.name}:{wanted.key}"[:100] if wanted.key else "",
+    )
+    run, is_new = service.runs.add(new, approved=not hazard)
+    if is_new:
+        service.log.add(me.name, me.role, "queue", f"run {run.id}", f"{run.plan} on {run.bench}")
+        service.queue.wake()
+        service.changed(run.bench)
+    return service.with_progress(run)
+
+
+@router.get("/{run}", name="get_run")
+async def get_run(run: RunId, service: TheService, me: Viewer) -> RunData:
+    """A run."""
+    del me
+    return service.with_progress(_there(service, run))
+
+
+@router.patch("/{run}", name="change_run")
+async def change_run(run: RunId, change: RunChange, service: TheService, me: Engineer) -> RunData:
+    """Change the place of a run in its queue."""
+    found = _there(service, run)
+    if not service.runs.set_priority(run, change.priority):
+        raise RefusedError(409, f"run {run} does not wait any more")
+    return _done(service, me, found, "priority", str(change.priority))
+
+
+@router.post("/{run}/approve", name="approve_run")
+async def approve_run(run: RunId, service: TheService, me: Engineer) -> RunData:
+    """Approve a run of a hazardous plan; who wanted it cannot."""
+    found = _there(service, run)
+    if found.requested_by == me.name:
+        raise RefusedError(403, "a second person approves it", where=f"run {run}")
+    if not service.runs.approve(run, me.name):
+        raise RefusedError(409, f"run {run} does not wait for approval")
+    return _done(service, me, found, "approve")
+
+
+@router.post("/{run}/pause", name="pause_run")
+async def pause_run(run: RunId, service: TheService, me: Operator) -> RunData:
+    """Hold a run at its next safe point; without an answer it ends after ten minutes."""
+    _running(service, run).process.pause()
+    return _done(service, me, _there(service, run), "pause")
+
+
+@router.post("/{run}/resume", name="resume_run")
+async def resume_run(run: RunId, service: TheService, me: Operator) -> RunData:
+    """Let a run go on that is held."""
+    _running(service, run).process.resume()
+    return _done(service, me, _there(service, run), "resume")
+
+
+@router.post("/{run}/answer", name="answer_run")
+async def answer_run(run: RunId, answer: Answer, service: TheService, me: Operator) -> RunData:
+    """Answer the operator's prompt of a run."""
+    _running(service, run).process.answer(answer.text)
+    return _done(service, me, _there(service, run), "answer", answer.text)
+
+
+@router.post("/{run}/abort", name="abort_run")
+async def abort_run(run: RunId, service: TheService, me: Operator) -> RunData:
+    """End a run: one that waits is cancelled, one under way goes to its end steps and keeps what it has."""
+    found = _there(service, run)
+    running = service.queue.running_run(run)
+    if running is not None:
+        running.process.end()
+    elif not service.runs.cancel(run, f"cancelled by {me.name}"):
+        raise RefusedError(409, f"run {run} is over")
+    return _done(service, me, found, "abort")
+
+
+@router.get("/{run}/files/{name}", name="get_run_file", response_class=Response)
+async def get_run_file(run: RunId, name: str, service: TheService, me: Viewer) -> FileResponse:
+    """A file of a run that is over."""
+    del me
+    if name not in service.with_progress(_there(service, run)).files:
+        raise missing("file", name)
+    path = service.queue.folder_of(run) / name
+    media = _MEDIA.get(path.suffix, "application/octet-stream" if path.suffix == ".mcap" else "text/plain")
+    headers = {"content-security-policy": _SANDBOX} if path.suffix == ".html" else {}
+    inline = path.suffix != ".mcap"
+    kind = "inline" if inline else "attachment"
+    return FileResponse(
+        path, media_type=media, filename=f"{run}-{name}", content_disposition_type=kind, headers=headers
+    )
+
+
+def _there(service: Service, run: int) -> RunData:
+    found = service.runs.get(run)
+    if found is None:
+        raise missing("run", run)
+    return found
+
+
+def _running(service: Service, run: int) -> RunningRun:
+    _there(service, run)
+    found = service.queue.running_run(run)
+    if found is None:
+        raise RefusedError(409, f"run {run} is not under way")
+    return found
+
+
+def _done(service: Service, me: Me, run: RunData, action: str, detail: str = "") -> RunData:
+    """Write it down, have it looked at, and show the run as it is now."""
+    service.log.add(me.name, me.role, action, f"run {run.id}", detail)
+    service.queue.wake()
+    service.changed(run.bench)
+    return service.with_progress(_there(service, run.id))

@@ -1,0 +1,98 @@
+"""The benches of a service: their files, and whether one may be driven now."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hil.core.channels import unit_of
+from hil.core.errors import BadInputError, BenchError
+from hil.engine import BenchFile, load_bench
+from hil.engine.bench_lock import alone_on
+from hil.engine.emergency_stop import latch, refuse_latched, reset
+from hil.engine.ranges import limits_of_channels
+
+
+class Bench:
+    """A bench; its file is read when the service begins, and again before each run."""
+
+    def __init__(self, name_or_path: str) -> None:
+        self._named = name_or_path
+        self.file = load_bench(name_or_path)
+        self.name = self.file.name
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """Largest magnitude by channel; of the shaft torque, whose sides are limited, also both together."""
+        return limits_of_channels(self.file.limits) | {"shaft_torque_nm": self.file.limits.shaft_torque_nm}
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the limited channels."""
+        return {name: unit_of(name) for name in self.limits}
+
+    def read_again(self) -> BenchFile:
+        """The file as it is now.
+
+        Raises:
+            BadInputError: it cannot be used any more, or names another bench.
+        """
+        file = load_bench(self._named)
+        if file.name != self.name:
+            raise BadInputError(
+                f"was '{self.name}' when the service began and is '{file.name}' now",
+                where=str(file.source),
+                fix="give it its name back, or begin the service anew",
+            )
+        self.file = file
+        return file
+
+    def stopped(self) -> str:
+        """Why nothing may move until somebody resets it; '' if nothing is latched."""
+        try:
+            refuse_latched(self.file)
+        except BenchError as error:
+            return error.what
+        return ""
+
+    def used_by(self) -> str:
+        """Which process drives its buses; '' if none does."""
+        try:
+            with alone_on(self.file):
+                return ""
+        except BenchError as error:
+            return error.what
+
+    def stop(self, by: str, folder: Path) -> None:
+        """Latch it: no process arms it before a person has reset it.
+
+        Raises:
+            HilError: that cannot be written.
+        """
+        latch(self.file, by=by, why=f"{by} asked for it at the bench service", run=folder)
+
+    def reset(self, by: str) -> int:
+        """Let it be armed again; how many stops there were.
+
+        Raises:
+            HilError: that cannot be written.
+        """
+        return len(reset(self.file, by))
+
+
+def benches_of(names: list[str]) -> dict[str, Bench]:
+    """Benches by the names in their files.
+
+    Raises:
+        BadInputError: one of the files cannot be used, or two have the same name.
+    """
+    found: dict[str, Bench] = {}
+    for name in names:
+        bench = Bench(name)
+        if bench.name in found:
+            raise BadInputError(
+                f"the name '{bench.name}' is given to two benches",
+                where=str(bench.file.source),
+                fix="rename one of them in its file",
+            )
+        found[bench.name] = bench
+    return found

@@ -1,0 +1,246 @@
+"""What passes over the API, both ways. Names, units and states: docs/reference/api.md."""
+
+from __future__ import annotations
+
+import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+#: Largest number that every database and every JavaScript takes as it is.
+_LARGEST_ID = 2**31 - 1
+
+RunId = Annotated[int, Field(ge=1, le=_LARGEST_ID)]
+BenchName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$")]
+PlanName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$")]
+#: A person's or a program's name as it stands in reports: printable, on one line.
+PersonName = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f-\x9f]+$")]
+Number = Annotated[float, Field(allow_inf_nan=False)]
+
+#: `waiting_approval`: hazardous, and nobody has approved it. `interrupted`: the service ended meanwhile.
+RunState = Literal["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"]
+OVER: tuple[RunState, ...] = ("ended", "interrupted", "cancelled")
+
+BenchState = Literal["free", "running", "ending", "in_use", "emergency_stop"]
+Role = Literal["viewer", "operator", "engineer", "admin"]
+ROLES: tuple[Role, ...] = ("viewer", "operator", "engineer", "admin")
+
+
+class _Data(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class Problem(_Data):
+    """Why something was refused: what, where, and what to do."""
+
+    what: str
+    where: str = ""
+    fix: str = ""
+
+
+class Health(_Data):
+    """Whether the service works."""
+
+    status: Literal["ok"]
+    version: str
+    up_s: float = Field(description="seconds since the service began")
+
+
+class RunWanted(_Data):
+    """A run to be queued."""
+
+    plan: PlanName
+    bench: BenchName
+    values: dict[str, Number] = Field({}, max_length=100, description="variables of the plan by name")
+    priority: int = Field(0, ge=-100, le=100, description="higher ones first; equal ones as they came")
+    confirmed_by: str = Field(
+        "", max_length=100, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$", description="who confirms every prompt"
+    )
+    accept_expired: str = Field(
+        "",
+        max_length=500,
+        pattern=r"^[^\x00-\x1f\x7f-\x9f]*$",
+        description="'NAME: reason' of who answers for sensors whose calibration has run out",
+    )
+    key: str = Field(
+        "",
+        max_length=100,
+        pattern=r"^[A-Za-z0-9_.:-]*$",
+        description="a request that is repeated with the same key queues no second run",
+    )
+
+
+class RunData(_Data):
+    """A run: wanted, under way, or over."""
+
+    id: RunId
+    plan: str
+    title: str
+    bench: str
+    state: RunState
+    values: dict[str, float]
+    priority: int
+    hazard: str = Field("", description="why its plan is hazardous; '' if it is not")
+    requested_by: str
+    approved_by: str = ""
+    queued_at: datetime.datetime
+    started_at: datetime.datetime | None = None
+    ended_at: datetime.datetime | None = None
+    share: float | None = Field(None, description="how much is done, 0 to 1, while it is running")
+    doing: str = Field("", description="what is going on, while it is running")
+    exit_code: int | None = Field(None, description="as `hil run` would have ended")
+    verdict: Literal["pass", "fail", "error"] | None = None
+    safe_state: Literal["confirmed", "not_confirmed", "not_needed"] | None = None
+    reason: str = Field("", description="what stopped it, or why it waits")
+    files: list[str] = Field([], description="names of its files, once it is over")
+
+
+class RunChange(_Data):
+    """What can be changed of a run that waits."""
+
+    priority: int = Field(ge=-100, le=100)
+
+
+class Answer(_Data):
+    """A line for the operator's prompt of a run."""
+
+    text: str = Field("", max_length=500, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")
+
+
+class BenchData(_Data):
+    """A bench and what it does."""
+
+    name: str
+    title: str
+    simulated: bool
+    state: BenchState
+    why: str = Field("", description="who uses it, or why nothing may move")
+    running: RunId | None = None
+    waiting: int = Field(description="runs in its queue")
+    limits: dict[str, float] = Field(description="largest magnitude by channel, in the channel's unit")
+    units: dict[str, str] = Field(description="unit by channel, of all that is recorded")
+    lease: str = Field("", description="who has it for themselves")
+
+
+class VariableData(_Data):
+    """A number of a plan that a run may choose."""
+
+    default: float
+    unit: str = ""
+    lower: float | None = None
+    upper: float | None = None
+    description: str = ""
+
+
+class PlanData(_Data):
+    """A plan that can be queued."""
+
+    name: str
+    title: str
+    description: str
+    hazard: str = ""
+    built_in: bool
+    variables: dict[str, VariableData]
+
+
+class ForecastWanted(_Data):
+    """What is to be known before a run."""
+
+    plan: PlanName
+    bench: BenchName
+    values: dict[str, Number] = Field({}, max_length=100)
+
+
+class PredictedPeak(_Data):
+    """Largest magnitude of a channel, and the bench's limit, in the channel's unit."""
+
+    value: float
+    limit: float
+
+
+class PredictedCriterion(_Data):
+    """A criterion as it is predicted."""
+
+    id: str
+    value: float | None
+    unit: str
+    upper: float | None = None
+    lower: float | None = None
+    below: str = Field("", description="segment whose value is the limit")
+    verdict: str
+    margin: float | None = None
+    title: str = ""
+    reason: str = ""
+
+
+class ForecastData(_Data):
+    """Duration, peaks and criteria of a plan on a bench, as predicted."""
+
+    fits: bool
+    duration_s: float
+    predicted: dict[str, PredictedPeak]
+    criteria: list[PredictedCriterion]
+
+
+class Me(_Data):
+    """Who asks, and what they may do."""
+
+    name: str
+    role: Role
+    tokens: bool = Field(description="whether this service asks for tokens")
+
+
+class TokenWanted(_Data):
+    """A token to be made."""
+
+    name: PersonName
+    role: Role
+
+
+class TokenData(_Data):
+    """A token, without its secret."""
+
+    id: RunId
+    name: str
+    role: Role
+    made_at: datetime.datetime
+    revoked_at: datetime.datetime | None = None
+
+
+class TokenMade(_Data):
+    """A new token; its secret is told this once."""
+
+    token: TokenData
+    secret: str
+
+
+class Login(_Data):
+    """A token for the page."""
+
+    secret: str = Field(min_length=1, max_length=200, pattern=r"^[\x21-\x7e]+$")
+
+
+class AuditEntry(_Data):
+    """Something that somebody did."""
+
+    id: int
+    at: datetime.datetime
+    who: str
+    role: str
+    action: str
+    target: str
+    detail: str
+
+
+class LeaseWanted(_Data):
+    """A bench for oneself for a while; renewed by asking again."""
+
+    for_s: float = Field(60.0, ge=1, le=3600, allow_inf_nan=False)
+
+
+class LeaseData(_Data):
+    """Who has a bench, until when; afterwards it is free by itself."""
+
+    bench: str
+    holder: str
+    until: datetime.datetime

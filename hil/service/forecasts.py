@@ -1,0 +1,84 @@
+"""What is known of a run beforehand: `hil check` in a process of its own, so that nothing waits for it."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import sys
+import tempfile
+from collections import OrderedDict
+from collections.abc import Sequence
+from pathlib import Path
+
+from hil.core.errors import BadInputError, BenchError
+from hil.engine import BenchFile
+from hil.service.data import ForecastData
+from test_plans import Plan
+
+_AT_ONCE = 1  # a run needs the other processor
+_WITHIN_S = 180.0
+_KEPT = 100
+_NICENESS = 10
+
+
+class Forecasts:
+    """Forecasts by plan and bench; the newest ones are kept."""
+
+    def __init__(self, command: Sequence[str]) -> None:
+        self._command = command
+        self._turn = asyncio.Semaphore(_AT_ONCE)
+        self._known: OrderedDict[tuple[str, str], ForecastData] = OrderedDict()
+
+    async def of(self, plan: Plan, bench: BenchFile) -> ForecastData:
+        """Duration, peaks and criteria.
+
+        Raises:
+            BadInputError: the plan asks for more than the bench allows.
+            BenchError: it cannot be predicted.
+        """
+        key = plan.text, bench.text
+        if key not in self._known:
+            async with self._turn:
+                if key not in self._known:
+                    self._known[key] = await self._made(plan, bench)
+        self._known.move_to_end(key)
+        while len(self._known) > _KEPT:
+            self._known.popitem(last=False)
+        return self._known[key]
+
+    async def _made(self, plan: Plan, bench: BenchFile) -> ForecastData:
+        with tempfile.TemporaryDirectory(prefix="hil-forecast-") as folder:
+            file = Path(folder) / "plan.yaml"
+            file.write_text(plan.text, "utf-8")
+            code, out, said = await self._carried_out("check", str(file), f"--bench={bench.source}", "--json")
+        if code in (0, 1):
+            found = json.loads(out)
+            return ForecastData.model_validate({name: found[name] for name in ForecastData.model_fields})
+        what = said.removeprefix("error: ").strip().replace(str(file), plan.name)
+        kind = BadInputError if code == BadInputError.exit_code else BenchError
+        raise kind(what or "the forecast was ended", where="forecast")
+
+    async def _carried_out(self, *arguments: str) -> tuple[int, bytes, str]:
+        process = await asyncio.create_subprocess_exec(
+            *self._command,
+            *arguments,
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.PIPE,
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            start_new_session=True,
+        )
+        with contextlib.suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, process.pid, _NICENESS)
+        try:
+            out, said = await asyncio.wait_for(process.communicate(), _WITHIN_S)
+        except BaseException as error:
+            with contextlib.suppress(ProcessLookupError):
+                process.kill()
+            await process.wait()
+            if isinstance(error, TimeoutError):
+                raise BenchError(f"took more than {_WITHIN_S:g} s", where="forecast") from error
+            raise
+        return process.returncode or 0, out, said.decode("utf-8", "replace")

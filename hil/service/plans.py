@@ -1,0 +1,140 @@
+"""The plans of a service: those that are built in, and those that people gave."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from pydantic import BaseModel
+
+from hil.core.errors import BadInputError
+from hil.core.files import make_directory, read_text, write_atomically
+from hil.core.printable import printable
+from hil.service.data import PlanData, VariableData
+from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
+
+
+class Plans:
+    """Plans by name. A plan that was given may load built-in controllers and no other file.
+
+    Args:
+        folder: where given plans are kept, each in a file of its name; nothing else lies there.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        make_directory(folder)
+        self._built_in = {name: load_plan(name) for name in library_plans()}
+
+    def all(self) -> list[PlanData]:
+        """What there is; a plan that cannot be read any more is left out."""
+        given = []
+        for path in sorted(self._folder.glob("[!.]*.yaml")):
+            with contextlib.suppress(BadInputError):
+                given.append(_data(load_plan(path), built_in=False))
+        return [*(_data(plan, built_in=True) for plan in self._built_in.values()), *given]
+
+    def get(self, name: str) -> PlanData | None:
+        """One of them.
+
+        Raises:
+            BadInputError: it cannot be read any more.
+        """
+        path = self._path(name)
+        return None if path is None else _data(load_plan(path), built_in=name in self._built_in)
+
+    def chosen(self, name: str, values: Mapping[str, float]) -> Plan | None:
+        """A plan with its variables as chosen; None if there is none of the name.
+
+        Raises:
+            BadInputError: a variable that it does not have, or a value beyond its bounds.
+        """
+        path = self._path(name)
+        return None if path is None else load_plan(path, Choices(values=values))
+
+    def text(self, name: str) -> str | None:
+        """The YAML of one."""
+        path = self._path(name)
+        return None if path is None else read_text(path)
+
+    def give(self, name: str, text: str) -> PlanData:
+        """Keep a plan; one of the same name is replaced. Runs that are queued keep theirs.
+
+        Raises:
+            BadInputError: all that is wrong with it.
+        """
+        if name in self._built_in:
+            raise BadInputError("is the name of a built-in plan", where=name, fix="give it another name")
+        where = f"{name}.yaml"
+        for file in _files_of(plan_from_text(text, where, self._folder, files_required=False)):
+            if file.name != str(file):
+                raise BadInputError(
+                    f"loads the file {printable(repr(str(file)), 100)}",
+                    where=where,
+                    fix="a plan that is given to the service loads built-in controllers, by their names",
+                )
+        plan = plan_from_text(text, where, self._folder)
+        if plan.name != name:
+            raise BadInputError(
+                f"the plan calls itself '{plan.name}'", where=where, fix="give it under that name"
+            )
+        write_atomically(self._folder / where, text)
+        return _data(plan, built_in=False)
+
+    def remove(self, name: str) -> bool:
+        """Remove a plan that was given; false if there is none."""
+        path = self._path(name)
+        if path is None or name in self._built_in:
+            return False
+        path.unlink(missing_ok=True)
+        return True
+
+    def _path(self, name: str) -> Path | None:
+        if name in self._built_in:
+            return self._built_in[name].source
+        path = self._folder / f"{name}.yaml"
+        return path if path.parent == self._folder and path.is_file() else None
+
+
+def _files_of(value: object) -> Iterator[Path]:
+    """All files that a plan's steps name, also steps within steps."""
+    if isinstance(value, Path):
+        yield value
+    elif isinstance(value, Plan):
+        yield from _files_of((value.steps, value.finally_))
+    elif isinstance(value, BaseModel):
+        for name in type(value).model_fields:
+            yield from _files_of(getattr(value, name))
+    elif isinstance(value, list | tuple):
+        for one in value:
+            yield from _files_of(one)
+    elif isinstance(value, dict):
+        yield from _files_of(list(value.values()))
+
+
+def _data(plan: Plan, *, built_in: bool) -> PlanData:
+    return PlanData(
+        name=plan.name,
+        title=plan.title,
+        description=plan.description,
+        hazard=hazard_of(plan),
+        built_in=built_in,
+        variables={
+            name: VariableData(
+                default=one.default,
+                unit=one.unit,
+                lower=one.lower,
+                upper=one.upper,
+                description=one.description,
+            )
+            for name, one in plan.variables.items()
+        },
+    )
+
+
+def hazard_of(plan: Plan) -> str:
+    """Why a plan is hazardous, in its words; '' if it is not."""
+    if not plan.hazardous:
+        return ""
+    return plan.hazardous if isinstance(plan.hazardous, str) else "the plan says so"

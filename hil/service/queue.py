@@ -1,0 +1,246 @@
+"""The queue: begins the runs of each bench one after the other, each in a process of its own.
+
+A run is written down as running before its process is started, and as over when that has ended. Whatever
+the moment at which the service is killed: what was running is found again, and is never begun twice.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from hil.core.errors import BenchError, HilError
+from hil.core.files import make_directory, write_atomically
+from hil.engine import RECORDING
+from hil.engine.border_messages import Progressed, Refused, RunAsked, Told
+from hil.service.benches import Bench
+from hil.service.data import BenchState, RunData, RunState
+from hil.service.run_process import RunProcess, alive_in, result_in
+from hil.service.store import LeaseStore, RunStore, TakenRun
+
+_LOOK_S = 0.5  # how often a bench is looked at that cannot be driven now
+_USED_S = 1.0  # how old that look may be for those who ask over the API
+_NOTHING = "the service ended before anything was recorded; the run can be queued again"
+_KEPT = "the service ended meanwhile; what was measured until then is kept"
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass
+class RunningRun:
+    """A run under way. `told`: the last text for its operator."""
+
+    data: RunData
+    folder: Path
+    process: RunProcess
+    share: float | None = None
+    doing: str = "beginning"
+    told: str = ""
+
+
+@dataclass
+class _Place:
+    """A bench and what goes on on it."""
+
+    bench: Bench
+    running: RunningRun | None = None
+    left: list[RunData] = field(default_factory=list)  # of an earlier service, perhaps still ending
+    used_by: str = ""
+    looked_s: float = -1e9
+
+
+class Queue:
+    """Runs the runs.
+
+    Args:
+        folder: where each run has a folder of its own, by its number.
+        command: starts a process that carries a run out (`hil.cli._served_run`).
+        changed: called whenever something is to be shown anew, with the bench's name.
+    """
+
+    def __init__(
+        self,
+        benches: dict[str, Bench],
+        runs: RunStore,
+        leases: LeaseStore,
+        folder: Path,
+        command: Sequence[str],
+        changed: Callable[[str], None] = lambda bench: None,
+    ) -> None:
+        self._places = {name: _Place(bench) for name, bench in benches.items()}
+        self._runs, self._leases, self._folder, self._command = runs, leases, folder, command
+        self._changed = changed
+        self._wake = asyncio.Event()
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._closing = False
+        for run in runs.running():
+            if run.bench in self._places:
+                self._places[run.bench].left.append(run)
+            elif not alive_in(self.folder_of(run.id)):
+                self._conclude_left(run)
+
+    def folder_of(self, run: int) -> Path:
+        """Where the files of a run are."""
+        return self._folder / f"{run:06d}"
+
+    def wake(self) -> None:
+        """Look at all benches now."""
+        self._wake.set()
+
+    def running(self, bench: str) -> RunningRun | None:
+        """The run under way on a bench."""
+        return self._places[bench].running
+
+    def running_run(self, run: int) -> RunningRun | None:
+        """A run by its number, if it is under way."""
+        found = (place.running for place in self._places.values())
+        return next((one for one in found if one is not None and one.data.id == run), None)
+
+    def state(self, bench: str) -> tuple[BenchState, str]:
+        """What a bench does, and why it may not be driven."""
+        place = self._places[bench]
+        stopped = place.bench.stopped()
+        if stopped:
+            return "emergency_stop", stopped
+        if place.running is not None:
+            return "running", place.running.doing
+        if place.left:
+            return "ending", f"run {place.left[0].id} of an earlier service is being ended"
+        used = self._used_by(place)
+        return ("in_use", used) if used else ("free", "")
+
+    async def work(self) -> None:
+        """Begin runs as benches become free, until `close`."""
+        while not self._closing:
+            for place in self._places.values():
+                await self._look(place)
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._wake.wait(), _LOOK_S)
+            self._wake.clear()
+
+    async def close(self, hurry: Callable[[], bool]) -> None:
+        """Begin nothing more and end what is under way; wait for its end unless somebody is in a hurry."""
+        self._closing = True
+        self._wake.set()
+        for place in self._places.values():
+            if place.running is not None:
+                place.running.process.end()
+        while self._tasks and not hurry():
+            await asyncio.wait(self._tasks, timeout=0.1)
+
+    async def _look(self, place: _Place) -> None:
+        for left in list(place.left):
+            if not alive_in(self.folder_of(left.id)):
+                self._conclude_left(left)
+                place.left.remove(left)
+                self._changed(left.bench)
+        if place.running is not None or place.left or place.bench.stopped():
+            return
+        lease = self._leases.of(place.bench.name)
+        run = self._runs.next_of(place.bench.name, lease.holder if lease else None)
+        if run is None or self._used_by(place, fresh=True):
+            return
+        taken = self._runs.take(run.id)
+        if taken is not None:
+            await self._begin(place, taken)
+
+    def _used_by(self, place: _Place, *, fresh: bool = False) -> str:
+        if fresh or time.monotonic() - place.looked_s > _USED_S:
+            place.used_by, place.looked_s = place.bench.used_by(), time.monotonic()
+        return place.used_by
+
+    async def _begin(self, place: _Place, taken: TakenRun) -> None:
+        run, folder = taken.data, self.folder_of(taken.data.id)
+        try:
+            make_directory(folder)
+            write_atomically(folder / "plan.yaml", taken.plan_text)
+            asked = _asked(taken, place.bench, folder)
+            process = await RunProcess.begin(self._command, asked)
+        except (HilError, OSError) as error:
+            code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
+            self._runs.end(run.id, "ended", exit_code=code, reason=str(error))
+            self._changed(run.bench)
+            return
+        place.running = RunningRun(run, folder, process)
+        logger.info("run %d begins on %s", run.id, run.bench)
+        self._changed(run.bench)
+        task = asyncio.create_task(self._watch(place, place.running))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _watch(self, place: _Place, running: RunningRun) -> None:
+        """Listen to a run until it has ended, and write down how."""
+        refused: HilError | None = None
+        async for message in running.process.messages():
+            if isinstance(message, Progressed):
+                running.share = message.share if message.share >= 0 else running.share
+                running.doing = message.text
+            elif isinstance(message, Told):
+                running.told = message.text
+            elif isinstance(message, Refused):
+                refused = message.error.as_error()
+            self._changed(running.data.bench)
+        code = await running.process.exit_code()
+        try:
+            self._conclude(place, running, code, refused)
+        finally:
+            place.running = None
+            self.wake()
+            self._changed(running.data.bench)
+
+    def _conclude(self, place: _Place, running: RunningRun, code: int, refused: HilError | None) -> None:
+        run, result = running.data, result_in(running.folder)
+        recorded = (running.folder / RECORDING).exists()
+        if refused is not None and not recorded and not self._closing and self._used_by(place, fresh=True):
+            logger.info("run %d waits again: somebody was quicker on %s", run.id, run.bench)
+            self._runs.put_back(run.id)
+            return
+        reason = "" if result is not None else str(refused or f"its process ended with code {code}")
+        if result is None and recorded:
+            reason += f"\n  hil recover {running.folder} makes a whole recording of what was measured"
+        state: RunState = "interrupted" if self._closing else "ended"
+        dut = place.bench.file.dut.get("serial", place.bench.file.dut.get("name", ""))
+        self._runs.end(run.id, state, exit_code=code, result=result, reason=reason, dut=dut)
+        logger.info("run %d ended on %s with code %d", run.id, run.bench, code)
+
+    def _conclude_left(self, run: RunData) -> None:
+        """Mark a run whose service was killed; its process has ended."""
+        folder = self.folder_of(run.id)
+        result = result_in(folder)
+        reason = _KEPT if (folder / RECORDING).exists() else _NOTHING
+        if result is not None and result.reason:
+            reason += f": {result.reason}"
+        logger.warning("run %d: %s", run.id, reason)
+        self._runs.end(run.id, "interrupted", result=result, reason=reason)
+
+
+def _asked(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:
+    """What the process of a run is told.
+
+    Raises:
+        BadInputError: the bench's file cannot be used any more.
+    """
+    run, file = taken.data, bench.read_again()
+    return RunAsked(
+        plan=taken.plan_text,
+        plan_source=taken.plan_source,
+        bench=file.text,
+        bench_source=str(file.source),
+        out=str(folder),
+        operator=run.requested_by,
+        operator_is_there=True,
+        confirmed_by=taken.confirmed_by,
+        hazard_confirmed_by=_takes_it_upon_them(run),
+        accept_expired=taken.accept_expired,
+    )
+
+
+def _takes_it_upon_them(run: RunData) -> str:
+    if not run.hazard:
+        return ""
+    return f"{run.requested_by}, approved by {run.approved_by}" if run.approved_by else run.requested_by

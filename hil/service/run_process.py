@@ -1,0 +1,110 @@
+"""A run's own process: started, told what to do, listened to. It is what `hil run` is, without a terminal."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import sys
+from collections.abc import AsyncIterator, Sequence
+from pathlib import Path
+
+from hil.core.errors import BenchError
+from hil.core.locks import HeldError, lock_on
+from hil.core.result import RunResult
+from hil.engine.border_messages import Message, RunAsked, Typed, from_line, to_line
+from hil.engine.operator import EMERGENCY, END, PAUSE, RESUME
+
+RESULT = "result.json"
+#: Locked from before the process begins until it has ended, whoever has ended it.
+_ALIVE = "run.lock"
+_LONGEST_LINE = 1 << 24
+
+
+class RunProcess:
+    """One run in a process of its own, which ends its run by itself when the service is gone."""
+
+    def __init__(self, process: asyncio.subprocess.Process) -> None:
+        self._process = process
+
+    @classmethod
+    async def begin(cls, command: Sequence[str], asked: RunAsked) -> RunProcess:
+        """Start the process and tell it what to do.
+
+        Raises:
+            OSError: it cannot be started, or its folder cannot be written.
+        """
+        alive = Path(asked.out) / _ALIVE
+        alive.touch()
+        with lock_on(alive) as lock:
+            process = await asyncio.create_subprocess_exec(
+                *command,
+                Path(asked.out).name,
+                stdin=asyncio.subprocess.PIPE,
+                stdout=asyncio.subprocess.PIPE,
+                stderr=asyncio.subprocess.DEVNULL,
+                pass_fds=[lock],
+                env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+                start_new_session=True,  # a terminal's Ctrl-C is for the service
+                limit=_LONGEST_LINE,
+            )
+        run = cls(process)
+        run._say(asked)
+        return run
+
+    def pause(self) -> None:
+        """Hold the run at its next safe point."""
+        self._say(Typed(line=PAUSE))
+
+    def resume(self) -> None:
+        """Let a run go on that is held."""
+        self._say(Typed(line=RESUME))
+
+    def end(self) -> None:
+        """End the run, with its end steps."""
+        self._say(Typed(line=END))
+
+    def stop_in_emergency(self) -> None:
+        """Have the bench safe at once."""
+        self._say(Typed(line=EMERGENCY))
+
+    def answer(self, text: str) -> None:
+        """A line for the operator's prompt."""
+        self._say(Typed(line=text))
+
+    async def messages(self) -> AsyncIterator[Message]:
+        """What it says, until it has ended."""
+        assert self._process.stdout is not None
+        while line := await self._process.stdout.readline():
+            with contextlib.suppress(BenchError):  # a line that was cut off by its end
+                yield from_line(line)
+
+    async def exit_code(self) -> int:
+        """As `hil run` has it; 3 if it was killed."""
+        code = await self._process.wait()
+        return code if code >= 0 else BenchError.exit_code
+
+    def _say(self, message: Message) -> None:
+        if self._process.stdin is not None and not self._process.stdin.is_closing():
+            self._process.stdin.write(to_line(message))
+
+
+def alive_in(folder: Path) -> bool:
+    """Whether a process still works in a run's folder: the run's own, or the one that holds the bench."""
+    for place in (folder / _ALIVE, folder):
+        try:
+            with lock_on(place):
+                pass
+        except HeldError:
+            return True
+        except OSError:
+            continue
+    return False
+
+
+def result_in(folder: Path) -> RunResult | None:
+    """The result that a run has left, if it came so far."""
+    try:
+        return RunResult.model_validate_json((folder / RESULT).read_bytes())
+    except (OSError, ValueError):
+        return None

@@ -1,0 +1,169 @@
+"""The service as a whole: benches, plans, queue, what is live, and who is to be told of a change."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from sqlalchemy import Engine
+
+from hil.core.errors import HilError
+from hil.core.result import CriterionResult
+from hil.engine import RECORDING
+from hil.service.benches import Bench
+from hil.service.data import OVER, BenchData, RunData
+from hil.service.forecasts import Forecasts
+from hil.service.live import LiveRun
+from hil.service.plans import Plans
+from hil.service.queue import Queue
+from hil.service.store import LeaseStore, LogStore, RunStore, TokenStore
+from test_plans import plan_from_text
+
+_LOOK_S = 0.1
+_JUDGE_S = 1.0
+
+
+@dataclass(frozen=True)
+class Commands:
+    """How the service starts what it does not do itself.
+
+    `hil`: the command line. `run`: a process that carries out one run (`hil.cli._served_run`).
+    """
+
+    hil: Sequence[str]
+    run: Sequence[str]
+
+
+@dataclass
+class OnShow:
+    """The newest run of a bench, under way or over, as it is shown."""
+
+    run: int
+    live: LiveRun
+    criteria: tuple[CriterionResult, ...] = ()
+    judged_s: float = 0.0
+
+
+class Service:
+    """Everything that the API needs. All of it is used from one event loop, and nothing in it waits.
+
+    Args:
+        folder: where everything is kept.
+    """
+
+    def __init__(self, folder: Path, engine: Engine, benches: dict[str, Bench], commands: Commands) -> None:
+        self.benches = benches
+        self.runs, self.leases = RunStore(engine), LeaseStore(engine)
+        self.tokens, self.log = TokenStore(engine), LogStore(engine)
+        self.plans = Plans(folder / "plans")
+        self.forecasts = Forecasts(commands.hil)
+        self.queue = Queue(benches, self.runs, self.leases, folder / "runs", commands.run, self.changed)
+        self.began_s = time.monotonic()
+        self.closing = False
+        self.viewers: dict[str, set[asyncio.Event]] = {name: set() for name in benches}
+        self.on_show: dict[str, OnShow] = {}
+        self._version: dict[str, int] = dict.fromkeys(benches, 0)
+
+    def changed(self, bench: str) -> None:
+        """Something of a bench is to be shown anew."""
+        self._version[bench] += 1
+        self._tell(bench)
+
+    def version(self, bench: str) -> int:
+        """Counts what `changed` was called for."""
+        return self._version[bench]
+
+    def bench_data(self, name: str) -> BenchData:
+        """A bench as it is now."""
+        bench, running, lease = self.benches[name], self.queue.running(name), self.leases.of(name)
+        state, why = self.queue.state(name)
+        return BenchData(
+            name=name,
+            title=bench.file.title,
+            simulated=bench.file.simulation is not None,
+            state=state,
+            why=why,
+            running=running.data.id if running else None,
+            waiting=self.runs.waiting(name),
+            limits=bench.limits,
+            units=bench.units,
+            lease=lease.holder if lease else "",
+        )
+
+    def with_progress(self, run: RunData) -> RunData:
+        """A run with what only this process knows: how far it is, which files it has left."""
+        running = self.queue.running_run(run.id)
+        if running is not None:
+            return run.model_copy(update={"share": running.share, "doing": running.doing})
+        if run.state in OVER:
+            return run.model_copy(update={"files": self.files_of(run.id)})
+        return run
+
+    def files_of(self, run: int) -> list[str]:
+        """Names of the files that a run has left."""
+        folder = self.queue.folder_of(run)
+        if not folder.is_dir():
+            return []
+        hidden = (".", "run.lock")
+        return sorted(
+            path.name
+            for path in folder.iterdir()
+            if not path.name.startswith(hidden) and path.is_file() and not path.is_symlink()
+        )
+
+    async def stop_in_emergency(self, bench: str, by: str) -> None:
+        """Have a bench safe at once and keep it so, whatever its run is doing and whether there is one.
+
+        Raises:
+            HilError: the stop cannot be latched; a run was told to stop all the same.
+        """
+        running = self.queue.running(bench)
+        if running is not None:
+            running.process.stop_in_emergency()
+        try:
+            folder = running.folder if running is not None else Path()
+            self.benches[bench].stop(by, folder)
+        finally:
+            self.changed(bench)
+
+    async def follow(self) -> None:
+        """Read what runs measure, until the service is closed."""
+        while not self.closing:
+            for name in self.benches:
+                self._follow(name)
+                await self._judge(name)
+            await asyncio.sleep(_LOOK_S)
+
+    def _follow(self, bench: str) -> None:
+        running, shown = self.queue.running(bench), self.on_show.get(bench)
+        if running is not None and (shown is None or shown.run != running.data.id):
+            if shown is not None:
+                shown.live.close()
+            try:
+                plan_file = running.folder / "plan.yaml"
+                plan = plan_from_text(
+                    plan_file.read_text("utf-8"), str(plan_file), running.folder, files_required=False
+                )
+            except (HilError, OSError):
+                return
+            shown = OnShow(running.data.id, LiveRun(running.folder / RECORDING, plan))
+            self.on_show[bench] = shown
+        if shown is not None and shown.live.look():
+            self._tell(bench)
+
+    async def _judge(self, bench: str) -> None:
+        shown = self.on_show.get(bench)
+        if shown is None or time.monotonic() - shown.judged_s < _JUDGE_S:
+            return
+        shown.judged_s = time.monotonic()
+        found = await asyncio.to_thread(shown.live.decided)
+        if found is not None:
+            shown.criteria = found
+            self.changed(bench)
+
+    def _tell(self, bench: str) -> None:
+        for event in self.viewers[bench]:
+            event.set()

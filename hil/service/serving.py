@@ -1,0 +1,203 @@
+"""A service from its folder to its end."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import ipaddress
+import logging
+import math
+import socket
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import uvicorn
+from sqlalchemy import Engine
+
+from hil.core.errors import BadInputError, BenchError
+from hil.core.files import make_directory
+from hil.core.locks import HeldError, lock_on
+from hil.core.printable import printable
+from hil.engine import StopRequest
+from hil.service.api import application
+from hil.service.benches import benches_of
+from hil.service.data import ROLES, Role, TokenMade
+from hil.service.service import Commands, Service
+from hil.service.store import LogStore, TokenStore, open_database
+
+_LOOK_S = 0.1
+_LAST_ANSWERS_S = 2
+_THIS_MACHINE = ("127.0.0.1", "localhost", "::1")
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass
+class ServeRequest:
+    """A service that is wanted.
+
+    Attributes:
+        folder: where everything is kept; made if it is not there.
+        benches: bench files, or names of shipped ones.
+        commands: how processes for runs and forecasts are started.
+        database: by URL; '' for SQLite in the folder.
+        hosts: further names by which browsers may call it.
+        port: 0 takes a free one.
+        for_s: ends by itself after this many seconds.
+        ready: called with the URL once it answers.
+    """
+
+    folder: Path
+    benches: Sequence[str]
+    commands: Commands
+    host: str = "127.0.0.1"
+    port: int = 8080
+    database: str = ""
+    hosts: Sequence[str] = ()
+    for_s: float = math.inf
+    ready: Callable[[str], None] = lambda url: None
+    stop: StopRequest = field(default_factory=StopRequest)
+
+
+def serve(request: ServeRequest) -> None:
+    """Serve until somebody asks to stop; runs under way are ended then, and their benches safe.
+
+    Raises:
+        BadInputError: folder, bench files or host cannot be used.
+        BenchError: the port is taken, or the database cannot be used.
+    """
+    benches = benches_of(list(request.benches))
+    with _alone_in(request.folder):
+        engine = _database(request.folder, request.database)
+        try:
+            _refuse_open_to_all(request.host, TokenStore(engine))
+            with _listening(request.host, request.port) as listening:
+                asyncio.run(
+                    _served(
+                        request, engine, Service(request.folder, engine, benches, request.commands), listening
+                    )
+                )
+        finally:
+            engine.dispose()
+
+
+def make_token(folder: Path, database: str, name: str, role: str) -> TokenMade:
+    """Make a token, whether the service runs or not.
+
+    Raises:
+        BadInputError: no such role, or no name.
+    """
+    if role not in ROLES:
+        raise BadInputError(
+            f"there is no role '{printable(role)}'", where="--add-token", fix=f"one of {', '.join(ROLES)}"
+        )
+    if not name.strip() or not name.isprintable() or len(name) > 100:
+        raise BadInputError("names nobody", where="--add-token", fix="write NAME=ROLE")
+    make_directory(folder)
+    engine = _database(folder, database)
+    try:
+        chosen: Role = next(known for known in ROLES if known == role)
+        made = TokenStore(engine).make(name.strip(), chosen)
+        LogStore(engine).add("command line", "", "token made", name, role)
+        return made
+    finally:
+        engine.dispose()
+
+
+async def _served(request: ServeRequest, engine: Engine, service: Service, listening: socket.socket) -> None:
+    del engine
+    host, port = listening.getsockname()[:2]
+    names = (*_THIS_MACHINE, request.host, *request.hosts)
+    config = uvicorn.Config(
+        application(service, hosts=names),
+        log_config=None,
+        access_log=False,
+        lifespan="off",
+        server_header=False,
+        timeout_graceful_shutdown=_LAST_ANSWERS_S,
+        h11_max_incomplete_event_size=1 << 16,
+    )
+    server = _Server(config)
+    tasks = [
+        asyncio.create_task(service.queue.work()),
+        asyncio.create_task(service.follow()),
+        asyncio.create_task(server.serve(sockets=[listening])),
+    ]
+    try:
+        while not server.started and not tasks[2].done():
+            await asyncio.sleep(0.01)
+        shown = f"[{host}]" if ":" in host else host
+        request.ready(f"http://{shown}:{port}")
+        until_s = time.monotonic() + request.for_s
+        while (
+            request.stop.times == 0 and time.monotonic() < until_s and not any(task.done() for task in tasks)
+        ):
+            await asyncio.sleep(_LOOK_S)
+        await service.queue.close(lambda: request.stop.times > 1)
+    finally:
+        service.closing = True
+        server.should_exit = True
+        for bench in service.benches:
+            service.changed(bench)
+    done, _ = await asyncio.wait(tasks, timeout=_LAST_ANSWERS_S + 3.0)
+    for task in done:
+        task.result()  # a mistake of ours in one of them is told
+
+
+class _Server(uvicorn.Server):
+    """Signals are heard by the command, which ends runs before it ends the server."""
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave them alone."""
+        yield
+
+
+@contextlib.contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    make_directory(folder)
+    try:
+        with lock_on(folder):
+            yield
+    except HeldError as error:
+        raise BadInputError(
+            f"another service keeps its data here: {error}",
+            where=str(folder),
+            fix="give another folder with --data, or use that service",
+        ) from None
+
+
+def _database(folder: Path, url: str) -> Engine:
+    return open_database(url or f"sqlite:///{folder.resolve() / 'service.sqlite'}")
+
+
+def _refuse_open_to_all(host: str, tokens: TokenStore) -> None:
+    """Who can be reached from other machines has to know who asks."""
+    try:
+        loopback = host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        loopback = False
+    if not loopback and not tokens.any():
+        raise BadInputError(
+            "whoever reaches this address could drive the benches: there is no token yet",
+            where=f"--host {printable(host)}",
+            fix="make one first: hil serve --data DIR --add-token NAME=admin; or leave --host out",
+        )
+
+
+@contextlib.contextmanager
+def _listening(host: str, port: int) -> Iterator[socket.socket]:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        listening = socket.create_server((host, port), family=family)
+    except (OSError, OverflowError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise BenchError(
+            f"the service cannot listen there: {reason}",
+            where=f"{printable(host)}:{port}",
+            fix="is another service running? Name another port with --port, or 0 for a free one",
+        ) from error
+    with listening:
+        yield listening

@@ -1,0 +1,213 @@
+"""Runs as they are kept: queued, taken once, ended once."""
+
+from __future__ import annotations
+
+import datetime
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from sqlalchemy import ColumnElement, Engine, func, select, update
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session, sessionmaker
+
+from hil.core.result import CriterionResult, RunResult
+from hil.service.data import RunData, RunState
+from hil.service.store._opening import aware, now
+from hil.service.store._tables import CriterionRow, RunRow
+
+_SAME = (
+    "id", "plan", "title", "bench", "state", "priority", "hazard", "requested_by", "approved_by",
+    "exit_code", "verdict", "safe_state", "reason",
+)  # fmt: skip
+_WAITING: tuple[RunState, ...] = ("waiting_approval", "queued")
+
+
+@dataclass(frozen=True)
+class NewRun:
+    """A run to be queued; `plan_text` has its variables as chosen."""
+
+    plan: str
+    title: str
+    plan_text: str
+    plan_source: str
+    bench: str
+    values: Mapping[str, float]
+    requested_by: str
+    priority: int = 0
+    hazard: str = ""
+    confirmed_by: str = ""
+    accept_expired: str = ""
+    key: str = ""
+
+
+@dataclass(frozen=True)
+class TakenRun:
+    """A run that was taken from the queue, with what its process is told."""
+
+    data: RunData
+    plan_text: str
+    plan_source: str
+    confirmed_by: str
+    accept_expired: str
+
+
+class RunStore:
+    """Every call is one transaction; what has returned survives a kill and a power cut."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._transaction = sessionmaker(engine, expire_on_commit=False).begin
+
+    def add(self, wanted: NewRun, *, approved: bool) -> tuple[RunData, bool]:
+        """Queue a run, unless one was queued with the same key; the run, and whether it is a new one."""
+        row = RunRow(
+            key=wanted.key or None,
+            plan=wanted.plan,
+            title=wanted.title,
+            plan_text=wanted.plan_text,
+            plan_source=wanted.plan_source,
+            bench=wanted.bench,
+            state="queued" if approved else "waiting_approval",
+            values_json=json.dumps(dict(wanted.values)),
+            priority=wanted.priority,
+            hazard=wanted.hazard,
+            confirmed_by=wanted.confirmed_by,
+            accept_expired=wanted.accept_expired,
+            requested_by=wanted.requested_by,
+            approved_by="",
+            queued_at=now(),
+            reason="",
+        )
+        try:
+            with self._transaction() as session:
+                session.add(row)
+                session.flush()
+                return _data(row), True
+        except IntegrityError:
+            with self._transaction() as session:
+                return _data(session.scalars(select(RunRow).where(RunRow.key == wanted.key)).one()), False
+
+    def get(self, run: int) -> RunData | None:
+        """A run by its number."""
+        with self._transaction() as session:
+            row = session.get(RunRow, run)
+            return None if row is None else _data(row)
+
+    def all(self, *, bench: str | None, states: Sequence[RunState], before: int, most: int) -> list[RunData]:
+        """Runs, newest first."""
+        chosen = select(RunRow).order_by(RunRow.id.desc()).limit(most).where(RunRow.id < before)
+        if bench is not None:
+            chosen = chosen.where(RunRow.bench == bench)
+        if states:
+            chosen = chosen.where(RunRow.state.in_(states))
+        with self._transaction() as session:
+            return [_data(row) for row in session.scalars(chosen)]
+
+    def waiting(self, bench: str) -> int:
+        """How many wait for a bench."""
+        with self._transaction() as session:
+            of_bench = RunRow.bench == bench, RunRow.state.in_(_WAITING)
+            return session.scalar(select(func.count()).select_from(RunRow).where(*of_bench)) or 0
+
+    def counts(self) -> dict[tuple[str, str], int]:
+        """Number of runs by bench and state."""
+        chosen = select(RunRow.bench, RunRow.state, func.count()).group_by(RunRow.bench, RunRow.state)
+        with self._transaction() as session:
+            return {(bench, state): count for bench, state, count in session.execute(chosen)}
+
+    def next_of(self, bench: str, requested_by: str | None) -> RunData | None:
+        """The run whose turn it is, if any; of one person only where the bench is theirs."""
+        chosen = select(RunRow).where(RunRow.bench == bench, RunRow.state == "queued")
+        if requested_by is not None:
+            chosen = chosen.where(RunRow.requested_by == requested_by)
+        chosen = chosen.order_by(RunRow.priority.desc(), RunRow.id).limit(1)
+        with self._transaction() as session:
+            row = session.scalars(chosen).first()
+            return None if row is None else _data(row)
+
+    def take(self, run: int) -> TakenRun | None:
+        """Mark a queued run as running, before anything of it is begun; None if it is not queued any more."""
+        with self._transaction() as session:
+            if not _moved(session, run, ("queued",), state="running", started_at=now()):
+                return None
+            row = session.get_one(RunRow, run)
+            return TakenRun(_data(row), row.plan_text, row.plan_source, row.confirmed_by, row.accept_expired)
+
+    def running(self) -> list[RunData]:
+        """Runs that have begun and not ended, as far as is written."""
+        with self._transaction() as session:
+            return [_data(row) for row in session.scalars(select(RunRow).where(RunRow.state == "running"))]
+
+    def end(
+        self,
+        run: int,
+        state: RunState,
+        *,
+        exit_code: int | None = None,
+        result: RunResult | None = None,
+        reason: str = "",
+        dut: str = "",
+    ) -> bool:
+        """Write how a running run ended, with its criteria; false if that was written before."""
+        with self._transaction() as session:
+            changes: dict[str, object] = {"state": state, "ended_at": now(), "exit_code": exit_code}
+            changes["reason"] = reason or (result.reason if result else "")
+            if result is not None:
+                changes |= {"verdict": result.verdict, "safe_state": result.safe_state}
+            if not _moved(session, run, ("running",), **changes):
+                return False
+            session.add_all(_criterion(run, one, dut) for one in (result.criteria if result else ()))
+            return True
+
+    def put_back(self, run: int) -> bool:
+        """Queue a run again of which nothing has happened: its bench was taken by somebody quicker."""
+        with self._transaction() as session:
+            return _moved(session, run, ("running",), state="queued", started_at=None)
+
+    def cancel(self, run: int, reason: str) -> bool:
+        """End a run that waits; false if it does not wait."""
+        with self._transaction() as session:
+            return _moved(session, run, _WAITING, state="cancelled", ended_at=now(), reason=reason)
+
+    def approve(self, run: int, by: str) -> bool:
+        """Let a run that waits for approval be queued; false if it does not wait for it."""
+        with self._transaction() as session:
+            return _moved(session, run, ("waiting_approval",), state="queued", approved_by=by)
+
+    def set_priority(self, run: int, priority: int) -> bool:
+        """Change the priority of a run that waits; false if it does not wait."""
+        with self._transaction() as session:
+            return _moved(session, run, _WAITING, priority=priority)
+
+
+def _moved(session: Session, run: int, out_of: Sequence[RunState], **changes: object) -> bool:
+    """Change a run if it still is in one of these states: of two who try, one does."""
+    where: tuple[ColumnElement[bool], ...] = (RunRow.id == run, RunRow.state.in_(out_of))
+    changed = session.execute(update(RunRow).where(*where).values(**changes).returning(RunRow.id))
+    return len(changed.all()) == 1
+
+
+def _criterion(run: int, one: CriterionResult, dut: str) -> CriterionRow:
+    return CriterionRow(
+        run=run,
+        id=one.id[:200],
+        value=one.value,
+        unit=one.unit[:40],
+        upper=one.upper,
+        lower=one.lower,
+        verdict=one.verdict,
+        dut=dut[:200],
+    )
+
+
+def _data(row: RunRow) -> RunData:
+    moments: dict[str, datetime.datetime | None] = {
+        name: aware(getattr(row, name)) for name in ("queued_at", "started_at", "ended_at")
+    }
+    return RunData.model_validate(
+        {
+            **{name: getattr(row, name) for name in _SAME},
+            **moments,
+            "values": json.loads(row.values_json),
+        }
+    )

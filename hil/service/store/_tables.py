@@ -1,0 +1,96 @@
+"""The tables of the store. A change here needs a migration beside it; a test compares the two."""
+
+from __future__ import annotations
+
+import datetime
+
+from sqlalchemy import DateTime, Double, Index, String, Text
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+_MOMENT = DateTime(timezone=True)
+
+
+class Base(DeclarativeBase):
+    """All tables."""
+
+
+class RunRow(Base):
+    """A run; `plan_text` is the plan with its variables as chosen."""
+
+    __tablename__ = "runs"
+    __table_args__ = (Index("runs_by_bench_and_state", "bench", "state"),)
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    key: Mapped[str | None] = mapped_column(String(100), unique=True)
+    plan: Mapped[str] = mapped_column(String(64))
+    title: Mapped[str] = mapped_column(String(200))
+    plan_text: Mapped[str] = mapped_column(Text)
+    plan_source: Mapped[str] = mapped_column(Text)
+    bench: Mapped[str] = mapped_column(String(64))
+    state: Mapped[str] = mapped_column(String(20))
+    values_json: Mapped[str] = mapped_column(Text)
+    priority: Mapped[int]
+    hazard: Mapped[str] = mapped_column(String(500))
+    confirmed_by: Mapped[str] = mapped_column(String(100))
+    accept_expired: Mapped[str] = mapped_column(String(500))
+    requested_by: Mapped[str] = mapped_column(String(100))
+    approved_by: Mapped[str] = mapped_column(String(100))
+    queued_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+    started_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+    ended_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+    exit_code: Mapped[int | None]
+    verdict: Mapped[str | None] = mapped_column(String(10))
+    safe_state: Mapped[str | None] = mapped_column(String(20))
+    reason: Mapped[str] = mapped_column(Text)
+
+
+class CriterionRow(Base):
+    """A criterion of a run that is over: what trends are made of."""
+
+    __tablename__ = "criteria"
+
+    run: Mapped[int] = mapped_column(primary_key=True)
+    id: Mapped[str] = mapped_column(String(200), primary_key=True)
+    value: Mapped[float | None] = mapped_column(Double)
+    unit: Mapped[str] = mapped_column(String(40))
+    upper: Mapped[float | None] = mapped_column(Double)
+    lower: Mapped[float | None] = mapped_column(Double)
+    verdict: Mapped[str] = mapped_column(String(20))
+    dut: Mapped[str] = mapped_column(String(200))
+
+
+class TokenRow(Base):
+    """A token; `sha256` of its secret, which is 256 random bits."""
+
+    __tablename__ = "tokens"
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    name: Mapped[str] = mapped_column(String(100))
+    role: Mapped[str] = mapped_column(String(10))
+    sha256: Mapped[str] = mapped_column(String(64), unique=True)
+    made_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+    revoked_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+
+
+class LeaseRow(Base):
+    """Who has a bench for themselves."""
+
+    __tablename__ = "leases"
+
+    bench: Mapped[str] = mapped_column(String(64), primary_key=True)
+    holder: Mapped[str] = mapped_column(String(100))
+    until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+
+
+class AuditRow(Base):
+    """Something that somebody did; the database itself refuses to change or remove it."""
+
+    __tablename__ = "audit"
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=True)
+    at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+    who: Mapped[str] = mapped_column(String(100))
+    role: Mapped[str] = mapped_column(String(10))
+    action: Mapped[str] = mapped_column(String(60))
+    target: Mapped[str] = mapped_column(String(200))
+    detail: Mapped[str] = mapped_column(Text)

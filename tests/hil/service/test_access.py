@@ -1,0 +1,177 @@
+"""Who may do what: every endpoint with every role, and what is refused to everybody."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import pytest
+
+from hil.service.api import openapi_text
+from hil.service.data import ROLES
+from tests.hil.service.served import HIL, SHORT, RefusedError, Served, served
+
+ROOT = Path(__file__).parents[3]
+#: The least role that may; "" for everybody. A new endpoint is added here, too.
+LEAST = {
+    ("GET", "/health"): "",
+    ("GET", "/metrics"): "viewer",
+    ("GET", "/benches"): "viewer",
+    ("GET", "/benches/{bench}"): "viewer",
+    ("POST", "/benches/{bench}/emergency-stop"): "",
+    ("POST", "/benches/{bench}/reset"): "engineer",
+    ("PUT", "/benches/{bench}/lease"): "operator",
+    ("DELETE", "/benches/{bench}/lease"): "operator",
+    ("GET", "/benches/{bench}/live"): "viewer",
+    ("GET", "/plans"): "viewer",
+    ("GET", "/plans/{plan}"): "viewer",
+    ("GET", "/plans/{plan}/text"): "viewer",
+    ("PUT", "/plans/{plan}"): "engineer",
+    ("DELETE", "/plans/{plan}"): "engineer",
+    ("POST", "/forecasts"): "operator",
+    ("GET", "/runs"): "viewer",
+    ("POST", "/runs"): "operator",
+    ("GET", "/runs/{run}"): "viewer",
+    ("PATCH", "/runs/{run}"): "engineer",
+    ("POST", "/runs/{run}/approve"): "engineer",
+    ("POST", "/runs/{run}/pause"): "operator",
+    ("POST", "/runs/{run}/resume"): "operator",
+    ("POST", "/runs/{run}/answer"): "operator",
+    ("POST", "/runs/{run}/abort"): "operator",
+    ("GET", "/runs/{run}/files/{name}"): "viewer",
+    ("GET", "/me"): "viewer",
+    ("POST", "/session"): "",
+    ("DELETE", "/session"): "",
+    ("GET", "/tokens"): "admin",
+    ("POST", "/tokens"): "admin",
+    ("DELETE", "/tokens/{token}"): "admin",
+    ("GET", "/audit"): "admin",
+}
+#: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
+_NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
+
+
+@pytest.fixture(scope="module")
+def tokens(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Served, dict[str, str]]]:
+    folder = tmp_path_factory.mktemp("access")
+    admin = _token(folder / "data", "root=admin")
+    with served(folder / "data", state=folder / "state", token=admin) as service:
+        secrets = {str(role): _made(service, f"the {role}", role) for role in ROLES}
+        yield service, secrets
+
+
+def test_the_table_has_every_endpoint() -> None:
+    paths = json.loads(openapi_text())["paths"]
+    found = {(method.upper(), path.removeprefix("/api/v1")) for path, by in paths.items() for method in by}
+    assert found == set(LEAST)
+
+
+def test_the_document_in_the_repository_is_that_of_the_code() -> None:
+    path = ROOT / "docs/reference/openapi.json"
+    assert path.read_text("utf-8") == openapi_text(), "make openapi writes it anew"
+
+
+@pytest.mark.parametrize(("method", "path"), LEAST, ids=[" ".join(key) for key in LEAST])
+def test_each_role_may_what_the_table_says(
+    tokens: tuple[Served, dict[str, str]], method: str, path: str
+) -> None:
+    service, secrets = tokens
+    least = LEAST[method, path]
+    for role in ("", *ROLES):
+        status = _status(service, method, path.format(**_NONE), secrets.get(role, ""))
+        expected = (
+            role != ""
+            if least == "viewer"
+            else ROLES.index(role or "viewer") >= ROLES.index(least or "viewer")
+        )
+        if least == "" or (expected and role):
+            assert status not in (401, 403), role or "nobody"
+        else:
+            assert status == (403 if role else 401), role or "nobody"
+
+
+def test_a_hazardous_plan_waits_for_a_second_person(tokens: tuple[Served, dict[str, str]]) -> None:
+    service, secrets = tokens
+    plan = SHORT.replace("name: short", "name: risky\nhazardous: the axle may jump")
+    service.ask("PUT", "/api/v1/plans/risky", plan, token=secrets["engineer"])
+    body = {"plan": "risky", "bench": "sim"}
+    run = service.ask("POST", "/api/v1/runs", body, token=secrets["engineer"])
+    assert (run["state"], run["hazard"]) == ("waiting_approval", "the axle may jump")
+    approve = f"/api/v1/runs/{run['id']}/approve"
+    with pytest.raises(RefusedError, match="a second person"):
+        service.ask("POST", approve, token=secrets["engineer"])
+    service.post(f"/runs/{run['id']}/abort")
+    with pytest.raises(RefusedError, match="does not wait"):
+        service.ask("POST", approve, token=secrets["admin"])
+    done = [(one["who"], one["action"]) for one in service.get("/audit")]
+    assert ("the engineer", "queue") in done
+    assert ("root", "abort") in done
+
+
+def test_a_revoked_token_is_worth_nothing_and_the_last_administrator_stays(
+    tokens: tuple[Served, dict[str, str]],
+) -> None:
+    service, _ = tokens
+    made = service.post("/tokens", {"name": "for a while", "role": "viewer"})
+    assert service.ask("GET", "/api/v1/me", token=made["secret"])["role"] == "viewer"
+    service.ask("DELETE", f"/api/v1/tokens/{made['token']['id']}")
+    with pytest.raises(RefusedError, match="401"):
+        service.ask("GET", "/api/v1/me", token=made["secret"])
+
+
+def test_other_sites_other_names_and_too_much_are_refused(service: Served) -> None:
+    here = urlsplit(service.url).netloc
+    stop = "/api/v1/benches/none/emergency-stop"
+    assert _raw(service, "POST", stop, {"Host": here, "Origin": "http://evil.example"}) == 403
+    assert _raw(service, "GET", "/api/v1/health", {"Host": "evil.example"}) == 421
+    assert _raw(service, "POST", stop, {"Host": here, "Origin": service.url}) == 404
+    assert _raw(service, "POST", "/api/v1/runs", {"Host": here, "Content-Length": "999999999"}) == 413
+
+
+def test_an_emergency_stop_is_answered_when_nothing_else_is(service: Served) -> None:
+    here = {"Host": urlsplit(service.url).netloc}
+    statuses = {_raw(service, "GET", "/api/v1/health", here) for _ in range(600)}
+    assert 429 in statuses
+    assert _raw(service, "POST", "/api/v1/benches/none/emergency-stop", here) == 404
+
+
+def _status(service: Served, method: str, path: str, token: str) -> int:
+    where = urlsplit(service.url)
+    connection = http.client.HTTPConnection(where.hostname or "", where.port, timeout=30)
+    headers = {"Authorization": f"Bearer {token}"} if token else {}
+    body = None
+    if method in ("POST", "PUT", "PATCH"):
+        headers["Content-Type"], body = "application/json", "{}"
+    try:
+        connection.request(method, f"/api/v1{path}", body, headers)
+        return connection.getresponse().status
+    finally:
+        connection.close()
+
+
+def _raw(service: Served, method: str, path: str, headers: dict[str, str]) -> int:
+    where = urlsplit(service.url)
+    connection = http.client.HTTPConnection(where.hostname or "", where.port, timeout=30)
+    try:
+        connection.putrequest(method, path, skip_host=True)
+        for name, value in headers.items():
+            connection.putheader(name, value)
+        connection.endheaders()
+        return connection.getresponse().status
+    finally:
+        connection.close()
+
+
+def _made(service: Served, name: str, role: str) -> str:
+    made: Any = service.post("/tokens", {"name": name, "role": role})
+    return str(made["secret"])
+
+
+def _token(data: Path, wanted: str) -> str:
+    command = [*HIL, "serve", "--data", str(data), "--add-token", wanted]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[-1]

@@ -1,0 +1,117 @@
+"""The store: what it hands out once, what it never forgets."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.runtime.migration import MigrationContext
+from hypothesis import given
+from hypothesis import strategies as st
+from sqlalchemy import Engine, create_engine, text
+from sqlalchemy.exc import DBAPIError
+
+from hil.core.errors import BadInputError, BenchError
+from hil.service.store import Base, LeaseStore, LogStore, NewRun, RunStore, TokenStore, open_database
+
+
+@pytest.fixture
+def engine(tmp_path: Path) -> Engine:
+    return open_database(f"sqlite:///{tmp_path / 'service.sqlite'}")
+
+
+def wanted(bench: str = "sim", *, by: str = "anna", priority: int = 0, hazard: str = "") -> NewRun:
+    return NewRun("p", "P", "name: p", "p.yaml", bench, {"x": 1.5}, by, priority=priority, hazard=hazard)
+
+
+def test_the_migrations_make_the_tables_that_the_code_has(engine: Engine) -> None:
+    with engine.connect() as connection:
+        assert compare_metadata(MigrationContext.configure(connection), Base.metadata) == []
+
+
+def test_a_database_of_a_newer_version_is_refused(engine: Engine) -> None:
+    with engine.begin() as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    with pytest.raises(BadInputError, match="newer version"):
+        open_database(str(engine.url))
+
+
+def test_a_database_that_cannot_be_written_says_so(tmp_path: Path) -> None:
+    with pytest.raises(BenchError, match="cannot be used"):
+        open_database(f"sqlite:///{tmp_path / 'none' / 'service.sqlite'}")
+
+
+def test_a_run_is_taken_once_and_ended_once(engine: Engine) -> None:
+    runs = RunStore(engine)
+    run, is_new = runs.add(wanted(), approved=True)
+    assert (is_new, run.state, run.values) == (True, "queued", {"x": 1.5})
+    assert runs.take(run.id) is not None
+    assert runs.take(run.id) is None
+    assert [one.id for one in runs.running()] == [run.id]
+    assert runs.end(run.id, "ended", exit_code=0)
+    assert not runs.end(run.id, "interrupted")
+    assert runs.get(run.id).state == "ended"
+    assert not runs.cancel(run.id, "too late")
+
+
+def test_a_hazardous_run_waits_for_approval(engine: Engine) -> None:
+    runs = RunStore(engine)
+    run, _ = runs.add(wanted(hazard="loud"), approved=False)
+    assert runs.next_of("sim", None) is None
+    assert runs.approve(run.id, "bert")
+    assert runs.next_of("sim", None).approved_by == "bert"
+    assert not runs.approve(run.id, "bert")
+
+
+@given(st.lists(st.tuples(st.sampled_from("ab"), st.integers(-3, 3)), max_size=12))
+def test_each_bench_gets_its_runs_by_priority_and_then_as_they_came(asked: list[tuple[str, int]]) -> None:
+    runs = RunStore(_in_memory())
+    added = [(b, -p, runs.add(wanted(b, priority=p), approved=True)[0].id) for b, p in asked]
+    for bench in "ab":
+        order = []
+        while (run := runs.next_of(bench, None)) is not None:
+            runs.take(run.id)
+            order.append(run.id)
+        assert order == [number for b, _, number in sorted(added) if b == bench]
+
+
+def test_only_its_holders_runs_come_while_a_bench_is_leased(engine: Engine) -> None:
+    runs, leases = RunStore(engine), LeaseStore(engine)
+    runs.add(wanted(by="anna"), approved=True)
+    assert runs.next_of("sim", "bert") is None
+    assert runs.next_of("sim", "anna") is not None
+    assert leases.take("sim", "bert", 60.0).holder == "bert"
+    assert leases.take("sim", "anna", 60.0) is None
+    assert leases.take("sim", "bert", -1.0) is not None  # its time is over: nobody has it
+    assert leases.of("sim") is None
+    assert leases.take("sim", "anna", 60.0) is not None
+    leases.give_back("sim")
+    assert leases.of("sim") is None
+
+
+def test_a_token_is_known_by_its_secret_which_is_kept_nowhere(engine: Engine, tmp_path: Path) -> None:
+    tokens = TokenStore(engine)
+    assert not tokens.any()
+    made = tokens.make("anna", "operator")
+    assert tokens.owner_of(made.secret) == made.token
+    assert tokens.owner_of(made.secret + "x") is None
+    assert made.secret.encode() not in b"".join(path.read_bytes() for path in tmp_path.iterdir())
+    assert tokens.revoke(made.token.id)
+    assert tokens.owner_of(made.secret) is None
+    assert not tokens.any()
+
+
+@pytest.mark.parametrize("change", ["UPDATE audit SET who = 'x'", "DELETE FROM audit"])
+def test_the_database_itself_keeps_the_audit_log_as_it_is(engine: Engine, change: str) -> None:
+    log = LogStore(engine)
+    log.add("anna", "operator", "queue", "run 1")
+    with engine.connect() as connection, pytest.raises(DBAPIError, match="append-only"):
+        connection.execute(text(change))
+    assert [(one.who, one.action) for one in log.newest(100, 10)] == [("anna", "queue")]
+
+
+def _in_memory() -> Engine:
+    engine = create_engine("sqlite://")
+    Base.metadata.create_all(engine)
+    return engine
