@@ -27,12 +27,20 @@ def bits_on_the_wire(block: FrameBlock) -> npt.NDArray[np.int64]:
     )
 
 
-def most_bits_on_the_wire(block: FrameBlock) -> npt.NDArray[np.int64]:
-    """The same with as many stuff bits as there may be: from lengths alone, and much quicker; shape (n,)."""
-    head = np.where(block["flags"] & EXTENDED != 0, _EXTENDED_HEAD_BITS, _HEAD_BITS)
-    stuffable = head + 8 * block["length"].astype(np.int64)
-    bits = stuffable + (stuffable - 1) // (_RUN - 1) + _UNSTUFFED
-    return np.where(block["flags"] & ERROR_FRAME != 0, 0, bits)
+def most_bits_on_the_wire(block: FrameBlock) -> int:
+    """Bits of all frames together with as many stuff bits as they may have: from their lengths alone."""
+    return int(_most_bits(block["flags"], block["length"]))
+
+
+@compiled
+def _most_bits(flags, lengths):  # type: ignore[no-untyped-def]
+    bits = 0
+    for frame in range(flags.shape[0]):
+        if flags[frame] & ERROR_FRAME:
+            continue
+        stuffable = (_EXTENDED_HEAD_BITS if flags[frame] & EXTENDED else _HEAD_BITS) + 8 * int(lengths[frame])
+        bits += stuffable + (stuffable - 1) // (_RUN - 1) + _UNSTUFFED
+    return bits
 
 
 @compiled

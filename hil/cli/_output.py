@@ -196,7 +196,9 @@ def _reasons(criteria: tuple[CriterionResult, ...]) -> list[str]:
         if c.reason:
             key = (c.verdict.replace("_", " "), c.reason)
             found[key] = found.get(key, 0) + 1
-    return [f"{count} {verdict}: {reason}" for (verdict, reason), count in found.items()]
+    return [
+        f"{f'{count} ' if count > 1 else ''}{verdict}: {reason}" for (verdict, reason), count in found.items()
+    ]
 
 
 def _plain(value: Any) -> Any:

@@ -22,15 +22,17 @@ class BusLoads:
         self._bits = {name: np.zeros(1, np.int64) for name in bit_rates}  # of each window
 
     def take_frames(self, bus: str, block: FrameBlock) -> None:
-        """Count frames of one bus, sent and received."""
-        last_s = self._now_s() - self._begin_s  # stamps of an adapter may be anything
-        since_s = np.clip(np.nan_to_num(block["time_s"] - self._begin_s), 0.0, max(last_s, 0.0))
-        windows = (since_s / _WINDOW_S).astype(np.int64)
-        counted = np.bincount(windows, most_bits_on_the_wire(block)).astype(np.int64)
-        known = self._bits[bus]
-        if len(counted) > len(known):  # twice as much room as is needed: seldom made larger
-            self._bits[bus] = known = np.pad(known, (0, 2 * len(counted) - len(known)))
-        known[: len(counted)] += counted
+        """Count frames of one bus, sent and received, of which the last gives their time."""
+        if not len(block):
+            return
+        passed_s = self._now_s() - self._begin_s
+        since_s = float(block["time_s"][-1]) - self._begin_s
+        if not 0.0 <= since_s <= passed_s:  # an adapter's stamp may be anything
+            since_s = passed_s
+        window, known = int(since_s / _WINDOW_S), self._bits[bus]
+        if window >= len(known):  # twice as much room as is needed: seldom made larger
+            self._bits[bus] = known = np.pad(known, (0, 2 * window + 1 - len(known)))
+        known[window] += most_bits_on_the_wire(block)
 
     def results(self) -> tuple[BusLoad, ...]:
         """The load of each bus from the beginning until now."""

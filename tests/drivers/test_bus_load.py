@@ -46,7 +46,7 @@ def test_bits_are_those_of_the_standard(extended, number, data):
     frame = (0.0, number, EXTENDED * extended, len(data), int.from_bytes(data, "little"))
     written = written_down(number, extended, data)
     assert bits_on_the_wire(np.array([frame], FRAME)).tolist() == [written]
-    (most,) = most_bits_on_the_wire(np.array([frame], FRAME)).tolist()
+    most = most_bits_on_the_wire(np.array([frame], FRAME))
     assert written <= most <= 1.27 * written
 
 
@@ -54,12 +54,12 @@ def test_lengths_without_and_with_the_most_stuffing():
     frames = np.array([(0, 0x555, 0, 8, 0x5555555555555555), (0, 0, 0, 8, 0)], FRAME)
     alternating, zeros = bits_on_the_wire(frames)
     assert 111 <= alternating < zeros <= 135
-    assert most_bits_on_the_wire(frames).tolist() == [135, 135]
+    assert most_bits_on_the_wire(frames) == 270
 
 
 def test_an_error_frame_is_none():
     assert bits_on_the_wire(np.array([(0, 4, ERROR_FRAME, 8, 0)], FRAME)).tolist() == [0]
-    assert most_bits_on_the_wire(np.array([(0, 4, ERROR_FRAME, 8, 0)], FRAME)).tolist() == [0]
+    assert most_bits_on_the_wire(np.array([(0, 4, ERROR_FRAME, 8, 0)], FRAME)) == 0
 
 
 @pytest.mark.parametrize("length", range(9))
