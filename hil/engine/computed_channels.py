@@ -1,6 +1,7 @@
-"""Channels that no device measures, computed where a bench file limits them: shaft twist, health of buses.
+"""Channels that no device measures, computed where a bench file limits them.
 
-They are samples of a stream like any other: watched and recorded.
+Shaft twist, what the inverter's torque misses, health of buses: samples of a stream like any other, watched
+and recorded.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from hil.engine.limit_tables import TwistTable
 from test_plans import Array
 
 TWIST = "shaft_twist_rad"
+TORQUE_ERROR = "motor_torque_error_nm"
+_TORQUE, _ASKED = "motor_torque_nm", "motor_torque_ref_nm"
 _MOTOR, _WHEELS = "motor_speed_rad_s", ("wheel_speed_left_rad_s", "wheel_speed_right_rad_s")
 _LOOK_S = 0.1  # over so long the load of a bus is taken
 _LONGEST_GAP_S = 0.1  # nothing is integrated over a longer one
@@ -49,6 +52,8 @@ def computed_channels(file: BenchFile, loop: BusLoop) -> list[Computed]:
     found: list[Computed] = []
     if file.limits.twist and TWIST in limited:
         found.append(ShaftTwist(file.limits.twist))
+    if TORQUE_ERROR in limited:
+        found.append(TorqueError())
     for name, bus in file.buses.items():
         if limited & set(channels_of_bus(name)):
             health = BusStatistics(loop, name, bus.bit_rate)
@@ -98,6 +103,29 @@ class ShaftTwist:
         twist = np.empty(len(times_s))
         _integrate(times_s, difference, self._forget_s, self._state, twist)
         return [Samples(self.streams[0], times_s, twist[:, None])]
+
+
+class TorqueError:
+    """What the inverter says that it gives, less what it was asked for, of the same sample.
+
+    It is told late by the inverter's own lag: a limit of it needs a persistence longer than that.
+    """
+
+    def __init__(self) -> None:
+        self.streams = (Stream("torque error", "computed", (TORQUE_ERROR,), ("N m",), TICK_S, silence_s=0.3),)
+        self._computed: list[Samples] = []
+
+    def take(self, samples: Samples) -> None:
+        """Compute it of a stream that has both."""
+        channels = samples.stream.channels
+        if _TORQUE in channels and _ASKED in channels:
+            given, asked = (samples.values[:, channels.index(name)] for name in (_TORQUE, _ASKED))
+            self._computed.append(Samples(self.streams[0], samples.time_s, (given - asked)[:, None]))
+
+    def samples(self) -> list[Samples]:
+        """As far as both have come."""
+        found, self._computed = self._computed, []
+        return found
 
 
 class _Waiting:

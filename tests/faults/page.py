@@ -28,8 +28,8 @@ readable up to the fault (after `hil recover` if need be), and no traceback.
 """
 _GOES_ON = """\
 What ends no run: single frames lost, doubled, swapped or late; garbage among the frames; a pause of the
-loop before anything is armed. *Torque does not follow* is not noticed by the bench itself: nothing
-compares what the inverter reports with what it was asked for, unless a criterion of the plan does. A
+loop before anything is armed. *Torque does not follow* is noticed where the bench file limits
+`motor_torque_error_nm` (docs/reference/limits.md), or where a criterion of the plan sees it. A
 stuck speed is noticed when the speed is to change.
 """
 

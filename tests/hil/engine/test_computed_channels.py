@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import pytest
 from drivers import BusLoop, Samples, Stream, bits_on_the_wire
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import ERROR_FRAME, FRAME
-from hil.core.model import load_model
+from hil.core.model import EffectUse, load_model, save_model
 from hil.core.recording import read_recording
 from hil.engine import BenchFile, RunRequest, run_plan
 from hil.engine.bench import open_bench
@@ -57,6 +58,22 @@ def test_twist_beyond_its_limit_trips(tmp_path: Path) -> None:
     outcome = run_plan(RunRequest(plan(STEP), file, tmp_path))
     assert isinstance(outcome.error, BenchError)
     assert outcome.error.what.startswith("limit tripped: shaft_twist_rad reached 0.0")
+
+
+@pytest.mark.parametrize(("largest_nm", "trips"), [(5.0, True), (200.0, False)])
+def test_an_inverter_that_gives_less_than_it_is_asked_for_is_noticed(
+    tmp_path: Path, largest_nm: float, trips: bool
+) -> None:
+    weak = dataclasses.replace(MODEL, effects=(EffectUse("torque_saturation", {"limit_nm": largest_nm}),))
+    save_model(weak, tmp_path / "weak.toml")
+    named = limit("motor_torque_error_nm", "N m", 10.0, below=-10.0, persistence_s=0.1)
+    simulation = SIM.simulation.model_copy(update={"model": tmp_path / "weak.toml"})
+    file = bench("weak", t=named).model_copy(update={"simulation": simulation})
+    outcome = run_plan(RunRequest(plan(STEP), file, tmp_path / "run"))
+    assert (outcome.error is not None) == trips
+    if outcome.error:
+        assert outcome.error.what.startswith("limit tripped: motor_torque_error_nm")
+        assert outcome.result.safe_state == "confirmed"
 
 
 def test_the_load_of_a_bus_is_limited_and_recorded(tmp_path: Path) -> None:
