@@ -9,6 +9,7 @@ from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
 from drivers.examination import Examinable, Examined, Finding, Identifies, Incomplete
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.listening_wire import ListeningWire
+from drivers.log_wire import LogWire
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
 from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu
@@ -45,6 +46,7 @@ __all__ = [
     "Incomplete",
     "ListeningWire",
     "LoadTable",
+    "LogWire",
     "MotorControl",
     "Name",
     "RmcuDriver",

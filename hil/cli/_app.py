@@ -42,6 +42,7 @@ _COMMANDS = {
     "verify": "Prove that report and recording belong together and nothing changed.",
     "sign": "Sign a run's directory: who approved it.",
     "export": "Write a recording as CSV, Parquet or MDF4, or its frames as a CAN log.",
+    "replay": "CAN logs of other tools, decoded to a recording with its report.",
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
     "serve": "The bench service: a queue of runs, an API, a page that shows what benches do.",
     "doctor": "What of a bench is there, what is wrong with it, and what to do.",

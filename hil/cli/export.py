@@ -27,7 +27,7 @@ def carry_out(
     """Carry the command out; its exit code."""
     for file in written_with(out):
         refuse_file(file, [recording], overwrite=overwrite)
-    table = read_recording(recording)
+    table = read_recording(recording, any_replay=True)
     warn_of_damage([table])
     if frames or out.suffix.lower() in FRAME_LOGS:
         return _frames(table, out, as_json=as_json)

@@ -39,7 +39,7 @@ def carry_out(
     with results_in(folder, names, inputs=[path], overwrite=overwrite or renewed) as place:
         with progress(path.name) as show:
             show("reading")
-            recording = read_recording(path, allow_missing=True)
+            recording = read_recording(path, allow_missing=True, any_replay=True)
             warn_of_damage([recording])
             show("judging")
             result = rejudged(recording)

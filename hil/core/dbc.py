@@ -100,7 +100,7 @@ def read_dbc(path: Path, needed: Mapping[str, Needed], names: Names | None = Non
             signal, as the file calls them.
     """
     names = names or Names()
-    database = _database(path)
+    database = database_of(path)
     found: dict[str, Message] = {}
     for ours, parts in needed.items():
         name = names.message(ours)
@@ -160,7 +160,12 @@ def _texts(found: Mapping[str, Message], names: Names) -> Iterator[tuple[tuple[s
                 )
 
 
-def _database(path: Path) -> Database:
+def database_of(path: Path) -> Database:
+    """A DBC as cantools has it.
+
+    Raises:
+        BadInputError: it cannot be read, is no DBC, or has no messages.
+    """
     text = read_device_text(path, "check [rmcu] dbc")
     try:
         # Not strict: what is wrong with messages that nobody needs is no reason to refuse the file.
@@ -190,7 +195,8 @@ def _mistakes(message: Message, needed: Needed) -> Iterator[str]:
         used.append(present[name])
     used += [present[name] for name in needed.optional if name in present]
     for signal in used:
-        for mistake in _signal_mistakes(signal, message, signal.name in needed.whole):
+        further = _further_mistakes(signal, whole=signal.name in needed.whole)
+        for mistake in (*signal_mistakes(signal, message), *further):
             yield f", signal '{signal.name}' {mistake}"
     for a, b in combinations(used, 2):
         if set(_bits(a)) & set(_bits(b)):
@@ -204,12 +210,21 @@ def _mistakes(message: Message, needed: Needed) -> Iterator[str]:
         yield f", signal '{needed.checksum}' is not byte 7, the last: the CRC covers bytes 0 to 6"
 
 
-def _signal_mistakes(signal: DbcSignal, message: Message, whole: bool) -> Iterator[str]:
+def _further_mistakes(signal: DbcSignal, *, whole: bool) -> Iterator[str]:
+    """What makes a signal unusable for a bench."""
+    if signal.multiplexer_ids:
+        yield "is multiplexed; the bench's frames always hold the same signals"
+    if whole and (
+        signal.is_float or signal.is_signed or (float(signal.scale), float(signal.offset)) != (1.0, 0.0)
+    ):
+        yield "counts, and must be unsigned with (1,0)"
+
+
+def signal_mistakes(signal: DbcSignal, message: Message) -> Iterator[str]:
+    """What makes a signal's bits impossible to read; each text goes on after the signal's name."""
     scale, offset = float(signal.scale), float(signal.offset)
     if signal.length < 1:
         yield f"has {signal.length} bits"
-    if signal.multiplexer_ids:
-        yield "is multiplexed; the bench's frames always hold the same signals"
     if scale == 0 or not math.isfinite(scale) or not math.isfinite(offset):
         yield f"has the factor {scale:g} and the offset {offset:g}: no value can be told from its bits"
     if signal.is_float and signal.length not in (32, 64):
@@ -218,8 +233,6 @@ def _signal_mistakes(signal: DbcSignal, message: Message, whole: bool) -> Iterat
         yield f"is an integer of {signal.length} bits; at most {_LONGEST_COUNT} are counted exactly"
     if any(not 0 <= bit < 8 * message.length for bit in _bits(signal)):
         yield f"reaches beyond the message's {message.length} bytes"
-    if whole and (signal.is_float or signal.is_signed or (scale, offset) != (1.0, 0.0)):
-        yield "counts, and must be unsigned with (1,0)"
 
 
 def _bits(signal: DbcSignal) -> list[int]:

@@ -29,6 +29,7 @@ NAMES = (
     "recording.mcap",
     "torn.mcap",
     "short.csv",
+    "frames.log",
     "done",
     "key.pem",
 )
@@ -56,6 +57,7 @@ def make_inputs(folder: Path) -> None:
     (folder / "plan.yaml").write_text(PLAN, "utf-8")
     _hil(folder, "run", "plan.yaml", "--bench", "bench.toml", "--out", "whole")
     _hil(folder, "export", "whole/recording.mcap", "--out", "short.csv")
+    _hil(folder, "export", "whole/recording.mcap", "--out", "frames.log")
     (folder / "done").mkdir()
     for name in ("recording.mcap", "result.json", "junit.xml"):
         shutil.copy(folder / "whole" / name, folder / "done" / name)

@@ -12,11 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers import read_rmcu
+from hil.core.can_logs import read_can_log
 from hil.core.controller import load_controller
 from hil.core.frames import FRAME
 from hil.core.model import load_model
 from hil.core.pdo import read_eds
-from hil.core.recording import Recording, read_recording, recover_recording, write_recording
+from hil.core.recording import Recording, read_recording, recover_recording, write_frames, write_recording
 from hil.engine import RunRequest, load_bench, run_plan
 from test_plans import load_plan
 from tests.benches_for_tests import SIM, plan, running, sim_bench
@@ -55,6 +56,16 @@ def of_a_run() -> list[bytes]:
         short = plan("[{hold_speed: {speed_km_h: 1, duration_s: 0.1}}]")
         done = run_plan(RunRequest(short, sim_bench("fuzzed"), Path(folder)))
         return [done.recording.read_bytes()]
+
+
+@cache
+def logs(ending: str) -> list[bytes]:
+    """The frames of a short run as a CAN log."""
+    with tempfile.TemporaryDirectory() as folder:
+        recording, log = Path(folder) / "r.mcap", Path(folder) / f"r{ending}"
+        recording.write_bytes(of_a_run()[0])
+        write_frames(read_recording(recording), log)
+        return [log.read_bytes()[:20_000]]
 
 
 def recovered(path: Path) -> object:
@@ -118,6 +129,9 @@ TARGETS: Mapping[str, Target] = {
     "csv": Target(lambda: recordings(".csv"), ".csv", read_recording),
     "parquet": Target(lambda: recordings(".parquet"), ".parquet", read_recording),
     "mcap": Target(of_a_run, ".mcap", read_recording),
+    "asc": Target(lambda: logs(".asc"), ".asc", read_can_log),
+    "blf": Target(lambda: logs(".blf"), ".blf", read_can_log),
+    "candump": Target(lambda: logs(".log"), ".log", read_can_log),
     "recover": Target(of_a_run, ".mcap", recovered),
     "frames": Target(_frames, ".bin", on_the_bus),
 }

@@ -13,6 +13,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import can
+import numpy as np
+
+from hil.core.can_logs import read_can_log
+from hil.core.errors import BadInputError
+from hil.core.recording import read_as_written
 from tests.readers import tools
 
 HERE = Path(__file__).parent
@@ -183,6 +189,72 @@ print(can.__version__); print(", ".join(f"{n} frames of {b}" for b, n in buses.i
     return read
 
 
+def _replayed(log: Path, run: Path, *arguments: str) -> str:
+    """What `hil replay` says of a log of the run's frames, whose channels are held against the run's own."""
+    out = log.with_suffix("")
+    hil = Path(sys.executable).parent / "hil"
+    command: list[str | Path] = [
+        hil,
+        "replay",
+        log,
+        "--bench",
+        "sim",
+        "--out",
+        out,
+        "--overwrite",
+        *arguments,
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr[-1000:]
+    ours, theirs = read_as_written(out / "recording.mcap"), read_as_written(run)
+    count = len(theirs.time_s)
+    speed, wanted = ours["motor_speed_rad_s"], theirs["motor_speed_rad_s"]
+    first = next(k for k in range(len(speed)) if np.array_equal(speed[k : k + count], wanted))
+    for name, values in theirs.channels.items():
+        if name != "time_s":
+            assert np.array_equal(ours[name][first : first + count], values, equal_nan=True), name
+    return f"replayed: {len(theirs.channels) - 1} channels of {count} samples, each value the run's"
+
+
+def _can_utils(kind: str) -> Callable[[Path], tuple[str, str]]:
+    """Logs that log2asc (ASC) and asc2log (candump) of can-utils have written."""
+
+    def read(folder: Path) -> tuple[str, str]:
+        asc = folder / "can_utils.asc"
+        tools.ran("log2asc", "-I", folder / "frames.log", "-O", asc, "rmcu", "dyno")
+        if kind == "log":
+            tools.ran("asc2log", "-I", asc, "-O", folder / "can_utils.log")
+        version = re.search(r"Version: (\S+)", tools.ran("dpkg", "-s", "can-utils"))
+        return version[1] if version else "–", _replayed(
+            folder / f"can_utils.{kind}", folder / "recording.mcap"
+        )
+
+    return read
+
+
+def _logs_of_python_can(folder: Path) -> tuple[str, str]:
+    """The logs of Vector's and PEAK's tools that python-can is tested with: none of their frames is lost."""
+    del folder
+    found = Counter[str]()
+    source = tools.python_can_source()
+    for path in sorted((source / "test/data").iterdir()):
+        if path.suffix not in (".asc", ".blf", ".trc"):
+            continue
+        try:
+            log = read_can_log(path)
+            counts = log.count + sum(log.left_out.values())
+        except BadInputError as error:  # only what a recording has no place for
+            assert "has no data frames" in error.what, error
+            counts = sum(map(int, re.findall(r"(\d+) (?:remote|CAN FD|frames)", error.fix)))
+        with can.LogReader(path) as reader:
+            wanted = len(list(reader))
+        assert counts == wanted, (path.name, counts, wanted)
+        found[path.suffix] += 1
+    return can.__version__, ", ".join(
+        f"{n} logs in {kind}" for kind, n in found.items()
+    ) + ": every frame counted"
+
+
 def checks() -> Iterator[Check]:
     """All of them, by output."""
     yield Check("recording.mcap", "mcap (PyPI)", _mcap_library)
@@ -193,6 +265,9 @@ def checks() -> Iterator[Check]:
     yield Check("export to .mf4", "mdfreader", _mdfreader)
     for ending, name in (("blf", "BLF"), ("asc", "ASC"), ("log", "candump"), ("mf4", "MDF4 bus logging")):
         yield Check(f"frames as {name}", "python-can", _python_can(ending))
+    yield Check("logs of others, replayed", "can-utils log2asc", _can_utils("asc"))
+    yield Check("logs of others, replayed", "can-utils asc2log", _can_utils("log"))
+    yield Check("logs of others, read", "python-can's test logs", _logs_of_python_can)
     for flavour, name in (("2a", "PDF/A-2a"), ("2b", "PDF/A-2b"), ("ua1", "PDF/UA-1")):
         yield Check("report.pdf", f"veraPDF, {name}", _verapdf(flavour))
     yield Check("report.html", "Nu HTML checker", _nu)

@@ -5,8 +5,11 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
 from pathlib import Path
+
+import can
 
 PLACE = Path(tempfile.gettempdir()) / "eaxle-hil-readers"
 _NODE = ("axe-core", "puppeteer-core")
@@ -49,6 +52,19 @@ def python_packages() -> Path:
     folder = PLACE / "python"
     if not (folder / "polars").is_dir():
         ran(sys.executable, "-m", "pip", "install", "--quiet", "--target", folder, *_PYTHON)
+    return folder
+
+
+def python_can_source() -> Path:
+    """The source package of python-can: the logs that it is tested with are in no other."""
+    folder = PLACE / f"python_can-{can.__version__}"
+    if not (folder / "test/data").is_dir():
+        PLACE.mkdir(parents=True, exist_ok=True)
+        wanted = f"python-can=={can.__version__}"
+        download = ("-m", "pip", "download", "--quiet", "--no-deps", "--no-binary", "python-can", wanted)
+        ran(sys.executable, *download, "--dest", PLACE)
+        with tarfile.open(PLACE / f"{folder.name}.tar.gz") as archive:
+            archive.extractall(PLACE, filter="data")
     return folder
 
 

@@ -17,17 +17,21 @@ from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_reader import read_mcap as read_as_written
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
-from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, RUN, SEGMENT, run_of
+from hil.core.recording._regular_file import refuse_unless_regular
+from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, REPLAY, RUN, SEGMENT, run_of
 from hil.core.recording._table import Event, Recording, checked
 
 logger = logging.getLogger(__name__)
 
 
-def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = False) -> Recording:
+def read_recording(
+    path: Path, *, least_samples: int = 2, allow_missing: bool = False, any_replay: bool = False
+) -> Recording:
     """Read `.mcap`, `.csv`, `.parquet`, `.mf4` or `.mat`; refuse what no command could use.
 
     Args:
         allow_missing: keep channels of which much is missing, for reports of runs that failed.
+        any_replay: also one decoded from a log of another bench, which has none of the axle's channels.
 
     Raises:
         BadInputError: names file, line and column where it can.
@@ -37,7 +41,11 @@ def read_recording(path: Path, *, least_samples: int = 2, allow_missing: bool = 
         raise BadInputError(
             f"recordings end in {', '.join(READ)}", where=str(path), fix="rename or convert the file"
         )
-    recording = checked(reader(path), least_samples=least_samples, allow_missing=allow_missing)
+    recording = reader(path)
+    foreign = any_replay and REPLAY in recording.metadata
+    recording = checked(
+        recording, least_samples=least_samples, allow_missing=allow_missing, any_channels=foreign
+    )
     logger.info("read %s: %d samples, %d channels", path, len(recording.time_s), len(recording.channels))
     for sentence in (*recording.damage, *recording.notes):
         logger.debug("%s: %s", path, sentence)
@@ -115,6 +123,7 @@ __all__ = [
     "CHUNK_BYTES",
     "DEVICE",
     "FRAME_LOGS",
+    "REPLAY",
     "RUN",
     "SEGMENT",
     "Event",
@@ -129,6 +138,7 @@ __all__ = [
     "read_frames",
     "read_recording",
     "recover_recording",
+    "refuse_unless_regular",
     "run_of",
     "write_frames",
     "write_recording",

@@ -13,6 +13,7 @@ import numpy as np
 from hil.core.channels import CHANNELS, INPUT, TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.files import replacing
+from hil.core.mdf_file import open_mdf
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._regular_file import refuse_unless_regular
 from hil.core.recording._table import Array, Recording
@@ -29,12 +30,10 @@ def read_mdf(path: Path) -> Recording:
         BadInputError: no MDF file or a broken one, or a known channel that is no column of numbers.
     """
     refuse_unless_regular(path)
-    from asammdf import MDF  # slow to import, and seldom needed
-
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            with MDF(path) as mdf:
+            with open_mdf(path) as mdf:
                 recording = _Groups(mdf, path).read()
                 for index, attachment in enumerate(mdf.attachments):
                     if attachment.file_name == EVIDENCE:

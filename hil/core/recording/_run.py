@@ -12,6 +12,8 @@ RUN = "run.json"
 SEGMENT = "segment/"
 #: Prefix of the attachments that say what the devices' frames mean: DBC, EDS and the like.
 DEVICE = "device/"
+#: Metadata table of a recording that was decoded from logs of other tools: it may lack the axle's channels.
+REPLAY = "replay"
 #: Metadata table with who answered for sensors whose calibration had run out.
 ACCEPTED_EXPIRY = "accepted expired calibration"
 

@@ -96,19 +96,26 @@ class Recording:
         return f"{self.source}: sample {sample + 1}, line {line}"
 
 
-def checked(recording: Recording, *, least_samples: int = 2, allow_missing: bool = False) -> Recording:
+def checked(
+    recording: Recording,
+    *,
+    least_samples: int = 2,
+    allow_missing: bool = False,
+    any_channels: bool = False,
+) -> Recording:
     """Refuse what no command can use; mend small gaps in cells and say so in `notes`.
 
-    With `allow_missing`, channels with many missing cells stay as they are (a report of a failed run).
+    With `allow_missing`, channels with many missing cells stay as they are (a report of a failed run); with
+    `any_channels` the axle's need not be there.
 
     Raises:
         BadInputError: a required channel is missing, time runs backwards or stands still, too many
             missing cells, values beyond LARGEST_MAGNITUDE, or too few samples.
     """
     where = str(recording.source)
-    for name in (TIME, INPUT):
+    for name in (TIME,) if any_channels else (TIME, INPUT):
         recording[name]
-    if not any(name in recording for name in OUTPUTS):
+    if not any_channels and not any(name in recording for name in OUTPUTS):
         raise BadInputError(
             f"has none of the output channels {', '.join(OUTPUTS)}", where=where, fix="record at least one"
         )

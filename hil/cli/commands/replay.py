@@ -1,0 +1,66 @@
+"""`hil replay`: CAN logs of other tools, decoded to a recording."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hil.cli._lean_imports import import_python_can
+
+SEVERAL = ("--dbc", "--bus")
+
+
+def command(
+    logs: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="LOG...", help=".mcap, .asc, .blf, .trc, .log (candump) or .mf4 (bus logging)"
+        ),
+    ],
+    bench: Annotated[
+        str | None,
+        typer.Option(help="bench file, or the name of a shipped bench: its devices decode the frames"),
+    ] = None,
+    dbc: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="[CHANNEL=]FILE",
+            help="in place of --bench: each signal of a DBC becomes a channel; of the log's CHANNEL, or all",
+        ),
+    ] = None,
+    bus: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="BUS=CHANNEL", help="which of the log's channels is which bus, where that is not clear"
+        ),
+    ] = None,
+    plan: Annotated[
+        str | None, typer.Option(help="plan whose criteria are judged; needs to know where its segments lie")
+    ] = None,
+    segments: Annotated[
+        Path | None,
+        typer.Option(help="the run's recording.mcap, or JSON with segments; default: of a .mcap LOG its own"),
+    ] = None,
+    operator: Annotated[str, typer.Option(help="who ran the bench; stands in the report")] = "",
+    out: Annotated[
+        Path | None, typer.Option(help="directory; default: a new one, out/replay-001 and so on")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace earlier results in --out")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Decode CAN logs to a recording and report on it: recording.mcap, report.html, report.pdf.
+
+    With --plan the criteria are judged: result.json and junit.xml too. Several logs are put on one clock by
+    their absolute stamps. What is left out of a log is said.
+    """
+    import_python_can()
+    from hil.cli.replay import carry_out
+
+    return carry_out(
+        logs=logs, bench=bench, dbc=dbc, bus=bus, plan=plan, segments=segments, operator=operator, out=out,
+        overwrite=overwrite, as_json=as_json,
+    )  # fmt: skip

@@ -1,0 +1,34 @@
+"""Several logs on one clock."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from hil.core.can_logs import CanLog
+from hil.core.frames import frames
+from hil.engine.replay._channels import merged
+
+SECOND = 10**9
+
+
+def test_logs_lie_as_their_wall_clock_says(tmp_path: Path) -> None:
+    logs = []
+    for name, began_s, first_s in (("late", 100, 0.5), ("early", 90, 2.0)):
+        path = tmp_path / name
+        path.touch()
+        logs.append(
+            CanLog(
+                path, {"1": frames(1, np.zeros(2, np.uint64), 8, first_s + np.arange(2.0))}, began_s * SECOND
+            )
+        )
+    found = merged(logs)
+    assert found.began_ns == 92 * SECOND
+    assert found.channels["early", "1"]["time_s"].tolist() == [0.0, 1.0]
+    assert found.channels["late", "1"]["time_s"].tolist() == [8.5, 9.5]
+    both, one = found.of("1"), found.of("late:1")
+    assert both is not None
+    assert one is not None
+    assert (both["time_s"].tolist(), len(one)) == ([0.0, 1.0, 8.5, 9.5], 2)
+    assert found.names == ["1"]
