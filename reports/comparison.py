@@ -130,20 +130,24 @@ def _responses(found: Comparison, names: tuple[str, ...]) -> Table:
 
 
 def _segment_part(found: Comparison, segment: Segment) -> Part:
+    speed = quantities.nominal(segment.initial_speed_km_h, "km/h")
+    name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
+    return Part(segment.id, f"{name}, {speed} ({segment.id})", "", figures=overlay(found.runs, segment))
+
+
+def overlay(runs: tuple[ComparedRun, ...], segment: Segment) -> tuple[Figure, ...]:
+    """A segment of every run: its first seconds, differences and spectra of a step, else the whole of it."""
     figures: list[Figure | None] = []
     if segment.kind == "step":
         figures = [
-            _response(found.runs, segment.id, "shaft_torque_nm", "first", until_s=_FIRST_SECONDS),
-            _difference(found.runs, segment.id, "shaft_torque_nm"),
-            _response(found.runs, segment.id, "motor_speed_rad_s", "first", until_s=_FIRST_SECONDS),
-            _spectrum(found.runs, segment.id, "motor_speed_rad_s"),
+            _response(runs, segment.id, "shaft_torque_nm", "first", until_s=_FIRST_SECONDS),
+            _difference(runs, segment.id, "shaft_torque_nm"),
+            _response(runs, segment.id, "motor_speed_rad_s", "first", until_s=_FIRST_SECONDS),
+            _spectrum(runs, segment.id, "motor_speed_rad_s"),
         ]
     else:
-        figures = [_response(found.runs, segment.id, "shaft_torque_nm", "whole")]
-    speed = quantities.nominal(segment.initial_speed_km_h, "km/h")
-    name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
-    drawn = tuple(figure for figure in figures if figure is not None)
-    return Part(segment.id, f"{name}, {speed} ({segment.id})", "", figures=drawn)
+        figures = [_response(runs, segment.id, "shaft_torque_nm", "whole")]
+    return tuple(figure for figure in figures if figure is not None)
 
 
 def _of(run: ComparedRun, segment: str) -> Segment | None:

@@ -34,6 +34,7 @@ _COMMANDS = {
     "report": "Make the report again from a recording.",
     "identify": "Frequency responses and fits from recordings.",
     "design": "Controller from a model, with margins.",
+    "tune": "Controller for the largest worst margin over a plan's criteria.",
     "diagnose": "Find where model and measurement disagree, name the effect, add it.",
     "compare": "The same plan on several runs, side by side.",
     "explain": "What would bring a predicted run to target figures.",

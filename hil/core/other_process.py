@@ -96,7 +96,7 @@ def _carried_out() -> tuple[bool, Any]:
         return False, BenchError(what, where="analysis", fix="please report it")
 
 
-def _end_with(parent: int) -> None:
+def end_with_parent(parent: int) -> None:
     """Nobody waits for an answer any more once the process that asked has ended, however it did."""
     while os.getppid() == parent:
         time.sleep(_LOOK_S)
@@ -105,7 +105,7 @@ def _end_with(parent: int) -> None:
 
 def main() -> None:
     """Be that process."""
-    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
+    threading.Thread(target=end_with_parent, args=(os.getppid(),), daemon=True).start()
     answer = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what a library prints is no answer
     with contextlib.suppress(OSError, AttributeError):

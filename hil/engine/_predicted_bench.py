@@ -18,7 +18,8 @@ from hil.core.model import Model
 from hil.engine._predicted_wire import PredictedWire, wire_of
 from hil.engine._simulable import rmcu_of
 from hil.engine.bench_tables import BenchFile
-from hil.plant.closed_loop import SIDES, TICK_S, ClosedLoop
+from hil.plant import LONGEST_STEP_S
+from hil.plant.closed_loop import SIDES, TICK_S, ClosedLoop, Noise
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as M
@@ -218,11 +219,19 @@ class PredictedBench:
 
     simulated = True
 
-    def __init__(self, file: BenchFile, model: Model) -> None:
+    def __init__(
+        self,
+        file: BenchFile,
+        model: Model,
+        noise: Noise | None = None,
+        longest_step_s: float = LONGEST_STEP_S,
+        wire: PredictedWire | None = None,
+    ) -> None:
         self.file, self.model = file, model
-        self.wire = wire_of(file)
+        self.wire = wire or wire_of(file)
         held = file.simulation.rmcu if file.simulation else {}
-        closed = ClosedLoop(model, file.vehicle.wheel_radius_m, self.wire.rounding, held)
+        radius_m = file.vehicle.wheel_radius_m
+        closed = ClosedLoop(model, radius_m, self.wire.rounding, held, noise, longest_step_s)
         self.loop = PredictedLoop(closed)
         self.rmcu = PredictedRmcu(self.loop, file, self.wire)
         self.dyno = PredictedDyno(self.loop, file, self.wire)

@@ -7,22 +7,25 @@ The engine's own conductor does it, with a predicted bench in place of drivers a
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
 import numpy as np
 
+from hil.core.controller import Controller
 from hil.core.model import Model
 from hil.core.recording import Event, Recording
 from hil.core.result import Segment
 from hil.engine._predicted_bench import PredictedBench
+from hil.engine._predicted_wire import PredictedWire
 from hil.engine.bench import Bench
 from hil.engine.bench_tables import BenchFile
 from hil.engine.conductor import RELEASE_S, BenchConductor
 from hil.engine.recorder import Recorder
-from hil.plant.closed_loop import TICK_S
+from hil.plant import LONGEST_STEP_S
+from hil.plant.closed_loop import TICK_S, Noise
 from test_plans import Array, Plan, PlannedSegment, Quantity
 
 _UNSETTLED_S = 0.003  # what came later than this before the newest sample is not in a recording so far
@@ -44,24 +47,42 @@ class Prediction:
     bus_loads: dict[str, float]
 
 
-def predict(plan: Plan, bench: BenchFile, model: Model) -> Prediction:
+def predict(
+    plan: Plan,
+    bench: BenchFile,
+    model: Model,
+    *,
+    controllers: Mapping[Path, Controller] | None = None,
+    noise: Noise | None = None,
+    channels: Collection[str] | None = None,
+    longest_step_s: float = LONGEST_STEP_S,
+    wire: PredictedWire | None = None,
+) -> Prediction:
     """Carry `plan` out on the simulated bench of `bench` and `model`, without its wire and its noise.
 
     Nobody is asked at operator prompts, and no limit on measured values trips.
+
+    Args:
+        controllers: what is loaded in place of files that the plan loads.
+        noise: of the sensors; none without it.
+        channels: those of the recording that are wanted; all without it. `peaks` then has these only.
+        longest_step_s: of the integrator.
+        wire: what `wire_of` the bench gave, if somebody has it already.
 
     Raises:
         BadInputError: the plan asks for more than the bench allows, or a model without a shaft.
         HilError: the run would fail.
     """
-    ready = PredictedBench(bench, model)
-    recorder = _PredictedRecorder(ready)
+    ready = PredictedBench(bench, model, noise, longest_step_s, wire)
+    recorder = _PredictedRecorder(ready, channels)
     with tempfile.TemporaryDirectory() as directory:
-        conductor = PredictionConductor(ready, recorder, Path(directory))
+        conductor = PredictionConductor(ready, recorder, Path(directory), controllers)
         for step in (*plan.steps, *plan.finally_):
             step.carry_out(conductor)
     ready.rmcu.make_safe()
     ready.dyno.make_safe()
-    peaks = {name: ready.peak(name) for name in ready.wire.rounding.channels}
+    names = [name for name in ready.wire.rounding.channels if channels is None or name in channels]
+    peaks = {name: ready.peak(name) for name in names}
     return Prediction(
         recorder.everything(), tuple(conductor.segments), peaks, conductor.made, ready.wire.loads
     )
@@ -70,11 +91,28 @@ def predict(plan: Plan, bench: BenchFile, model: Model) -> Prediction:
 class PredictionConductor(BenchConductor):
     """The engine's conductor on a predicted bench; only torque is not sent millisecond by millisecond."""
 
-    def __init__(self, bench: PredictedBench, recorder: _PredictedRecorder, out: Path) -> None:
+    def __init__(
+        self,
+        bench: PredictedBench,
+        recorder: _PredictedRecorder,
+        out: Path,
+        controllers: Mapping[Path, Controller] | None = None,
+    ) -> None:
         super().__init__(
             cast(Bench, bench), cast(Recorder, recorder), out, lambda text, timeout_s: "not asked"
         )
         self._rmcu, self._loop = bench.rmcu, bench.loop
+        self._in_place_of = controllers or {}
+
+    def set_controller(self, file: Path) -> None:
+        """Write a controller to the RMCU: the file's, or what is to be tried in its place."""
+        tried = self._in_place_of.get(file)
+        if tried is None:
+            super().set_controller(file)
+            return
+        self._check.set_controller(file)
+        self._rmcu.write_controller(tried)
+        self._controller = tried
 
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
         """Request all samples at once, then take the torque away and switch it off."""
@@ -91,8 +129,8 @@ class PredictionConductor(BenchConductor):
 class _PredictedRecorder:
     """Stands where the recorder stands: the rows are kept by the bench, attachments and events here."""
 
-    def __init__(self, bench: PredictedBench) -> None:
-        self._bench = bench
+    def __init__(self, bench: PredictedBench, channels: Collection[str] | None = None) -> None:
+        self._bench, self._channels = bench, channels
         self._start_s = bench.began * TICK_S + bench.wire.first_stamp_s
         self._attachments: dict[str, bytes] = {}
         self._metadata: dict[str, dict[str, str]] = {}
@@ -125,7 +163,7 @@ class _PredictedRecorder:
         return self._recording(self._bench.loop.closed.samples)
 
     def _recording(self, end: int) -> Recording:
-        channels = self._bench.loop.closed.recorded(self._bench.began, end)
+        channels = self._bench.loop.closed.recorded(self._bench.began, end, self._channels)
         return Recording(
             channels,
             Path("prediction"),

@@ -3,6 +3,7 @@
 from reports.drawings._bode import Curve, bode, coherence
 from reports.drawings._canvas import render
 from reports.drawings._drawing import Drawing
+from reports.drawings._front import front
 from reports.drawings._loops import Loops, nyquist, sensitivity, trade_off_chart
 
 __all__ = [
@@ -11,6 +12,7 @@ __all__ = [
     "Loops",
     "bode",
     "coherence",
+    "front",
     "nyquist",
     "render",
     "sensitivity",

@@ -24,6 +24,10 @@ USUAL: dict[str, tuple[str, ...]] = {
         "--target", "c.peak_shaft_torque=120", "--plan", "plan.yaml", "--bench", "bench.toml",
         "--among", "dead_time", "--evaluations", "20", "--out", "out",
     ),
+    "tune": (
+        "plan.yaml", "--model", "model.toml", "--bench", "bench.toml", "--generations", "1",
+        "--at-most", "0.02", "--processes", "1", "--out", "out",
+    ),
     "doctor": ("bench.toml", "--for", "0.3"),
     "sim-bench": ("bench.toml", "--port", "0", "--for", "0.5"),
     "serve": ("--data", "service", "--bench", "bench.toml", "--port", "0", "--for", "0.5"),

@@ -59,7 +59,7 @@ CODES = {
 }
 LINES = documented()
 #: Pages whose commands take minutes: searches, and a bench in wall-clock time at a fifth of its rate.
-LONG = ("compare-runs", "diagnose", "explain", "identify-and-design", "sim-bench")
+LONG = ("compare-runs", "diagnose", "explain", "identify-and-design", "sim-bench", "tune")
 PAGES = [
     pytest.param(page, marks=pytest.mark.hunt if Path(page).stem in LONG else pytest.mark.slow)
     for page in sorted({line.page for line in LINES})

@@ -4,9 +4,20 @@
 """
 
 from hil.core.conventions import TICK_S
+from hil.plant.closed_loop._noise import Noise
 from hil.plant.closed_loop._state import State, state_at_rest
 from hil.plant.closed_loop.advance import advance
 from hil.plant.closed_loop.closed_loop import SIDES, ClosedLoop
 from hil.plant.closed_loop.shown import Wire, rounded
 
-__all__ = ["SIDES", "TICK_S", "ClosedLoop", "State", "Wire", "advance", "rounded", "state_at_rest"]
+__all__ = [
+    "SIDES",
+    "TICK_S",
+    "ClosedLoop",
+    "Noise",
+    "State",
+    "Wire",
+    "advance",
+    "rounded",
+    "state_at_rest",
+]

@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.model import Model
+from hil.plant import LONGEST_STEP_S, bench_sensor
 from hil.plant import _kernel as K
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant import bench_sensor
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
 
@@ -71,8 +71,8 @@ class State:
                 array[index] = value
 
 
-def state_at_rest(model: Model, wheel_radius_m: float) -> State:
-    """An axle at rest with its drives free and its sensors without noise.
+def state_at_rest(model: Model, wheel_radius_m: float, longest_step_s: float = LONGEST_STEP_S) -> State:
+    """An axle at rest with its drives free and its sensors without noise; `longest_step_s`: the integrator's.
 
     Raises:
         BadInputError: an effect stands twice where there is one place for it, or a sensor is early.
@@ -80,6 +80,7 @@ def state_at_rest(model: Model, wheel_radius_m: float) -> State:
     vector = P.pack(model)
     scalars = np.zeros(T.SCALARS)
     scalars[T.RADIUS] = wheel_radius_m
+    scalars[T.LONGEST_STEP] = longest_step_s
     three = vector[P.KIND] == P.THREE_INERTIA
     scalars[T.DRIVE_INERTIA] = vector[P.WHEEL_INERTIA if three else P.VEHICLE_INERTIA]
     return State(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hil.core.compiled import compiled
+from hil.plant import _kernel as K
 from hil.plant.closed_loop.tick import tick
 
 
@@ -15,11 +16,12 @@ def advance(  # type: ignore[no-untyped-def]
     `noise` and `rows` have a row, `requests` and `codes` an entry for each sample. Drives keep what they were
     told.
     """
+    p = K.as_tuple(vector)  # once: to make it takes as long as half a millisecond's tick
     for i in range(modes.shape[0]):
         tick(
             first + i,
             x,
-            vector,
+            p,
             w,
             torques,
             fir,

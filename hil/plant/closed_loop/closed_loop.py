@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -10,8 +10,10 @@ import numpy.typing as npt
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model
+from hil.plant import LONGEST_STEP_S
 from hil.plant.closed_loop import drive as D
 from hil.plant.closed_loop import tick as T
+from hil.plant.closed_loop._noise import Noise
 from hil.plant.closed_loop._state import state_at_rest
 from hil.plant.closed_loop.advance import advance
 from hil.plant.closed_loop.shown import Wire, rounded
@@ -29,7 +31,8 @@ class ClosedLoop:
     """The simulated bench without its wire: the same compiled tick, and numbers rounded as frames round.
 
     Time passes in `run` only; what is told to drives and RMCU counts from the next sample on. Sensors have
-    no noise. Parameters in `held` are what the RMCU uses in place of those that it is given.
+    no noise but what is given. Parameters in `held` are what the RMCU uses in place of those that it is
+    given. `longest_step_s` is the integrator's.
 
     Raises:
         BadInputError: a model that has no shaft to load, an effect that stands twice, or a sensor that would
@@ -37,7 +40,13 @@ class ClosedLoop:
     """
 
     def __init__(
-        self, model: Model, wheel_radius_m: float, wire: Wire, held: Mapping[str, float] | None = None
+        self,
+        model: Model,
+        wheel_radius_m: float,
+        wire: Wire,
+        held: Mapping[str, float] | None = None,
+        noise: Noise | None = None,
+        longest_step_s: float = LONGEST_STEP_S,
     ) -> None:
         if model.kind == "transfer_function":
             raise BadInputError(
@@ -47,7 +56,8 @@ class ClosedLoop:
         self.wire = wire
         self._held = dict(held or {})
         #: What the drives' vehicle model is told stands here too.
-        self.plant = state_at_rest(model, wheel_radius_m)
+        self.plant = state_at_rest(model, wheel_radius_m, longest_step_s)
+        self._noise = noise
         self._memory = m = M.Memory()
         m.gains[M.SAMPLE_TIME] = TICK_S
         m.gains[M.TORQUE_LIMIT] = LARGEST_TORQUE_NM  # until a controller sets its own
@@ -107,9 +117,12 @@ class ClosedLoop:
         """Let `samples` milliseconds pass without torque being asked for."""
         self._advance(np.zeros(samples))
 
-    def recorded(self, first: int, last: int) -> dict[str, Array]:
-        """The channels of a recording from sample `first` to before `last`, by name, with `time_s`."""
-        return self.wire.recorded(self._rows[first:last], TICK_S)
+    def recorded(self, first: int, last: int, names: Collection[str] | None = None) -> dict[str, Array]:
+        """The channels of a recording from sample `first` to before `last`, by name, with `time_s`.
+
+        `names` are those that are wanted; all without it.
+        """
+        return self.wire.recorded(self._rows[first:last], TICK_S, names)
 
     def _advance(self, requests: Array) -> None:
         end = self.samples + len(requests)
@@ -130,7 +143,7 @@ class ClosedLoop:
             s.drives,
             s.sensors,
             s.past,
-            np.tile(s.noise, (len(requests), 1)),
+            self._with_noise(len(requests)),
             modes,
             requests,
             modes,
@@ -138,3 +151,10 @@ class ClosedLoop:
             self._rows[self.samples : end],
         )
         self.samples = end
+
+    def _with_noise(self, samples: int) -> Array:
+        """What sensors add to each sample, and the tick's scratch room behind it."""
+        room = np.tile(self.plant.noise, (samples, 1))
+        if self._noise is not None:
+            room[:, : T.SENSORS] = self._noise.drawn(samples)
+        return room

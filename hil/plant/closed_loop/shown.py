@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -58,11 +58,13 @@ class Wire:
         """A measured channel of bench rows, as its frames show it."""
         return rounded(self.channels[name], rows[:, _COLUMNS[name]])
 
-    def recorded(self, rows: Array, sample_time_s: float) -> dict[str, Array]:
-        """The channels of a recording that begins with the first of `rows`."""
+    def recorded(
+        self, rows: Array, sample_time_s: float, names: Collection[str] | None = None
+    ) -> dict[str, Array]:
+        """The channels of a recording that begins with the first of `rows`; those in `names`, or all."""
         samples = np.arange(len(rows))
         channels = {TIME: np.round(samples * sample_time_s, 9)}
-        for name in self.channels:
+        for name in self.channels if names is None else self._needed(names):
             late = self.late.get(name, 0)
             values = self.channel(name, rows)
             channels[name] = values[np.clip(samples + late, 0, len(rows) - 1)] if late else values
@@ -70,6 +72,12 @@ class Wire:
             if left in channels and right in channels:
                 channels[name] = share * (channels[left] + channels[right])
         return channels
+
+    def _needed(self, names: Collection[str]) -> list[str]:
+        """Measured channels that are wanted, or that wanted ones are computed from."""
+        wanted = {*names}
+        wanted |= {side for name, *sides, _ in _BOTH_SIDES if name in names for side in sides}
+        return [name for name in self.channels if name in wanted]
 
 
 def rounded(signal: Signal, values: npt.ArrayLike) -> Array:

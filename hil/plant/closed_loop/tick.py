@@ -41,8 +41,8 @@ SENSORS = 5  # motor speed, wheel left, wheel right, shaft left, shaft right
 SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = GAIN, OFFSET, STEP, DELAY
 
 # Scalars of the world
-SLEWED, WAS_COUPLED, SLIP, RADIUS, V_HAT, LAST_TORQUE, INITIAL_SPEED, DRIVE_INERTIA = range(8)
-SCALARS = 8
+SLEWED, WAS_COUPLED, SLIP, RADIUS, V_HAT, LAST_TORQUE, INITIAL_SPEED, DRIVE_INERTIA, LONGEST_STEP = range(9)
+SCALARS = 9
 HISTORY = 2048
 
 
@@ -77,12 +77,12 @@ def _couple(x, drives, w):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, request, code, status, row):  # type: ignore[no-untyped-def]
+def tick(k, x, p, w, torques, fir, drives, sensors, past, noise, mode, request, code, status, row):  # type: ignore[no-untyped-def]
     """Sample k: fill `row` with what is measured and commanded at t_k, then move to t_k+1.
 
-    `fir` holds the RMCU's arrays (numerators, denominators, filter states, gains, states).
+    `p` is the packed model by value. `fir` holds the RMCU's arrays (numerators, denominators, filter states,
+    gains, states).
     """
-    p = K.as_tuple(vector)
     b, a, z, gains, states = fir
     dt = gains[M.SAMPLE_TIME]
     coupled = _couple(x, drives, w)
@@ -131,7 +131,7 @@ def tick(k, x, vector, w, torques, fir, drives, sensors, past, noise, mode, requ
     new = torques[(k - whole) % HISTORY]
     old = torques[(k - whole - 1) % HISTORY]
     state, memories, w[SLEWED] = K.sample(
-        state, memories, p, w[SLEWED], old, new, late, dt, coupled, loads, 1e-4
+        state, memories, p, w[SLEWED], old, new, late, dt, coupled, loads, w[LONGEST_STEP]
     )
     for i in range(X.MOVING):
         x[i] = state[i]

@@ -1,0 +1,43 @@
+"""A controller for the largest worst margin over a plan's criteria."""
+
+from hil.analysis.tuning._draws import Draw, draws_of
+from hil.analysis.tuning._driven import Driven, driven_by
+from hil.analysis.tuning._free import Free, free_from_toml, read_free, refuse_unknown_weights, shipped_free
+from hil.analysis.tuning._front import Point, front_of, metrics_of, point_of
+from hil.analysis.tuning._loops import SpeedLoops
+from hil.analysis.tuning._parameters import PARAMETERS, Space, values_of, with_values
+from hil.analysis.tuning._search import Effort
+from hil.analysis.tuning._trial import CarryOut, Predicted, Trial, Tried, channels_needed
+from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_start, tune
+
+__all__ = [
+    "PARAMETERS",
+    "CarryOut",
+    "Draw",
+    "Driven",
+    "Effort",
+    "Free",
+    "Point",
+    "Predicted",
+    "Space",
+    "SpeedLoops",
+    "Standing",
+    "Trial",
+    "Tried",
+    "Tuning",
+    "channels_needed",
+    "draws_of",
+    "driven_by",
+    "free_from_toml",
+    "front_of",
+    "metrics_of",
+    "point_of",
+    "read_free",
+    "refuse_model",
+    "refuse_start",
+    "refuse_unknown_weights",
+    "shipped_free",
+    "tune",
+    "values_of",
+    "with_values",
+]

@@ -1,0 +1,198 @@
+"""One candidate on one car: the plan's criteria by the report's own code, and the hard limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from hil.analysis.control_design import Margins
+from hil.analysis.tuning._draws import Draw
+from hil.analysis.tuning._driven import Driven
+from hil.analysis.tuning._free import Free
+from hil.analysis.tuning._loops import SpeedLoops
+from hil.analysis.tuning._parameters import with_values
+from hil.core.controller import Controller
+from hil.core.errors import HilError
+from hil.core.model import Model
+from hil.core.recording import Recording
+from hil.core.result import CriterionResult, Segment
+from test_plans import Plan, judge
+
+#: What a candidate counts that keeps no hard limit, and one that cannot be run at all.
+INFEASIBLE, UNSTABLE = -2.0, -20.0
+_LEAST = (
+    -1.9
+)  # a margin below this counts no less: any candidate within the hard limits is better than one beyond
+_MEAN_SHARE = 0.01  # of the mean margin in what is searched for: it decides between equals
+
+
+class Predicted(Protocol):
+    """What a run would record."""
+
+    @property
+    def recording(self) -> Recording:
+        """Its channels."""
+
+    @property
+    def segments(self) -> tuple[Segment, ...]:
+        """Its segments."""
+
+
+class CarryOut(Protocol):
+    """Carries a plan out with a controller in place of one of its files; must be picklable."""
+
+    def __call__(
+        self, model: Model, controller: Controller | None, noise: float, seed: int, *, whole: bool = False
+    ) -> Predicted:
+        """Predict the run: `noise` times that of the bench's sensors; `whole`: every channel."""
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What one candidate came to on one car.
+
+    Attributes:
+        values: of the free parameters.
+        draw: number of the car; 0 is the model itself.
+        criteria: those that depend on the controller; empty where nothing was run.
+        margins: weighted margins of the criteria by id; positive is good.
+        limits: (limit - value)/limit of each hard limit by name; negative is beyond it.
+        loop: margins of the speed loop.
+        trouble: why nothing was run.
+    """
+
+    values: Mapping[str, float]
+    draw: int
+    loop: Margins
+    limits: Mapping[str, float]
+    criteria: tuple[CriterionResult, ...] = ()
+    margins: Mapping[str, float] = field(default_factory=dict)
+    trouble: str = ""
+
+    @property
+    def feasible(self) -> bool:
+        """Whether it was run and keeps every hard limit."""
+        return bool(self.margins) and min(self.limits.values(), default=0.0) >= 0.0
+
+    @property
+    def worst(self) -> float:
+        """The least weighted margin; what is beyond a hard limit is worse than any margin."""
+        beyond = sum(max(-2.0, min(0.0, share)) for share in self.limits.values())
+        if not self.margins:
+            return (INFEASIBLE if self.loop.stable and not self.trouble else UNSTABLE) + beyond
+        least = max(_LEAST, min(self.margins.values()))
+        return least if self.feasible else INFEASIBLE + beyond
+
+    @property
+    def score(self) -> float:
+        """What a search makes as large as it can: the worst margin and, for a hundredth, the mean of all."""
+        mean = float(np.mean([max(_LEAST, m) for m in self.margins.values()])) if self.margins else 0.0
+        return self.worst + (_MEAN_SHARE * mean if self.feasible else 0.0)
+
+    @property
+    def binding(self) -> str:
+        """The criterion with the least margin."""
+        return min(self.margins, key=lambda name: self.margins[name], default="")
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Everything that a candidate is tried with; goes to other processes as it is."""
+
+    plan: Plan
+    driven: Driven
+    free: Free
+    start: Controller
+    draws: tuple[Draw, ...]
+    loops: SpeedLoops
+    carry_out: CarryOut
+
+    def controller(self, values: Mapping[str, float], name: str = "tuned") -> Controller:
+        """The start with `values` in place of its own."""
+        return with_values(self.start, values, name)
+
+    def tried(self, values: Mapping[str, float], number: int) -> Tried:
+        """A candidate on car `number`; nothing is run where the loop alone is beyond the limits."""
+        controller, draw = self.controller(values), self.draws[number]
+        loop = self.loops.margins(controller, number)
+        limits = self._loop_limits(loop)
+        if not loop.stable or min(limits.values(), default=0.0) < 0.0:
+            return Tried(values, number, loop, limits)
+        try:
+            found = self.carry_out(draw.model, controller, draw.noise, draw.seed)
+        except HilError as error:
+            return Tried(values, number, loop, limits, trouble=str(error))
+        limits |= self._run_limits(found)
+        criteria = self.judged(found)
+        margins = {
+            c.id: self._weighted(c, m.metric.name)
+            for c, m in zip(criteria, self.driven.criteria, strict=True)
+        }
+        return Tried(values, number, loop, limits, criteria, margins)
+
+    def judged(self, found: Predicted) -> tuple[CriterionResult, ...]:
+        """The criteria that depend on the controller."""
+        plan = self.plan.model_copy(update={"criteria": self.driven.criteria})
+        return judge(plan, found.recording, found.segments)
+
+    def _weighted(self, criterion: CriterionResult, metric: str) -> float:
+        """Its margin: with a weight of 2 what is left counts half and what is lacking double."""
+        margin = criterion.margin
+        if margin is None or criterion.verdict in ("error", "not_judged", "did_not_settle"):
+            return 0.0 if criterion.verdict in ("pass", "informational") else -1.0
+        weight = self.free.weight(criterion.id, metric)
+        return margin / weight if margin > 0 else margin * weight
+
+    def _loop_limits(self, loop: Margins) -> dict[str, float]:
+        limits = self.free.limits
+        found = {}
+        if limits.sensitivity_peak is not None:
+            found["sensitivity_peak"] = (
+                limits.sensitivity_peak - loop.sensitivity_peak
+            ) / limits.sensitivity_peak
+        for name in ("gain_margin_db", "phase_margin_deg", "delay_margin_s"):
+            least = getattr(limits, name)
+            if least is not None:
+                found[name] = (min(getattr(loop, name), 1e3 * least) - least) / least
+        return found
+
+    def _run_limits(self, found: Predicted) -> dict[str, float]:
+        limits, shares = self.free.limits, {}
+        driven = [segment for segment in found.segments if segment.id in self.driven.segments]
+        if limits.motor_torque_nm is not None:
+            largest = max(_largest_torque_nm(found.recording, segment) for segment in driven)
+            shares["motor_torque_nm"] = (limits.motor_torque_nm - largest) / limits.motor_torque_nm
+        if limits.motor_energy_j is not None:
+            most = max(_motor_energy_j(found.recording, segment) for segment in driven)
+            shares["motor_energy_j"] = (limits.motor_energy_j - most) / limits.motor_energy_j
+        return shares
+
+
+def _inside(recording: Recording, segment: Segment) -> slice:
+    first, last = np.searchsorted(recording.time_s, (segment.start_s - 1e-6, segment.end_s + 1e-6))
+    return slice(int(first), int(last))
+
+
+def _largest_torque_nm(recording: Recording, segment: Segment) -> float:
+    part = recording["motor_torque_ref_nm"][_inside(recording, segment)]
+    return float(np.max(np.abs(part), initial=0.0))
+
+
+def _motor_energy_j(recording: Recording, segment: Segment) -> float:
+    """Positive work of the motor in a segment."""
+    part = _inside(recording, segment)
+    power = recording["motor_torque_nm"][part] * recording["motor_speed_rad_s"][part]
+    return float(np.sum(np.maximum(power, 0.0)) * recording.sample_time_s)
+
+
+def channels_needed(trial_criteria: tuple[object, ...], free: Free) -> frozenset[str]:
+    """Channels that criteria and hard limits are computed from."""
+    names = {channel for c in trial_criteria if isinstance(channel := getattr(c, "channel", None), str)}
+    if free.limits.motor_torque_nm is not None:
+        names.add("motor_torque_ref_nm")
+    if free.limits.motor_energy_j is not None:
+        names |= {"motor_torque_nm", "motor_speed_rad_s"}
+    return frozenset(names)

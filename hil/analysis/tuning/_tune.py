@@ -1,0 +1,248 @@
+"""From a plan's criteria to a controller: search, then everything that shows why it is this one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hil.analysis.tuning._parameters import PARAMETERS, Space, values_of
+from hil.analysis.tuning._pool import Pool
+from hil.analysis.tuning._search import Effort, Search
+from hil.analysis.tuning._trial import Trial, Tried
+from hil.core.controller import Controller
+from hil.core.errors import BadInputError
+from hil.core.model import Model, refuse_without_vehicle
+
+#: Step of the sensitivities, as a share of a parameter's range.
+SENSITIVITY_STEP = 0.02
+_PAPER_LEAD = {"lead_deg": 36.0, "lead_hz": 40.0}
+_PAPER_NOTCH = {"notch_hz": 10.6, "notch_width": 2.0, "notch_depth": 0.08}
+
+
+@dataclass(frozen=True)
+class Standing:
+    """One controller with what it came to on every car that it was tried on, the model itself first."""
+
+    name: str
+    controller: Controller
+    values: Mapping[str, float]
+    tried: tuple[Tried, ...]
+
+    @property
+    def nominal(self) -> Tried:
+        """On the model itself."""
+        return self.tried[0]
+
+    @property
+    def worst(self) -> Tried:
+        """On the car that it is worst on."""
+        return min(self.tried, key=lambda one: one.worst)
+
+    def least_margin(self, criterion: str) -> float:
+        """Over all cars; a car on which it was not run counts as -1."""
+        return min(tried.margins.get(criterion, -1.0) for tried in self.tried)
+
+
+@dataclass(frozen=True)
+class Tuning:
+    """What a search came to.
+
+    Attributes:
+        trial: what was tried, on which cars.
+        space: what was free.
+        chosen, start: the controller that was found, and the plan's own.
+        others: the paper's lead and notch in its place, where they are not the start.
+        archive: every candidate on the model itself.
+        sensitivities: change of each criterion's margin by criterion and parameter, for a step of the whole
+            range of the parameter, from central differences.
+        ended: converged, rounds used up or stopped.
+        runs: predicted runs.
+    """
+
+    trial: Trial
+    space: Space
+    chosen: Standing
+    start: Standing
+    others: tuple[Standing, ...]
+    archive: tuple[Tried, ...]
+    sensitivities: Mapping[str, Mapping[str, float]]
+    ended: str
+    runs: int
+
+    @property
+    def shown(self) -> tuple[Standing, ...]:
+        """Every controller that is compared."""
+        return (self.chosen, self.start, *self.others)
+
+    @property
+    def better_in_every_criterion(self) -> bool:
+        """Than the start, each criterion on the car that is worst for it."""
+        ids = [criterion.id for criterion in self.trial.driven.criteria]
+        return all(self.chosen.least_margin(i) > self.start.least_margin(i) for i in ids)
+
+    @property
+    def traded(self) -> tuple[str, ...]:
+        """Criteria in which the start has more margin, each on the car that is worst for it."""
+        ids = [criterion.id for criterion in self.trial.driven.criteria]
+        return tuple(i for i in ids if self.chosen.least_margin(i) <= self.start.least_margin(i))
+
+
+def tune(
+    trial: Trial,
+    *,
+    seed: int = 0,
+    effort: Effort | None = None,
+    processes: int | None = None,
+    show: Callable[[str, float | None], None] = lambda text, share: None,
+    stopped: Callable[[], bool] = lambda: False,
+) -> Tuning:
+    """Search the free parameters for the largest worst margin.
+
+    Raises:
+        BadInputError: the start is unstable on the model, or nothing keeps the hard limits.
+    """
+    space = Space(trial.free.free)
+    refuse_start(trial)
+    with Pool(trial, processes) as pool:
+        search = Search(
+            pool, space, space.point(values_of(trial.start)), seed, effort or Effort(), show, stopped
+        )
+        search.carry_out()
+        show("comparing", None)
+        chosen = Standing(
+            "tuned",
+            trial.controller(space.values(search.best)),
+            space.values(search.best),
+            tuple(search.everywhere(search.best)),
+        )
+        start = _standing(pool, "start", {})
+        others = tuple(_standing(pool, name, values) for name, values in _paper(trial).items())
+        sensitivities = {} if search.ended == "stopped" else _sensitivities(pool, space, search.best)
+    _refuse_infeasible(chosen, start, trial)
+    return Tuning(
+        trial,
+        space,
+        chosen,
+        start,
+        others,
+        tuple(search.archive),
+        sensitivities,
+        search.ended,
+        pool.runs,
+    )
+
+
+def refuse_model(model: Model, where: str) -> None:
+    """Refuse a model that no controller should be tuned on.
+
+    Raises:
+        BadInputError: it does not explain its own recordings, or it cannot be simulated in a closed loop.
+    """
+    doubt = model.meta.get("warning")
+    if isinstance(doubt, str) and doubt:
+        raise BadInputError(
+            f"the model does not explain its recordings: {doubt}",
+            where=where,
+            fix="find out why (hil diagnose) and tune on the model that it writes",
+        )
+    if model.meta.get("explains_the_data") is False:
+        raise BadInputError(
+            "the chain does not explain the data that it was identified from",
+            where=where,
+            fix="find out why (hil diagnose) and tune on the model that it writes",
+        )
+    if model.kind == "transfer_function":
+        raise BadInputError(
+            "a 'transfer_function' model has no shaft to load: no plan can be run on it",
+            where=where,
+            fix="give the physical.toml that hil identify writes beside it",
+        )
+    refuse_without_vehicle(model, where, "tune")
+
+
+def refuse_start(trial: Trial) -> None:
+    """Refuse a start that is unstable on the model.
+
+    Raises:
+        BadInputError: names the controller and what to do.
+    """
+    loop = trial.loops.margins(trial.start, 0)
+    if not loop.stable:
+        raise BadInputError(
+            f"the plan's controller '{trial.driven.file.stem}' is unstable on this model: |S|max "
+            f"{loop.sensitivity_peak:.3g} at {loop.sensitivity_peak_hz:.3g} Hz",
+            where=str(trial.driven.file),
+            fix="give a stable one with --start (hil design makes one); check the model's dead time",
+        )
+
+
+def _refuse_infeasible(chosen: Standing, start: Standing, trial: Trial) -> None:
+    if all(tried.feasible for tried in chosen.tried):
+        return
+    own = f"; the start is beyond them {_beyond(start, trial)}" if not start.worst.feasible else ""
+    best = _beyond(chosen, trial)
+    raise BadInputError(
+        f"no controller keeps the hard limits on every car: the best is beyond them {best}{own}",
+        where=trial.free.where,
+        fix="relax [limits], narrow [tolerance], or widen [free]",
+    )
+
+
+def _beyond(one: Standing, trial: Trial) -> str:
+    """On which car it is worst, and what it does not keep there."""
+    worst = one.worst
+    car = "the model itself" if worst.draw == 0 else f"draw {worst.draw} of {len(trial.draws) - 1}"
+    shares = [f"{name} by {-share:.2g} of it" for name, share in worst.limits.items() if share < 0]
+    return f"on {car}: {', '.join(shares) or worst.trouble or 'it is unstable'}"
+
+
+def _standing(pool: Pool, name: str, values: Mapping[str, float]) -> Standing:
+    cars = range(len(pool.trial.draws))
+    tried = tuple(pool.tried([(values, number) for number in cars]))
+    return Standing(name, pool.trial.controller(values, name), values, tried)
+
+
+def _paper(trial: Trial) -> dict[str, Mapping[str, float]]:
+    """The paper's lead and notch with everything else as the start has it, where they differ from it."""
+    wsc, own = trial.start.wsc, values_of(trial.start)
+    found: dict[str, Mapping[str, float]] = {}
+    for name, part, numbers in (
+        ("paper's lead", wsc.lead, _PAPER_LEAD),
+        ("paper's notch", wsc.notch, _PAPER_NOTCH),
+    ):
+        same = part is not None and all(np.isclose(own[n], v, rtol=1e-3) for n, v in numbers.items())
+        if not same:
+            found[name] = numbers
+    return found
+
+
+def _sensitivities(pool: Pool, space: Space, best: np.ndarray) -> dict[str, dict[str, float]]:
+    """Change of each criterion's nominal margin for a step over a parameter's whole range."""
+    points, widths = [], []
+    for axis in range(space.size):
+        ends = np.clip(best[axis] + np.array([-SENSITIVITY_STEP, SENSITIVITY_STEP]), 0.0, 1.0)
+        widths.append(float(ends[1] - ends[0]))
+        for end in ends:
+            point = best.copy()
+            point[axis] = end
+            points.append(point)
+    found = pool.tried([(space.values(point), 0) for point in points])
+    return {
+        criterion.id: {
+            name: _slope(found[2 * axis : 2 * axis + 2], criterion.id, widths[axis])
+            for axis, name in enumerate(space.names)
+        }
+        for criterion in pool.trial.driven.criteria
+    }
+
+
+def _slope(ends: Sequence[Tried], criterion: str, width: float) -> float:
+    low, high = (tried.margins.get(criterion, float("nan")) for tried in ends)
+    return (high - low) / width
+
+
+def parameter_unit(name: str) -> str:
+    """Unit of a free parameter, for people."""
+    return PARAMETERS[name].unit

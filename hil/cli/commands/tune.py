@@ -1,0 +1,79 @@
+"""`hil tune`: from a plan's criteria to a controller."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hil.cli._completion import shipped_bench, shipped_plan
+from hil.cli._lean_imports import import_python_can
+
+
+def command(
+    plan: Annotated[str, typer.Argument(help="plan file or name", autocompletion=shipped_plan())],
+    model: Annotated[
+        Path, typer.Option("--model", help="model file of the axle (a chain), effects included")
+    ],
+    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/tune-NNN")] = None,
+    free: Annotated[
+        Path | None,
+        typer.Option(help="what is free, weights, hard limits, tolerances (TOML); default: as shipped"),
+    ] = None,
+    controller: Annotated[
+        str,
+        typer.Option(help="which of the plan's controllers is tuned, by its file's name; default: the last"),
+    ] = "",
+    start: Annotated[
+        Path | None, typer.Option(help="controller file to begin with; default: the plan's own")
+    ] = None,
+    draws: Annotated[
+        int,
+        typer.Option(min=0, max=5000, help="cars drawn from uncertainty and tolerances; 0: the model alone"),
+    ] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="of draws and search")] = 0,
+    generations: Annotated[
+        int, typer.Option(min=1, max=1000, help="of the search over the whole space, on the model itself")
+    ] = 20,
+    at_most: Annotated[
+        float | None,
+        typer.Option(metavar="MINUTES", min=0.01, help="end the search then, with the best so far"),
+    ] = None,
+    processes: Annotated[
+        int | None, typer.Option(min=1, max=256, help="predictions at once; default: one for each core")
+    ] = None,
+    bench: Annotated[
+        str, typer.Option(help="simulated bench, by file or name", autocompletion=shipped_bench())
+    ] = "sim",
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="replace an earlier result in --out")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="print tune.json on stdout, nothing else")] = False,
+) -> int:
+    """Search a controller's parameters for the largest worst margin over a plan's criteria.
+
+    Every candidate is a whole predicted run of the plan, on the model and on cars drawn around it. Writes
+    controller.toml, free.toml, tune.json, report.html, report.pdf and a figure. Ctrl-C ends the search and
+    keeps the best so far. Exit code: 0 every criterion that depends on the controller passes on every car, 1
+    one does not.
+    """
+    import_python_can()
+    from hil.cli.tune import carry_out
+
+    return carry_out(
+        plan=plan,
+        model=model,
+        out=out,
+        free=free,
+        controller=controller,
+        start=start,
+        draws=draws,
+        seed=seed,
+        generations=generations,
+        at_most=at_most,
+        processes=processes,
+        bench=bench,
+        overwrite=overwrite,
+        as_json=as_json,
+    )

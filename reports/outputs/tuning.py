@@ -1,0 +1,183 @@
+"""What `hil tune` writes: the controller, `tune.json`, figures and the text for people."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from hil.analysis.tuning import Standing, Tuning, front_of, metrics_of, point_of, values_of
+from hil.core.controller import controller_to_toml
+from hil.core.result import Segment
+from reports import drawings
+
+CONTROLLER, FREE = "controller.toml", "free.toml"
+
+
+def output_files(found: Tuning, free_text: str) -> dict[str, bytes]:
+    """Names and contents of everything but `tune.json` and the reports."""
+    files = {CONTROLLER: controller_to_toml(_stated(found)).encode(), FREE: free_text.encode()}
+    pictures = _front_picture(found)
+    if pictures is not None:
+        files |= {f"front.{kind}": content for kind, content in pictures.items()}
+    return files
+
+
+def _stated(found: Tuning) -> Any:
+    """The controller with what it was tuned for."""
+    worst = found.chosen.worst
+    meta = {
+        "tuned_for": found.trial.plan.name,
+        "in_place_of": found.trial.driven.file.stem,
+        "worst_margin": worst.worst,
+        "binding_criterion": worst.binding,
+        "draws": len(found.trial.draws) - 1,
+    }
+    return found.chosen.controller.model_copy(update={"meta": meta})
+
+
+def _front_picture(found: Tuning) -> dict[str, bytes] | None:
+    criteria = found.trial.driven.criteria
+    metrics = metrics_of(criteria)
+    best = front_of(found.archive, criteria)
+    every = [point for tried in found.archive if tried.feasible and (point := point_of(tried, criteria))]
+    if len(metrics) < 2 or not best:
+        return None
+    units = {criterion.metric.name: criterion.metric.unit for criterion in criteria}
+    first, second = (f"{name.replace('_', ' ')} in {units[name]}" for name in metrics)
+    labels = (first, second, "|S|max")
+    named = {one.name: point.figures for one in found.shown if (point := point_of(one.nominal, criteria))}
+    figure = drawings.front(
+        labels, np.array([p.figures for p in every]), np.array([p.figures for p in best]), named
+    )
+    return drawings.render(figure)
+
+
+def summary_of(
+    found: Tuning, segments: tuple[Segment, ...], asked: Mapping[str, Any], files: list[str]
+) -> dict[str, Any]:
+    """The content of `tune.json`; `asked` is what the command was told."""
+    trial, worst = found.trial, found.chosen.worst
+    return {
+        **asked,
+        "in_place_of": trial.driven.file.stem,
+        "segments": list(trial.driven.segments),
+        "worst_margin": worst.worst,
+        "start_worst_margin": found.start.worst.worst,
+        "binding": _binding(found, segments),
+        "better_in_every_criterion": found.better_in_every_criterion,
+        "traded": list(found.traded),
+        "parameters": {
+            name: {
+                "value": found.chosen.values[name],
+                "start": values_of(trial.start)[name],
+                "lower": bounds[0],
+                "upper": bounds[1],
+            }
+            for name, bounds in trial.free.free.items()
+        },
+        "criteria": [
+            {
+                "id": criterion.id,
+                "unit": criterion.metric.unit,
+                "upper": criterion.upper,
+                "lower": criterion.lower,
+                "below": criterion.below or "",
+                "weight": trial.free.weight(criterion.id, criterion.metric.name),
+                "controllers": {one.name: _of_criterion(one, criterion.id) for one in found.shown},
+            }
+            for criterion in trial.driven.criteria
+        ],
+        "hard_limits": {
+            "limits": trial.free.limits.model_dump(),
+            "controllers": {one.name: _hard_limits(one) for one in found.shown},
+        },
+        "front": {
+            "figures": [*metrics_of(trial.driven.criteria), "sensitivity_peak"],
+            "points": [
+                {"values": dict(p.tried.values), "figures": list(p.figures)}
+                for p in front_of(found.archive, trial.driven.criteria)
+            ],
+        },
+        "sensitivities": {name: dict(row) for name, row in found.sensitivities.items()},
+        "cars": [{"number": draw.number, "differs": dict(draw.differs)} for draw in trial.draws],
+        "ended": found.ended,
+        "runs": found.runs,
+        "controller": CONTROLLER,
+        "files": files,
+    }
+
+
+def _of_criterion(one: Standing, id_: str) -> dict[str, Any]:
+    value = next((c.value for c in one.nominal.criteria if c.id == id_), None)
+    return {
+        "value": value,
+        "margin": one.nominal.margins.get(id_),
+        "least_margin": one.least_margin(id_),
+        "worst_car": min(one.tried, key=lambda tried: tried.margins.get(id_, -1.0)).draw,
+    }
+
+
+def _hard_limits(one: Standing) -> dict[str, Any]:
+    return {
+        "kept_on_every_car": all(tried.feasible for tried in one.tried),
+        "least_room": {name: min(t.limits.get(name, 0.0) for t in one.tried) for name in one.nominal.limits},
+        "loop": asdict(one.nominal.loop),
+    }
+
+
+def _binding(found: Tuning, segments: tuple[Segment, ...]) -> dict[str, Any]:
+    worst = found.chosen.worst
+    criterion = next((c for c in found.trial.driven.criteria if c.id == worst.binding), None)
+    segment = next((s for s in segments if criterion and s.id == criterion.segment), None)
+    return {
+        "criterion": worst.binding,
+        "car": worst.draw,
+        "differs": dict(found.trial.draws[worst.draw].differs),
+        "initial_speed_km_h": None if segment is None else segment.initial_speed_km_h,
+    }
+
+
+def text_of(found: Tuning, out: str) -> str:
+    """What a person reads."""
+    width = max(len(c.id) for c in found.trial.driven.criteria)
+    names = [one.name for one in found.shown]
+    columns = "".join(f"{name:>16}" for name in names)
+    lines = [f"{'margin, least of ' + _cars(found):<{width}}{columns}"]
+    for criterion in found.trial.driven.criteria:
+        cells = "".join(f"{100 * one.least_margin(criterion.id):>14.1f} %" for one in found.shown)
+        lines.append(f"{criterion.id:<{width}}{cells}")
+    lines.append("")
+    own = values_of(found.trial.start)
+    for name, value in found.chosen.values.items():
+        lines.append(f"{name:<22}{value:>12.5g}   (was {own[name]:.5g})")
+    lines += ["", verdict(found), f"{found.runs} predicted runs, search {found.ended}; written to {out}"]
+    return "\n".join(lines)
+
+
+def verdict(found: Tuning) -> str:
+    """What came out, in a sentence or two."""
+    worst, before = found.chosen.worst, found.start.worst
+    told = (
+        f"Worst margin {100 * worst.worst:.1f} % ({worst.binding}, {_car(worst.draw)}); "
+        f"the plan's own controller has {_margin(found.start)} ({before.binding or 'not run'}, "
+        f"{_car(before.draw)})."
+    )
+    if found.better_in_every_criterion:
+        return f"{told} Every criterion has more margin than before."
+    return f"{told} Less margin than before have: {', '.join(found.traded)}."
+
+
+def _margin(one: Standing) -> str:
+    return f"{100 * one.worst.worst:.1f} %" if one.worst.feasible else "none within the hard limits"
+
+
+def _car(number: int) -> str:
+    return "the model itself" if number == 0 else f"draw {number}"
+
+
+def _cars(found: Tuning) -> str:
+    count = len(found.trial.draws)
+    return "the model" if count == 1 else f"{count} cars"

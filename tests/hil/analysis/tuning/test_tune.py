@@ -1,0 +1,76 @@
+"""A whole tuning of a short plan: better than its start, the same again, and plain where it cannot be."""
+
+import dataclasses
+import itertools
+
+import pytest
+
+from hil.analysis.tuning import Effort, front_of, refuse_model, tune
+from hil.core.errors import BadInputError
+from hil.core.model import EffectUse, Model
+from tests.hil.analysis.tuning.trials import FREE, MODEL, trial_of
+
+QUICK = Effort(far=1, between=1, members=4, near=4, rounds=2, joining=1)
+
+
+def test_the_worst_margin_grows_on_every_car_and_the_front_holds_what_none_beats():
+    trial = trial_of(draws=3)
+    found = tune(trial, seed=1, effort=QUICK, processes=1)
+    assert found.start.worst.worst < found.chosen.worst.worst
+    assert found.chosen.worst.worst == min(tried.worst for tried in found.chosen.tried)
+    assert len(found.chosen.tried) == 4
+    assert found.chosen.nominal.binding in {c.id for c in trial.driven.criteria}
+    best = [point.figures for point in front_of(found.archive, trial.driven.criteria)]
+    assert best
+    assert all(a == b or any(x < y for x, y in zip(a, b, strict=True)) for a in best for b in best)
+
+
+@pytest.mark.slow
+def test_two_processes_find_what_one_finds():
+    trial = trial_of(draws=2)
+    found, again = (tune(trial, seed=1, effort=QUICK, processes=count) for count in (1, 2))
+    assert dict(again.chosen.values) == dict(found.chosen.values)
+    assert [t.margins for t in again.chosen.tried] == [t.margins for t in found.chosen.tried]
+
+
+def test_a_search_that_is_stopped_keeps_the_best_so_far():
+    asked = itertools.count()
+    found = tune(trial_of(), effort=QUICK, processes=1, stopped=lambda: next(asked) > 1)
+    assert found.ended == "stopped"
+    assert found.chosen.worst.worst >= found.start.worst.worst
+
+
+def test_hard_limits_that_nothing_keeps_are_said():
+    limited = trial_of(FREE + "[limits]\nmotor_torque_nm = 20\n")
+    with pytest.raises(BadInputError, match="motor_torque_nm by"):
+        tune(limited, effort=QUICK, processes=1)
+
+
+def test_an_unstable_start_is_refused():
+    late = MODEL.with_effects(EffectUse("dead_time", {"extra_delay_s": 0.05}))
+    with pytest.raises(BadInputError, match="unstable on this model"):
+        tune(trial_of(model=late), effort=QUICK, processes=1)
+
+
+@pytest.mark.parametrize(
+    ("model", "said"),
+    [
+        (
+            dataclasses.replace(MODEL, meta={"warning": "misses 40 %"}),
+            "does not explain its recordings: misses",
+        ),
+        (dataclasses.replace(MODEL, meta={"explains_the_data": False}), "does not explain the data"),
+        (Model("transfer_function"), "no shaft to load"),
+    ],
+)
+def test_a_model_that_nothing_should_be_tuned_on_is_refused(model, said):
+    with pytest.raises(BadInputError, match=said):
+        refuse_model(model, "m.toml")
+
+
+def test_a_weight_makes_a_margin_count_less_and_a_lack_more():
+    plain, heavy = trial_of(), trial_of(FREE + "[weights]\npeak_shaft_torque = 4\n")
+    own, weighted = (t.tried({"feed_forward_time_s": 0.03}, 0).margins for t in (plain, heavy))
+    for name, margin in own.items():
+        factor = (0.25 if margin > 0 else 4) if "peak_shaft_torque" in name else 1
+        assert weighted[name] == pytest.approx(factor * margin)
