@@ -18,6 +18,7 @@ _SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "μs": "u
 _TORQUES, _LENGTHS_PER_TIME = ("nm", "knm", "mnm"), ("m/s", "km/h", "kph", "mph")
 _ANGLES_PER_TIME = ("rad/s", "rpm", "1/min", "min-1", "u/min", "rev/min", "deg/s", "°/s", "1/s", "hz")
 _UNITS = frozenset((*_TORQUES, *_LENGTHS_PER_TIME, *_ANGLES_PER_TIME, "-", "1", *_PER_SECOND))
+_SEPARATOR_LINE = re.compile(rb"\"?sep=(.|\t)\"?", re.IGNORECASE)
 _GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+")
 
 
@@ -112,6 +113,11 @@ class Layout:
         self.notes.append("numbers have a decimal comma")
 
 
+def names_separator(line: bytes) -> bool:
+    """Whether a first line is no header, but tells Excel the separator: `sep=;`."""
+    return _SEPARATOR_LINE.fullmatch(line.strip()) is not None
+
+
 def layout_of(header: str) -> Layout:
     """The layout that a header line shows.
 
@@ -126,6 +132,9 @@ def layout_of(header: str) -> Layout:
             found.names = [name for name, _, _ in named]
             found.units = [unit if name == TIME else "" for name, unit, _ in named]
             _settle_header(found, cells, [beside for _, _, beside in named])
+            other = next((c for c, n in zip(cells, found.names, strict=True) if n == c.lower() != c), None)
+            if other is not None:
+                found.notes.append(f"'{other}' was read as '{other.lower()}', others likewise")
             if separator != ",":
                 found.notes.insert(0, f"columns are separated by {word}s")
             return found
@@ -156,10 +165,10 @@ def _name_and_unit(cell: str) -> tuple[str, str, str]:
     if name.lower() in _TIME_NAMES and _plain(beside) in _PER_SECOND:
         return TIME, "", beside
     head, _, unit = name.rpartition("_")
-    if head == "time" and _plain(unit) in _PER_SECOND:
+    if head.lower() == "time" and _plain(unit) in _PER_SECOND:
         return TIME, _plain(unit), beside
     # what is no channel keeps its name as it is
-    return (name, "", beside) if name in CHANNELS else (cell, "", "")
+    return (name.lower(), "", beside) if name.lower() in CHANNELS else (cell, "", "")
 
 
 def _time_like(cells: list[str]) -> str:

@@ -14,7 +14,7 @@ import pyarrow.csv as arrow_csv
 from hil.core.channels import CHANNELS, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording._csv_encoding import as_utf8
-from hil.core.recording._csv_layout import Layout, LayoutError, layout_of
+from hil.core.recording._csv_layout import Layout, LayoutError, layout_of, names_separator
 from hil.core.recording._csv_writer import sha256_of
 from hil.core.recording._evidence import LARGEST_BYTES, sidecar, take_evidence
 from hil.core.recording._regular_file import open_regular
@@ -111,6 +111,10 @@ class _Table:
             block = self._in_utf8(block)
         if not self._header:
             header, _, block = block.removeprefix(_BOM).partition(b"\n")
+            if names_separator(header):
+                header, _, block = block.partition(b"\n")
+                self._blank_lines.append(0)
+                self._line += 1
             self._take_header(header)
             block = self._without_units(block)
             self._settle_decimal(block)
@@ -136,11 +140,11 @@ class _Table:
         return block
 
     def _take_header(self, line: bytes) -> None:
-        self._layout = self._unless_in_doubt(lambda: layout_of(line.decode()), 1)
+        self._layout = self._unless_in_doubt(lambda: layout_of(line.decode()), self._line)
         header = self._header = self._layout.names
         self._columns = {column: [] for column, name in enumerate(header) if name}
         self._notes += [f"column {c + 1} has no name and was left out" for c, n in enumerate(header) if not n]
-        self._line = 2
+        self._line += 1
 
     def _without_units(self, block: bytes) -> bytes:
         """The block without a line of units, where it begins with one."""
@@ -148,10 +152,10 @@ class _Table:
         cells = [cell.strip() for cell in self._layout.cells(line.decode())]
         if len(cells) != len(self._header) or not self._layout.is_of_units(cells):
             return block
-        self._unless_in_doubt(lambda: self._layout.take_units(cells), 2)
-        self._layout.notes.append("line 2 gives units")
+        self._unless_in_doubt(lambda: self._layout.take_units(cells), self._line)
+        self._layout.notes.append(f"line {self._line} gives units")
         self._blank_lines.append(0)
-        self._line = 3
+        self._line += 1
         return rest
 
     def _settle_decimal(self, block: bytes) -> None:

@@ -81,6 +81,13 @@ WITH_UNITS = ("time_s [s]", "motor_torque_ref_nm [Nm]", "motor_speed_rad_s (rad/
             "\ufeff" + text(";", comma=True),
             ["columns are separated by semicolons", "numbers have a decimal comma"],
         ),
+        ("sep=;\n" + text(";"), ["columns are separated by semicolons"]),
+        ("SEP=,\r\n" + text().replace("\n", "\r\n"), []),
+        (
+            text(names=tuple(name.upper() for name in NAMES)),
+            ["'TIME_S' was read as 'time_s', others"],
+        ),
+        (text(names=(NAMES[0], NAMES[1].title(), NAMES[2])), ["'Motor_Torque_Ref_Nm' was read as"]),
         (text().encode("utf-16"), []),
         (text().encode("utf-16-be").join([b"\xfe\xff", b""]), []),
         (text().replace("\n", "\r\n"), []),
@@ -120,6 +127,10 @@ def test_latin_1_is_read_and_said(tmp_path):
         (text(per_s=1e3), "samples are 1 s apart\n  is it in milliseconds? Name the column time_ms"),
         (text(names=("time_s [ms]", *NAMES[1:]), per_s=1e3), "is in s by its name and in 'ms' beside it"),
         (text(second="ms,Nm,rad/s", per_s=1e3), "is in s by its name and in 'ms' beside it"),
+        (
+            text(names=("time_s", "motor_speed_rad_s", "MOTOR_SPEED_rad_s")),
+            "'motor_speed_rad_s' stands twice",
+        ),
         (text(second="s,Nm,rpm"), "column 'motor_speed_rad_s': is in 'rpm', the channel in rad/s"),
         (text(names=(*NAMES[:2], "motor_speed_rad_s [rpm]")), "is in 'rpm', the channel in rad/s"),
         ("time_s;motor_torque_ref_nm;motor_speed_rad_s\n0;1,234;2,345\n1;1,234;5\n", "may be 1.234 or 1234"),
@@ -144,6 +155,12 @@ def test_a_point_after_a_thousand_commas_is_refused_with_its_line(tmp_path):
 def test_lines_are_counted_below_a_line_of_units(tmp_path):
     content = ",".join(NAMES) + "\ns,Nm,rad/s\n0,1,2\n0.001,1,2\n0.001,1,2\n"
     assert "sample 3, line 5: 'time_s' does not increase" in refused(tmp_path, content)
+
+
+def test_lines_are_counted_below_excels_separator(tmp_path):
+    content = "sep=,\n" + ",".join(NAMES) + "\ns,Nm,rad/s\n0,1,2\n0.001,1,2\n0.001,1,2\n"
+    assert "sample 3, line 6: 'time_s' does not increase" in refused(tmp_path, content)
+    assert "line 2: the header line has no 'time_s'" in refused(tmp_path, "sep=;\na;b\n1;2\n")
 
 
 def test_slow_samples_are_remarked_on(tmp_path):
