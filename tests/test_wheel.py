@@ -11,6 +11,7 @@ import sysconfig
 import venv
 import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -59,6 +60,58 @@ def test_the_wheel_holds_the_packages_the_licence_and_no_tests(wheel: Path) -> N
     assert any(name.endswith("licenses/LICENSE") for name in names)
     for needed in ("benches/rmcu.dbc", "reports/templates/report.typ", "test_plans/library/acceptance.yaml"):
         assert needed in names
+
+
+OWN_TEST = """
+import pytest
+
+
+def test_keeps_its_limit(bench):
+    ran = bench.run("tip_in.plan.yaml")
+    ran.check()
+    assert ran["s.peak_shaft_torque"].value < 400
+    assert abs(ran.recording["motor_speed_rad_s"]).max() < 700
+
+
+def test_does_not_keep_half_of_it(bench):
+    bench.run("strict.plan.yaml").check()
+"""
+
+
+@pytest.mark.slow
+def test_a_repo_of_a_users_own_is_red_and_green_as_it_should_be(hil: Path, tmp_path: Path) -> None:
+    plan = PLAN.replace("name: mine", "name: tip_in").replace("my_controller", "phase_stabilization")
+    (tmp_path / "tip_in.plan.yaml").write_text(plan)
+    (tmp_path / "strict.plan.yaml").write_text(plan.replace("upper: 400", "upper: 10"))
+    (tmp_path / "test_own.py").write_text(OWN_TEST)
+    (tmp_path / "pytest.ini").write_text("[pytest]\n")
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTHON")}
+    command = [str(hil.parent / "python"), "-m", "pytest", "-rA", "--bench", "sim", "--bench-out", "out"]
+    done = subprocess.run(
+        [*command, "--junitxml", "junit.xml", "-p", "no:cacheprovider"],
+        cwd=tmp_path, capture_output=True, text=True, timeout=600, env=environment, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1, done.stdout + done.stderr
+    lines = {line.split(" - ")[0] for line in done.stdout.splitlines()}
+    for green in (
+        "tip_in.plan.yaml::run",
+        "tip_in.plan.yaml::s.peak_shaft_torque",
+        "strict.plan.yaml::safe_state",
+    ):
+        assert f"PASSED {green}" in lines
+    assert "PASSED test_own.py::test_keeps_its_limit" in lines
+    assert {line for line in lines if line.startswith(("FAILED", "ERROR"))} == {
+        "FAILED strict.plan.yaml::s.peak_shaft_torque",
+        "FAILED test_own.py::test_does_not_keep_half_of_it",
+    }
+    assert "allowed is ≤ 10.0" in done.stdout
+    cases = {
+        case.get("classname"): case for case in ElementTree.parse(tmp_path / "junit.xml").iter("testcase")
+    }
+    named = {p.get("name"): p.get("value") for p in cases["test_own"].iter("property")}
+    assert named["s.peak_shaft_torque.verdict"] == "fail"
+    assert float(str(named["s.peak_shaft_torque.value"])) > 10
+    assert len(list((tmp_path / "out").glob("*/recording.mcap"))) == 2
 
 
 @pytest.mark.slow

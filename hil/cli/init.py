@@ -13,7 +13,7 @@ from hil.engine.bench_file import DEFAULT_BENCH, shipped
 from test_plans.loading import LIBRARY
 
 _STARTER = Path(__file__).parent / "starter"
-_OWN = ("README.md", "plan.yaml", "test_plan.py")
+_OWN = ("README.md", "plan.yaml")
 _NAME = "my_bench"
 _SHIPPED_MODEL = "three_inertia.toml"
 

@@ -20,7 +20,7 @@ def command(
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Make a folder with a plan, a simulated bench, its model, a controller and a test for pytest.
+    """Make a folder with a plan, a simulated bench, its model and a controller.
 
     `hil check`, `hil run` and `pytest` work there as it stands; README.md in it says how. --samples adds what
     the how-to of diagnoses begins with: axle.toml, chirp_high.csv, chirp_low.csv, steps.csv, multisine.csv.
