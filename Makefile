@@ -4,10 +4,26 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run serve page-picture api-fuzz openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
+
+# The bench service with an example bench in wall-clock time, and one in virtual time, until Ctrl-C.
+# PACE: seconds of bench time in a second, for machines that cannot hold real time.
+PACE ?= 1
+SERVICE := out/service
+serve: setup
+	@mkdir -p $(SERVICE) && rm -f $(SERVICE)/sim.toml
+	@$$(command -v setsid) $(BIN)/hil sim-bench sim --time-scale $(PACE) --port 0 --bench-file $(SERVICE)/sim.toml >/dev/null & \
+	bench=$$!; trap 'kill $$bench 2>/dev/null' EXIT; trap : INT TERM; \
+	while [ ! -s $(SERVICE)/sim.toml ]; do kill -0 $$bench || exit 3; sleep 0.2; done; \
+	sed 's/^name = .*/name = "rear-axle"/' $(SERVICE)/sim.toml > $(SERVICE)/rear-axle.toml; \
+	$(BIN)/hil serve --data $(SERVICE) --bench $(SERVICE)/rear-axle.toml --bench sim
+
+# The README's picture of the page, while `make serve` is running elsewhere.
+page-picture: setup
+	$(BIN)/python docs/images/page.py http://127.0.0.1:8080
 
 setup: $(STAMP)
 

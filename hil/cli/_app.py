@@ -89,6 +89,7 @@ def _dispatch(arguments: list[str]) -> int:
         print(f"hil {importlib.metadata.version('eaxle-hil')}")
         return 0
     _refuse_empty_out(arguments)
+    arguments = _of_a_server(arguments)
     name = arguments[0]
     if name not in _COMMANDS:
         near = difflib.get_close_matches(name, _COMMANDS, 1)
@@ -97,6 +98,26 @@ def _dispatch(arguments: list[str]) -> int:
     several = getattr(_module(name), "SEVERAL", ())
     _app_of(name)(list(each_with_its_option(arguments[1:], several)), prog_name=f"hil {name}")
     return 0
+
+
+def _of_a_server(arguments: list[str]) -> list[str]:
+    """`hil --server URL run …` as `hil run --server URL …`.
+
+    Raises:
+        BadInputError: another command than run, or none.
+    """
+    option, _, url = arguments[0].partition("=")
+    if option != "--server":
+        return arguments
+    rest = arguments[1:] if url else arguments[2:]
+    url = url or (arguments[1] if len(arguments) > 1 else "")
+    if not url or rest[:1] != ["run"]:
+        raise BadInputError(
+            "a service carries out 'run', and no other command",
+            where="--server",
+            fix="write: hil --server URL run PLAN --bench NAME",
+        )
+    return ["run", "--server", url, *rest[1:]]
 
 
 def _module(name: str) -> ModuleType:

@@ -19,6 +19,7 @@ from hil.cli._output import (
 )
 from hil.cli._series import carry_out_series, repeated
 from hil.cli._timing import times_in_words, timing_in_words
+from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.printable import printable
 from hil.core.result import RunResult
@@ -40,11 +41,18 @@ def carry_out(
     confirm: str,
     accept_expired: str,
     overwrite: bool,
+    server: str,
     show: bool,
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
     choices = list(all_choices(values, controller))
+    if server:
+        _refuse_here_only(model=model, controller=controller, repeat=repeat * len(choices), confirm=confirm)
+        from hil.cli._remote_run import RemoteRun  # costs a run here nothing
+
+        remote = RemoteRun(server, plan, bench, dict(choices[0].values), yes, accept_expired, overwrite)
+        return remote.carry_out(out, lambda result, folder: _tell(result, folder, show=show, as_json=as_json))
     plans, bench_file = [load_plan(plan, choice) for choice in choices], load_bench(bench)
     inputs = [bench_file.source, *([Path(plan)] if Path(plan).is_file() else []), *([model] if model else [])]
     runs = Runs(
@@ -59,13 +67,36 @@ def carry_out(
     if len(plans) * repeat > 1:
         return carry_out_series(runs, plans, repeated(bench_file, repeat), out, as_json=as_json)
     with runs.finished(plans[0], bench_file, out) as run:
-        if as_json:
-            print_json(run.result.model_dump(mode="json"))
-        else:
-            _print(run.result, run.folder)
-        if show and "html" in run.result.files:
-            show_in_browser(run.folder / run.result.files["html"])
+        _tell(run.result, run.folder, show=show, as_json=as_json)
         return run.exit_code
+
+
+def _refuse_here_only(*, model: Path | None, controller: list[str] | None, repeat: int, confirm: str) -> None:
+    """A service takes plans as they are, one at a time, and asks a second person for hazardous ones.
+
+    Raises:
+        BadInputError: names the option.
+    """
+    here_only = {
+        "--model": model,
+        "--controller": controller,
+        "--repeat, or --set with several values,": repeat > 1,
+        "--confirm": confirm,
+    }
+    for option, given in here_only.items():
+        if given:
+            raise BadInputError(
+                f"{option} does not go with --server", where="--server", fix="leave one of them out"
+            )
+
+
+def _tell(result: RunResult, folder: Path, *, show: bool, as_json: bool) -> None:
+    if as_json:
+        print_json(result.model_dump(mode="json"))
+    else:
+        _print(result, folder)
+    if show and "html" in result.files:
+        show_in_browser(folder / result.files["html"])
 
 
 def _asked_for_name(plan: Plan) -> str:

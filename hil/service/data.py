@@ -88,6 +88,7 @@ class RunData(_Data):
     ended_at: datetime.datetime | None = None
     share: float | None = Field(None, description="how much is done, 0 to 1, while it is running")
     doing: str = Field("", description="what is going on, while it is running")
+    told: str = Field("", description="what its operator was told last, while it is running")
     exit_code: int | None = Field(None, description="as `hil run` would have ended")
     verdict: Literal["pass", "fail", "error"] | None = None
     safe_state: Literal["confirmed", "not_confirmed", "not_needed"] | None = None

@@ -97,7 +97,9 @@ class Service:
         """A run with what only this process knows: how far it is, which files it has left."""
         running = self.queue.running_run(run.id)
         if running is not None:
-            return run.model_copy(update={"share": running.share, "doing": running.doing})
+            return run.model_copy(
+                update={"share": running.share, "doing": running.doing, "told": running.told}
+            )
         if run.state in OVER:
             return run.model_copy(update={"files": self.files_of(run.id)})
         return run

@@ -148,8 +148,8 @@ def test_the_commands_of_a_page_work_one_after_the_other(page, stage, served):
     prepare(page, stage)
     for line in (line for line in LINES if line.page == page):
         name, *arguments = line.arguments
-        if name == "--install-completion":
-            continue  # test_completion.py has the script; nobody's shell is changed here
+        if name in ("--install-completion", "--server"):
+            continue  # test_completion.py has the script, test_client.py the service; neither is set up here
         began = time.monotonic()
         if name == "sim-bench":
             _end(served)

@@ -68,6 +68,12 @@ def command(
         ),
     ] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
+    server: Annotated[
+        str,
+        typer.Option(
+            metavar="URL", help="have a bench service carry it out (hil serve); the token is in HIL_TOKEN"
+        ),
+    ] = "",
     show: Annotated[
         bool, typer.Option("--open", help="show the report of a single run in a browser, if there is one")
     ] = False,
@@ -85,6 +91,6 @@ def command(
     return carry_out(
         plan=plan, bench=bench, out=out, model=model, values=values, repeat=repeat,
         controller=controller, operator=operator, yes=yes,
-        confirm=confirm, accept_expired=accept_expired, overwrite=overwrite, show=show,
+        confirm=confirm, accept_expired=accept_expired, overwrite=overwrite, server=server, show=show,
         as_json=as_json,
     )  # fmt: skip

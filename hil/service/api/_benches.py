@@ -9,7 +9,7 @@ from hil.service.api._problems import RefusedError, missing
 from hil.service.data import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.service.service import Service
 
-router = APIRouter(prefix="/benches", tags=["benches"])
+router = APIRouter(tags=["benches"])
 
 
 def known(service: Service, bench: str) -> str:
@@ -23,21 +23,21 @@ def known(service: Service, bench: str) -> str:
     return bench
 
 
-@router.get("", name="list_benches")
+@router.get("/benches", name="list_benches")
 async def list_benches(service: TheService, me: Viewer) -> list[BenchData]:
     """All benches and what they do."""
     del me
     return [service.bench_data(name) for name in service.benches]
 
 
-@router.get("/{bench}", name="get_bench")
+@router.get("/benches/{bench}", name="get_bench")
 async def get_bench(bench: BenchName, service: TheService, me: Viewer) -> BenchData:
     """A bench and what it does."""
     del me
     return service.bench_data(known(service, bench))
 
 
-@router.post("/{bench}/emergency-stop", name="stop_in_emergency")
+@router.post("/benches/{bench}/emergency-stop", name="stop_in_emergency")
 async def stop_in_emergency(bench: BenchName, service: TheService, request: Request) -> BenchData:
     """Have a bench safe at once, and keep it so until it is reset. Everybody may; no token is asked for."""
     known(service, bench)
@@ -45,6 +45,16 @@ async def stop_in_emergency(bench: BenchName, service: TheService, request: Requ
     await service.stop_in_emergency(bench, by)
     service.log.add(by, role, "emergency stop", bench)
     return service.bench_data(bench)
+
+
+@router.post("/emergency-stop", name="stop_all_in_emergency")
+async def stop_all_in_emergency(service: TheService, request: Request) -> list[BenchData]:
+    """Have all benches safe at once, and keep them so. Everybody may; no token is asked for."""
+    by, role = _named(service, request)
+    for bench in service.benches:
+        await service.stop_in_emergency(bench, by)
+    service.log.add(by, role, "emergency stop", "all benches")
+    return [service.bench_data(name) for name in service.benches]
 
 
 def _named(service: Service, request: Request) -> tuple[str, str]:
@@ -58,7 +68,7 @@ def _named(service: Service, request: Request) -> tuple[str, str]:
     return f"somebody at {address}", ""
 
 
-@router.post("/{bench}/reset", name="reset_bench")
+@router.post("/benches/{bench}/reset", name="reset_bench")
 async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> BenchData:
     """Let a bench be armed again after an emergency stop."""
     known(service, bench)
@@ -71,7 +81,7 @@ async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> Be
     return service.bench_data(bench)
 
 
-@router.put("/{bench}/lease", name="take_lease")
+@router.put("/benches/{bench}/lease", name="take_lease")
 async def take_lease(bench: BenchName, wanted: LeaseWanted, service: TheService, me: Operator) -> LeaseData:
     """Have a bench for oneself for a while: runs of others wait. Ask again before it is over to go on."""
     lease = service.leases.take(known(service, bench), me.name, wanted.for_s)
@@ -82,7 +92,7 @@ async def take_lease(bench: BenchName, wanted: LeaseWanted, service: TheService,
     return lease
 
 
-@router.delete("/{bench}/lease", name="give_lease_back")
+@router.delete("/benches/{bench}/lease", name="give_lease_back")
 async def give_lease_back(bench: BenchName, service: TheService, me: Operator) -> BenchData:
     """Give a bench back; an engineer may do so for somebody else."""
     lease = service.leases.of(known(service, bench))

@@ -45,7 +45,7 @@ _DIGITS = 6
     responses={200: {"content": {"text/event-stream": {"schema": {"type": "string"}}}}},
 )
 async def live(bench: BenchName, service: TheService, me: Viewer) -> StreamingResponse:
-    """A bench as it changes: events `state`, `samples`, `spectrum` and `criteria` (docs/reference/api.md)."""
+    """A bench as it changes: events `state`, `samples`, `spectrum`, `criteria` (docs/reference/api.md)."""
     del me
     known(service, bench)
     if len(service.viewers[bench]) >= _MOST_VIEWERS:
@@ -72,7 +72,7 @@ class _Watching:
             while not self._service.closing:
                 told.clear()
                 news = "".join(self._news())
-                yield news or ": still here\n\n"
+                yield news or _event("here", {})
                 await asyncio.sleep(_SHORTEST_S)
                 try:
                     await asyncio.wait_for(told.wait(), _LONGEST_S)

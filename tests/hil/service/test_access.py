@@ -24,6 +24,7 @@ LEAST = {
     ("GET", "/benches"): "viewer",
     ("GET", "/benches/{bench}"): "viewer",
     ("POST", "/benches/{bench}/emergency-stop"): "",
+    ("POST", "/emergency-stop"): "",
     ("POST", "/benches/{bench}/reset"): "engineer",
     ("PUT", "/benches/{bench}/lease"): "operator",
     ("DELETE", "/benches/{bench}/lease"): "operator",

@@ -1,0 +1,35 @@
+"""Makes the README's picture of the service's page: `make page-picture`, while `make serve` is running."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+import urllib.request
+from pathlib import Path
+
+from playwright.sync_api import expect, sync_playwright
+
+HERE = Path(__file__).parent
+
+
+def main(url: str) -> None:
+    """Queue an acceptance run on the first bench and photograph its second segment."""
+    with urllib.request.urlopen(f"{url}/api/v1/benches") as answer:
+        bench = json.load(answer)[0]["name"]
+    body = json.dumps({"plan": "acceptance", "bench": bench}).encode()
+    headers = {"content-type": "application/json"}
+    urllib.request.urlopen(urllib.request.Request(f"{url}/api/v1/runs", body, headers)).close()
+    with sync_playwright() as started:
+        browser = started.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1280, "height": 900})
+        page.goto(f"{url}/#{bench}")
+        expect(page.locator("#forecast")).to_contain_text("bench time", timeout=120_000)
+        expect(page.locator("#why")).to_contain_text("phase_0kmh", timeout=600_000)
+        page.wait_for_timeout(15_000)
+        page.screenshot(path=HERE / "page.png")
+        browser.close()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,166 @@
+"""`hil --server URL run`: a run that a bench service carries out; progress and exit codes as of one here."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from hil.cli._one_run import NAMES
+from hil.cli._output import progress
+from hil.cli._place import Place, results_in
+from hil.cli._result_file import RESULT
+from hil.cli._streams import complain
+from hil.cli._terminal import KEYS, StandardTerminal, operators_terminal
+from hil.client import Client, RefusedError
+from hil.core.errors import BadInputError, BenchError, InterruptError
+from hil.core.result import RunResult
+from hil.engine import StopRequest
+from hil.service.data import OVER, RunData, RunWanted
+from test_plans import load_plan
+
+_LOOK_S = 0.3
+_GONE_S = 60.0  # for a service that is begun again, or a network that comes back
+_OURS = (400, 401, 403, 404, 413, 421, 422)
+TOKEN = "HIL_TOKEN"
+
+Tell = Callable[[RunResult, Path], None]
+
+
+@dataclass(frozen=True)
+class RemoteRun:
+    """What is wanted of a service; `plan` is a name that it knows, or a file that it is given."""
+
+    server: str
+    plan: str
+    bench: str
+    values: dict[str, float]
+    confirmed_by: str
+    accept_expired: str
+    overwrite: bool
+
+    def carry_out(self, out: Path | None, tell: Tell) -> int:
+        """Have it carried out and bring its files here; its exit code."""
+        client = Client(self.server, os.environ.get(TOKEN, ""))
+        stop = StopRequest()
+        with (
+            results_in(
+                out, NAMES, overwrite=self.overwrite, default=Path(self.plan).stem, summary=RESULT
+            ) as place,
+            stop.by_signals(),
+        ):
+            run = self._queued(client)
+            run = _Watching(client, run, stop).until_over()
+            return _brought(client, run, place, tell)
+
+    def _queued(self, client: Client) -> RunData:
+        """The run as the service has it.
+
+        Raises:
+            BadInputError: the service refuses it.
+            BenchError: the service cannot be reached.
+        """
+        try:
+            name = self.plan
+            if Path(name).is_file():
+                plan = load_plan(name)
+                name = client.give_plan(plan.name, plan.text).name
+            wanted = RunWanted(
+                plan=name,
+                bench=self.bench,
+                values=self.values,
+                confirmed_by=self.confirmed_by,
+                accept_expired=self.accept_expired,
+                key=secrets.token_hex(16),
+            )
+            return client.queue(wanted)
+        except RefusedError as error:
+            if error.status in _OURS:
+                raise BadInputError(error.what, where=error.where, fix=error.fix) from error
+            raise
+        except ValueError as error:
+            raise BadInputError(f"the service cannot take it: {str(error)[:300]}") from error
+
+
+@dataclass
+class _Watching:
+    """Follows a run until it is over, and passes on what its operator says here."""
+
+    client: Client
+    run: RunData
+    stop: StopRequest
+    told_stop: bool = False
+    said: str = ""
+    terminal: StandardTerminal | None = field(default_factory=operators_terminal)
+
+    def until_over(self) -> RunData:
+        """The run as it ended.
+
+        Raises:
+            BenchError: the service has not answered for a minute.
+            InterruptError: somebody asked twice to stop.
+        """
+        heard_s = time.monotonic()
+        keys = f" ({KEYS})" if self.terminal is not None else ""
+        with progress(f"run {self.run.id}: {self.run.plan} on {self.run.bench}{keys}") as show:
+            while self.run.state not in OVER:
+                try:
+                    self._speak()
+                    self.run = self.client.run(self.run.id)
+                    heard_s = time.monotonic()
+                except RefusedError as error:
+                    if error.status in _OURS:
+                        raise
+                except BenchError:
+                    if time.monotonic() - heard_s > _GONE_S:
+                        raise
+                show(self.run.doing or self.run.state.replace("_", " "), self.run.share)
+                time.sleep(_LOOK_S)
+        return self.run
+
+    def _speak(self) -> None:
+        if self.stop.times > 1:
+            raise InterruptError(
+                f"interrupted; run {self.run.id} is being ended by the service", where=f"run {self.run.id}"
+            )
+        if self.stop.times and not self.told_stop:
+            self._ask("q")
+            self.told_stop = True
+        if self.terminal is None:
+            return
+        if self.run.told and self.run.told != self.said:
+            self.said = self.run.told
+            self.terminal.tell(self.said)
+        for line in self.terminal.typed():
+            self._ask(line)
+
+    def _ask(self, line: str) -> None:
+        """What the keys of `hil run` mean, over the API; what is too late is no mistake."""
+        run, bench = self.run.id, self.run.bench
+        known: dict[str, Callable[[], object]] = {
+            "p": lambda: self.client.pause(run),
+            "r": lambda: self.client.resume(run),
+            "q": lambda: self.client.abort(run),
+            "e": lambda: self.client.stop_in_emergency(bench),
+        }
+        with contextlib.suppress(RefusedError):
+            known.get(line.strip().lower(), lambda: self.client.answer(run, line.strip()))()
+
+
+def _brought(client: Client, run: RunData, place: Place, tell: Tell) -> int:
+    """The run's files, here; its exit code."""
+    for name in [one for one in run.files if one in NAMES]:
+        client.download(run.id, name, place.folder / name)
+    place.remove_stale(run.files)
+    if run.reason:
+        complain("error", run.reason)
+    if RESULT in run.files:
+        result = RunResult.model_validate_json((place.folder / RESULT).read_bytes())
+        tell(result, place.folder)
+    if run.state == "cancelled":
+        return InterruptError.exit_code
+    return BenchError.exit_code if run.exit_code is None else run.exit_code

@@ -1,0 +1,5 @@
+"""A typed client of the bench service (docs/reference/api.md); needs nothing that only the service does."""
+
+from hil.client._client import Client, RefusedError
+
+__all__ = ["Client", "RefusedError"]

@@ -1,0 +1,262 @@
+"""Requests to a bench service, with the types that the service itself uses."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import time
+import urllib.error
+import urllib.parse
+import urllib.request
+from collections.abc import Iterator, Mapping
+from http.client import HTTPException, HTTPResponse
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, TypeAdapter, ValidationError
+
+from hil.core.errors import BenchError
+from hil.core.files import replacing
+from hil.service.data import (
+    OVER,
+    Answer,
+    AuditEntry,
+    BenchData,
+    ForecastData,
+    ForecastWanted,
+    Health,
+    LeaseData,
+    LeaseWanted,
+    Me,
+    PlanData,
+    Problem,
+    Role,
+    RunChange,
+    RunData,
+    RunWanted,
+    TokenData,
+    TokenMade,
+    TokenWanted,
+)
+
+A = TypeVar("A")
+T = TypeVar("T", bound=BaseModel)
+_WITHIN_S = 30.0
+_FORECAST_WITHIN_S = 300.0
+_LOOK_S = 0.5
+
+
+class RefusedError(BenchError):
+    """The service has refused a request: `status` is that of HTTP."""
+
+    def __init__(self, status: int, problem: Problem) -> None:
+        super().__init__(problem.what, where=problem.where, fix=problem.fix)
+        self.status = status
+
+
+class Client:
+    """A bench service.
+
+    Every method raises RefusedError if the service refuses, and BenchError if it cannot be reached or does
+    not answer as one.
+
+    Args:
+        url: where it is, as `hil serve` says: `http://127.0.0.1:8080`.
+        token: who asks; a service without tokens asks nobody.
+    """
+
+    def __init__(self, url: str, token: str = "") -> None:
+        self._url, self._token = url.rstrip("/"), token
+
+    def health(self) -> Health:
+        """Whether it works."""
+        return self._one(Health, "GET", "/health")
+
+    def me(self) -> Me:
+        """Who asks, and what they may do."""
+        return self._one(Me, "GET", "/me")
+
+    def benches(self) -> list[BenchData]:
+        """All benches and what they do."""
+        return self._several(BenchData, "/benches")
+
+    def bench(self, bench: str) -> BenchData:
+        """A bench and what it does."""
+        return self._one(BenchData, "GET", f"/benches/{_part(bench)}")
+
+    def stop_in_emergency(self, bench: str) -> BenchData:
+        """Have a bench safe at once, and keep it so until it is reset."""
+        return self._one(BenchData, "POST", f"/benches/{_part(bench)}/emergency-stop")
+
+    def reset(self, bench: str) -> BenchData:
+        """Let a bench be armed again after an emergency stop."""
+        return self._one(BenchData, "POST", f"/benches/{_part(bench)}/reset")
+
+    def lease(self, bench: str, for_s: float = 60.0) -> LeaseData:
+        """Have a bench for oneself for a while; call it again before it is over to go on."""
+        return self._one(LeaseData, "PUT", f"/benches/{_part(bench)}/lease", LeaseWanted(for_s=for_s))
+
+    def give_back(self, bench: str) -> BenchData:
+        """Give a bench back."""
+        return self._one(BenchData, "DELETE", f"/benches/{_part(bench)}/lease")
+
+    def plans(self) -> list[PlanData]:
+        """All plans."""
+        return self._several(PlanData, "/plans")
+
+    def give_plan(self, name: str, text: str) -> PlanData:
+        """Give a plan (YAML), or replace one that was given."""
+        return self._one(PlanData, "PUT", f"/plans/{_part(name)}", text)
+
+    def forecast(self, plan: str, bench: str, values: Mapping[str, float] | None = None) -> ForecastData:
+        """Duration, peaks and criteria as predicted."""
+        wanted = ForecastWanted(plan=plan, bench=bench, values=dict(values or {}))
+        return self._one(ForecastData, "POST", "/forecasts", wanted, within_s=_FORECAST_WITHIN_S)
+
+    def runs(self, bench: str | None = None, most: int = 50) -> list[RunData]:
+        """Runs, newest first."""
+        query = {"most": str(most)} | ({"bench": bench} if bench else {})
+        return self._several(RunData, f"/runs?{urllib.parse.urlencode(query)}")
+
+    def run(self, run: int) -> RunData:
+        """A run."""
+        return self._one(RunData, "GET", f"/runs/{run}")
+
+    def queue(self, wanted: RunWanted) -> RunData:
+        """Queue a run; with a key, a repeated request queues no second."""
+        return self._one(RunData, "POST", "/runs", wanted)
+
+    def set_priority(self, run: int, priority: int) -> RunData:
+        """Change the place of a run in its queue."""
+        return self._one(RunData, "PATCH", f"/runs/{run}", RunChange(priority=priority))
+
+    def approve(self, run: int) -> RunData:
+        """Approve a run of a hazardous plan that somebody else wants."""
+        return self._one(RunData, "POST", f"/runs/{run}/approve")
+
+    def pause(self, run: int) -> RunData:
+        """Hold a run at its next safe point."""
+        return self._one(RunData, "POST", f"/runs/{run}/pause")
+
+    def resume(self, run: int) -> RunData:
+        """Let a run go on that is held."""
+        return self._one(RunData, "POST", f"/runs/{run}/resume")
+
+    def answer(self, run: int, text: str) -> RunData:
+        """Answer the operator's prompt of a run."""
+        return self._one(RunData, "POST", f"/runs/{run}/answer", Answer(text=text))
+
+    def abort(self, run: int) -> RunData:
+        """End a run that is under way with its end steps, or cancel one that waits."""
+        return self._one(RunData, "POST", f"/runs/{run}/abort")
+
+    def progress(self, run: int) -> Iterator[RunData]:
+        """The run every half second, until it is over; the last time as it ended."""
+        while True:
+            found = self.run(run)
+            yield found
+            if found.state in OVER:
+                return
+            time.sleep(_LOOK_S)
+
+    def download(self, run: int, name: str, path: Path) -> None:
+        """Write a file of a run, whole or not at all.
+
+        Raises:
+            BadInputError: the place cannot be written.
+        """
+        with (
+            self._opened("GET", f"/runs/{run}/files/{_part(name)}", None, _WITHIN_S) as answer,
+            replacing(path) as temporary,
+            temporary.open("wb") as file,
+        ):
+            shutil.copyfileobj(answer, file)
+
+    def tokens(self) -> list[TokenData]:
+        """All tokens, without their secrets."""
+        return self._several(TokenData, "/tokens")
+
+    def make_token(self, name: str, role: Role) -> TokenMade:
+        """Make a token; its secret is told this once."""
+        return self._one(TokenMade, "POST", "/tokens", TokenWanted(name=name, role=role))
+
+    def audit(self, most: int = 100) -> list[AuditEntry]:
+        """What was done by whom, newest first."""
+        return self._several(AuditEntry, f"/audit?most={most}")
+
+    def _one(
+        self,
+        kind: type[T],
+        method: str,
+        path: str,
+        body: BaseModel | str | None = None,
+        within_s: float = _WITHIN_S,
+    ) -> T:
+        return _checked(TypeAdapter(kind), self._json(method, path, body, within_s))
+
+    def _several(self, kind: type[T], path: str) -> list[T]:
+        return _checked(TypeAdapter(list[kind]), self._json("GET", path, None, _WITHIN_S))  # type: ignore[valid-type]
+
+    def _json(self, method: str, path: str, body: BaseModel | str | None, within_s: float) -> Any:
+        try:
+            with self._opened(method, path, body, within_s) as answer:
+                return json.load(answer)
+        except (ValueError, HTTPException, OSError) as error:
+            raise self._unreachable(error) from error
+
+    def _opened(self, method: str, path: str, body: BaseModel | str | None, within_s: float) -> HTTPResponse:
+        headers = {"Authorization": f"Bearer {self._token}"} if self._token else {}
+        if body is not None:
+            headers["Content-Type"] = "application/yaml" if isinstance(body, str) else "application/json"
+        text = body.model_dump_json() if isinstance(body, BaseModel) else body
+        data = None if text is None else text.encode()
+        try:
+            request = urllib.request.Request(f"{self._url}/api/v1{path}", data, headers, method=method)
+            answer: HTTPResponse = _opener.open(request, timeout=within_s)
+        except urllib.error.HTTPError as error:
+            with error:
+                raise RefusedError(error.code, _problem(error)) from None
+        except (OSError, ValueError, HTTPException) as error:
+            raise self._unreachable(error) from error
+        return answer
+
+    def _unreachable(self, error: Exception) -> BenchError:
+        reason = getattr(error, "reason", error)
+        return BenchError(
+            f"the service cannot be reached, or does not answer as one: {reason}",
+            where=self._url,
+            fix="is it running (hil serve)? Is the URL what it said when it began?",
+        )
+
+
+class _NoRedirect(urllib.request.HTTPRedirectHandler):
+    """A token is for one service: it follows nobody elsewhere."""
+
+    def redirect_request(self, *arguments: Any, **named: Any) -> None:
+        """Follow nothing."""
+        del arguments, named
+
+
+_opener = urllib.request.build_opener(_NoRedirect)
+
+
+def _checked(adapter: TypeAdapter[A], found: Any) -> A:
+    try:
+        return adapter.validate_python(found)
+    except ValidationError as error:
+        raise BenchError(
+            f"the service answers in another way than this version knows: {error.errors()[0]['msg']}",
+            where="service",
+            fix="install the same version of eaxle-hil on both sides",
+        ) from error
+
+
+def _problem(error: urllib.error.HTTPError) -> Problem:
+    try:
+        return Problem.model_validate_json(error.read())
+    except (ValidationError, OSError, HTTPException):
+        return Problem(what=f"status {error.code}", where=str(error.url))
+
+
+def _part(name: str) -> str:
+    return urllib.parse.quote(name, safe="")
