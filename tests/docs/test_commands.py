@@ -69,6 +69,8 @@ PAGES = [
 @pytest.mark.parametrize("line", LINES, ids=str)
 def test_it_is_a_command_line(line: Documented) -> None:
     name, *arguments = line.arguments
+    if name == "--server":  # with its URL, before the command
+        _, name, *arguments = arguments
     if name in ("--install-completion", "--version"):
         return
     assert name in _COMMANDS
