@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hil.analysis.comparison import ComparedRun
-from hil.analysis.tuning import PARAMETERS, Standing, Tuning, values_of
+from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, values_of
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports import quantities
@@ -32,9 +32,14 @@ class Shown:
 
 
 def tuning_page(
-    found: Tuning, runs: Sequence[Shown], files: Mapping[str, bytes], title: str, origin: Origin
+    found: Tuning,
+    runs: Sequence[Shown],
+    files: Mapping[str, bytes],
+    title: str,
+    origin: Origin,
+    confirmed: Confirmation | None = None,
 ) -> Page:
-    """The page; `files` hold the figures that are drawn already."""
+    """The page; `files` hold the figures that are drawn already, `confirmed` what a run came to."""
     worst = found.chosen.worst
     notes = ["The search was interrupted: this is what was best then."] if found.ended == "stopped" else []
     return Page(
@@ -44,7 +49,7 @@ def tuning_page(
         tone="pass" if worst.worst >= 0 else "fail",
         lead=verdict(found),
         notes=tuple(notes),
-        parts=tuple(_parts(found, runs, files, origin)),
+        parts=(*_confirmed(confirmed), *_parts(found, runs, files, origin)),
         mark=origin.mark,
     )
 
@@ -92,6 +97,28 @@ def _parts(found: Tuning, runs: Sequence[Shown], files: Mapping[str, bytes], ori
         )
     )
     return [*parts, origin.part]
+
+
+def _confirmed(found: Confirmation | None) -> tuple[Part, ...]:
+    """Predicted and measured side by side, if it was run."""
+    if found is None:
+        return ()
+    rows = tuple(
+        (
+            one.id.replace(".", " "),
+            quantities.number(one.predicted.value),
+            quantities.number(one.measured.value),
+            quantities.DASH if one.apart is None else _percent(one.apart),
+            quantities.unit(one.unit),
+            one.measured.verdict,
+        )
+        for one in found.criteria
+    )
+    words = "as predicted" if found.agrees else "not as predicted: see the diagnosis"
+    allowed = _percent(found.allowed)
+    text = f"The plan run with the tuned controller, over the wire. Allowed: {allowed} of a limit; {words}."
+    head = ("criterion", "predicted", "measured", "apart", "unit", "run")
+    return (Part("confirmed", "Predicted and measured", text, (Table(head, rows, 1, 4),)),)
 
 
 def _compared(run: Shown, found: Tuning) -> ComparedRun:
@@ -142,9 +169,9 @@ def _limits(found: Tuning) -> Table:
     rows = []
     for name in found.chosen.nominal.limits:
         cells = (_percent(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown)
-        rows.append(
-            (name.replace("_", " "), quantities.nominal(getattr(found.trial.free.limits, name)), *cells)
-        )
+        limit = getattr(found.trial.free.limits, name)
+        value = "yes" if isinstance(limit, bool) else quantities.nominal(limit)
+        rows.append((name.replace("_", " "), value, *cells))
     return Table(("limit", "value", *names), tuple(rows))
 
 

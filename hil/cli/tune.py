@@ -25,8 +25,11 @@ from hil.analysis.tuning import (
     tune,
 )
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
+from hil.cli._one_run import Runs
 from hil.cli._output import print_json, progress, to_json
 from hil.cli._place import results_in
+from hil.cli._then_run import OnTheWire, Ran, as_json, refuse_unasked, tell
+from hil.cli._then_run import then_run as run_tuned
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
@@ -58,12 +61,17 @@ def carry_out(
     at_most: float | None,
     processes: int | None,
     bench: str,
+    then_run: bool,
+    differ: float,
+    operator: str,
     overwrite: bool,
-    as_json: bool,
+    json_: bool,
 ) -> int:
     """Carry the command out; its exit code."""
     asked = _asked(plan, model, free, controller, start, draws, seed, bench)
-    stop = StopRequest()
+    if then_run:
+        refuse_unasked(asked.plan)
+    stop, ran = StopRequest(), None
     names = (CONTROLLER, FREE, SUMMARY, HTML, PDF)
     with results_in(
         out, names, inputs=asked.inputs, overwrite=overwrite, default="tune", summary=SUMMARY
@@ -79,13 +87,27 @@ def carry_out(
             )
             show("figures and report")
             summary = _write(asked, found, place.write)
-        if as_json:
+        if then_run and not stop.times:
+            if not json_:
+                print(text_of(found, str(place.folder)))
+            runs = Runs(None, operator, "", "", "", asked.inputs, overwrite)
+            ran = run_tuned(found, plan, place.folder, OnTheWire(asked.bench, differ / 100, runs), model)
+            summary = _write(asked, found, place.write, ran)
+        if json_:
             print_json(summary)
+        elif ran is not None:
+            tell(ran)
         else:
             print(text_of(found, str(place.folder)))
     if stop.times:
         INTERRUPTS.tell()
         return EXIT_CODE
+    if ran is not None:
+        return (
+            ran.exit_code
+            if ran.exit_code > 1
+            else int(not (ran.confirmation.agrees and ran.confirmation.passed))
+        )
     return 0 if found.chosen.worst.worst >= 0 else 1
 
 
@@ -118,12 +140,6 @@ def _asked(
 ) -> _Asked:
     loaded, file, axle = load_plan(plan), load_bench(bench), load_model(model)
     refuse_model(axle, str(model))
-    if file.simulation is None:
-        raise BadInputError(
-            "is no simulated bench: nothing can be predicted on it",
-            where=str(file.source),
-            fix="give one with [simulation], such as sim",
-        )
     wanted = read_free(free)
     refuse_unknown_weights(wanted, loaded)
     driven = driven_by(loaded, controller)
@@ -169,18 +185,26 @@ def _refuse_beyond_bench(free: Free, start: Controller, bench: BenchFile) -> Non
         )
 
 
-def _write(asked: _Asked, found: Tuning, write: Callable[..., None]) -> dict[str, Any]:
+def _write(
+    asked: _Asked, found: Tuning, write: Callable[..., None], ran: Ran | None = None
+) -> dict[str, Any]:
     """Everything of the results; gives the content of tune.json."""
     shown = []
     for one in found.shown:
         predicted = asked.trial.carry_out(found.trial.draws[0].model, one.controller, 0.0, 0, whole=True)
         shown.append(Shown(one.name, predicted.recording, predicted.segments))
+    if ran is not None:
+        shown.insert(1, ran.shown)
     files = output_files(found, asked.free_text)
     listed = sorted([*files, SUMMARY, HTML, PDF])
     summary = summary_of(found, shown[0].segments, asked.told, listed)
+    if ran is not None:
+        summary["confirmed"] = as_json(ran)
     model = Path(asked.told["model"])
     used = {"model": [model], "bench": [asked.bench.source], "controller": [Path(asked.told["start"])]}
-    files |= documents(tuning_page(found, shown, files, asked.plan.name, origin_of(used)))
+    confirmed = None if ran is None else ran.confirmation
+    page = tuning_page(found, shown, files, asked.plan.name, origin_of(used), confirmed)
+    files |= documents(page)
     files[SUMMARY] = (to_json(summary) + "\n").encode()
     write(files, asked.inputs)
     return summary

@@ -1,5 +1,6 @@
 """A controller for the largest worst margin over a plan's criteria."""
 
+from hil.analysis.tuning._confirmed import Agreement, Confirmation, confirmation
 from hil.analysis.tuning._draws import Draw, draws_of
 from hil.analysis.tuning._driven import Driven, driven_by
 from hil.analysis.tuning._free import Free, free_from_toml, read_free, refuse_unknown_weights, shipped_free
@@ -12,7 +13,9 @@ from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_sta
 
 __all__ = [
     "PARAMETERS",
+    "Agreement",
     "CarryOut",
+    "Confirmation",
     "Draw",
     "Driven",
     "Effort",
@@ -26,6 +29,7 @@ __all__ = [
     "Tried",
     "Tuning",
     "channels_needed",
+    "confirmation",
     "draws_of",
     "driven_by",
     "free_from_toml",

@@ -34,6 +34,7 @@ class HardLimits(_Table):
     delay_margin_s: float | None = Field(0.001, gt=0, lt=1)
     motor_torque_nm: float | None = Field(None, gt=0, description="largest |T_m*| in a driven segment")
     motor_energy_j: float | None = Field(None, gt=0, description="positive work in a driven segment")
+    no_worse_than_start: bool = Field(False, description="no criterion may lose margin, on any car")
 
 
 class Tolerance(_Table):

@@ -33,6 +33,7 @@ class Pool:
 
     def __enter__(self) -> Pool:
         if self.processes > 1:
+            os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each has one core
             self._executor = ProcessPoolExecutor(
                 self.processes,
                 mp_context=multiprocessing.get_context("spawn"),

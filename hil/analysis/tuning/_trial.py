@@ -109,6 +109,7 @@ class Trial:
     draws: tuple[Draw, ...]
     loops: SpeedLoops
     carry_out: CarryOut
+    _known: dict[int, Mapping[str, float]] = field(default_factory=dict, repr=False, compare=False)
 
     def controller(self, values: Mapping[str, float], name: str = "tuned") -> Controller:
         """The start with `values` in place of its own."""
@@ -131,7 +132,18 @@ class Trial:
             c.id: self._weighted(c, m.metric.name)
             for c, m in zip(criteria, self.driven.criteria, strict=True)
         }
+        if self.free.limits.no_worse_than_start and values:
+            own = self._starts(number)
+            limits["no_worse_than_start"] = min(
+                margin - own.get(id_, -1.0) for id_, margin in margins.items()
+            )
         return Tried(values, number, loop, limits, criteria, margins)
+
+    def _starts(self, number: int) -> Mapping[str, float]:
+        """Margins of the start on a car; tried once in each process."""
+        if number not in self._known:
+            self._known[number] = self.tried({}, number).margins
+        return self._known[number]
 
     def judged(self, found: Predicted) -> tuple[CriterionResult, ...]:
         """The criteria that depend on the controller."""

@@ -46,17 +46,32 @@ def command(
     bench: Annotated[
         str, typer.Option(help="simulated bench, by file or name", autocompletion=shipped_bench())
     ] = "sim",
+    then_run: Annotated[
+        bool,
+        typer.Option("--then-run", help="run the plan with it on the bench at once; beside the prediction"),
+    ] = False,
+    differ: Annotated[
+        float,
+        typer.Option(
+            metavar="PERCENT",
+            min=0.01,
+            max=1000,
+            help="of a criterion's limit: a run that differs by more from its prediction is diagnosed",
+        ),
+    ] = 5.0,
+    operator: Annotated[str, typer.Option(help="who runs the bench; stands in the report")] = "",
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier result in --out")
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="print tune.json on stdout, nothing else")] = False,
+    json_: Annotated[bool, typer.Option("--json", help="print tune.json on stdout, nothing else")] = False,
 ) -> int:
     """Search a controller's parameters for the largest worst margin over a plan's criteria.
 
     Every candidate is a whole predicted run of the plan, on the model and on cars drawn around it. Writes
     controller.toml, free.toml, tune.json, report.html, report.pdf and a figure. Ctrl-C ends the search and
-    keeps the best so far. Exit code: 0 every criterion that depends on the controller passes on every car, 1
-    one does not.
+    keeps the best so far. With --then-run the plan is run with it on the bench at once: run/ has the run, and
+    where it is not as predicted diagnosis/ says why. Exit code: 0 every criterion that depends on the
+    controller passes (on every car; with --then-run: in the run, and as predicted), 1 one does not.
     """
     import_python_can()
     from hil.cli.tune import carry_out
@@ -74,6 +89,9 @@ def command(
         at_most=at_most,
         processes=processes,
         bench=bench,
+        then_run=then_run,
+        differ=differ,
+        operator=operator,
         overwrite=overwrite,
-        as_json=as_json,
+        json_=json_,
     )

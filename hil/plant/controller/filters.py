@@ -52,9 +52,19 @@ def _bilinear(polynomial: Array, order: int, sample_time_s: float) -> Array:
     `scipy.signal.bilinear` does the same; scipy.signal takes longer to import than a plan to be predicted.
     """
     share = np.sqrt(2.0 / sample_time_s)
-    plus, minus = np.polynomial.Polynomial((1, 1)) / share, np.polynomial.Polynomial((-1, 1)) * share
-    powers = (c * plus ** (order - n) * minus**n for n, c in enumerate(polynomial[::-1]))
-    return np.asarray(sum(powers, np.polynomial.Polynomial((0.0,) * (order + 1))).coef[::-1])
+    plus, minus = _powers(np.array([1.0, 1.0]) / share, order), _powers(np.array([-1.0, 1.0]) * share, order)
+    total = np.zeros(order + 1)  # ascending powers of z
+    for n, coefficient in enumerate(polynomial[::-1]):
+        total += np.convolve(coefficient * plus[order - n], minus[n])
+    return total[::-1]
+
+
+def _powers(base: Array, most: int) -> list[Array]:
+    """A polynomial to the powers 0 to `most`."""
+    found = [np.ones(1)]
+    for _ in range(most):
+        found.append(np.convolve(found[-1], base))
+    return found
 
 
 def tustin(numerator: npt.ArrayLike, denominator: npt.ArrayLike, sample_time_s: float) -> Filter:

@@ -9,6 +9,7 @@ import pytest
 
 from hil.cli._app import guarded
 from hil.core.controller import load_controller
+from tests.docs.documented import ROOT
 from tests.hil.analysis.tuning.trials import FREE, PLAN
 from tests.hil.cli.test_commands import HIL
 
@@ -38,9 +39,33 @@ def test_a_controller_with_more_margin_is_written_with_its_reasons(tmp_path, inp
         told["parameters"]["feed_forward_time_s"]["value"]
     )
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF")
-    run = ["run", inputs[0], "--controller", f"phase_stabilization.toml={out / 'controller.toml'}"]
-    assert guarded([*run, "--out", str(tmp_path / "run")]) == 0
     assert guarded(["tune", *inputs, *options]) == 2  # results are there
+
+
+@pytest.mark.slow
+def test_it_is_run_at_once_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path, inputs, monkeypatch):
+    asked: list[dict[str, object]] = []
+    monkeypatch.setattr("hil.cli.diagnose.carry_out", lambda **options: asked.append(options))
+    options = ["--generations", "1", "--at-most", "0.05", "--processes", "1", "--then-run"]
+    assert guarded(["tune", *inputs, *options, "--out", str(tmp_path / "same")]) == 0
+    told = json.loads((tmp_path / "same" / "tune.json").read_text())["confirmed"]
+    assert told["agrees"]
+    assert max(one["apart"] for one in told["criteria"]) < 0.01
+    assert not asked
+    bench = (
+        (ROOT / "benches/sim.toml").read_text().replace("three_inertia.toml", str(tmp_path / "other.toml"))
+    )
+    for name in ("rmcu.dbc", "rcs_dyno.eds"):
+        bench = bench.replace(name, str(ROOT / "benches" / name))
+    (tmp_path / "bench.toml").write_text(bench)
+    model = (ROOT / MODEL).read_text().replace("torque_delay = 0.008", "torque_delay = 0.014")
+    (tmp_path / "other.toml").write_text(model)
+    out = tmp_path / "other"
+    options += ["--bench", str(tmp_path / "bench.toml"), "--differ", "0.1", "--out", str(out)]
+    assert guarded(["tune", *inputs, *options]) == 1
+    assert not json.loads((out / "tune.json").read_text())["confirmed"]["agrees"]
+    assert asked[0]["recordings"] == [out / "run" / "recording.mcap"]
+    assert (out / "run" / "result.json").is_file()
 
 
 @pytest.mark.parametrize(
@@ -48,7 +73,7 @@ def test_a_controller_with_more_margin_is_written_with_its_reasons(tmp_path, inp
     [
         (["--free", "nowhere.toml"], "nowhere.toml"),
         (["--controller", "other"], "no segment is driven by a controller 'other'"),
-        (["--bench", "rear_axle_socketcan"], "is no simulated bench"),
+        (["--differ", "0"], "--differ"),
         (["--draws", "-1"], "--draws"),
         (["--start", "benches/sim.toml"], "sim.toml"),
         (["--model", "benches/paper_functions.toml"], "no shaft to load"),

@@ -74,3 +74,14 @@ def test_a_weight_makes_a_margin_count_less_and_a_lack_more():
     for name, margin in own.items():
         factor = (0.25 if margin > 0 else 4) if "peak_shaft_torque" in name else 1
         assert weighted[name] == pytest.approx(factor * margin)
+
+
+def test_no_criterion_loses_margin_where_none_may():
+    trial = trial_of(FREE + "[limits]\nno_worse_than_start = true\n")
+    own = trial.tried({}, 0).margins
+    slower = trial.tried({"feed_forward_time_s": 0.15}, 0)
+    least = min(slower.margins[name] - own[name] for name in own)
+    assert slower.limits["no_worse_than_start"] == pytest.approx(least)
+    assert slower.feasible == (least >= 0)
+    found = tune(trial, seed=1, effort=QUICK, processes=1)
+    assert all(found.chosen.nominal.margins[name] >= own[name] for name in own)
