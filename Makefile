@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run serve page-picture api-fuzz openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run serve page-picture api-fuzz service-kills openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -99,6 +99,14 @@ mutants: setup
 coverage: setup
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "not slow and not hunt" --cov --cov-report=
 	$(BIN)/python -m tests.coverage_by_package
+
+# Thousands of calls that nobody thought of, made from the OpenAPI document.
+api-fuzz: setup
+	HIL_API_CALLS=150 $(BIN)/python -m pytest -q tests/hil/service/test_api_fuzz.py
+
+# The service killed at fifty random moments of a queue of runs.
+service-kills: setup
+	HIL_SERVICE_KILLS=50 $(BIN)/python -m pytest -q tests/hil/service/test_service_kills.py
 
 # The service's OpenAPI document: docs/reference/openapi.json. A test fails when it is not that of the code.
 openapi: setup

@@ -21,7 +21,7 @@ from hil.core.files import make_directory
 from hil.core.locks import HeldError, lock_on
 from hil.core.printable import printable
 from hil.engine import StopRequest
-from hil.service.api import application
+from hil.service.api import Rates, application
 from hil.service.benches import benches_of
 from hil.service.data import ROLES, Role, TokenMade
 from hil.service.service import Commands, Service
@@ -29,6 +29,7 @@ from hil.service.store import LogStore, TokenStore, open_database
 
 _LOOK_S = 0.1
 _LAST_ANSWERS_S = 2
+_AT_ONCE_S = 5.0  # of the rate: a page that is opened asks for many things at once
 _THIS_MACHINE = ("127.0.0.1", "localhost", "::1")
 
 logger = logging.getLogger(__name__)
@@ -45,6 +46,7 @@ class ServeRequest:
         database: by URL; '' for SQLite in the folder.
         hosts: further names by which browsers may call it.
         port: 0 takes a free one.
+        rate: requests that an address may send a second, in the long run.
         for_s: ends by itself after this many seconds.
         ready: called with the URL once it answers.
     """
@@ -56,6 +58,7 @@ class ServeRequest:
     port: int = 8080
     database: str = ""
     hosts: Sequence[str] = ()
+    rate: float = 40.0
     for_s: float = math.inf
     ready: Callable[[str], None] = lambda url: None
     stop: StopRequest = field(default_factory=StopRequest)
@@ -111,7 +114,7 @@ async def _served(request: ServeRequest, engine: Engine, service: Service, liste
     host, port = listening.getsockname()[:2]
     names = (*_THIS_MACHINE, request.host, *request.hosts)
     config = uvicorn.Config(
-        application(service, hosts=names),
+        application(service, hosts=names, rates=Rates(request.rate, _AT_ONCE_S * request.rate)),
         log_config=None,
         access_log=False,
         lifespan="off",

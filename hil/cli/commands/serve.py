@@ -28,6 +28,12 @@ def command(
     database: Annotated[
         str, typer.Option(metavar="URL", help="database in place of SQLite in DIR: postgresql+psycopg://…")
     ] = "",
+    rate: Annotated[
+        float,
+        typer.Option(
+            min=1, metavar="N", help="requests that an address may send a second; behind a proxy all have one"
+        ),
+    ] = 40.0,
     for_s: Annotated[
         float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
     ] = None,
@@ -53,5 +59,5 @@ def command(
 
     return carry_out(
         data=data, bench=bench or ["sim"], host=host, port=port, allow_host=allow_host or [],
-        database=database, for_s=for_s, add_token=add_token, as_json=as_json,
+        database=database, rate=rate, for_s=for_s, add_token=add_token, as_json=as_json,
     )  # fmt: skip

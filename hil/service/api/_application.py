@@ -17,14 +17,14 @@ PREFIX = "/api/v1"
 _PARTS = (_health, _benches, _live, _plans, _runs, _people)
 
 
-def application(service: Service, *, hosts: tuple[str, ...], rates: Rates | None = None) -> ASGIApp:
+def application(service: Service, *, hosts: tuple[str, ...], rates: Rates) -> ASGIApp:
     """The whole of it, guarded.
 
     Args:
         hosts: names by which browsers may call it; `*` for any.
         rates: of requests that one address may send.
     """
-    return Guard(_bare(service), hosts, rates or Rates())
+    return Guard(_bare(service), hosts, rates)
 
 
 def openapi_text() -> str:

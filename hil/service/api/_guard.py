@@ -25,8 +25,8 @@ _POLICY = (
 class Rates:
     """Requests that an address may send, a second and at once."""
 
-    a_second: float = 40.0
-    at_once: float = 200.0
+    a_second: float
+    at_once: float
 
 
 class Guard:

@@ -14,6 +14,7 @@ from hil.core.errors import BadInputError, HilError
 from hil.service.data import Problem
 
 _MEANINGS = {
+    400: "the body cannot be read as what its type says",
     401: "a token is needed, or the one given is not valid",
     403: "the token's role may not do this",
     404: "there is no such thing",

@@ -73,7 +73,8 @@ export class SpectrumChart {
 
   draw() {
     const points = this.found ? this.found.density.map((value, at) => [at * this.found.step_hz, value]) : [];
-    const largest = points.length ? Math.max(...points.filter(([hz]) => hz >= 2).map(([, value]) => value), 1e-9) : 1;
+    // scaled by what is near the band: slow motion would hide it
+    const largest = points.length ? Math.max(...points.filter(([hz]) => hz >= 5).map(([, value]) => value), 1e-9) : 1;
     const frame = new Frame(this.canvas, 0, 40, 0, 1.1 * largest, "Hz");
     frame.band(8, 20);
     frame.line(points, colour("series-gain"));
@@ -100,7 +101,7 @@ class Frame {
     pen.lineWidth = 1;
     pen.textBaseline = "middle";
     pen.textAlign = "right";
-    const heights = ticks(this.low, this.high, 4);
+    const heights = ticks(this.low, this.high, 6);
     const decimals = heights.length > 1 ? Math.max(0, -Math.floor(Math.log10(heights[1] - heights[0]) + 1e-9)) : 0;
     for (const value of heights) {
       this.stroke(colour("grid"), [[LEFT, this.y(value)], [this.width - RIGHT, this.y(value)]]);

@@ -96,7 +96,8 @@ function showState({ bench: now, running: run, queue, told }) {
   at("told").hidden = !told;
   at("told").textContent = told;
   at("answer").hidden = !told || !may("operator");
-  for (const id of ["pause", "resume", "end"]) at(id).hidden = !run || !may("operator");
+  const held = run?.doing.startsWith("held") ?? false;
+  for (const id of ["pause", "resume", "end"]) at(id).hidden = !run || !may("operator") || (id === "pause" ? held : id === "resume" && !held);
   at("reset").hidden = now.state !== "emergency_stop" || run !== null || !may("engineer");
   charts.torque.limit = now.limits.motor_torque_nm ?? null;
   charts.shaft.limit = now.limits.shaft_torque_nm ?? null;
@@ -148,7 +149,7 @@ function showCriteria(criteria) {
   at("criteria").hidden = criteria.length === 0;
   at("criteria").tBodies[0].replaceChildren(...criteria.map((one) => {
     const limit = one.upper !== null ? `≤ ${number(one.upper)}` : one.lower !== null ? `≥ ${number(one.lower)}` : "–";
-    return row(cell(one.title || one.id, "", "th"), cell(`${number(one.value)} ${one.unit}`, "number"), cell(limit, "number"), cell(badge(one.verdict)));
+    return row(cell(one.title || one.id, "", "th"), cell(one.value === null ? "–" : `${number(one.value)} ${one.unit}`, "number"), cell(limit, "number"), cell(badge(one.verdict)));
   }));
 }
 
