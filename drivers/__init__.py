@@ -4,7 +4,16 @@ from drivers._waiting import StreamTiming
 from drivers.bus_health import BusHealth
 from drivers.bus_load import bits_on_the_wire, most_bits_on_the_wire
 from drivers.can_adapter import CanSettings, open_can
-from drivers.device import Device, MotorControl, SaysEmergency, SaysPowerless, SetsSlip, TakesBack, WheelLoad
+from drivers.device import (
+    Device,
+    MotorControl,
+    SaysEmergency,
+    SaysPowerless,
+    SetsSlip,
+    SetsVehicle,
+    TakesBack,
+    WheelLoad,
+)
 from drivers.dyno import DynoDriver, DynoNodes, DynoTable, read_dyno
 from drivers.examination import Examinable, Examined, Finding, Identifies, Incomplete
 from drivers.frame_source import Binding, CountedBy, FrameSource
@@ -12,6 +21,7 @@ from drivers.listening_wire import ListeningWire
 from drivers.log_wire import LogWire
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
+from drivers.panel import Panel, PanelTable
 from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu
 from drivers.samples import Counting, SampleQueue, Samples, SampleSource, Stream
 from drivers.serial_line import SerialLine
@@ -20,7 +30,11 @@ from drivers.wire import Wire
 from hil.core.conventions import TICK_S
 
 #: Kinds of device that come with the project; others come by entry point.
-OWN_KINDS: tuple[tuple[str, type[DeviceTable]], ...] = (("rmcu-can", RmcuTable), ("rcs-canopen", DynoTable))
+OWN_KINDS: tuple[tuple[str, type[DeviceTable]], ...] = (
+    ("rmcu-can", RmcuTable),
+    ("rcs-canopen", DynoTable),
+    ("rcs-panel", PanelTable),
+)
 
 __all__ = [
     "OWN_KINDS",
@@ -49,6 +63,8 @@ __all__ = [
     "LogWire",
     "MotorControl",
     "Name",
+    "Panel",
+    "PanelTable",
     "RmcuDriver",
     "RmcuTable",
     "SampleAssembler",
@@ -59,6 +75,7 @@ __all__ = [
     "SaysPowerless",
     "SerialLine",
     "SetsSlip",
+    "SetsVehicle",
     "Stream",
     "StreamTiming",
     "TakesBack",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from drivers.samples import SampleSource
 from hil.core.controller import Controller
 from hil.core.signals import Payloads
+from hil.core.vehicle import VehicleAndRoad
 
 
 @runtime_checkable
@@ -159,6 +160,19 @@ class WheelLoad(Device, Protocol):
 
     def release_vehicle(self, initial_speed_m_s: float) -> None:
         """Simulate the vehicle from now on, starting at a speed in m/s."""
+        ...
+
+
+@runtime_checkable
+class SetsVehicle(Protocol):
+    """A device at which vehicle and road load can be set: a panel."""
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> Mapping[str, str]:
+        """Write them and read them back; what it confirmed, by name, with units.
+
+        Raises:
+            BenchError: it does not take them.
+        """
         ...
 
 

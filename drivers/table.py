@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Self
@@ -51,12 +51,14 @@ class Connections:
         vehicle: what the bench file says of the vehicle.
         simulated: whether time is computed: then a device that is not there brings its own stand-in, which
             lives in the loop.
+        serial_stand_ins: by kind, what makes one of the project's own stand-ins and gives its port.
     """
 
     loop: BusLoop
     wires: Mapping[str, Wire] = field(default_factory=dict)
     vehicle: VehicleParameters = VehicleParameters()
     simulated: bool = False
+    serial_stand_ins: Mapping[str, Callable[[], str]] = field(default_factory=dict)
 
 
 class DeviceTable(BaseModel):

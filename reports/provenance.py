@@ -11,7 +11,7 @@ from typing import Any
 
 from hil.core.errors import BadInputError
 from hil.core.files import sha256_of
-from hil.core.recording import Recording
+from hil.core.recording import VEHICLE, Recording
 from hil.core.result import Lateness, PeriodicRequests, RunResult
 from reports import quantities
 
@@ -96,6 +96,7 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
         Fact("Operator", run.get("operator", "")),
         Fact("Hazard taken upon them by", run.get("hazard_confirmed_by", "")),
         Fact("Prompts confirmed beforehand by", run.get("prompts_confirmed_by", "")),
+        Fact("Vehicle and road, confirmed by the panel", _vehicle(recording)),
         Fact("Started", _moment(run.get("started_at", ""))),
     ]
     if result is not None:
@@ -112,6 +113,10 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
         facts.append(Fact("Samples", quantities.number(float(len(recording.time_s)), 0)))
         facts.append(Fact("Sample time", quantities.nominal(float(f"{recording.sample_time_s:.4g}"), "s")))
     return tuple(fact for fact in facts if fact.value)
+
+
+def _vehicle(recording: Recording) -> str:
+    return ", ".join(f"{name} {value}" for name, value in recording.metadata.get(VEHICLE, {}).items())
 
 
 def _clocks(result: RunResult) -> str:

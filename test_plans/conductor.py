@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.recording import Recording
+from hil.core.vehicle import VehicleAndRoad
 
 Array = npt.NDArray[np.float64]
 Quantity = Literal["motor_torque", "driving_torque"]
@@ -62,6 +63,10 @@ class Conductor(Protocol):
 
     def set_slip(self, slip: float) -> None:
         """Have the dynos' vehicle slip by this share of its wheels' speed, from 0 to below 1."""
+        ...
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
+        """Set vehicle and road load at the dynos' panel and read them back."""
         ...
 
     def release_vehicle(self) -> None:

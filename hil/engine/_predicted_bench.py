@@ -15,6 +15,7 @@ from drivers import parameters_of
 from hil.core.controller import Controller
 from hil.core.errors import BadInputError
 from hil.core.model import Model
+from hil.core.vehicle import VehicleAndRoad
 from hil.engine._predicted_wire import PredictedWire, wire_of
 from hil.engine._simulable import rmcu_of
 from hil.engine.bench_tables import BenchFile
@@ -183,6 +184,10 @@ class PredictedDyno:
         """Write the slip to both drives."""
         self._loop.closed.plant.set_vehicle(slip=self._stored(slip, 4))
         self._loop.transact(_SDO_TICKS * len(SIDES))
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
+        """Set mass, road load and slip."""
+        self._loop.closed.plant.set_vehicle(**vehicle.at_wheels(self._file.vehicle.wheel_radius_m))
 
     def release_vehicle(self, initial_speed_m_s: float) -> None:
         """Simulate the vehicle from now on."""

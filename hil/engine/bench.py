@@ -7,7 +7,7 @@ import logging
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from drivers import (
     BusHealth,
@@ -36,9 +36,12 @@ from hil.engine.bench_lock import alone_on
 from hil.engine.bench_tables import BenchFile
 from hil.engine.computed_channels import Computed, computed_channels
 from hil.engine.request_timing import Periodic, RequestTiming
+from sim_backend.bench import SimulatedBench
 from sim_backend.can_interface import attach, detach
+from sim_backend.rcs import EmulatedPanel, PanelPort
 
 _LOG = logging.getLogger(__name__)
+_SERIAL_S = 0.01  # what stands in at the other end of a serial line looks at it so often
 
 
 @dataclass
@@ -129,6 +132,8 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
         if not file.simulation:
             opened.enter_context(undisturbed(collections=True))
         connections = connections_of(file, BusLoop(clock, list(wires.values())))
+        if isinstance(clock, SimulatedBench):
+            connections = _with_stand_ins(connections, clock, opened)
         for wire in wires.values():
             connections.loop.on_drained(wire.check)
         bench = _with_devices(file, connections, model, opened)
@@ -188,6 +193,19 @@ def connections_of(file: BenchFile, loop: BusLoop) -> Connections:
     vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)
     wires = {wire.name: wire for wire in loop.wires}
     return Connections(loop, wires, vehicle, simulated=file.simulation is not None)
+
+
+def _with_stand_ins(connections: Connections, world: SimulatedBench, opened: ExitStack) -> Connections:
+    """Let devices on serial lines find what stands in for them, in the time of the simulated bench."""
+
+    def panel() -> str:
+        radius_m = connections.vehicle.wheel_radius_m
+        port = PanelPort(EmulatedPanel(lambda vehicle: world.set_vehicle(vehicle.at_wheels(radius_m))))
+        opened.callback(port.close)
+        connections.loop.every(_SERIAL_S, port.tick)
+        return port.port
+
+    return replace(connections, serial_stand_ins={"rcs-panel": panel})
 
 
 def _refuse_other_pace(name: str, theirs: float, ours: float) -> None:

@@ -10,12 +10,13 @@ from typing import Literal
 
 import numpy as np
 
-from drivers import TICK_S, SetsSlip
+from drivers import TICK_S, SetsSlip, SetsVehicle
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
-from hil.core.recording import SEGMENT
+from hil.core.recording import SEGMENT, VEHICLE
 from hil.core.result import RunResult, Segment
+from hil.core.vehicle import VehicleAndRoad
 from hil.engine.bench import Bench
 from hil.engine.border import Analyse, Analysis, analysed_here
 from hil.engine.hold import Holding
@@ -56,6 +57,7 @@ class BenchConductor:
         self.segments: list[Segment] = []
         self.controllers: dict[str, str] = {}
         self.made: dict[str, bytes] = {}
+        self._confirmed: dict[str, str] = {}  # of vehicle and road load
 
     def set_controller(self, file: Path) -> None:
         """Write a controller to the RMCU (torque off) and read it back."""
@@ -119,6 +121,26 @@ class BenchConductor:
             )
         dyno.set_slip(slip)
         self._event("slip", f"the dynos' vehicle slips by {100.0 * slip:g} %")
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
+        """Set vehicle and road load at the first device that takes them; what it confirmed is recorded.
+
+        Raises:
+            BenchError: there is none, or it does not take them.
+        """
+        self._check.set_vehicle(vehicle)
+        for name, device in self._bench.further.items():
+            if isinstance(device, SetsVehicle):
+                self._confirmed |= device.set_vehicle(vehicle)
+                told = ", ".join(f"{key} {value}" for key, value in self._confirmed.items())
+                self._event("vehicle", f"{name} confirms: {told}")
+                self._recorder.writer.describe(VEHICLE, self._confirmed)
+                return
+        raise BenchError(
+            "no device takes vehicle and road load",
+            where="set_vehicle",
+            fix='give the bench file a panel: [devices.panel] with kind = "rcs-panel"',
+        )
 
     def release_vehicle(self) -> None:
         """Let the dynos simulate the vehicle."""

@@ -18,6 +18,7 @@ from hil.core.controller import Controller
 from hil.core.model import Model
 from hil.core.recording import Event, Recording
 from hil.core.result import Segment
+from hil.core.vehicle import VehicleAndRoad
 from hil.engine._predicted_bench import PredictedBench
 from hil.engine._predicted_wire import PredictedWire
 from hil.engine.bench import Bench
@@ -101,7 +102,7 @@ class PredictionConductor(BenchConductor):
         super().__init__(
             cast(Bench, bench), cast(Recorder, recorder), out, lambda text, timeout_s: "not asked"
         )
-        self._rmcu, self._loop = bench.rmcu, bench.loop
+        self._rmcu, self._loop, self._dyno = bench.rmcu, bench.loop, bench.dyno
         self._in_place_of = controllers or {}
 
     def set_controller(self, file: Path) -> None:
@@ -113,6 +114,11 @@ class PredictionConductor(BenchConductor):
         self._check.set_controller(file)
         self._rmcu.write_controller(tried)
         self._controller = tried
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
+        """Let the computed dynos have it; a panel is not computed."""
+        self._check.set_vehicle(vehicle)
+        self._dyno.set_vehicle(vehicle)
 
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
         """Request all samples at once, then take the torque away and switch it off."""

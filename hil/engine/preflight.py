@@ -9,6 +9,7 @@ import numpy as np
 from hil.core.controller import load_controller
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
+from hil.core.vehicle import VehicleAndRoad
 from hil.engine.bench_tables import BenchFile
 from hil.engine.disk_room import refuse_too_little_room
 from test_plans import PROMPT_TIMEOUT_S, Array, Plan, PlannedSegment, Quantity, Work
@@ -100,6 +101,16 @@ class Rehearsal:
 
     def set_slip(self, slip: float) -> None:
         """Nothing to compare."""
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
+        """There must be a device that may take it."""
+        del vehicle
+        if not self._bench.devices:
+            raise BadInputError(
+                "set_vehicle: the bench has no device that takes vehicle and road load",
+                where="plan",
+                fix='give the bench file a panel: [devices.panel] with kind = "rcs-panel"',
+            )
 
     def release_vehicle(self) -> None:
         """Nothing to compare."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 
@@ -32,6 +33,7 @@ _LARGEST_BATCH = 4096
 _NODES_EVERY = 10  # samples between looks at heartbeats: no more are computed at once
 _NO_SAMPLES, _NO_REQUESTS = np.zeros(0, np.int64), np.zeros(0, np.uint64)
 _HEARTBEATS = range(0x701, 0x780)
+_VEHICLE_MODEL = {"inertia_kg_m2": 1, "rolling_nm": 2, "aero_nms2_rad2": 3, "slip": 4}  # subindex of 0x2000
 _EMCY_SHORT_CIRCUIT = 0x2320  # CiA 402: short circuit or earth leakage at the output
 _RUNAWAY_RAD_S = 200.0
 _BOOT_TICKS = 300
@@ -359,6 +361,14 @@ class SimulatedBench:
         row = self._plant.sensors[SENSED_CHANNELS.index(channel)]
         row[T.SENSOR_GAIN] *= fault.gain
         row[T.SENSOR_OFFSET] = row[T.SENSOR_OFFSET] * fault.gain + fault.offset
+
+    def set_vehicle(self, values: Mapping[str, float]) -> None:
+        """The dyno controller's vehicle model has other values from now on: its panel has set them."""
+        self._compute()
+        for name, value in values.items():
+            for node in self._dynos:
+                node.preset(0x2000, _VEHICLE_MODEL[name], value)
+        self._take_vehicle_model()
 
     def _take_vehicle_model(self) -> None:
         left = self._dynos[0]

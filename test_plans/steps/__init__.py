@@ -13,6 +13,7 @@ from test_plans.steps.ramp_down import RampDown
 from test_plans.steps.repeat import Repeat
 from test_plans.steps.set_controller import FileSearch, SetController, designed_file
 from test_plans.steps.set_slip import SetSlip
+from test_plans.steps.set_vehicle import SetVehicle
 from test_plans.steps.stairs import Stairs
 from test_plans.steps.step import TorqueStep
 from test_plans.steps.wait import Wait
@@ -21,6 +22,7 @@ _OWN: tuple[type[Step], ...] = (
     SetController,
     HoldSpeed,
     SetSlip,
+    SetVehicle,
     TorqueStep,
     Chirp,
     Multisine,
@@ -53,6 +55,7 @@ __all__ = [
     "Seconds",
     "SetController",
     "SetSlip",
+    "SetVehicle",
     "Stairs",
     "Step",
     "Torque",

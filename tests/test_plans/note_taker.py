@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from hil.core.vehicle import VehicleAndRoad
 from test_plans import PROMPT_TIMEOUT_S, Array, PlannedSegment, Quantity, Work
 
 
@@ -18,6 +19,9 @@ class NoteTaker:
 
     def hold_speed(self, speed_m_s: float, duration_s: float) -> None:
         self.calls.append(("hold_speed", speed_m_s, duration_s))
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
+        self.calls.append(("set_vehicle", vehicle))
 
     def set_slip(self, slip: float) -> None:
         self.calls.append(("set_slip", slip))

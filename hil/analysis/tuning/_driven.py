@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.suggestion import did_you_mean
+from hil.core.vehicle import VehicleAndRoad
 from test_plans import PROMPT_TIMEOUT_S, Array, Criterion, Plan, PlannedSegment, Quantity, Work
 
 
@@ -97,6 +98,9 @@ class _Walk:
         """Nothing to remember."""
 
     def set_slip(self, slip: float) -> None:
+        """Nothing to remember."""
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
         """Nothing to remember."""
 
     def release_vehicle(self) -> None:

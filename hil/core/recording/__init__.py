@@ -18,7 +18,7 @@ from hil.core.recording._mcap_reader import read_mcap as read_as_written
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
 from hil.core.recording._regular_file import refuse_unless_regular
-from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, REPLAY, RUN, SEGMENT, run_of
+from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, REPLAY, RUN, SEGMENT, VEHICLE, run_of
 from hil.core.recording._table import Event, Recording, checked
 
 logger = logging.getLogger(__name__)
@@ -126,6 +126,7 @@ __all__ = [
     "REPLAY",
     "RUN",
     "SEGMENT",
+    "VEHICLE",
     "Event",
     "FollowedRecording",
     "Missing",

@@ -14,6 +14,8 @@ SEGMENT = "segment/"
 DEVICE = "device/"
 #: Metadata table of a recording that was decoded from logs of other tools: it may lack the axle's channels.
 REPLAY = "replay"
+#: Metadata table with the vehicle and road load that a panel confirmed.
+VEHICLE = "vehicle"
 #: Metadata table with who answered for sensors whose calibration had run out.
 ACCEPTED_EXPIRY = "accepted expired calibration"
 

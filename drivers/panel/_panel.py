@@ -1,0 +1,198 @@
+"""The RC-S's panel: remote, alarms, vehicle and road load, each written and read back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from drivers.examination import Examined, Finding
+from drivers.loop import BusLoop
+from drivers.panel._returning_line import ReturningLine
+from drivers.samples import SampleSource
+from hil.core.ak import BUSY, OFFLINE, UNKNOWN, Answer, Request, Telegrams, answer_of
+from hil.core.errors import BenchError
+from hil.core.printable import printable
+from hil.core.vehicle import VehicleAndRoad
+
+REMOTE, STATE, ALARMS, RESET = "SREM", "ASTZ", "ASTF", "SRES"
+_ATTEMPTS = 3
+_BUSY_S, _LONGEST_BUSY_S = 0.1, 3.0
+_NEAR = 1e-4  # what reads back may be rounded by, as a share
+_NO_ANSWER: Answer | None = None
+_IN_WORDS = {
+    "SE": "does not understand it",
+    "DF": "does not take the value",
+    "OF": "is not remote: somebody works at it",
+    "NA": "does not know it",
+}
+#: What can be set: code to write, code to read, name, unit, and the panel's units in one of ours.
+_SETTINGS = {
+    "mass_kg": ("EMAS", "AMAS", "vehicle mass", "kg", 1.0),
+    "f0_n": ("EFW0", "AFW0", "road load f0", "N", 1.0),
+    "f1_ns_m": ("EFW1", "AFW1", "road load f1", "N s/m", 1.0),
+    "f2_ns2_m2": ("EFW2", "AFW2", "road load f2", "N s²/m²", 1.0),
+    "slip": ("ESLP", "ASLP", "slip", "%", 100.0),
+}
+
+
+class Panel:
+    """A `Device` that measures nothing: it says how it is, and takes what the vehicle and the road are.
+
+    Every exchange has a deadline and is repeated twice; a panel that is busy is asked again for 3 s. What
+    comes on the line and is no answer, an echo of the request included, is passed over.
+    """
+
+    heartbeat_s = 0.5  # how often it is asked for its state and its alarms
+    safe_within_s = 0.5
+
+    def __init__(
+        self,
+        name: str,
+        line: ReturningLine,
+        loop: BusLoop,
+        channel: int = 0,
+        answers_within_s: float = 0.3,
+        gone_after_s: float = 3.0,
+    ) -> None:
+        self.name = name
+        self.sources: tuple[SampleSource, ...] = ()
+        self._line, self._loop, self._channel = line, loop, channel
+        self._within_s, self._gone_after_s = answers_within_s, gone_after_s
+        self._telegrams = Telegrams()
+        self._awaited, self._answer = "", _NO_ANSWER
+        self._seen_s = loop.clock.now_s()
+        self.state = ""
+        self.alarms: tuple[str, ...] = ()
+        loop.serve(line, self._take)
+
+    def come_up(self) -> None:
+        """Take it to remote, and see that it has no alarm; alarms that somebody may reset are reset once.
+
+        Raises:
+            BenchError: it does not answer, stays local, or keeps an alarm.
+        """
+        self._ask(REMOTE)
+        self._look()
+        if self.alarms:
+            self._ask(RESET)
+            self._look()
+        if self.alarms:
+            raise self._failed(f"has alarms: {', '.join(self.alarms)}", "clear their cause at the panel")
+        if self.state != REMOTE:
+            raise self._failed(f"stays {self.state or 'silent'}", "let the panel be remote")
+
+    def beat(self) -> None:
+        """Ask for state and alarms; the answers are looked at when they come."""
+        for function in (STATE, ALARMS):
+            self._line.send(Request(function, (), self._channel).telegram())
+
+    def troubles(self) -> list[str]:
+        """Alarms, somebody who took it to local, silence."""
+        found = [f"alarm {alarm}" for alarm in self.alarms]
+        if self.state not in ("", REMOTE):
+            found.append("somebody took the panel to local")
+        silent_s = self._loop.clock.now_s() - self._seen_s
+        if silent_s > self._gone_after_s:
+            why = f": {self._line.gone}" if self._line.gone else ""
+            found.append(f"the panel has said nothing for {silent_s:.1f} s{why}")
+        return found
+
+    def make_safe(self) -> None:
+        """It moves nothing: the dynamometers do, and they have a safe state of their own."""
+
+    def is_safe(self) -> bool:
+        """It gives no torque."""
+        return True
+
+    def close(self) -> None:
+        """Let go of the line."""
+        self._line.close()
+
+    def set_vehicle(self, vehicle: VehicleAndRoad) -> Mapping[str, str]:
+        """Write vehicle and road load and read them back; what the panel confirmed, by name, with units.
+
+        Raises:
+            BenchError: no answer, a refusal, or another value than was written.
+        """
+        confirmed = {}
+        for key, (write, read, name, unit, factor) in _SETTINGS.items():
+            value = getattr(vehicle, key)
+            if value is None:
+                continue
+            self._ask(write, f"{value * factor:.6g}")
+            said = self._ask(read)
+            try:
+                stands = float(said[0])
+            except (IndexError, ValueError):
+                raise self._failed(f"{name} reads back as '{printable(' '.join(said), 40)}'") from None
+            if abs(stands - value * factor) > _NEAR * max(abs(value * factor), 1.0):
+                raise self._failed(f"{name} reads back as {stands:g} {unit}, {value * factor:g} was written")
+            confirmed[name] = f"{stands:g} {unit}"
+        return confirmed
+
+    def examine(self, *, ask: bool) -> Examined:
+        """State and alarms."""
+        where = f"device '{self.name}'"
+        if not ask:
+            return Examined(answers=False, findings=[Finding("hint", "is only heard if it is asked", where)])
+        try:
+            self._look()
+        except BenchError as error:
+            return Examined(findings=[Finding.of(error)])
+        found = Examined(answers=True, facts={"state": "remote" if self.state == REMOTE else "local"})
+        found.findings += [
+            Finding("fault", f"alarm {alarm}", where, "clear its cause") for alarm in self.alarms
+        ]
+        return found
+
+    def _look(self) -> None:
+        self._ask(STATE)
+        self._ask(ALARMS)
+
+    def _ask(self, function: str, *data: str) -> tuple[str, ...]:
+        """One exchange; the data of the answer."""
+        telegram = Request(function, data, self._channel).telegram()
+        busy_until_s = self._loop.clock.now_s() + _LONGEST_BUSY_S
+        attempts = 0
+        while attempts < _ATTEMPTS:
+            self._awaited, self._answer = function, None
+            self._line.send(telegram)
+            self._loop.wait_for(lambda: self._answer is not None, self._within_s)
+            answer = self._answer
+            if answer is None:
+                attempts += 1
+            elif answer.error == BUSY and self._loop.clock.now_s() < busy_until_s:
+                self._loop.run_for(_BUSY_S)
+            elif answer.error:
+                raise self._refused(function, data, answer)
+            else:
+                return answer.data
+        away = f" (the line is away: {self._line.gone})" if self._line.gone else ""
+        raise self._failed(
+            f"no answer to {function} in {_ATTEMPTS} attempts of {self._within_s:g} s{away}",
+            "is it switched on, and set to this baud rate?",
+        )
+
+    def _refused(self, function: str, data: tuple[str, ...], answer: Answer) -> BenchError:
+        if answer.error == BUSY:
+            return self._failed(f"is busy for more than {_LONGEST_BUSY_S:g} s")
+        why = _IN_WORDS.get(answer.error, f"says {printable(answer.error, 20)}")
+        fix = (
+            "switch the panel to remote" if answer.error == OFFLINE else "does it fit this panel's software?"
+        )
+        return self._failed(f"{' '.join((function, *data))}: the panel {why}", fix)
+
+    def _failed(self, what: str, fix: str = "look at the panel") -> BenchError:
+        return BenchError(what, where=f"device '{self.name}'", fix=fix)
+
+    def _take(self, data: bytes, time_s: float) -> None:
+        for text in self._telegrams.feed(data):
+            answer = answer_of(text)
+            if answer is None:
+                continue
+            self._seen_s = time_s
+            if answer.function == STATE and answer.data and not answer.error:
+                self.state = answer.data[0]
+            elif answer.function == ALARMS and not answer.error:
+                self.alarms = tuple(printable(alarm, 20) for alarm in answer.data if alarm != "0")
+            if answer.function in (self._awaited, UNKNOWN):
+                self._answer = answer
