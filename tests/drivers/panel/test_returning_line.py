@@ -31,13 +31,14 @@ class Terminal:
         os.close(self._theirs)
 
 
-def read(line: ReturningLine) -> bytes:
-    for _ in range(100):
-        data = line.drain()
-        if data:
-            return data
+def read(line: ReturningLine, count: int) -> bytes:
+    data = b""
+    for _ in range(500):
+        data += line.drain()
+        if len(data) >= count:
+            break
         select.select([], [], [], 0.01)
-    return b""
+    return data
 
 
 def test_it_is_there_again_when_the_adapter_is(tmp_path: Path) -> None:
@@ -45,7 +46,7 @@ def test_it_is_there_again_when_the_adapter_is(tmp_path: Path) -> None:
     terminal = Terminal(link)
     line = ReturningLine("panel", str(link), 9600, clock)
     os.write(terminal.own, b"one")
-    assert read(line) == b"one"
+    assert read(line, 3) == b"one"
     assert line.send(b"two")
     terminal.vanish()
     assert line.drain() == b""
@@ -60,7 +61,7 @@ def test_it_is_there_again_when_the_adapter_is(tmp_path: Path) -> None:
     line.drain()
     assert line.gone == ""
     os.write(terminal.own, b"three")
-    assert read(line) == b"three"
+    assert read(line, 5) == b"three"
     line.close()
     terminal.vanish()
 
