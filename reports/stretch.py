@@ -48,5 +48,13 @@ def line(
     found = cut(recording, name, start_s, end_s)
     if found is None:
         return None
-    x, y = break_at_gaps(found[0] - zero_s, found[1])
+    x, y = break_at_gaps(*_measured(found[0] - zero_s, found[1]))
     return Trace(label, x, y, role, dash)
+
+
+def _measured(times: Array, values: Array) -> tuple[Array, Array]:
+    """The samples of a device that is slower than the rows: what lies between them is no gap."""
+    there = np.isfinite(values)
+    beside = np.concatenate([[False], there[:-1]]) | np.concatenate([there[1:], [False]])
+    alone = np.count_nonzero(there & ~beside)
+    return (times[there], values[there]) if 2 * alone > np.count_nonzero(there) else (times, values)

@@ -16,6 +16,7 @@ _RESULTS = {
     "identify": "frf.csv",
     "design": "controller.toml",
     "diagnose": "diagnosis.json",
+    "replay": "recording.mcap",
     "compare": "comparison.json",
     "explain": "targets.json",
 }
