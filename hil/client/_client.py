@@ -37,6 +37,7 @@ from hil.service.data import (
     TokenData,
     TokenMade,
     TokenWanted,
+    TrendData,
 )
 
 A = TypeVar("A")
@@ -117,6 +118,10 @@ class Client:
         """Runs, newest first."""
         query = {"most": str(most)} | ({"bench": bench} if bench else {})
         return self._several(RunData, f"/runs?{urllib.parse.urlencode(query)}")
+
+    def trends(self, bench: str, plan: str) -> list[TrendData]:
+        """Each criterion of a plan on a bench over its newest runs."""
+        return self._several(TrendData, f"/trends?{urllib.parse.urlencode({'bench': bench, 'plan': plan})}")
 
     def run(self, run: int) -> RunData:
         """A run."""

@@ -183,6 +183,34 @@ class ForecastData(_Data):
     criteria: list[PredictedCriterion]
 
 
+class TrendPoint(_Data):
+    """A criterion in one run; its limits as they were."""
+
+    run: RunId
+    ended_at: datetime.datetime
+    dut: str = Field(description="serial number, or name, of what was tested")
+    value: float | None
+    unit: str
+    upper: float | None = None
+    lower: float | None = None
+    verdict: str
+
+
+class TrendData(_Data):
+    """A criterion from run to run, oldest first; the limits are those of the newest run."""
+
+    criterion: str
+    unit: str
+    upper: float | None = None
+    lower: float | None = None
+    points: list[TrendPoint]
+    mean: float | None = None
+    deviation: float | None = Field(
+        None, description="standard deviation from the moving range; null for less than 5 values"
+    )
+    cpk: float | None = Field(None, description="distance of the mean to the nearer limit, in 3 deviations")
+
+
 class Me(_Data):
     """Who asks, and what they may do."""
 

@@ -16,12 +16,12 @@ export class TimeChart {
   constructor(canvas, lines) {
     this.canvas = canvas;
     this.lines = lines;
+    this.limit = null;
     this.clear();
   }
 
   clear() {
     this.buckets = this.lines.map(() => []);
-    this.limit = null;
   }
 
   add(samples) {
@@ -78,6 +78,22 @@ export class SpectrumChart {
     const frame = new Frame(this.canvas, 0, 40, 0, 1.1 * largest, "Hz");
     frame.band(8, 20);
     frame.line(points, colour("series-gain"));
+  }
+}
+
+export class TrendChart {
+  constructor(canvas) { this.canvas = canvas; }
+
+  draw(trend) {
+    const points = trend.points.filter((point) => point.value !== null).map((point) => [point.run, point.value, point.verdict]);
+    const limits = [trend.lower, trend.upper].filter((one) => one !== null);
+    const all = [...points.map((point) => point[1]), ...limits];
+    const room = Math.max(Math.max(...all) - Math.min(...all), 1e-9);
+    const runs = points.map((point) => point[0]);
+    const frame = new Frame(this.canvas, Math.min(...runs) - 1, Math.max(...runs) + 1, Math.min(...all) - 0.1 * room, Math.max(...all) + 0.1 * room, "run");
+    for (const limit of limits) frame.limit(limit);
+    frame.line(points, colour("series-reference"));
+    for (const [run, value, verdict] of points) frame.point(run, value, colour(verdict === "fail" ? "fail" : "series-gain"), verdict === "fail");
   }
 }
 
@@ -149,6 +165,14 @@ class Frame {
     this.pen.clip();
     this.stroke(style, points.map(([x, y]) => [this.x(x), this.y(y)]));
     this.pen.restore();
+  }
+
+  point(x, y, style, square) {
+    const pen = this.pen;
+    pen.fillStyle = style;
+    pen.beginPath();
+    if (square) pen.rect(this.x(x) - 4, this.y(y) - 4, 8, 8); else pen.arc(this.x(x), this.y(y), 4, 0, 2 * Math.PI);
+    pen.fill();
   }
 
   limit(value) {

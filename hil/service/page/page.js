@@ -3,6 +3,7 @@
 import { get, post, ask } from "./api.js";
 import { SpectrumChart, TimeChart, number } from "./chart.js";
 import { begin, predictAgain } from "./start.js";
+import { drawTrend, showTrends } from "./trends.js";
 
 const at = (id) => document.getElementById(id);
 const STATES = { free: "Free", running: "Running", ending: "A lost run is being ended", in_use: "In use", emergency_stop: "Emergency stop" };
@@ -171,6 +172,8 @@ function showQueue(queue) {
 async function showResults() {
   const query = ["ended", "interrupted", "cancelled"].map((state) => `state=${state}`).join("&");
   const runs = await act(() => get(`/runs?bench=${encodeURIComponent(bench)}&most=30&${query}`)) ?? [];
+  const newest = runs.find((run) => run.state === "ended");
+  if (newest) await act(() => showTrends(bench, newest.plan)); else at("trends").hidden = true;
   at("no-results").hidden = runs.length > 0;
   at("results").hidden = runs.length === 0;
   at("results").tBodies[0].replaceChildren(...runs.map((run) => {
@@ -196,6 +199,7 @@ at("stop").onclick = () => act(async () => {
   await post(bench ? `/benches/${encodeURIComponent(bench)}/emergency-stop` : "/emergency-stop");
 });
 at("bench").onchange = () => { watch(); predictAgain(() => bench); };
+at("criterion").onchange = drawTrend;
 at("pause").onclick = () => act(() => post(`/runs/${running.id}/pause`));
 at("resume").onclick = () => act(() => post(`/runs/${running.id}/resume`));
 at("end").onclick = () => act(() => post(`/runs/${running.id}/abort`));
@@ -213,7 +217,7 @@ window.onresize = () => { dirty = true; };
 matchMedia("(prefers-color-scheme: dark)").onchange = () => { dirty = true; };
 setInterval(() => { if (events && Date.now() - heard > LOST_MS) at("lost").hidden = false; }, 1000);
 (function frame() {
-  if (dirty) { dirty = false; Object.values(charts).forEach((chart) => chart.draw()); }
+  if (dirty) { dirty = false; drawTrend(); Object.values(charts).forEach((chart) => chart.draw()); }
   requestAnimationFrame(frame);
 })();
 open();

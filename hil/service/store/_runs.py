@@ -12,7 +12,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
 from hil.core.result import CriterionResult, RunResult
-from hil.service.data import RunData, RunState
+from hil.service.data import RunData, RunState, TrendPoint
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import CriterionRow, RunRow
 
@@ -159,6 +159,23 @@ class RunStore:
             session.add_all(_criterion(run, one, dut) for one in (result.criteria if result else ()))
             return True
 
+    def criteria(self, bench: str, plan: str, dut: str | None, most: int) -> list[tuple[str, TrendPoint]]:
+        """Criteria of a plan's newest runs that ended on a bench, by name, oldest first.
+
+        Only runs of the very same text as the newest: with other values of its variables, or after a change
+        of the plan, figures are not those of one and the same test.
+        """
+        ended = RunRow.bench == bench, RunRow.plan == plan, RunRow.state == "ended"
+        text = select(RunRow.plan_text).where(*ended).order_by(RunRow.id.desc()).limit(1).scalar_subquery()
+        newest = select(RunRow.id).where(*ended, RunRow.plan_text == text)
+        newest = newest.order_by(RunRow.id.desc()).limit(most)
+        chosen = select(CriterionRow, RunRow.ended_at).join(RunRow, RunRow.id == CriterionRow.run)
+        chosen = chosen.where(CriterionRow.run.in_(newest)).order_by(CriterionRow.run, CriterionRow.id)
+        if dut is not None:
+            chosen = chosen.where(CriterionRow.dut == dut)
+        with self._transaction() as session:
+            return [(row.id, _point(row, ended_at)) for row, ended_at in session.execute(chosen)]
+
     def put_back(self, run: int) -> bool:
         """Queue a run again of which nothing has happened: its bench was taken by somebody quicker."""
         with self._transaction() as session:
@@ -197,6 +214,21 @@ def _criterion(run: int, one: CriterionResult, dut: str) -> CriterionRow:
         lower=one.lower,
         verdict=one.verdict,
         dut=dut[:200],
+    )
+
+
+def _point(row: CriterionRow, ended_at: datetime.datetime | None) -> TrendPoint:
+    moment = aware(ended_at)
+    assert moment is not None, "the run has ended"
+    return TrendPoint(
+        run=row.run,
+        ended_at=moment,
+        dut=row.dut,
+        value=row.value,
+        unit=row.unit,
+        upper=row.upper,
+        lower=row.lower,
+        verdict=row.verdict,
     )
 
 

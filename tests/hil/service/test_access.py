@@ -45,6 +45,7 @@ LEAST = {
     ("POST", "/runs/{run}/answer"): "operator",
     ("POST", "/runs/{run}/abort"): "operator",
     ("GET", "/runs/{run}/files/{name}"): "viewer",
+    ("GET", "/trends"): "viewer",
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",
     ("DELETE", "/session"): "",

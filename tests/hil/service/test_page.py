@@ -56,13 +56,14 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     page.get_by_role("button", name="Queue the run").click()
     expect(page.get_by_role("heading", name="Running: A plan that asks")).to_be_visible()
     expect(page.locator("#told")).to_contain_text("Is the cage shut?")
-    expect(page.locator("#now-speed")).to_contain_text("rad/s")
+    expect(page.locator("#now-speed")).to_contain_text("rad/s, limit ±700")
     expect(page.locator("#criteria")).to_contain_text("s.peak_shaft_torque")
     page.get_by_role("button", name="Emergency stop", exact=True).click()
     expect(page.get_by_role("heading", name="Emergency stop")).to_be_visible()
     row = page.locator("#results tbody tr").first
     expect(row).to_contain_text("error")
     expect(row).to_contain_text("safe")
+    expect(page.locator("#trend-figures")).to_contain_text("N m, limit ≤ 400")
     with page.expect_navigation():
         row.get_by_role("link", name="report of run").click()
     expect(page.get_by_role("heading", level=1)).to_contain_text("A plan that asks")

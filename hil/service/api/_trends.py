@@ -1,0 +1,28 @@
+"""Criteria from run to run."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from hil.service.api._access import TheService, Viewer
+from hil.service.api._benches import known
+from hil.service.data import BenchName, PlanName, TrendData
+from hil.service.trends import trends
+
+router = APIRouter(tags=["runs"])
+
+
+@router.get("/trends", name="trends")
+async def get_trends(
+    service: TheService,
+    me: Viewer,
+    bench: Annotated[BenchName, Query()],
+    plan: Annotated[PlanName, Query()],
+    dut: Annotated[str | None, Query(max_length=200)] = None,
+    most: Annotated[int, Query(ge=1, le=500)] = 100,
+) -> list[TrendData]:
+    """Each criterion of a plan over its newest runs with the same values, with limits, scatter and Cpk."""
+    del me
+    return trends(service.runs.criteria(known(service, bench), plan, dut, most))

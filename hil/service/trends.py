@@ -1,0 +1,55 @@
+"""How a criterion went from run to run, and how far it stays from its limits compared with its scatter."""
+
+from __future__ import annotations
+
+import itertools
+import statistics
+from collections.abc import Iterable, Sequence
+
+from hil.service.data import TrendData, TrendPoint
+
+#: Mean range of two values of a normal distribution, in standard deviations (ISO 7870-2, d2 for n = 2).
+_RANGE_OF_TWO = 1.128
+LEAST_POINTS = 5
+
+
+def trends(points: Iterable[tuple[str, TrendPoint]]) -> list[TrendData]:
+    """Trends by criterion, in the order in which criteria come first; points in the order of their runs."""
+    by_criterion: dict[str, list[TrendPoint]] = {}
+    for criterion, point in points:
+        by_criterion.setdefault(criterion, []).append(point)
+    return [_trend(criterion, some) for criterion, some in by_criterion.items()]
+
+
+def _trend(criterion: str, points: list[TrendPoint]) -> TrendData:
+    newest = points[-1]
+    values = [point.value for point in points if point.value is not None]
+    mean = statistics.fmean(values) if values else None
+    deviation = _deviation(values)
+    return TrendData(
+        criterion=criterion,
+        unit=newest.unit,
+        upper=newest.upper,
+        lower=newest.lower,
+        points=points,
+        mean=mean,
+        deviation=deviation,
+        cpk=_cpk(mean, deviation, newest.upper, newest.lower),
+    )
+
+
+def _deviation(values: Sequence[float]) -> float | None:
+    """From the differences of neighbours, so that a drift counts as drift and not as scatter."""
+    if len(values) < LEAST_POINTS:
+        return None
+    ranges = [abs(after - before) for before, after in itertools.pairwise(values)]
+    return statistics.fmean(ranges) / _RANGE_OF_TWO
+
+
+def _cpk(
+    mean: float | None, deviation: float | None, upper: float | None, lower: float | None
+) -> float | None:
+    """Distance of the mean to the nearer limit in units of three standard deviations."""
+    rooms = [upper - mean] if upper is not None and mean is not None else []
+    rooms += [mean - lower] if lower is not None and mean is not None else []
+    return min(rooms) / (3 * deviation) if rooms and deviation else None
