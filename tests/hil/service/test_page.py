@@ -51,7 +51,7 @@ def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Pa
     expect = playwright.expect
     expect.set_options(timeout=60_000)
     page.get_by_label("Plan", exact=True).select_option("asking")
-    expect(page.locator("#forecast")).to_contain_text("Fits the bench")
+    expect(page.locator("#forecast")).to_contain_text("Fits the bench", timeout=180_000)
     expect(page.locator("#forecast")).to_contain_text("motor_speed_rad_s")
     page.get_by_role("button", name="Queue the run").click()
     expect(page.get_by_role("heading", name="Running: A plan that asks")).to_be_visible()
@@ -78,7 +78,7 @@ def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, ther
     page.get_by_label("Plan", exact=True).focus()
     page.keyboard.type("A plan")
     button = page.get_by_role("button", name="Queue the run")
-    expect(button).to_be_enabled(timeout=60_000)
+    expect(button).to_be_enabled(timeout=180_000)
     page.keyboard.press("Tab")
     while not button.evaluate("one => one === document.activeElement"):
         page.keyboard.press("Tab")
@@ -103,7 +103,7 @@ def test_nothing_is_found_by_axe_and_nothing_is_cut_off(
     page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     page.set_viewport_size({"width": width, "height": 900})
     page.goto(there.url)
-    playwright.expect(page.locator("#forecast")).to_contain_text("bench time", timeout=60_000)
+    playwright.expect(page.locator("#forecast")).to_contain_text("bench time", timeout=180_000)
     page.evaluate(axe.read_text("utf-8"))
     rules = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]}
     found = page.evaluate("rules => axe.run(document, rules)", rules)["violations"]
