@@ -113,7 +113,7 @@ def _time_figure(where: _Stretch, names: Sequence[str], bands: tuple[Band, ...] 
         x_text="Time",
         x_unit="s",
         y_label=label,
-        y_unit=channel_unit(names[0]),
+        y_unit=channel_unit(names[0], where.recording.metadata.get("units")),
         traces=drawn,
         bands=bands,
     )

@@ -252,7 +252,7 @@ def _channel(recording: Recording, name: str) -> ChannelRow:
     return ChannelRow(
         name=name,
         meaning="" if label.text == name else label.text,
-        unit=quantities.unit(channel_unit(name)),
+        unit=quantities.unit(channel_unit(name, recording.metadata.get("units"))),
         lowest=quantities.number(low, decimals),
         mean=quantities.number(mean, decimals),
         highest=quantities.number(high, decimals),

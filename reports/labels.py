@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import html
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from hil.core.channels import CHANNELS
@@ -79,9 +80,9 @@ def sentence_html(text: str) -> str:
     return "".join(_symbol_html(piece) if known else html.escape(piece) for piece, known in pieces(text))
 
 
-def channel_unit(name: str) -> str:
-    """Unit of a known channel, else ''."""
-    return CHANNELS[name].unit if name in CHANNELS else ""
+def channel_unit(name: str, stated: Mapping[str, str] | None = None) -> str:
+    """Unit of a known channel, else the one that a recording states (its table `units`), else ''."""
+    return CHANNELS[name].unit if name in CHANNELS else (stated or {}).get(name, "")
 
 
 def _symbol_html(symbol: str) -> str:

@@ -40,6 +40,7 @@ def test_a_log_and_a_dbc_give_a_recording_that_reports_and_exports(folder: Path,
     page = (folder / "out/report.html").read_text("utf-8")
     assert "Replay of a.log" in page
     assert "nothing is judged" in page
+    assert "km/h" in page  # the DBC's unit
     assert guarded(["export", "out/recording.mcap", "--out", "out.csv"]) == 0
     assert (folder / "out.csv").read_text("utf-8").splitlines()[:2] == ["time_s,Speed", "0.0,0.0"]
 
