@@ -133,6 +133,10 @@ def test_a_second_service_and_an_open_one_without_tokens_are_refused(service: Se
         serve(_wanted(tmp_path, host="0.0.0.0"))
     with pytest.raises(BadInputError, match="no database can be opened"):
         serve(_wanted(tmp_path, database="nonsense"))
+    (tmp_path / "file").touch()
+    with pytest.raises(BadInputError, match="cannot be made a directory") as refused:
+        serve(_wanted(tmp_path / "file"))
+    assert "--data" in refused.value.fix
     with pytest.raises(BadInputError, match="given to two benches"):
         serve(_wanted(tmp_path, benches=("sim", "sim")))
     with pytest.raises(BadInputError, match="there is no role"):
