@@ -227,4 +227,4 @@ def _sensitivities(found: Tuning) -> Map:
         )
         for criterion, row in found.sensitivities.items()
     )
-    return Map("", ("criterion", *(name.replace("_", " ") for name in found.space.names)), rows)
+    return Map("", ("criterion", *(PARAMETERS[name].symbol for name in found.space.names)), rows)

@@ -7,6 +7,7 @@ from hil.analysis.tuning._free import Free, free_from_toml, read_free, refuse_un
 from hil.analysis.tuning._front import Point, front_of, metrics_of, point_of
 from hil.analysis.tuning._loops import SpeedLoops
 from hil.analysis.tuning._parameters import PARAMETERS, Space, values_of, with_values
+from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._search import Effort
 from hil.analysis.tuning._trial import CarryOut, Predicted, Trial, Tried, channels_needed
 from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_start, tune
@@ -21,6 +22,7 @@ __all__ = [
     "Effort",
     "Free",
     "Point",
+    "Pool",
     "Predicted",
     "Space",
     "SpeedLoops",

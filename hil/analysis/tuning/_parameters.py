@@ -17,8 +17,9 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Parameter:
-    """Unit, what it may lie between, whether it is searched by its logarithm, and what it is."""
+    """Symbol, unit, what it may lie between, whether it is searched by its logarithm, and what it is."""
 
+    symbol: str
     unit: str
     least: float
     most: float
@@ -27,21 +28,27 @@ class Parameter:
 
 
 PARAMETERS = {
-    "lead_deg": Parameter("°", 0.0, 85.0, False, "P_h of (6), phase lead"),
-    "lead_hz": Parameter("Hz", 0.1, 450.0, True, "f_ph of (7), frequency of the lead"),
-    "notch_hz": Parameter("Hz", 0.1, 450.0, True, "f_n of (8), frequency of the notch"),
-    "notch_width": Parameter("", 0.01, 100.0, True, "ζ of (8), width of the notch"),
-    "notch_depth": Parameter("", 0.0, 1.0, False, "d of (8), depth of the notch"),
-    "pole_rad_s": Parameter("rad/s", 1e-3, 100.0, True, "p of (4)(5), for K_p and K_i together"),
-    "proportional_gain": Parameter("N m s/rad", 1e-4, 1e4, True, "K_p"),
-    "integral_gain": Parameter("N m/rad", 1e-6, 1e4, True, "K_i"),
-    "dfc_integral_gain": Parameter("1/(N m s)", 1e-7, 10.0, True, "K_i(DFC), driving force control"),
-    "speed_filter_time_s": Parameter("s", 1e-3, 10.0, True, "τ_1 of (17), speed filter"),
-    "feed_forward_time_s": Parameter("s", 1e-3, 10.0, True, "τ_2 of (18), feed-forward"),
-    "slip_floor_m_s": Parameter("m/s", 0.01, 100.0, True, "σ of (1), speed below which slip is absolute"),
-    "slip_limit": Parameter("", 1e-3, 1.0, True, "largest |y|, the integrator's anti-windup"),
-    "observer_time_s": Parameter("s", 1e-3, 1.0, True, "τ_DFO, driving force observer"),
-    "torque_limit_nm": Parameter("N m", 1.0, 300.0, True, "largest |T_m*|; both integrators wait at it"),
+    "lead_deg": Parameter("P_h", "°", 0.0, 85.0, False, "P_h of (6), phase lead"),
+    "lead_hz": Parameter("f_ph", "Hz", 0.1, 450.0, True, "f_ph of (7), frequency of the lead"),
+    "notch_hz": Parameter("f_n", "Hz", 0.1, 450.0, True, "f_n of (8), frequency of the notch"),
+    "notch_width": Parameter("ζ", "", 0.01, 100.0, True, "ζ of (8), width of the notch"),
+    "notch_depth": Parameter("d", "", 0.0, 1.0, False, "d of (8), depth of the notch"),
+    "pole_rad_s": Parameter("p", "rad/s", 1e-3, 100.0, True, "p of (4)(5), for K_p and K_i together"),
+    "proportional_gain": Parameter("K_p", "N m s/rad", 1e-4, 1e4, True, "K_p"),
+    "integral_gain": Parameter("K_i", "N m/rad", 1e-6, 1e4, True, "K_i"),
+    "dfc_integral_gain": Parameter(
+        "K_i(DFC)", "1/(N m s)", 1e-7, 10.0, True, "K_i(DFC), driving force control"
+    ),
+    "speed_filter_time_s": Parameter("τ_1", "s", 1e-3, 10.0, True, "τ_1 of (17), speed filter"),
+    "feed_forward_time_s": Parameter("τ_2", "s", 1e-3, 10.0, True, "τ_2 of (18), feed-forward"),
+    "slip_floor_m_s": Parameter(
+        "σ", "m/s", 0.01, 100.0, True, "σ of (1), speed below which slip is absolute"
+    ),
+    "slip_limit": Parameter("y", "", 1e-3, 1.0, True, "largest |y|, the integrator's anti-windup"),
+    "observer_time_s": Parameter("τ_DFO", "s", 1e-3, 1.0, True, "τ_DFO, driving force observer"),
+    "torque_limit_nm": Parameter(
+        "limit", "N m", 1.0, 300.0, True, "largest |T_m*|; both integrators wait at it"
+    ),
 }
 #: Groups of which only one may be free.
 ALTERNATIVES = (

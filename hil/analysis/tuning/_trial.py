@@ -168,7 +168,7 @@ class Trial:
         for name in ("gain_margin_db", "phase_margin_deg", "delay_margin_s"):
             least = getattr(limits, name)
             if least is not None:
-                found[name] = (min(getattr(loop, name), 1e3 * least) - least) / least
+                found[name] = (min(getattr(loop, name), 10 * least) - least) / least
         return found
 
     def _run_limits(self, found: Predicted) -> dict[str, float]:

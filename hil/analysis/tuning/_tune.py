@@ -6,14 +6,17 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from hil.analysis.tuning._parameters import PARAMETERS, Space, values_of
+from hil.analysis.tuning._parameters import Space, values_of
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._search import Effort, Search
 from hil.analysis.tuning._trial import Trial, Tried
 from hil.core.controller import Controller
 from hil.core.errors import BadInputError
 from hil.core.model import Model, refuse_without_vehicle
+
+Array = npt.NDArray[np.float64]
 
 #: Step of the sensitivities, as a share of a parameter's range.
 SENSITIVITY_STEP = 0.02
@@ -218,31 +221,36 @@ def _paper(trial: Trial) -> dict[str, Mapping[str, float]]:
     return found
 
 
-def _sensitivities(pool: Pool, space: Space, best: np.ndarray) -> dict[str, dict[str, float]]:
-    """Change of each criterion's nominal margin for a step over a parameter's whole range."""
-    points, widths = [], []
+def _sensitivities(pool: Pool, space: Space, best: Array) -> dict[str, dict[str, float]]:
+    """Change of each criterion's nominal margin for a step over a parameter's whole range.
+
+    From central differences; from one side where the other is out of bounds or beyond a hard limit.
+    """
+    points = [best]
     for axis in range(space.size):
-        ends = np.clip(best[axis] + np.array([-SENSITIVITY_STEP, SENSITIVITY_STEP]), 0.0, 1.0)
-        widths.append(float(ends[1] - ends[0]))
-        for end in ends:
+        for step in (-SENSITIVITY_STEP, SENSITIVITY_STEP):
             point = best.copy()
-            point[axis] = end
+            point[axis] = np.clip(point[axis] + step, 0.0, 1.0)
             points.append(point)
-    found = pool.tried([(space.values(point), 0) for point in points])
+    middle, *ends = pool.tried([(space.values(point), 0) for point in points])
+    around = [
+        (float(point[n // 2]), end) for n, (point, end) in enumerate(zip(points[1:], ends, strict=True))
+    ]
     return {
         criterion.id: {
-            name: _slope(found[2 * axis : 2 * axis + 2], criterion.id, widths[axis])
+            name: _slope(
+                [(float(best[axis]), middle), *around[2 * axis : 2 * axis + 2]],
+                criterion.id,
+            )
             for axis, name in enumerate(space.names)
         }
         for criterion in pool.trial.driven.criteria
     }
 
 
-def _slope(ends: Sequence[Tried], criterion: str, width: float) -> float:
-    low, high = (tried.margins.get(criterion, float("nan")) for tried in ends)
-    return (high - low) / width
-
-
-def parameter_unit(name: str) -> str:
-    """Unit of a free parameter, for people."""
-    return PARAMETERS[name].unit
+def _slope(near: Sequence[tuple[float, Tried]], criterion: str) -> float:
+    """Between the outermost of the middle and both ends where the criterion has a margin."""
+    known = sorted((place, tried.margins[criterion]) for place, tried in near if criterion in tried.margins)
+    if len(known) < 2 or known[-1][0] == known[0][0]:
+        return float("nan")
+    return (known[-1][1] - known[0][1]) / (known[-1][0] - known[0][0])

@@ -20,6 +20,7 @@ def test_the_worst_margin_grows_on_every_car_and_the_front_holds_what_none_beats
     assert found.chosen.worst.worst == min(tried.worst for tried in found.chosen.tried)
     assert len(found.chosen.tried) == 4
     assert found.chosen.nominal.binding in {c.id for c in trial.driven.criteria}
+    assert {len(row) for row in found.sensitivities.values()} == {2}
     best = [point.figures for point in front_of(found.archive, trial.driven.criteria)]
     assert best
     assert all(a == b or any(x < y for x, y in zip(a, b, strict=True)) for a in best for b in best)

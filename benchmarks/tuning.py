@@ -1,0 +1,103 @@
+"""Closed-loop evaluations of the acceptance plan: of a search, by python-control, over the wire."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+from hil.analysis.tuning import Pool, SpeedLoops, Trial, channels_needed, draws_of, driven_by, read_free
+from hil.core.controller import load_controller
+from hil.core.model import load_model
+from hil.engine import RunRequest, load_bench, run_plan
+from hil.engine.trial_runs import TrialRuns
+from test_plans import load_plan
+
+EVALUATIONS = 2000
+
+
+def acceptance_trial(draws: int = 0, plan: str | Path = "acceptance") -> Trial:
+    """The acceptance plan on the default bench."""
+    loaded, bench, free = load_plan(plan), load_bench("sim"), read_free(None)
+    assert bench.simulation is not None
+    driven = driven_by(loaded)
+    start = load_controller(driven.file)
+    cars = draws_of(load_model(bench.simulation.model), free.tolerance, draws, 0)
+    channels = channels_needed(tuple(criterion.metric for criterion in driven.criteria), free)
+    loops = SpeedLoops([car.model for car in cars], start.sample_time_s)
+    return Trial(loaded, driven, free, start, cars, loops, TrialRuns(loaded, bench, driven.file, channels))
+
+
+def python_control_s() -> float:
+    """Seconds of the plan's four steps in python-control: the speed loop alone, linear, as it is sampled.
+
+    Without driving force control, observer, limits, wheel order, sensors and ramps between the steps: less
+    than a run is.
+    """
+    import control
+
+    warnings.simplefilter("ignore")
+    trial = acceptance_trial()
+    p, wsc, dt = trial.start.plant, trial.start.wsc, trial.start.sample_time_s
+    axle = control.sample_system(control.tf(p.motor_speed, p.denominator), dt, "zoh")
+    late = control.tf([1.0], [1.0] + [0.0] * 8, dt)
+    pi = control.tf([wsc.proportional_gain, wsc.integral_gain], [1.0, 0.0])
+    assert wsc.lead is not None
+    lead = wsc.lead.gain * control.tf(
+        [wsc.lead.time_constant_s, 1.0], [wsc.lead.alpha * wsc.lead.time_constant_s, 1]
+    )
+    feedback = control.sample_system(pi * lead, dt, "tustin")
+    plant = control.tf2ss(axle * late)
+    closed = control.feedback(plant, control.tf2ss(feedback))
+    torque = np.concatenate([np.zeros(1000), np.full(20_000, 40.0)])
+    start = time.perf_counter()
+    for _ in range(4):
+        control.forced_response(closed, np.arange(len(torque)) * dt, torque)
+    return time.perf_counter() - start
+
+
+def wire_s() -> float:
+    """Seconds of one run over the simulated bench's wire, without reports."""
+    plan, bench = load_plan("acceptance"), load_bench("sim")
+    with tempfile.TemporaryDirectory() as folder:
+        start = time.perf_counter()
+        run_plan(RunRequest(plan=plan, bench=bench, out=Path(folder) / "run"))
+        return time.perf_counter() - start
+
+
+def main() -> None:
+    """Print seconds for one and for 2,000 evaluations."""
+    trial = acceptance_trial()
+    random = np.random.default_rng(0)
+    leads = [{"lead_deg": float(angle)} for angle in random.uniform(20, 45, EVALUATIONS)]
+    trial.tried(leads[0], 0)
+    cpu = min(_cpu_s(trial, values) for values in leads[:10])
+    with Pool(trial) as pool:
+        pool.tried([(values, 0) for values in leads[:8]])  # processes begin
+        start = time.perf_counter()
+        tried = pool.tried([(values, 0) for values in leads])
+        whole = time.perf_counter() - start
+    assert all(one.margins for one in tried)
+    wire_s()
+    rows = (
+        ("hil tune, one, processor time", cpu),
+        (f"hil tune, {EVALUATIONS} on {pool.processes} processes", whole),
+        ("the same, each", whole / EVALUATIONS),
+        ("python-control, speed loop alone, linear, one", python_control_s()),
+        ("over the simulated wire, one", wire_s()),
+    )
+    for name, seconds in rows:
+        print(f"{name:<50}{seconds:>10.3f} s")
+
+
+def _cpu_s(trial: Trial, values: dict[str, float]) -> float:
+    start = time.process_time()
+    trial.tried(values, 0)
+    return time.process_time() - start
+
+
+if __name__ == "__main__":
+    main()
