@@ -47,12 +47,14 @@ finally: [ramp_down: {{duration_s: 0.5}}]
 """,
 }
 TARGETS = '[targets]\n"gain_0kmh.peak_shaft_torque" = 300.0\n'
+SEGMENTS = '{"segments": [{"id": "gain_0kmh", "start_s": 1.0, "step_s": 1.5, "end_s": 2.5}]}'
 #: Without end, or with a question: ended by Ctrl-C, or answered by nobody.
 ENDLESS = ("monitor", "sim-bench")
 #: What an exit code other than 0 says of the simulated stand-ins.
 CODES = {
     ("explain",): (0, 1),
     ("verify",): (0, 1),  # nobody has signed yet
+    ("replay",): (0, 1),  # segments of one of two criteria
     ("report",): (0, 1),  # of a run that crashed: it never passes
     ("monitor",): (0, 2, 130),  # a simulated bench has nothing to monitor
     ("jog",): (0, 1),
@@ -119,6 +121,14 @@ def prepare(page: str, stage: Path) -> None:
                 report.unlink()
         torn.write_bytes(torn.read_bytes()[: torn.stat().st_size // 2])
         _make_key(stage / "bench_key")
+    if page.endswith("replay.md"):
+        hil("run", "acceptance", "--out", "done")
+        shutil.copy("done/recording.mcap", "recording.mcap")
+        for log in ("drive.blf", "drive.asc"):
+            hil("export", "recording.mcap", "--out", log)
+        for dbc in ("vehicle.dbc", "chassis.dbc", "engine.dbc"):
+            shutil.copy("rmcu.dbc", dbc)
+        Path("segments.json").write_text(SEGMENTS)
     if page.endswith("first-run.md"):
         hil("run", "acceptance", "--out", "out/acceptance")
     if page.endswith("diagnose.md"):
