@@ -115,7 +115,7 @@ NUMBERS = {
     "explain": ("--evaluations", "--seed"),
     "doctor": ("--for",),
     "sim-bench": ("--time-scale", "--port", "--seed"),
-    "serve": ("--port", "--for", "--rate"),
+    "serve": ("--port", "--rate"),
 }
 
 
