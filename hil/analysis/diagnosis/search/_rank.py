@@ -21,9 +21,14 @@ def rank(one: Fit) -> float:
     is recorded before it happens: where dead time is free, one that is early is as good as another that is
     late.
     """
-    if one.total > FAR * one.rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids):
+    if doubted(one):
         return DOUBT * one.total + price(one)
     return (EARLY if _early(one) else 1.0) * one.total + price(one)
+
+
+def doubted(one: Fit) -> bool:
+    """Whether a fault in a sensor is among the names, and so much is left that formulas differ."""
+    return one.total > FAR * one.rows and any(id_ in _SENSOR_FAULTS for id_ in one.hypothesis.ids)
 
 
 def _early(one: Fit) -> bool:

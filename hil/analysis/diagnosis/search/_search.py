@@ -20,7 +20,7 @@ from hil.analysis.diagnosis.search._alignment import with_base_angles
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._growth import Step, grow
 from hil.analysis.diagnosis.search._quantization import rounding_of
-from hil.analysis.diagnosis.search._rank import rank
+from hil.analysis.diagnosis.search._rank import doubted, rank
 from hil.analysis.diagnosis.search._screen import Score
 from hil.analysis.diagnosis.search._thresholds import (
     ALONE,
@@ -138,13 +138,15 @@ def advanced(
             show("looking at what can be foretold alone")
             return advanced(_begin_again(found, chaotic[0]), show, beside=[chaotic[1]] * (number == 0))
     found.steps = before + sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
+    led = found.frontier[0]
     found.frontier = frontier = _distinct([one for s in steps for one in s.fits])
     found.effects += 1
     if not frontier:
         return False
     alone = number == 0 and stands_alone(found.evidence, found.base, frontier[0], frontier)
-    if alone or earned(found.evidence, found.best, frontier[0]):
-        found.best = frontier[0]
+    next_ = following(led, frontier)
+    if alone or earned(found.evidence, found.best, next_):
+        found.best = next_
         if found.evidence.share(found.best) > NEARLY:
             enough = RIVAL * found.evidence.left(found.best)
             found.frontier = [f for f in frontier if found.evidence.left(f) <= enough]
@@ -166,6 +168,18 @@ def _distinct(fits: list[Fit]) -> list[Fit]:
     for one in sorted(fits, key=rank):
         best.setdefault(frozenset(one.hypothesis.keys), one)
     return list(best.values())
+
+
+def following(led: Fit, frontier: Sequence[Fit]) -> Fit:
+    """What may be named next: the first of `frontier`, best first.
+
+    Where that is doubted, the first that keeps the names of `led`, which led before: where formulas differ,
+    faults in sensors beside anything explain a little more, and say nothing against what led without them.
+    """
+    if not doubted(frontier[0]):
+        return frontier[0]
+    kept = set(led.hypothesis.keys)
+    return next((one for one in frontier if kept <= set(one.hypothesis.keys)), frontier[0])
 
 
 def earned(evidence: Evidence, poorer: Fit, richer: Fit) -> bool:

@@ -5,7 +5,8 @@ import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.search._growth import grown
-from hil.analysis.diagnosis.search._search import earned, search
+from hil.analysis.diagnosis.search._search import earned, following, search
+from hil.analysis.diagnosis.search._thresholds import FAR
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
@@ -43,6 +44,17 @@ class Told:
 )
 def test_a_further_name_is_earned(drop: float, whole: float, closed: float, earns: bool) -> None:
     assert earned(Told(drop, whole, closed), POOR, RICH) is earns  # type: ignore[arg-type]
+
+
+DELAY = EffectUse("dead_time", {"extra_delay_s": 0.008})
+SKEW = EffectUse("channel_skew", {"channel": OUTPUTS[0], "delay_s": 0.008})
+
+
+@pytest.mark.parametrize(("total", "kept"), [(1.2 * FAR, True), (0.8 * FAR, False)])
+def test_where_formulas_differ_sensors_do_not_take_the_place_of_what_led(total: float, kept: bool) -> None:
+    led, first, second = (left(total * POOR.rows, *uses) for uses in ((DELAY,), (SKEW, LAG), (DELAY, SKEW)))
+    assert following(led, [first, second]) is (second if kept else first)
+    assert following(led, [first]) is first  # nothing keeps its names
 
 
 def test_a_hidden_offset_is_found_alone() -> None:
