@@ -22,10 +22,12 @@ For three inertias the orders are 4, 3, 4 over 5, as in the paper's (14)-(16).
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.identification._linear_effects import functions_of_states, linear_effects
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction
@@ -85,16 +87,19 @@ def chain_response(kind: str, parameters: Mapping[str, float], frequency_hz: Arr
 def transfer_functions_of(model: Model) -> tuple[dict[str, TransferFunction], tuple[str, ...]]:
     """Transfer functions of any model, and notes on what they leave out.
 
-    A chain is converted by the formulas above; its effects are nonlinear or disturbances and are left
-    out, with a note.
+    A chain is converted by the formulas above, with effects that act linearly by its states; the others are
+    nonlinear, or faults of sensors and disturbances, and are left out, with a note.
 
     Raises:
         BadInputError: the functions do not share one denominator and one dead time.
     """
     notes = []
-    if model.effects:
-        names = ", ".join(use.id for use in model.effects)
-        notes.append(f"the model's effects are left out of the linear design: {names}")
+    linear = linear_effects(model) if model.kind != "transfer_function" else ()
+    left_out = [use.id for use in model.effects if use not in linear]
+    if left_out:
+        notes.append(f"effects of the model are left out of the linear design: {', '.join(left_out)}")
+    if linear:
+        return functions_of_states(replace(model, effects=linear)), tuple(notes)
     if model.kind != "transfer_function":
         numerators, denominator = chain_polynomials(model.kind, model.parameters)
         lead = denominator[0]
