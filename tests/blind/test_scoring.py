@@ -146,7 +146,7 @@ def test_effects_that_joined_later_are_drawn_at_the_size_that_is_asked_for(subje
     assert 1 / 1.5 < case.share / share_of(SIZES[size]) < 1.5
 
 
-@pytest.mark.slow
+@pytest.mark.hunt
 def test_a_pair_has_the_effect_that_joined_later_and_another():
     for subject in LATER_FAMILIES:
         case = draw_case(1, Spec("pair", subject, "clear", 1), 0.3)
@@ -172,7 +172,7 @@ def test_what_joins_the_set_leaves_the_cases_that_were_there(spec, share, laws):
     assert [h.laws for h in case.hidden] == [pytest.approx(one, rel=1e-6) for one in laws]
 
 
-@pytest.mark.slow
+@pytest.mark.hunt
 def test_a_run_with_a_stand_in_writes_both_files(tmp_path):
     spec = Spec("none", "none", "none", 0)
     result = run_case(2, spec, says_nothing, tmp_path / "kept", 0.1)

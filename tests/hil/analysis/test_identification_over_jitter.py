@@ -50,8 +50,10 @@ def jitter(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(SimulatedBench, "put", late)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("late", ["bursts", "outliers"])
+@pytest.mark.parametrize(
+    "late",
+    [pytest.param("bursts", marks=pytest.mark.slow), pytest.param("outliers", marks=pytest.mark.hunt)],
+)
 def test_late_requests_and_late_stamps_give_the_same_axle(
     late: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

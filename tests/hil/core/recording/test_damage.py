@@ -120,7 +120,7 @@ MANY = pytest.mark.slow
         (cuts, 25),
         (overwritten, 25),
         (zeroed, 25),
-        pytest.param(flips, 1000, marks=MANY),
+        pytest.param(flips, 1000, marks=pytest.mark.hunt),
         pytest.param(cuts, 200, marks=MANY),
         pytest.param(overwritten, 200, marks=MANY),
         pytest.param(zeroed, 200, marks=MANY),

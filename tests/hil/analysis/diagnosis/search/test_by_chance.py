@@ -34,8 +34,9 @@ def noisy(path, seed: int, memory: float) -> Problem:
     return problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("memory", [0.0, 0.98])
+@pytest.mark.parametrize(
+    "memory", [pytest.param(0.0, marks=pytest.mark.hunt), pytest.param(0.98, marks=pytest.mark.slow)]
+)
 def test_noise_scores_as_the_bootstrap_says(tmp_path, memory):
     scores, predicted = [], []
     for seed in range(6):

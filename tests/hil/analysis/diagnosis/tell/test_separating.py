@@ -102,7 +102,7 @@ def test_every_test_runs_on_the_simulated_bench_as_it_was_simulated(name: str, t
         assert np.std(difference) < share * np.max(np.abs(simulated[channel]))
 
 
-@pytest.mark.slow
+@pytest.mark.hunt
 def test_what_one_way_turning_leaves_open_the_plan_decides(tmp_path: Path) -> None:
     """Friction and running resistance on an axle that only turns forward, without a shaft torque sensor."""
     (recording,) = recordings(Truth({"rolling": 20.0}), 2, short=True, only=("chirp_biased",))
