@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from pydantic import BaseModel
+from rich.markup import escape
 
 from hil.cli._output import console, plain_table, print_json
 from hil.core.effects import EFFECTS
@@ -121,4 +122,4 @@ def _tell(rows: list[Row]) -> None:
 def _cell(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return ", ".join(value) if isinstance(value, list) else str(value)
+    return escape(", ".join(value) if isinstance(value, list) else str(value))

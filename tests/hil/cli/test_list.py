@@ -7,6 +7,7 @@ import json
 import pytest
 
 from hil.cli._app import guarded
+from hil.cli.list import _tell
 from hil.core.effects import EFFECTS
 from hil.engine.device_kinds import KINDS
 from test_plans import METRICS, STEPS, library_plans
@@ -56,3 +57,8 @@ def test_a_word_nearly_right_is_answered_with_the_right_one(capsys):
 def test_the_version(capsys):
     assert guarded(["--version"]) == 0
     assert capsys.readouterr().out == "hil 0.1.0\n"
+
+
+def test_names_of_tables_are_no_markup(capsys):
+    _tell([{"name": "a", "title": "what [rmcu] and [devices.NAME] hold"}])
+    assert "what [rmcu] and [devices.NAME] hold" in capsys.readouterr().out
