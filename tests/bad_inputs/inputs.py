@@ -59,7 +59,7 @@ def make_inputs(folder: Path) -> None:
     _hil(folder, "export", "whole/recording.mcap", "--out", "short.csv")
     _hil(folder, "export", "whole/recording.mcap", "--out", "frames.log")
     (folder / "done").mkdir()
-    for name in ("recording.mcap", "result.json", "junit.xml"):
+    for name in ("recording.mcap", "result.json", "junit.xml", "report.html", "report.pdf"):
         shutil.copy(folder / "whole" / name, folder / "done" / name)
     shutil.copy(folder / "whole" / "recording.mcap", folder / "recording.mcap")
     shutil.copy(folder / "whole" / "recording.mcap", folder / "torn.mcap")
