@@ -6,9 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.compiled import compiled
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock, most_frame_bits
 
-_HEAD_BITS, _EXTENDED_HEAD_BITS = 34, 54  # with the checksum; stuff bits stand among them and the data
 _UNSTUFFED = 13  # CRC delimiter, acknowledge slot and delimiter, end of frame (7), intermission (3)
 _POLYNOMIAL, _CRC_BITS = 0x4599, 15
 _RUN = 5  # after so many equal bits the sender puts one of the other kind
@@ -38,8 +37,7 @@ def _most_bits(flags, lengths):  # type: ignore[no-untyped-def]
     for frame in range(flags.shape[0]):
         if flags[frame] & ERROR_FRAME:
             continue
-        stuffable = (_EXTENDED_HEAD_BITS if flags[frame] & EXTENDED else _HEAD_BITS) + 8 * int(lengths[frame])
-        bits += stuffable + (stuffable - 1) // (_RUN - 1) + _UNSTUFFED
+        bits += most_frame_bits(int(lengths[frame]), flags[frame] & EXTENDED != 0)
     return bits
 
 

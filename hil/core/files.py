@@ -129,15 +129,15 @@ def refuse_special(path: Path) -> None:
             raise BadInputError(what, where=str(path), fix="name a file, not a directory")
 
 
-def make_directory(path: Path) -> None:
-    """Make a directory and its parents; BadInputError if that cannot be done."""
+def make_directory(path: Path, *, option: str = "--out") -> None:
+    """Make a directory and its parents; BadInputError with the option that named it if it cannot be done."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise BadInputError(
             f"cannot be made a directory: {_reason(error)}",
             where=str(path),
-            fix="choose another place with --out",
+            fix=f"choose another place with {option}",
         ) from error
 
 

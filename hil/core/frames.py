@@ -19,6 +19,10 @@ ERROR_FRAME = 4
 
 FrameBlock = npt.NDArray[np.void]
 
+_HEAD_BITS, _EXTENDED_HEAD_BITS = 34, 54  # with the checksum; stuff bits stand among them and the data
+_UNSTUFFED = 13  # CRC delimiter, acknowledge slot and delimiter, end of frame (7), intermission (3)
+_BETWEEN_STUFF_BITS = 4  # one behind five equal bits, which may begin the next five
+
 
 def empty_block() -> FrameBlock:
     """A block without frames."""
@@ -45,6 +49,18 @@ def frames(
     block["time_s"], block["data"] = times_s, payloads
     block["id"], block["flags"], block["length"] = frame_id, flags, length
     return block
+
+
+@compiled
+def most_frame_bits(length, extended):  # type: ignore[no-untyped-def]
+    """Bits of a data frame of `length` bytes with as many stuff bits as it may have (ISO 11898-1)."""
+    stuffable = (_EXTENDED_HEAD_BITS if extended else _HEAD_BITS) + 8 * length
+    return stuffable + (stuffable - 1) // _BETWEEN_STUFF_BITS + _UNSTUFFED
+
+
+def longest_frame_s(length: int, bit_rate: int) -> float:
+    """Longest time in s of a standard data frame of `length` bytes on a bus of `bit_rate` bit/s."""
+    return float(most_frame_bits(length, False)) / bit_rate
 
 
 def inserted(sent: FrameBlock, came: FrameBlock) -> FrameBlock:

@@ -8,11 +8,11 @@ from typing import Any
 
 from drivers import TICK_S, read_dyno, read_rmcu
 from hil.core.dbc import Dbc
+from hil.core.frames import longest_frame_s
 from hil.core.signals import FrameLayout
 from hil.engine._simulable import dyno_of, rmcu_of
 from hil.engine.bench_tables import BenchFile
 from hil.plant.closed_loop import Wire
-from sim_backend.bench import frame_time_s
 
 _RMCU = {
     "motor_speed_rad_s": ("RMCU_Status", "MotorSpeed"),
@@ -94,7 +94,7 @@ def _loads(bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]) -> dict[s
     found = dict.fromkeys(bench.buses, 0.0)
     for bus, layouts in ((rmcu_bus, [*rmcu, dbc.layouts["RMCU_Request"]]), of_dynos):
         rate = bench.buses[bus].bit_rate
-        found[bus] += sum(frame_time_s(layout.length, rate) for layout in layouts) / TICK_S
+        found[bus] += sum(longest_frame_s(layout.length, rate) for layout in layouts) / TICK_S
     return found
 
 
@@ -103,7 +103,7 @@ def _frame_ends_s(bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]) ->
     found: dict[int, float] = {}
     for bus, layouts in _cyclic(bench, dbc, dynos):
         rate = bench.buses[bus].bit_rate
-        ends = accumulate(frame_time_s(layout.length, rate) for layout in layouts)
+        ends = accumulate(longest_frame_s(layout.length, rate) for layout in layouts)
         found |= {layout.id: end_s for layout, end_s in zip(layouts, ends, strict=True)}
     return found
 

@@ -15,18 +15,18 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.channels import TIME
+from hil.core.conventions import COMFORT_BAND_HZ
 from hil.core.errors import BadInputError
 from hil.core.recording import SEGMENT, FollowedRecording, read_recording
 from hil.core.result import CriterionResult, Segment
 from test_plans import Plan, judge
-from test_plans.metrics import periodogram
+from test_plans.metrics import energy_within, periodogram
 
 BUCKET_S = 0.02
 _KEPT_S = 60.0
 #: Buckets that are sent at once; what is more is joined.
 MOST_BUCKETS = 300
 SPECTRUM_CHANNEL = "motor_speed_rad_s"
-BAND_HZ = (8.0, 20.0)
 _SPECTRUM_S = 8.0
 _HIGHEST_HZ = 40.0
 
@@ -152,8 +152,7 @@ class LiveRun:
         if spacing_s <= 0.0 or len(time) * spacing_s < 0.9 * _SPECTRUM_S or not np.isfinite(values).all():
             return None
         hz, density = periodogram(values, spacing_s)
-        inside = (hz >= BAND_HZ[0]) & (hz <= BAND_HZ[1])
-        energy = float(density[inside].sum() * hz[1])
+        energy = energy_within(hz, density, *COMFORT_BAND_HZ)
         return Spectrum(float(hz[1]), density[hz <= _HIGHEST_HZ], energy)
 
     def decided(self) -> tuple[CriterionResult, ...] | None:

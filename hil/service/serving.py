@@ -98,7 +98,7 @@ def make_token(folder: Path, database: str, name: str, role: str) -> TokenMade:
         )
     if not name.strip() or not name.isprintable() or len(name) > 100:
         raise BadInputError("names nobody", where="--add-token", fix="write NAME=ROLE")
-    _make(folder)
+    make_directory(folder, option="--data")
     engine = _database(folder, database)
     try:
         chosen: Role = next(known for known in ROLES if known == role)
@@ -160,7 +160,7 @@ class _Server(uvicorn.Server):
 
 @contextlib.contextmanager
 def _alone_in(folder: Path) -> Iterator[None]:
-    _make(folder)
+    make_directory(folder, option="--data")
     try:
         with lock_on(folder):
             yield
@@ -170,13 +170,6 @@ def _alone_in(folder: Path) -> Iterator[None]:
             where=str(folder),
             fix="give another folder with --data, or use that service",
         ) from None
-
-
-def _make(folder: Path) -> None:
-    try:
-        make_directory(folder)
-    except BadInputError as error:
-        raise BadInputError(error.what, where=error.where, fix="choose another place with --data") from error
 
 
 def _database(folder: Path, url: str) -> Engine:

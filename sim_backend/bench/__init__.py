@@ -1,10 +1,10 @@
 """The simulated bench as a whole: what stands at the other end of the wire when hardware is absent."""
 
 from sim_backend.bench._faults import Fault
+from sim_backend.bench._outgoing import DYNO_BUS, RMCU_BUS
 from sim_backend.bench._settings import SENSED_CHANNELS, Noise, SensorFault, SimulationSettings
 from sim_backend.bench._tampering import Tamper
-from sim_backend.bench._traffic import frame_time_s
-from sim_backend.bench._world import DYNO_BUS, RMCU_BUS, SimulatedBench, check_device_files
+from sim_backend.bench._world import SimulatedBench, check_device_files
 
 __all__ = [
     "DYNO_BUS",
@@ -17,5 +17,4 @@ __all__ = [
     "SimulationSettings",
     "Tamper",
     "check_device_files",
-    "frame_time_s",
 ]

@@ -10,19 +10,13 @@ import numpy.typing as npt
 from hil.core.checksum import crc8_of
 from hil.core.compiled import compiled_exactly
 from hil.core.conventions import TICK_S
-from hil.core.frames import FRAME, FrameBlock
+from hil.core.frames import FRAME, FrameBlock, longest_frame_s
 from hil.core.signals import FrameLayout, payload_with
 
 #: A frame with the column of a bench row that each of its signals shows.
 Shown = tuple[FrameLayout, dict[str, int]]
 COUNTER = "Counter"
 _NO_CHECKSUM = -1
-
-
-def frame_time_s(length: int, bit_rate: int) -> float:
-    """Longest time of a standard data frame on the bus, stuff bits included (ISO 11898-1)."""
-    bits = 8 * length
-    return (bits + 47 + (34 + bits - 1) // 4) / bit_rate
 
 
 class EventSlots:
@@ -37,7 +31,7 @@ class EventSlots:
 
     def next_s(self, sample: int) -> float:
         """When the next frame of an event in a sample has crossed, in a later one where that is full."""
-        frame_s = frame_time_s(8, self.bit_rate)
+        frame_s = longest_frame_s(8, self.bit_rate)
         free_s = max(sample * TICK_S + self.begin_s, self._last_s)
         begun = math.floor(free_s / TICK_S + 1e-9) * TICK_S
         if free_s < begun + self.begin_s:  # the next sample's own frames come first
@@ -53,7 +47,7 @@ class CyclicTraffic:
 
     def __init__(self, shown: list[Shown], bit_rate: int, crc: tuple[int, ...] = ()) -> None:
         layouts = [layout for layout, _ in shown]
-        self._ends_s = np.cumsum([frame_time_s(layout.length, bit_rate) for layout in layouts])
+        self._ends_s = np.cumsum([longest_frame_s(layout.length, bit_rate) for layout in layouts])
         still = np.zeros((1, len(shown)), FRAME)  # what is the same in every sample
         still["id"] = [layout.id for layout in layouts]
         still["length"] = [layout.length for layout in layouts]

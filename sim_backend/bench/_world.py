@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
 from collections.abc import Mapping
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -14,20 +12,18 @@ import numpy.typing as npt
 from hil.core.conventions import TICK_S
 from hil.core.dbc import Names, read_dbc
 from hil.core.errors import BadInputError
-from hil.core.frames import FrameBlock, empty_block, frames, joined
-from hil.core.signals import FrameLayout
-from hil.plant.closed_loop import advance, state_at_rest
+from hil.core.frames import FrameBlock, longest_frame_s
+from hil.plant.closed_loop import Noise, advance, state_at_rest
 from hil.plant.closed_loop import drive as drive
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
+from sim_backend.bench._outgoing import DYNO_BUS, RMCU_BUS, Outgoing
 from sim_backend.bench._settings import SENSED_CHANNELS, SensorFault, SimulationSettings
 from sim_backend.bench._tampering import Tamper
-from sim_backend.bench._traffic import CyclicTraffic, EventSlots, Shown, frame_time_s
 from sim_backend.rcs import DynoNode, read_node
 from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
 
-RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
 _NOISE_BLOCK = 1000
 _LARGEST_BATCH = 4096
 _NODES_EVERY = 10  # samples between looks at heartbeats: no more are computed at once
@@ -37,7 +33,6 @@ _VEHICLE_MODEL = {"inertia_kg_m2": 1, "rolling_nm": 2, "aero_nms2_rad2": 3, "sli
 _EMCY_SHORT_CIRCUIT = 0x2320  # CiA 402: short circuit or earth leakage at the output
 _RUNAWAY_RAD_S = 200.0
 _BOOT_TICKS = 300
-_SYNC = FrameLayout("SYNC", 0x80, 0, {})
 
 
 def check_device_files(dbc: Path, eds: Path, names: Names | None = None) -> None:
@@ -66,14 +61,12 @@ class SimulatedBench:
                 fix="give a rigid, two_inertia or three_inertia model",
             )
         self.settings = settings
-        self._random = np.random.default_rng(settings.seed)
         self.faults: set[Fault] = set()
         self.tamper: Tamper | None = None
         self._boots_until: int | None = None
         self._samples = 0  # computed so far
         self._due = 0  # samples whose time has come
         self._now_s = 0.0
-        self._pending: dict[str, list[FrameBlock]] = {RMCU_BUS: [], DYNO_BUS: []}
         # bus, identifier, payload and length, each with the sample that it comes before
         self._inbox: deque[tuple[int, str, int, int, int]] = deque()
         self._breaks: deque[int] = deque()  # samples before which more comes than a torque request
@@ -148,18 +141,8 @@ class SimulatedBench:
         """All frames that have appeared on `bus` until now and were not taken yet, in order of time."""
         self._compute()
         self._emit()
-        block = self._taken(bus)
+        block = self._outgoing.taken(bus)
         return block if self.tamper is None else self.tamper.to_hosts(bus, block)
-
-    def _taken(self, bus: str) -> FrameBlock:
-        blocks = self._pending[bus]
-        if not blocks:
-            return empty_block()
-        self._pending[bus] = []
-        merged = joined(blocks)
-        if any(a["time_s"][-1] > b["time_s"][0] for a, b in pairwise(blocks)):
-            merged = merged[np.argsort(merged["time_s"], kind="stable")]
-        return merged
 
     # --- construction ---
 
@@ -172,8 +155,8 @@ class SimulatedBench:
             row[T.SENSOR_OFFSET] = row[T.SENSOR_OFFSET] * fault.gain + fault.offset
         self._status = np.zeros(2)
         noise = self.settings.noise
-        self._noise_scale = np.array(
-            [noise.motor_speed_rad_s, *[noise.wheel_speed_rad_s] * 2, *[noise.shaft_torque_nm] * 2]
+        self._sensor_noise = Noise(
+            noise.motor_speed_rad_s, noise.wheel_speed_rad_s, noise.shaft_torque_nm, self.settings.seed
         )
         # behind the noise is the tick's scratch room
         self._noise = np.tile(self._plant.noise, (_NOISE_BLOCK, 1))
@@ -181,11 +164,10 @@ class SimulatedBench:
     def _make_nodes(self) -> None:
         s = self.settings
         dbc = read_dbc(s.dbc, NEEDED, s.names)
-        rates = ((RMCU_BUS, s.rmcu_bit_rate), (DYNO_BUS, s.dyno_bit_rate))
-        self._event_slots = {bus: EventSlots(rate) for bus, rate in rates}
+        self._outgoing = Outgoing(s.rmcu_bit_rate, s.dyno_bit_rate, dbc.layouts["RCS_Vehicle"])
         self._rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data), s.held)
-        self._vehicle = dbc.layouts["RCS_Vehicle"]
-        self._request_id = dbc.layouts["RMCU_Request"].id
+        request = dbc.layouts["RMCU_Request"]
+        self._request_id = request.id
         rows = {s.rear_left: self._drives[0], s.rear_right: self._drives[1]}
         self._dynos = [
             DynoNode(
@@ -200,29 +182,12 @@ class SimulatedBench:
         for node in self._dynos:
             for subindex, value in enumerate(vehicle, 1):
                 node.preset(0x2000, subindex, value)
-        self._dyno_traffics: dict[tuple[bool, ...], CyclicTraffic] = {}  # by who is operational
-        self._rmcu_traffic = self._traffic_of_rmcu()
-        self._dyno_traffic = self._traffic_of_dynos()
-        request_s = frame_time_s(dbc.layouts["RMCU_Request"].length, s.rmcu_bit_rate)
-        self._event_slots[RMCU_BUS].begin_s = self._rmcu_traffic.time_s + request_s
-        self._event_slots[DYNO_BUS].begin_s = self._traffic_with(True, True).time_s
-        self._refuse_slow_buses()
+        request_s = longest_frame_s(request.length, s.rmcu_bit_rate)
+        self._outgoing.nodes_are(self._rmcu, self._dynos, request_s)
         m = self._rmcu.memory
         m.gains[memory.SAMPLE_TIME] = TICK_S
         m.gains[memory.TORQUE_LIMIT] = LARGEST_TORQUE_NM  # until a controller sets its own
         self._firmware = (m.numerators, m.denominators, m.filter_states, m.gains, m.states)
-
-    def _refuse_slow_buses(self) -> None:
-        """A millisecond's frames must fit into a millisecond, or they would never arrive in order."""
-        for bus, slots in self._event_slots.items():
-            if slots.begin_s > TICK_S:
-                least = math.ceil(slots.bit_rate * slots.begin_s / TICK_S / 1e4) * 10_000
-                raise BadInputError(
-                    f"bit_rate = {slots.bit_rate} bit/s is too slow: the frames of each millisecond take "
-                    f"{slots.begin_s * 1e3:.2g} ms",
-                    where=f"simulated bench, bus of the {bus}",
-                    fix=f"give at least {least} bit/s",
-                )
 
     # --- one sample ---
 
@@ -256,8 +221,7 @@ class SimulatedBench:
             self._status[0] = self._dynos[0].power.statusword
             self._status[1] = self._dynos[1].power.statusword
         if first % _NOISE_BLOCK == 0:
-            drawn = self._random.standard_normal((_NOISE_BLOCK, T.SENSORS))
-            self._noise[:, : T.SENSORS] = drawn * self._noise_scale
+            self._noise[:, : T.SENSORS] = self._sensor_noise.drawn(_NOISE_BLOCK)
         advance(
             first,
             self._plant.x,
@@ -304,7 +268,7 @@ class SimulatedBench:
                 for node in self._dynos:
                     node.receive(frame_id, data, time_s)
                 self._take_vehicle_model()
-                self._dyno_traffic = self._traffic_of_dynos()
+                self._outgoing.dynos_changed()
         while self._breaks and self._breaks[0] <= sample:
             self._breaks.popleft()
 
@@ -346,14 +310,15 @@ class SimulatedBench:
         if fault is Fault.DYNO_RUNAWAY:
             for node in self._dynos[:2]:
                 node.run_away(_RUNAWAY_RAD_S)
-        self._rmcu_traffic, self._dyno_traffic = self._traffic_of_rmcu(), self._traffic_of_dynos()
+        self._outgoing.rmcu_talks(Fault.RMCU_SILENT not in self.faults)
+        self._outgoing.dynos_changed()
 
     def _has_booted(self) -> None:
         """The RMCU is there again."""
         self._boots_until = None
         self._emit()
         self.faults -= {Fault.RMCU_SILENT, Fault.RMCU_RESET}
-        self._rmcu_traffic = self._traffic_of_rmcu()
+        self._outgoing.rmcu_talks(True)
 
     def spoil(self, channel: str, fault: SensorFault) -> None:
         """A sensor reads something else from now on."""
@@ -382,11 +347,10 @@ class SimulatedBench:
             initial_speed_m_s=initial,
         )
 
-    def _event(self, bus: str, frame_id: int, data: bytes) -> None:
-        stamp = self._event_slots[bus].next_s(self._samples)
-        self._pending[bus].append(frames(frame_id, int.from_bytes(data, "little"), len(data), stamp))
+    # --- what is sent ---
 
-    # --- frames of many samples ---
+    def _event(self, bus: str, frame_id: int, data: bytes) -> None:
+        self._outgoing.event(bus, self._samples, frame_id, data)
 
     def _emit(self) -> None:
         count = self._samples - self._first_row
@@ -396,56 +360,5 @@ class SimulatedBench:
         self._last_row[:] = rows[-1]
         if self.tamper is not None:
             self.tamper.look(self._first_row, rows)
-        self._pending[RMCU_BUS].append(self._rmcu_traffic.block(rows, self._first_row))
-        if self._dyno_traffic:
-            self._pending[DYNO_BUS].append(self._dyno_traffic.block(rows, self._first_row))
+        self._outgoing.cyclic(rows, self._first_row)
         self._first_row = self._samples
-
-    def _traffic_of_rmcu(self) -> CyclicTraffic:
-        """The RMCU's bus, with the vehicle speed that the dyno controller gives it."""
-        shown: list[Shown] = [
-            (self._vehicle, {"VehicleSpeed": T.VEHICLE_SPEED, "Counter": T.COUNTER, "Valid": T.ALWAYS_ONE}),
-            (
-                self._rmcu.status,
-                {"MotorSpeed": T.MOTOR_SPEED, "MotorTorqueRef": T.TORQUE_REF, "MotorTorque": T.TORQUE},
-            ),
-            (
-                self._rmcu.control,
-                {
-                    "DrivingTorqueRef": T.DRIVING_REF,
-                    "DrivingTorqueEst": T.DRIVING_EST,
-                    "State": T.STATE,
-                    "RequestFault": T.FAULT,
-                    "Saturated": T.SATURATED,
-                    "ParametersValid": T.PARAMETERS_VALID,
-                    "Counter": T.COUNTER,
-                },
-            ),
-        ]
-        if Fault.RMCU_SILENT in self.faults:
-            shown = shown[:1]
-        return CyclicTraffic(shown, self.settings.rmcu_bit_rate, (self._vehicle.id, self._rmcu.control.id))
-
-    def _traffic_of_dynos(self) -> CyclicTraffic | None:
-        """What NMT and the SYNC producer let the dynos send now."""
-        if not any(node.sync_period_s for node in self._dynos):
-            return None
-        return self._traffic_with(self._dynos[0].operational, self._dynos[1].operational)
-
-    def _traffic_with(self, *operational: bool) -> CyclicTraffic:
-        if operational not in self._dyno_traffics:
-            self._dyno_traffics[operational] = self._made_traffic(operational)
-        return self._dyno_traffics[operational]
-
-    def _made_traffic(self, operational: tuple[bool, ...]) -> CyclicTraffic:
-        shown: list[Shown] = [(_SYNC, {})]
-        for side, node in enumerate(self._dynos[:2]):
-            if operational[side]:
-                values = {"Wheel speed": T.WHEEL_LEFT + side, "Shaft torque": T.SHAFT_LEFT + side}
-                status = {
-                    "Statusword": T.STATUS_LEFT + side,
-                    "Vehicle speed": T.VEHICLE_SPEED,
-                    "Torque actual value": T.LOAD_LEFT + side,
-                }
-                shown += [(node.values, values), (node.status, status)]
-        return CyclicTraffic(shown, self.settings.dyno_bit_rate)

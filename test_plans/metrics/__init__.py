@@ -1,7 +1,7 @@
 """Metrics by name: one file a metric; other packages add theirs by entry point `hil.metrics`."""
 
 from test_plans.metrics._metric import ChannelName, DidNotSettleError, Metric, NoValueError
-from test_plans.metrics._periodogram import periodogram
+from test_plans.metrics._periodogram import energy_within, periodogram
 from test_plans.metrics._window import WindowMetric
 from test_plans.metrics.band_energy import BandEnergy, BandEnergyMotorSpeed
 from test_plans.metrics.overshoot import (
@@ -54,5 +54,6 @@ __all__ = [
     "SettlingShaftTorque",
     "SettlingTime",
     "WindowMetric",
+    "energy_within",
     "periodogram",
 ]

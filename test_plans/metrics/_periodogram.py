@@ -1,4 +1,4 @@
-"""Power spectral density of a whole window; scipy.signal has it, and is slow to import."""
+"""Power spectral density of a whole window and what of it lies in a band; scipy.signal is slow to import."""
 
 from __future__ import annotations
 
@@ -22,3 +22,15 @@ def periodogram(values: Array, spacing_s: float) -> tuple[Array, Array]:
     density = (lines.real**2 + lines.imag**2) * spacing_s / (window @ window)
     density[1 : (count + 1) // 2] *= 2.0  # every line but zero and half the rate stands for two
     return np.asarray(np.fft.rfftfreq(count, spacing_s)), density
+
+
+def energy_within(frequency: Array, density: Array, from_hz: float, to_hz: float) -> float:
+    """Mean square between two frequencies: a line counts with the share of its width that lies within.
+
+    Args:
+        frequency: lines in Hz from zero on, evenly spaced, shape (n,).
+        density: one-sided power spectral density there, in a unit squared per Hz, shape (n,).
+    """
+    half_hz = 0.5 * (frequency[1] - frequency[0])
+    upper, lower = np.minimum(frequency + half_hz, to_hz), np.maximum(frequency - half_hz, from_hz)
+    return float(density @ np.maximum(upper - lower, 0.0))

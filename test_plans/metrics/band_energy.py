@@ -11,7 +11,7 @@ from hil.core.channels import CHANNELS
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.metrics._metric import ChannelName, NoValueError
-from test_plans.metrics._periodogram import periodogram
+from test_plans.metrics._periodogram import energy_within, periodogram
 from test_plans.metrics._window import WindowMetric, cut
 
 
@@ -57,9 +57,7 @@ class BandEnergy(WindowMetric):
             raise NoValueError(f"the band is narrower than two spectral lines of {line_hz:.3g} Hz")
         even = np.interp(start_s + spacing * np.arange(count), time, values)
         frequency, density = periodogram(even, spacing)
-        upper = np.minimum(frequency + 0.5 * line_hz, self.to_hz)
-        lower = np.maximum(frequency - 0.5 * line_hz, self.from_hz)
-        return float(density @ np.maximum(upper - lower, 0.0))
+        return energy_within(frequency, density, self.from_hz, self.to_hz)
 
 
 class BandEnergyMotorSpeed(BandEnergy):

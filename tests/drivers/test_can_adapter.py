@@ -12,8 +12,8 @@ from drivers import BusHealth, CanSettings, Wire, open_can
 from drivers.can_adapter import enlarged
 from drivers.linux_errors import frame
 from hil.core.errors import BenchError
+from tests.clocks import SteppedClock
 from tests.drivers.pseudo_adapter import warnings_in
-from tests.drivers.test_loop import CountingClock
 
 OURS = {"hil-sim"}
 ALWAYS_THERE = {"virtual", "udp_multicast"}  # the latter is never opened: it sends beyond this machine
@@ -88,7 +88,9 @@ def test_channels_rates_and_timing_reach_the_adapter_as_they_are(given, monkeypa
 
 def wire_of(interface):
     bus: Any = open_can(CanSettings("a", interface, 0, 500_000))
-    return bus, Wire("a", bus, CountingClock(), epoch_offset_s=1e9, health=BusHealth("a", interface, bus))
+    return bus, Wire(
+        "a", bus, SteppedClock(virtual=False), epoch_offset_s=1e9, health=BusHealth("a", interface, bus)
+    )
 
 
 def test_stamps_of_an_adapters_own_clock_begin_with_the_first_frame(given):

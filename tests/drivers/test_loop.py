@@ -11,21 +11,7 @@ import pytest
 
 from drivers import BusLoop, SerialLine
 from hil.core.errors import BenchError
-
-
-class CountingClock:
-    """Time that passes only while somebody waits for it, tick by tick."""
-
-    virtual = False
-
-    def __init__(self) -> None:
-        self.time_s = 0.0
-
-    def now_s(self) -> float:
-        return self.time_s
-
-    def sleep_until(self, time_s: float) -> None:
-        self.time_s = max(self.time_s, time_s)
+from tests.clocks import SteppedClock
 
 
 class Broken:
@@ -42,14 +28,14 @@ class Given:
 
 
 def test_bytes_are_handed_out_with_their_time() -> None:
-    loop, taken = BusLoop(CountingClock(), []), []
+    loop, taken = BusLoop(SteppedClock(virtual=False), []), []
     loop.serve(Given(b"", b"one", b"two"), lambda data, time_s: taken.append((data, round(time_s, 6))))
     loop.run_for(0.05)
     assert taken == [(b"one", 0.02), (b"two", 0.03)]
 
 
 def test_a_port_that_fails_is_told_after_the_others_were_served() -> None:
-    loop, taken, drained = BusLoop(CountingClock(), []), [], []
+    loop, taken, drained = BusLoop(SteppedClock(virtual=False), []), [], []
     loop.serve(Broken(), lambda data, time_s: None)
     loop.serve(Given(b"one"), lambda data, time_s: taken.append(data))
     loop.on_drained(lambda: drained.append(True))
@@ -59,7 +45,7 @@ def test_a_port_that_fails_is_told_after_the_others_were_served() -> None:
 
 
 def test_a_duty_that_fails_keeps_no_heartbeat_from_going() -> None:
-    loop, beats = BusLoop(CountingClock(), []), []
+    loop, beats = BusLoop(SteppedClock(virtual=False), []), []
 
     def fails() -> None:
         raise BenchError("bus off")
@@ -109,7 +95,7 @@ class Busy:
     """A loop that sends, and work that takes 4.5 ms each time that wires were looked at."""
 
     def __init__(self, *, keeps_up: bool) -> None:
-        self.clock = CountingClock()
+        self.clock = SteppedClock(virtual=False)
         self.loop = BusLoop(self.clock, [])
         self.sent: list[tuple[int, float, float]] = []
         self._keeps_up = keeps_up

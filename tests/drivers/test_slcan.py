@@ -13,14 +13,14 @@ from drivers.linux_errors import remark
 from drivers.slcan import _message
 from hil.core.errors import BenchError
 from hil.core.frames import ERROR_FRAME
+from tests.clocks import SteppedClock
 from tests.drivers.pseudo_adapter import PseudoAdapter, plugged_in, warnings_in
-from tests.drivers.test_loop import CountingClock
 
 
 @contextlib.contextmanager
 def wired() -> Iterator[tuple[PseudoAdapter, BusLoop, Wire]]:
     with plugged_in() as adapter:
-        clock, bus = CountingClock(), open_can(adapter.settings())
+        clock, bus = SteppedClock(virtual=False), open_can(adapter.settings())
         wire = Wire("rmcu", bus, clock, health=BusHealth("rmcu", "slcan", bus))
         loop = BusLoop(clock, [wire])
         loop.on_drained(wire.check)

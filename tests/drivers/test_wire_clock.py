@@ -10,7 +10,7 @@ import pytest
 from drivers import Wire
 from hil.core.errors import BenchError
 from hil.core.frames import FrameBlock, frames
-from tests.hil.engine.clocks import SteppedClock
+from tests.clocks import SteppedClock
 
 
 class Adapter:

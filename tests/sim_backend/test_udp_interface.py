@@ -15,7 +15,7 @@ from hil.core.errors import BenchError
 from hil.core.frames import FRAME
 from sim_backend.serving import UdpHub
 from sim_backend.udp_interface import LoopbackBus
-from tests.drivers.test_loop import CountingClock
+from tests.clocks import SteppedClock
 
 
 class Hub(UdpHub):
@@ -89,7 +89,7 @@ def test_lost_frames_are_counted_and_told_on_both_sides(caplog):
         served.give(block_of(1))
         host.outgoing.packed(block_of(2, 3))  # made, and never sent
         served.give(block_of(4))
-        wire = Wire("rmcu", bus, CountingClock(), epoch_offset_s=1.7e9)
+        wire = Wire("rmcu", bus, SteppedClock(virtual=False), epoch_offset_s=1.7e9)
         assert wire.drain()["id"].tolist() == [1, 4]
         assert wire.remarks == ["2 frames were lost on the way"]
         assert "2 frames lost on the way so far" in caplog.text
@@ -121,7 +121,7 @@ def test_a_host_that_was_busy_for_long_takes_part_again_and_knows_what_it_missed
 def test_a_bench_that_ends_is_told():
     with hub() as served:
         bus = served.connect()
-        wire = Wire("rmcu", bus, CountingClock())
+        wire = Wire("rmcu", bus, SteppedClock(virtual=False))
         served.close()
         with pytest.raises(BenchError, match="receiving failed: the bench at .* has ended"):
             wire.drain()
@@ -131,7 +131,7 @@ def test_a_bench_that_ends_is_told():
 def test_a_bench_that_is_killed_is_told():
     served = Hub()
     bus = served.connect()
-    wire = Wire("rmcu", bus, CountingClock())
+    wire = Wire("rmcu", bus, SteppedClock(virtual=False))
     served._socket.close()  # without a word
     wire.send(1, b"")
     with pytest.raises(BenchError, match="failed: nobody is at the other end any more"):

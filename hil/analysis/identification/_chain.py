@@ -30,7 +30,7 @@ import numpy.typing as npt
 from hil.analysis.identification._linear_effects import functions_of_states, linear_effects
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
-from hil.core.model import Model, TransferFunction
+from hil.core.model import EffectUse, Model, TransferFunction
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -93,25 +93,30 @@ def transfer_functions_of(model: Model) -> tuple[dict[str, TransferFunction], tu
     Raises:
         BadInputError: the functions do not share one denominator and one dead time.
     """
-    notes = []
-    linear = linear_effects(model) if model.kind != "transfer_function" else ()
+    linear: tuple[EffectUse, ...] = () if model.kind == "transfer_function" else linear_effects(model)
     left_out = [use.id for use in model.effects if use not in linear]
+    notes: tuple[str, ...] = ()
     if left_out:
-        notes.append(f"effects of the model are left out of the linear design: {', '.join(left_out)}")
+        notes = (f"effects of the model are left out of the linear design: {', '.join(left_out)}",)
+    if model.kind == "transfer_function":
+        return _with_one_denominator(model.transfer_functions), notes
     if linear:
-        return functions_of_states(replace(model, effects=linear)), tuple(notes)
-    if model.kind != "transfer_function":
-        numerators, denominator = chain_polynomials(model.kind, model.parameters)
-        lead = denominator[0]
-        delay = model.parameters["torque_delay"]
-        functions = {
-            name: TransferFunction(
-                tuple(float(c) for c in numerator / lead), tuple(float(c) for c in denominator / lead), delay
-            )
-            for name, numerator in numerators.items()
-        }
-        return functions, tuple(notes)
-    functions = dict(model.transfer_functions)
+        return functions_of_states(replace(model, effects=linear)), notes
+    numerators, denominator = chain_polynomials(model.kind, model.parameters)
+    lead = denominator[0]
+    delay = model.parameters["torque_delay"]
+    functions = {
+        name: TransferFunction(
+            tuple(float(c) for c in numerator / lead), tuple(float(c) for c in denominator / lead), delay
+        )
+        for name, numerator in numerators.items()
+    }
+    return functions, notes
+
+
+def _with_one_denominator(given: Mapping[str, TransferFunction]) -> dict[str, TransferFunction]:
+    """The functions as they are; BadInputError if they do not share denominator and dead time."""
+    functions = dict(given)
     first = next(iter(functions.values()))
     for name, function in functions.items():
         same = len(function.denominator) == len(first.denominator) and np.allclose(
@@ -124,4 +129,4 @@ def transfer_functions_of(model: Model) -> tuple[dict[str, TransferFunction], tu
                 f"'{name}' has another denominator or dead time than the first output",
                 fix="identify all outputs together: hil identify writes one common denominator",
             )
-    return functions, tuple(notes)
+    return functions

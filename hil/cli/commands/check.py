@@ -6,19 +6,15 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._completion import shipped_bench, shipped_plan
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import BenchName, Controllers, PlanName
 
 SEVERAL = ("--controller", "--set")
 
 
 def command(
-    plan: Annotated[
-        str, typer.Argument(help="plan file, or the name of a shipped plan", autocompletion=shipped_plan())
-    ],
-    bench: Annotated[
-        str, typer.Option(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
-    ] = "sim",
+    plan: PlanName,
+    bench: BenchName = "sim",
     values: Annotated[
         list[str] | None,
         typer.Option(
@@ -27,13 +23,7 @@ def command(
             help="a variable of the plan",
         ),
     ] = None,
-    controller: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="[NAME=]FILE",
-            help="controller file in place of the one that the plan loads; of several, in place of NAME's",
-        ),
-    ] = None,
+    controller: Controllers = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,

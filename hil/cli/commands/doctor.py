@@ -6,14 +6,12 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._completion import shipped_bench
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import BenchArgument
 
 
 def command(
-    bench: Annotated[
-        str, typer.Argument(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
-    ] = "sim",
+    bench: BenchArgument = "sim",
     for_s: Annotated[
         float, typer.Option("--for", metavar="SECONDS", help="how long to listen before anybody is asked")
     ] = 2.0,

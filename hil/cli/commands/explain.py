@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._completion import shipped_bench
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import SimulatedBenchName
 
 
 def command(
@@ -22,9 +22,7 @@ def command(
     plan: Annotated[
         str | None, typer.Option(help="plan file or name; default: the targets file's, or acceptance")
     ] = None,
-    bench: Annotated[
-        str, typer.Option(help="simulated bench, by file or name", autocompletion=shipped_bench())
-    ] = "sim",
+    bench: SimulatedBenchName = "sim",
     model: Annotated[Path | None, typer.Option(help="model file; default: the bench's")] = None,
     among: Annotated[
         list[str] | None,

@@ -7,14 +7,12 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._completion import shipped_bench
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import BenchArgument
 
 
 def command(
-    bench: Annotated[
-        str, typer.Argument(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
-    ],
+    bench: BenchArgument,
     torque: Annotated[float, typer.Option(metavar="NM", help="at the motor, N m")] = 10.0,
     out: Annotated[
         Path | None,

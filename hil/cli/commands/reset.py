@@ -6,14 +6,12 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._completion import shipped_bench
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import BenchArgument
 
 
 def command(
-    bench: Annotated[
-        str, typer.Argument(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
-    ],
+    bench: BenchArgument,
     by: Annotated[str, typer.Option("--by", metavar="NAME", help="who has made sure that it is safe; kept")],
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")

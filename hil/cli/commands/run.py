@@ -7,23 +7,15 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._completion import shipped_bench, shipped_plan
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import BenchName, Controllers, Operator, PlanName
 
 SEVERAL = ("--controller", "--set")
 
 
 def command(
-    plan: Annotated[
-        str,
-        typer.Argument(
-            help="plan file, or the name of a shipped plan: acceptance, identification",
-            autocompletion=shipped_plan(),
-        ),
-    ],
-    bench: Annotated[
-        str, typer.Option(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
-    ] = "sim",
+    plan: PlanName,
+    bench: BenchName = "sim",
     out: Annotated[
         Path | None,
         typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
@@ -40,14 +32,8 @@ def command(
     repeat: Annotated[
         int, typer.Option(min=1, max=1000, help="how often; each in a folder of its own, with the spread")
     ] = 1,
-    controller: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="[NAME=]FILE",
-            help="controller file in place of the one that the plan loads; of several, in place of NAME's",
-        ),
-    ] = None,
-    operator: Annotated[str, typer.Option(help="who runs the bench; stands in the report")] = "",
+    controller: Controllers = None,
+    operator: Operator = "",
     yes: Annotated[
         str,
         typer.Option(

@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._completion import shipped_bench, shipped_plan
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import Operator, PlanName, SimulatedBenchName
 
 
 def command(
-    plan: Annotated[str, typer.Argument(help="plan file or name", autocompletion=shipped_plan())],
+    plan: PlanName,
     model: Annotated[
         Path, typer.Option("--model", help="model file of the axle (a chain), effects included")
     ],
@@ -43,9 +43,7 @@ def command(
     processes: Annotated[
         int | None, typer.Option(min=1, max=256, help="predictions at once; default: one for each core")
     ] = None,
-    bench: Annotated[
-        str, typer.Option(help="simulated bench, by file or name", autocompletion=shipped_bench())
-    ] = "sim",
+    bench: SimulatedBenchName = "sim",
     then_run: Annotated[
         bool,
         typer.Option("--then-run", help="run the plan with it on the bench at once; beside the prediction"),
@@ -59,7 +57,7 @@ def command(
             help="of a criterion's limit: a run that differs by more from its prediction is diagnosed",
         ),
     ] = 5.0,
-    operator: Annotated[str, typer.Option(help="who runs the bench; stands in the report")] = "",
+    operator: Operator = "",
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier result in --out")
     ] = False,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from drivers import TICK_S, BusLoop, Device, LogWire, Samples, Stream
+from drivers import TICK_S, BusLoop, Device, LogWire, Samples, SampleSource, Stream
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import FrameBlock
 from hil.core.recording import DEVICE
@@ -52,10 +52,10 @@ class BenchDecoder:
         """
         parts = list(self._decoded())
         given = {samples.stream for part in parts for samples in part}
-        streams = [stream for stream in self._streams() if _needed(stream, given)]
+        streams = [stream for stream in self._streams if _needed(stream, given)]
         counted = [_counting(stream) for stream in streams[:1]]
         if not given or not given.issuperset(counted):
-            missing = counted[0] if counted else self._streams()[0]
+            missing = counted[0] if counted else self._streams[0]
             raise BadInputError(
                 f"the log has no {missing.label} of {missing.where}: rows are counted by it",
                 fix="give a log of that bus with all its frames, or decode by --dbc in place of --bench",
@@ -75,21 +75,24 @@ class BenchDecoder:
                     self.remarks.append(f"{error.where}: {error.what}")
         return recorder
 
+    @property
+    def _sources(self) -> list[SampleSource]:
+        return [source for device in self._devices.values() for source in device.sources]
+
+    @property
     def _streams(self) -> list[Stream]:
-        sources = [source for device in self._devices.values() for source in device.sources]
-        return [stream for source in sources for stream in source.streams]
+        return [stream for source in self._sources for stream in source.streams]
 
     def _decoded(self) -> Iterator[list[Samples]]:
         """What the devices make of each stretch of the log."""
         end_s = max(float(block["time_s"][-1]) for block in self._frames.values())
-        sources = [source for device in self._devices.values() for source in device.sources]
         for number in range(math.floor(end_s / _AT_ONCE_S) + 1):
             self._clock.time_s = (number + 1) * _AT_ONCE_S
             for wire in self._wires:
                 block = self._frames[wire.name]
                 wire.shown = _between(block, number * _AT_ONCE_S, self._clock.time_s)
             self._loop.drain()
-            yield [samples for source in sources for samples in source.samples()]
+            yield [samples for source in self._sources for samples in source.samples()]
 
 
 class _LogClock:

@@ -5,21 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from drivers import BusLoop
-
-
-class TickingClock:
-    """Virtual time that passes when somebody waits."""
-
-    virtual = True
-
-    def __init__(self) -> None:
-        self.time_s = 0.0
-
-    def now_s(self) -> float:
-        return self.time_s
-
-    def sleep_until(self, time_s: float) -> None:
-        self.time_s = max(self.time_s, time_s)
+from tests.clocks import SteppedClock
 
 
 class ScriptedLine:
@@ -47,7 +33,7 @@ class ScriptedLine:
 
 
 def loop() -> BusLoop:
-    return BusLoop(TickingClock(), [])
+    return BusLoop(SteppedClock(), [])
 
 
 def as_line(line: ScriptedLine) -> Any:

@@ -12,7 +12,7 @@ import pytest
 
 from drivers.panel._returning_line import ReturningLine
 from hil.core.errors import BenchError
-from tests.drivers.panel.scripted import TickingClock
+from tests.clocks import SteppedClock
 
 
 class Terminal:
@@ -42,7 +42,7 @@ def read(line: ReturningLine, count: int) -> bytes:
 
 
 def test_it_is_there_again_when_the_adapter_is(tmp_path: Path) -> None:
-    link, clock = tmp_path / "panel", TickingClock()
+    link, clock = tmp_path / "panel", SteppedClock()
     terminal = Terminal(link)
     line = ReturningLine("panel", str(link), 9600, clock)
     os.write(terminal.own, b"one")
@@ -68,4 +68,4 @@ def test_it_is_there_again_when_the_adapter_is(tmp_path: Path) -> None:
 
 def test_one_that_is_not_there_to_begin_with_is_refused(tmp_path: Path) -> None:
     with pytest.raises(BenchError, match="cannot be opened"):
-        ReturningLine("panel", str(tmp_path / "none"), 9600, TickingClock())
+        ReturningLine("panel", str(tmp_path / "none"), 9600, SteppedClock())

@@ -20,7 +20,7 @@ from hil.engine.computed_channels import BusStatistics, ShaftTwist, channels_of_
 from hil.engine.limit_tables import NamedLimit, TwistTable
 from test_plans import Array
 from tests.benches_for_tests import SIM, plan, sim_bench
-from tests.hil.engine.clocks import SteppedClock
+from tests.clocks import SteppedClock
 
 STEP = (
     "[{step: {segment: s, quantity: motor_torque, from_nm: 0, to_nm: 30, before_s: 0.3, after_s: 0.5, "

@@ -11,7 +11,7 @@ from hil.core.errors import EmergencyStopError, InterruptError, OrderlyEndError
 from hil.engine.hold import LONGEST_PAUSE_S, MOST_HOLDS, Holding
 from hil.engine.operator import LOOK_S, Operator
 from hil.engine.ranges import Range
-from tests.hil.engine.clocks import SteppedClock
+from tests.clocks import SteppedClock
 from tests.operators import Silent
 
 CAGE = Range("cage", 0.5, 9.0, 0.0, "cage", response="hold", message="shut it", well_for_s=0.5, timeout_s=3.0)

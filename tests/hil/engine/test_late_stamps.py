@@ -16,7 +16,6 @@ from tests.benches_for_tests import plan, sim_bench
 from tests.late_stamps import late_bench
 
 LATE = ["bursts", "pauses", "outliers"]
-_SET = {"pauses": "hunt"}  # of the whole acceptance plan
 STEPS = """
   - set_controller: {file: phase_stabilization.toml}
   - hold_speed: {speed_km_h: 10, duration_s: 0.3}
@@ -98,7 +97,12 @@ def test_raw_frames_keep_their_stamps_and_the_file_says_where_the_rows_lie(tmp_p
 
 
 @pytest.mark.parametrize(
-    "late", [pytest.param(late, marks=getattr(pytest.mark, _SET.get(late, "slow"))) for late in LATE]
+    "late",
+    [
+        pytest.param("bursts", marks=pytest.mark.slow),
+        pytest.param("pauses", marks=pytest.mark.hunt),
+        pytest.param("outliers", marks=pytest.mark.slow),
+    ],
 )
 def test_the_acceptance_figures_stay_what_they_are(late: str, tmp_path: Path) -> None:
     acceptance = load_plan("acceptance")

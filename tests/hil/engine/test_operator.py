@@ -7,7 +7,7 @@ import pytest
 from drivers import BusLoop
 from hil.core.errors import EmergencyStopError, InterruptError
 from hil.engine.operator import LOOK_S, Operator
-from tests.hil.engine.clocks import SteppedClock
+from tests.clocks import SteppedClock
 from tests.operators import Answering, Silent
 
 

@@ -9,8 +9,9 @@ import pytest
 from drivers import TICK_S, Wire, read_rmcu
 from hil.core.checksum import crc8_many
 from hil.core.errors import BadInputError
+from hil.core.frames import longest_frame_s
 from hil.core.model import Model, load_model
-from sim_backend.bench import Fault, SimulatedBench, SimulationSettings, frame_time_s
+from sim_backend.bench import Fault, SimulatedBench, SimulationSettings
 from sim_backend.can_interface import SimulatedBus, attach, attached, detach
 from tests.benches_for_tests import SIM, running, sim_bench
 
@@ -65,7 +66,7 @@ def test_every_bus_stays_below_70_percent_load():
             frames = np.concatenate(blocks)
             frames = frames[frames["time_s"] >= start_s]
             rate = SIM.buses[bus].bit_rate
-            busy_s = sum(frame_time_s(int(length), rate) for length in frames["length"])
+            busy_s = sum(longest_frame_s(int(length), rate) for length in frames["length"])
             assert 0.3 < busy_s / (bench.loop.clock.now_s() - start_s) < 0.7
             assert len(frames) > 3900
 

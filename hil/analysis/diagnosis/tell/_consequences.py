@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from hil.analysis.diagnosis.tell._thresholds import STEP_NM
 from hil.core.channels import OUTPUTS
 from hil.core.conventions import COMFORT_BAND_HZ, TICK_S
 from hil.core.model import Model
 from hil.plant import Start, gear_ratio_of, simulate
+from test_plans.metrics import energy_within, periodogram
 
 Array = npt.NDArray[np.float64]
 
@@ -56,6 +56,4 @@ def _figures(model: Model) -> dict[str, float]:
 
 
 def _band_energy(values: Array) -> float:
-    frequency, density = signal.periodogram(signal.detrend(values), 1 / TICK_S, "hann")
-    inside = (frequency >= COMFORT_BAND_HZ[0]) & (frequency <= COMFORT_BAND_HZ[1])
-    return float(np.sum(density[inside]) * (frequency[1] - frequency[0]))
+    return energy_within(*periodogram(values, TICK_S), *COMFORT_BAND_HZ)

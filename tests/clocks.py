@@ -12,11 +12,11 @@ class SteppedClock:
 
     def __init__(self, *, virtual: bool = True, oversleeps_s: float = 0.0) -> None:
         self.virtual = virtual
+        self.time_s = 0.0
         self._oversleeps_s = oversleeps_s
-        self._now_s = 10.0
 
     def now_s(self) -> float:
-        return self._now_s
+        return self.time_s
 
     def sleep_until(self, time_s: float) -> None:
-        self._now_s = max(self._now_s, time_s + self._oversleeps_s)
+        self.time_s = max(self.time_s, time_s + self._oversleeps_s)

@@ -1,0 +1,34 @@
+"""Options that several commands have in the same words."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from hil.cli._completion import shipped_bench, shipped_plan
+
+PlanName = Annotated[
+    str,
+    typer.Argument(
+        help="plan file, or the name of a shipped plan: acceptance, identification",
+        autocompletion=shipped_plan(),
+    ),
+]
+BenchName = Annotated[
+    str, typer.Option(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
+]
+BenchArgument = Annotated[
+    str, typer.Argument(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
+]
+SimulatedBenchName = Annotated[
+    str, typer.Option(help="simulated bench, by file or name", autocompletion=shipped_bench())
+]
+Controllers = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="[NAME=]FILE",
+        help="controller file in place of the one that the plan loads; of several, in place of NAME's",
+    ),
+]
+Operator = Annotated[str, typer.Option(help="who runs the bench; stands in the report")]

@@ -1,0 +1,137 @@
+"""What the bench's nodes send, in answer or every sample, kept until a host takes it."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.conventions import TICK_S
+from hil.core.errors import BadInputError
+from hil.core.frames import FrameBlock, empty_block, frames, joined
+from hil.core.signals import FrameLayout
+from hil.plant.closed_loop import tick as T
+from sim_backend.bench._traffic import CyclicTraffic, EventSlots, Shown
+from sim_backend.rcs import DynoNode
+from sim_backend.rmcu import RmcuNode
+
+RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
+_SYNC = FrameLayout("SYNC", 0x80, 0, {})
+
+
+class Outgoing:
+    """Both buses; the nodes are given by `nodes_are` once they are there.
+
+    Args:
+        vehicle: layout of the frame in which the dyno controller tells the RMCU the vehicle's speed.
+    """
+
+    def __init__(self, rmcu_bit_rate: int, dyno_bit_rate: int, vehicle: FrameLayout) -> None:
+        self._bit_rates = {RMCU_BUS: rmcu_bit_rate, DYNO_BUS: dyno_bit_rate}
+        self._slots = {bus: EventSlots(rate) for bus, rate in self._bit_rates.items()}
+        self._pending: dict[str, list[FrameBlock]] = {bus: [] for bus in self._bit_rates}
+        self._vehicle = vehicle
+        self._of_dynos: dict[tuple[bool, ...], CyclicTraffic] = {}  # by who is operational
+
+    def nodes_are(self, rmcu: RmcuNode, dynos: list[DynoNode], request_s: float) -> None:
+        """Who sends from now on.
+
+        Args:
+            request_s: how long a host's torque request takes on the RMCU's bus; it comes every millisecond.
+
+        Raises:
+            BadInputError: a bus is too slow for the frames of every millisecond.
+        """
+        self._rmcu, self._dynos = rmcu, dynos
+        self.rmcu_talks(True)
+        self.dynos_changed()
+        self._slots[RMCU_BUS].begin_s = self._rmcu_traffic.time_s + request_s
+        self._slots[DYNO_BUS].begin_s = self._dyno_traffic_of((True, True)).time_s
+        self._refuse_slow_buses()
+
+    def rmcu_talks(self, talks: bool) -> None:
+        """Whether the RMCU sends its frames every sample; the vehicle's speed comes either way."""
+        shown: list[Shown] = [
+            (self._vehicle, {"VehicleSpeed": T.VEHICLE_SPEED, "Counter": T.COUNTER, "Valid": T.ALWAYS_ONE})
+        ]
+        if talks:
+            shown += _shown_by(self._rmcu)
+        checked = (self._vehicle.id, self._rmcu.control.id)
+        self._rmcu_traffic = CyclicTraffic(shown, self._bit_rates[RMCU_BUS], checked)
+
+    def dynos_changed(self) -> None:
+        """Look again at what NMT and the SYNC producer let the dynos send."""
+        if any(node.sync_period_s for node in self._dynos):
+            operational = tuple(node.operational for node in self._dynos[:2])
+            self._dyno_traffic: CyclicTraffic | None = self._dyno_traffic_of(operational)
+        else:
+            self._dyno_traffic = None
+
+    def event(self, bus: str, sample: int, frame_id: int, data: bytes) -> None:
+        """A frame that answers or announces something, in a sample."""
+        stamp = self._slots[bus].next_s(sample)
+        self._pending[bus].append(frames(frame_id, int.from_bytes(data, "little"), len(data), stamp))
+
+    def cyclic(self, rows: npt.NDArray[np.float64], first: int) -> None:
+        """The frames of sample `first` and those that follow it; one row of the bench each."""
+        self._pending[RMCU_BUS].append(self._rmcu_traffic.block(rows, first))
+        if self._dyno_traffic:
+            self._pending[DYNO_BUS].append(self._dyno_traffic.block(rows, first))
+
+    def taken(self, bus: str) -> FrameBlock:
+        """All that was sent on `bus` and not taken yet, in order of time."""
+        blocks = self._pending[bus]
+        if not blocks:
+            return empty_block()
+        self._pending[bus] = []
+        merged = joined(blocks)
+        if any(a["time_s"][-1] > b["time_s"][0] for a, b in pairwise(blocks)):
+            merged = merged[np.argsort(merged["time_s"], kind="stable")]
+        return merged
+
+    def _dyno_traffic_of(self, operational: tuple[bool, ...]) -> CyclicTraffic:
+        if operational not in self._of_dynos:
+            shown: list[Shown] = [(_SYNC, {})]
+            for side, node in enumerate(self._dynos[:2]):
+                if operational[side]:
+                    shown += _shown_by_dyno(node, side)
+            self._of_dynos[operational] = CyclicTraffic(shown, self._bit_rates[DYNO_BUS])
+        return self._of_dynos[operational]
+
+    def _refuse_slow_buses(self) -> None:
+        """A millisecond's frames must fit into a millisecond, or they would never arrive in order."""
+        for bus, slots in self._slots.items():
+            if slots.begin_s > TICK_S:
+                least = math.ceil(slots.bit_rate * slots.begin_s / TICK_S / 1e4) * 10_000
+                raise BadInputError(
+                    f"bit_rate = {slots.bit_rate} bit/s is too slow: the frames of each millisecond take "
+                    f"{slots.begin_s * 1e3:.2g} ms",
+                    where=f"simulated bench, bus of the {bus}",
+                    fix=f"give at least {least} bit/s",
+                )
+
+
+def _shown_by(rmcu: RmcuNode) -> list[Shown]:
+    status = {"MotorSpeed": T.MOTOR_SPEED, "MotorTorqueRef": T.TORQUE_REF, "MotorTorque": T.TORQUE}
+    control = {
+        "DrivingTorqueRef": T.DRIVING_REF,
+        "DrivingTorqueEst": T.DRIVING_EST,
+        "State": T.STATE,
+        "RequestFault": T.FAULT,
+        "Saturated": T.SATURATED,
+        "ParametersValid": T.PARAMETERS_VALID,
+        "Counter": T.COUNTER,
+    }
+    return [(rmcu.status, status), (rmcu.control, control)]
+
+
+def _shown_by_dyno(node: DynoNode, side: int) -> list[Shown]:
+    values = {"Wheel speed": T.WHEEL_LEFT + side, "Shaft torque": T.SHAFT_LEFT + side}
+    status = {
+        "Statusword": T.STATUS_LEFT + side,
+        "Vehicle speed": T.VEHICLE_SPEED,
+        "Torque actual value": T.LOAD_LEFT + side,
+    }
+    return [(node.values, values), (node.status, status)]
