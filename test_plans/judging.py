@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from hil.core.errors import HilError
@@ -22,12 +22,22 @@ def judge(plan: Plan, recording: Recording, segments: Iterable[Segment]) -> tupl
     that is not complete.
     """
     recorded = {segment.id: segment for segment in segments}
-    return tuple(_result(criterion, recording, recorded) for criterion in plan.criteria)
+
+    known: list[tuple[Metric, str, _Found]] = []  # a value that several criteria compare is computed once
+
+    def found(metric: Metric, segment: str) -> _Found:
+        for one, place, value in known:
+            if place == segment and one == metric:
+                return value
+        known.append((metric, segment, _found(metric, segment, recording, recorded)))
+        return known[-1][2]
+
+    return tuple(_result(criterion, found) for criterion in plan.criteria)
 
 
-def _result(criterion: Criterion, recording: Recording, recorded: dict[str, Segment]) -> CriterionResult:
-    own = _found(criterion.metric, criterion.segment, recording, recorded)
-    rival = _found(criterion.metric, criterion.below, recording, recorded) if criterion.below else None
+def _result(criterion: Criterion, found: Callable[[Metric, str], _Found]) -> CriterionResult:
+    own = found(criterion.metric, criterion.segment)
+    rival = found(criterion.metric, criterion.below) if criterion.below else None
     upper = criterion.upper if rival is None else rival.value
     return CriterionResult(
         id=criterion.id,

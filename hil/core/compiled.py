@@ -18,6 +18,7 @@ from typing import Any, TypeVar
 from numba import njit
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.runtime.nrt import rtsys
+from numba.extending import intrinsic
 
 logger = logging.getLogger(__name__)
 #: What compiled functions depend on beside the sources here: a digest of other packages' laws, '' for none.
@@ -52,6 +53,25 @@ def inlined(function: _F) -> Any:
 def compiled_parallel(function: _F) -> Any:
     """Compile `function` with its prange loops spread over threads."""
     return _cached(function, parallel=True)
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def uncounted(typing: Any, array: Any) -> Any:  # noqa: ARG001
+    """In compiled code: the same array, whose owner is no longer counted by what is cut out of it.
+
+    Each view of a counted array adds one to a counter and takes it off again, by locked instructions.
+    Somebody else must hold the array meanwhile, as a caller from Python does.
+    """
+    from numba.core import cgutils  # only to compile: slow to import
+    from numba.np.arrayobj import make_array
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
+        view = make_array(array)(context, builder, value=arguments[0])
+        view.meminfo = cgutils.get_null_value(view.meminfo.type)
+        view.parent = cgutils.get_null_value(view.parent.type)
+        return view._getvalue()
+
+    return array(array), generate
 
 
 def depends_on(digest: str) -> None:

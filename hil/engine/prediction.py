@@ -6,8 +6,9 @@ The engine's own conductor does it, with a predicted bench in place of drivers a
 
 from __future__ import annotations
 
+import copy
 import tempfile
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
@@ -27,7 +28,7 @@ from hil.engine.conductor import RELEASE_S, BenchConductor
 from hil.engine.recorder import Recorder
 from hil.plant import LONGEST_STEP_S
 from hil.plant.closed_loop import TICK_S, Noise
-from test_plans import Array, Plan, PlannedSegment, Quantity
+from test_plans import Array, Plan, PlannedSegment, Quantity, Step
 
 _UNSETTLED_S = 0.003  # what came later than this before the newest sample is not in a recording so far
 
@@ -66,7 +67,7 @@ def predict(
     Args:
         controllers: what is loaded in place of files that the plan loads.
         noise: of the sensors; none without it.
-        channels: those of the recording that are wanted; all without it. `peaks` then has these only.
+        channels: those of the recording that are wanted, then without `peaks`; all without it.
         longest_step_s: of the integrator.
         wire: what `wire_of` the bench gave, if somebody has it already.
 
@@ -74,19 +75,67 @@ def predict(
         BadInputError: the plan asks for more than the bench allows, or a model without a shaft.
         HilError: the run would fail.
     """
-    ready = PredictedBench(bench, model, noise, longest_step_s, wire)
-    recorder = _PredictedRecorder(ready, channels)
     with tempfile.TemporaryDirectory() as directory:
-        conductor = PredictionConductor(ready, recorder, Path(directory), controllers)
-        for step in (*plan.steps, *plan.finally_):
-            step.carry_out(conductor)
-    ready.rmcu.make_safe()
-    ready.dyno.make_safe()
-    names = [name for name in ready.wire.rounding.channels if channels is None or name in channels]
-    peaks = {name: ready.peak(name) for name in names}
-    return Prediction(
-        recorder.everything(), tuple(conductor.segments), peaks, conductor.made, ready.wire.loads
-    )
+        run = PredictedRun(
+            PredictedBench(bench, model, noise, longest_step_s, wire), Path(directory), channels, controllers
+        )
+        run.carry_out((*plan.steps, *plan.finally_))
+        return run.ended()
+
+
+class PredictedRun:
+    """A run that is predicted step by step.
+
+    Args:
+        bench: armed, at rest.
+        out: folder in which analysis steps find what earlier ones made.
+        channels: those of the recording that are wanted; all without it.
+        controllers: what is loaded in place of files that the plan loads.
+    """
+
+    def __init__(
+        self,
+        bench: PredictedBench,
+        out: Path,
+        channels: Collection[str] | None = None,
+        controllers: Mapping[Path, Controller] | None = None,
+    ) -> None:
+        self._bench, self._channels = bench, channels
+        self._recorder = _PredictedRecorder(bench, channels)
+        self._conductor = PredictionConductor(bench, self._recorder, out, controllers)
+
+    def carry_out(self, steps: Iterable[Step]) -> None:
+        """Carry steps out, from where the run stands.
+
+        Raises:
+            HilError: the run would fail.
+        """
+        for step in steps:
+            step.carry_out(self._conductor)
+
+    def continued(self, room: Array, out: Path, controllers: Mapping[Path, Controller]) -> PredictedRun:
+        """A run of its own that goes on from here, in folder `out`; its rows stand in `room`."""
+        bench, closed = self._bench, self._bench.loop.closed
+        shared = (bench.file, bench.model, bench.wire, bench.wire.dictionary, bench.wire.parameters)
+        run = copy.deepcopy(self, {id(one): one for one in shared} | {id(closed): closed.continued(room)})
+        run._conductor.go_on(out, controllers)
+        return run
+
+    @property
+    def rows(self) -> Array:
+        """What was measured and commanded so far."""
+        return self._bench.loop.closed.rows
+
+    def ended(self) -> Prediction:
+        """What the run would have recorded, once the bench is safe."""
+        bench, conductor = self._bench, self._conductor
+        bench.rmcu.make_safe()
+        bench.dyno.make_safe()
+        names = bench.wire.rounding.channels if self._channels is None else ()
+        peaks = {name: bench.peak(name) for name in names}
+        return Prediction(
+            self._recorder.everything(), tuple(conductor.segments), peaks, conductor.made, bench.wire.loads
+        )
 
 
 class PredictionConductor(BenchConductor):
@@ -105,13 +154,17 @@ class PredictionConductor(BenchConductor):
         self._rmcu, self._loop, self._dyno = bench.rmcu, bench.loop, bench.dyno
         self._in_place_of = controllers or {}
 
+    def go_on(self, out: Path, controllers: Mapping[Path, Controller]) -> None:
+        """From now on work in folder `out`, and load `controllers` in place of files."""
+        self._out, self._in_place_of = out, controllers
+
     def set_controller(self, file: Path) -> None:
         """Write a controller to the RMCU: the file's, or what is to be tried in its place."""
         tried = self._in_place_of.get(file)
         if tried is None:
             super().set_controller(file)
             return
-        self._check.set_controller(file)
+        self._check.take(tried, str(file))
         self._rmcu.write_controller(tried)
         self._controller = tried
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hil.core.controller import load_controller
+from hil.core.controller import Controller, load_controller
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.core.vehicle import VehicleAndRoad
@@ -78,12 +78,15 @@ class Rehearsal:
                 where="plan",
                 fix="put the design step before set_controller",
             )
-        controller = load_controller(file)
+        self.take(load_controller(file), str(file))
+
+    def take(self, controller: Controller, where: str) -> None:
+        """What a controller may ask for must be within the torque limit; `where` names it in messages."""
         limit = self._bench.limits.motor_torque_nm
         if controller.torque_limit_nm > limit:
             raise BadInputError(
                 f"torque_limit_nm = {controller.torque_limit_nm:g} is above the bench's {limit:g} N m",
-                where=str(file),
+                where=where,
                 fix="lower it; a bench's limits cannot be raised from a plan",
             )
         self._has_controller = True

@@ -102,7 +102,7 @@ def cut(
     if end_s - start_s < spacing:
         raise NoValueError("the window is empty")
     last_s = end_s + (0.5 if with_end else -0.5) * spacing
-    inside = (time >= start_s - 0.5 * spacing) & (time < last_s)
+    inside = slice(*np.searchsorted(time, (start_s - 0.5 * spacing, last_s)).tolist())
     time, values = time[inside], values[inside]
     if len(time) < 2 or time[0] > start_s + grace or time[-1] < end_s - grace:
         raise NoValueError(f"the recording does not cover the window from {start_s:.3f} s to {end_s:.3f} s")

@@ -51,6 +51,7 @@ class Recording:
     notes: list[str] = field(default_factory=list)
     damage: list[str] = field(default_factory=list)
     blank_lines: list[int] = field(default_factory=list)
+    _spacing: tuple[Array, float] | None = field(default=None, init=False, repr=False, compare=False)
 
     def __getitem__(self, name: str) -> Array:
         """The channel `name`; BadInputError names it when the recording has none."""
@@ -74,7 +75,10 @@ class Recording:
     @property
     def sample_time_s(self) -> float:
         """Median distance of time stamps in seconds."""
-        return float(np.median(np.diff(self.time_s)))
+        time_s = self.time_s
+        if self._spacing is None or self._spacing[0] is not time_s:  # asked for by every metric
+            self._spacing = time_s, float(np.median(np.diff(time_s)))
+        return self._spacing[1]
 
     @property
     def samples_sha256(self) -> str:

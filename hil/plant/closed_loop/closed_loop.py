@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Collection, Mapping
 
 import numpy as np
@@ -71,6 +72,16 @@ class ClosedLoop:
     def rows(self) -> Array:
         """What was measured and commanded so far, one row a sample, columns of `tick`."""
         return self._rows[: self.samples]
+
+    def continued(self, room: Array) -> ClosedLoop:
+        """A bench of its own that goes on from here.
+
+        Its rows stand in `room` (samples x COLUMNS) where that is long enough.
+        """
+        if len(room) < self.samples:
+            room = np.zeros_like(self._rows)
+        room[: self.samples] = self.rows
+        return copy.deepcopy(self, {id(self._rows): room, id(self.wire): self.wire})
 
     def set_controller(self, parameters: Mapping[str, float]) -> None:
         """Give the RMCU its parameters (names of the DBC, SI units), rounded as the wire rounds them.
@@ -154,7 +165,8 @@ class ClosedLoop:
 
     def _with_noise(self, samples: int) -> Array:
         """What sensors add to each sample, and the tick's scratch room behind it."""
-        room = np.tile(self.plant.noise, (samples, 1))
-        if self._noise is not None:
-            room[:, : T.SENSORS] = self._noise.drawn(samples)
+        if self._noise is None:
+            return self.plant.noise[None]
+        room = np.zeros((samples, len(self.plant.noise)))
+        room[:, : T.SENSORS] = self._noise.drawn(samples)
         return room

@@ -34,6 +34,7 @@ _BOTH_SIDES = (
     ("shaft_torque_nm", "shaft_torque_left_nm", "shaft_torque_right_nm", 1.0),
     ("dyno_torque_ref_nm", "dyno_torque_left_nm", "dyno_torque_right_nm", 1.0),
 )
+_EXACT_BITS = 52  # whole numbers up to these a float has
 
 
 @dataclass(frozen=True)
@@ -81,5 +82,8 @@ class Wire:
 
 
 def rounded(signal: Signal, values: npt.ArrayLike) -> Array:
-    """Physical values as they come out of a frame."""
-    return signal.decode(signal.encode(values))
+    """Physical values as they come out of a frame: `Signal.decode` of `Signal.encode`, in less time."""
+    if signal.is_float or signal.length > _EXACT_BITS:
+        return signal.decode(signal.encode(values))
+    counts = np.rint((np.atleast_1d(np.asarray(values, float)) - signal.offset) / signal.scale)
+    return np.asarray(np.clip(counts, *signal.counts) * signal.scale + signal.offset)

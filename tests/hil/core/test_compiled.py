@@ -5,9 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from hil.core.compiled import _named
+from hil.core.compiled import _named, compiled, uncounted
 
 ROOT = Path(__file__).parents[3]
 TABLE = "FIRST, SECOND = {order}\n"
@@ -115,3 +116,21 @@ def test_imports_are_found_as_the_parser_finds_them():
     assert list(_named("from a.b import (  # why\n    c as d,\n    e,\n)\nimport f, g\n")) == [
         ("a.b.c", "a.b"), ("a.b.e", "a.b"), ("f",), ("g",)
     ]  # fmt: skip
+
+
+@compiled
+def _rows_summed(array):  # type: ignore[no-untyped-def]
+    array, total = uncounted(array), 0.0
+    for i in range(array.shape[0]):
+        row = array[i]
+        row[0] += 1.0
+        total += row.sum()
+    return total
+
+
+def test_an_uncounted_array_is_the_same_memory_and_its_owner_loses_nothing():
+    array = np.arange(12.0).reshape(4, 3)
+    before = sys.getrefcount(array)
+    assert _rows_summed(array) == 70.0
+    assert array[:, 0].tolist() == [1.0, 4.0, 7.0, 10.0]
+    assert sys.getrefcount(array) == before

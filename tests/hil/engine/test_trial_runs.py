@@ -3,9 +3,11 @@
 import pytest
 
 from hil.core.controller import save_controller
+from hil.core.errors import BadInputError
+from hil.core.model import EffectUse
 from hil.core.recording import read_recording, run_of
 from hil.engine import RunRequest, run_plan
-from hil.engine.trial_runs import TrialRuns
+from hil.engine.trial_runs import TrialRuns, _longest_step_s
 from test_plans import Choices, judge, load_plan
 from test_plans.loading import LIBRARY
 from tests.benches_for_tests import SIM
@@ -46,3 +48,39 @@ def test_only_what_is_asked_for_is_recorded_but_a_whole_run_has_everything():
     runs = TrialRuns(trial.plan, SIM, LIBRARY / "none.toml", frozenset({"shaft_torque_nm"}))
     assert "motor_speed_rad_s" not in runs(MODEL, None, 0.0, 0).recording
     assert "motor_speed_rad_s" in runs(MODEL, None, 0.0, 0, whole=True).recording
+
+
+def test_what_comes_before_the_tuned_controller_is_predicted_once_and_changes_nothing():
+    trial = trial_of()
+    slow, quick = (trial.controller({"feed_forward_time_s": time_s}) for time_s in (0.15, 0.04))
+    runs, names = trial.carry_out, ("shaft_torque_nm", "motor_speed_rad_s")
+    kept = [runs(MODEL, controller, 1.0, 7) for controller in (slow, quick, slow)]
+    for controller, found in zip((slow, quick, slow), kept, strict=True):
+        fresh = TrialRuns(trial.plan, SIM, trial.driven.file, runs.channels)(MODEL, controller, 1.0, 7)
+        assert fresh.segments == found.segments
+        assert all((fresh.recording[name] == found.recording[name]).all() for name in names)
+    assert (kept[0].recording[names[0]] != kept[1].recording[names[0]]).any()
+
+
+def test_steps_of_a_sample_give_the_figures_of_steps_as_short_as_the_wires():
+    trial = trial_of()
+    tuned = trial.controller({"lead_deg": 20.0})
+    quick, exact = (
+        trial.judged(trial.carry_out(MODEL, tuned, 0.0, 0, whole=whole)) for whole in (False, True)
+    )
+    for one, other in zip(quick, exact, strict=True):
+        assert one.value == pytest.approx(other.value, rel=1e-4)
+
+
+def test_a_model_of_quick_motions_or_with_a_gap_is_not_stepped_a_sample_at_a_time():
+    stiff = MODEL.with_parameters(shaft_stiffness=100 * MODEL.parameters["shaft_stiffness"])
+    ripple = MODEL.with_effects(EffectUse("motor_order_ripple", {"order": 48.0, "amplitude_nm": 1.0}))
+    gap = MODEL.with_effects(EffectUse("backlash", {"half_gap_rad": 0.01}))
+    assert [_longest_step_s(one) for one in (MODEL, stiff, ripple, gap)] == [1e-3, 5e-4, 5e-4, 2.5e-4]
+
+
+def test_a_tried_controller_may_not_ask_for_more_torque_than_the_bench_allows():
+    trial = trial_of()
+    strong = trial.controller({"torque_limit_nm": 1.01 * SIM.limits.motor_torque_nm})
+    with pytest.raises(BadInputError, match="above the bench's"):
+        trial.carry_out(MODEL, strong, 0.0, 0)
