@@ -65,6 +65,13 @@ def plain_table(title: str | None = None) -> Table:
     return Table(box=None, pad_edge=False, header_style="bold", title=title, title_justify="left")
 
 
+def note(text: str) -> None:
+    """What is being done between two lines of progress; a line on a terminal, nothing in a pipe."""
+    logger.info(text)
+    if sys.stderr.isatty() and not LOG.verbose:
+        complain("now", text)
+
+
 def warn(text: str) -> None:
     """What a person must know though the command goes on; on standard error."""
     logger.warning(text)

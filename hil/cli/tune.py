@@ -12,6 +12,7 @@ from hil.analysis.tuning import (
     Driven,
     Effort,
     Free,
+    Patience,
     SpeedLoops,
     Trial,
     Tuning,
@@ -25,21 +26,24 @@ from hil.analysis.tuning import (
     tune,
 )
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
+from hil.cli._on_bench import FOLDER, Wanted, WireBench, allowed_on
 from hil.cli._one_run import Runs
 from hil.cli._output import print_json, progress, to_json
 from hil.cli._place import results_in
+from hil.cli._refine_on_bench import Refined, refined
 from hil.cli._then_run import OnTheWire, Ran, as_json, refuse_unasked, tell
 from hil.cli._then_run import then_run as run_tuned
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.toml_file import toml_text
-from hil.engine import BenchFile, StopRequest, load_bench
+from hil.engine import DEFAULT_BENCH, BenchFile, StopRequest, load_bench
 from hil.engine.trial_runs import TrialRuns
 from reports import HTML, PDF
 from reports.origin import origin_of
 from reports.outputs.tuning import CONTROLLER, FREE, output_files, summary_of, text_of
 from reports.parts import documents
+from reports.refinement import refined_page
 from reports.tuning_report import Shown, tuning_page
 from test_plans import Plan, load_plan
 
@@ -63,15 +67,22 @@ def carry_out(
     bench: str,
     then_run: bool,
     differ: float,
+    wanted: Wanted,
     operator: str,
     overwrite: bool,
     json_: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    asked = _asked(plan, model, free, controller, start, draws, seed, bench)
+    wanted.refuse_alone()
+    if wanted.bench and (bench or then_run):
+        option = "--bench" if bench else "--then-run"
+        raise BadInputError(f"{option} does not go with --on-bench", where=option, fix="leave it out")
+    asked = _asked(plan, model, free, controller, start, draws, seed, wanted.bench or bench or DEFAULT_BENCH)
     if then_run:
         refuse_unasked(asked.plan)
-    stop, ran = StopRequest(), None
+    axle = asked.trial.draws[0].model
+    allowed = allowed_on(wanted, asked.bench, asked.trial, axle) if wanted.bench else None
+    stop, ran, refinement = StopRequest(), None, None
     names = (CONTROLLER, FREE, SUMMARY, HTML, PDF)
     with results_in(
         out, names, inputs=asked.inputs, overwrite=overwrite, default="tune", summary=SUMMARY
@@ -93,15 +104,28 @@ def carry_out(
             runs = Runs(None, operator, "", "", "", asked.inputs, overwrite)
             ran = run_tuned(found, plan, place.folder, OnTheWire(asked.bench, differ / 100, runs), model)
             summary = _write(asked, found, place.write, ran)
+        if allowed is not None and not stop.times:
+            runs = Runs(None, operator, "", "", "", asked.inputs, overwrite)
+            patience = Patience(allowed.envelope.runs)
+            wire = WireBench(plan, asked.trial, axle, allowed, runs, place.folder / FOLDER)
+            with stop.by_signals():
+                refinement = refined(found, wire, patience, processes, lambda: stop.times > 0)
+                summary = _write(asked, found, place.write, refinement=refinement)
         if json_:
             print_json(summary)
         elif ran is not None:
             tell(ran)
+        elif refinement is not None:
+            print(text_of(found, str(place.folder)))
+            refinement.tell()
         else:
             print(text_of(found, str(place.folder)))
-    if stop.times:
+    if stop.times or (refinement is not None and refinement.exit_code == EXIT_CODE):
         INTERRUPTS.tell()
         return EXIT_CODE
+    if refinement is not None:
+        best = refinement.found.best
+        return refinement.exit_code or int(best is None or best.worst < 0)
     if ran is not None:
         return (
             ran.exit_code
@@ -186,7 +210,11 @@ def _refuse_beyond_bench(free: Free, start: Controller, bench: BenchFile) -> Non
 
 
 def _write(
-    asked: _Asked, found: Tuning, write: Callable[..., None], ran: Ran | None = None
+    asked: _Asked,
+    found: Tuning,
+    write: Callable[..., None],
+    ran: Ran | None = None,
+    refinement: Refined | None = None,
 ) -> dict[str, Any]:
     """Everything of the results; gives the content of tune.json."""
     shown = []
@@ -195,15 +223,22 @@ def _write(
         shown.append(Shown(one.name, predicted.recording, predicted.segments))
     if ran is not None:
         shown.insert(1, ran.shown)
-    files = output_files(found, asked.free_text)
+    if refinement is not None and refinement.shown is not None:
+        shown.insert(1, refinement.shown)
+    came = None if refinement is None else refinement.found
+    files = output_files(found, asked.free_text, None if came is None else came.best)
     listed = sorted([*files, SUMMARY, HTML, PDF])
     summary = summary_of(found, shown[0].segments, asked.told, listed)
     if ran is not None:
         summary["confirmed"] = as_json(ran)
+    if refinement is not None:
+        summary["refined"] = refinement.as_json()
     model = Path(asked.told["model"])
     used = {"model": [model], "bench": [asked.bench.source], "controller": [Path(asked.told["start"])]}
     confirmed = None if ran is None else ran.confirmation
     page = tuning_page(found, shown, files, asked.plan.name, origin_of(used), confirmed)
+    if refinement is not None:
+        page = refined_page(page, refinement.found, refinement.consented)
     files |= documents(page)
     files[SUMMARY] = (to_json(summary) + "\n").encode()
     write(files, asked.inputs)

@@ -8,25 +8,25 @@ from typing import Any
 
 import numpy as np
 
-from hil.analysis.tuning import Standing, Tuning, front_of, metrics_of, point_of, values_of
-from hil.core.controller import controller_to_toml
+from hil.analysis.tuning import RefinedRun, Standing, Tuning, front_of, metrics_of, point_of, values_of
+from hil.core.controller import Controller, controller_to_toml
 from hil.core.result import Segment
 from reports import drawings
 
 CONTROLLER, FREE = "controller.toml", "free.toml"
 
 
-def output_files(found: Tuning, free_text: str) -> dict[str, bytes]:
-    """Names and contents of everything but `tune.json` and the reports."""
-    files = {CONTROLLER: controller_to_toml(_stated(found)).encode(), FREE: free_text.encode()}
+def output_files(found: Tuning, free_text: str, refined: RefinedRun | None = None) -> dict[str, bytes]:
+    """Names and contents of everything but `tune.json` and the reports; `refined` is the best run's."""
+    files = {CONTROLLER: controller_to_toml(_stated(found, refined)).encode(), FREE: free_text.encode()}
     pictures = _front_picture(found)
     if pictures is not None:
         files |= {f"front.{kind}": content for kind, content in pictures.items()}
     return files
 
 
-def _stated(found: Tuning) -> Any:
-    """The controller with what it was tuned for."""
+def _stated(found: Tuning, refined: RefinedRun | None) -> Controller:
+    """The controller with what it was tuned for, and what it came to where it was measured."""
     worst = found.chosen.worst
     meta = {
         "tuned_for": found.trial.plan.name,
@@ -35,7 +35,10 @@ def _stated(found: Tuning) -> Any:
         "binding_criterion": worst.binding,
         "draws": len(found.trial.draws) - 1,
     }
-    return found.chosen.controller.model_copy(update={"meta": meta})
+    if refined is None:
+        return found.chosen.controller.model_copy(update={"meta": meta})
+    meta |= {"measured_worst_margin": refined.worst, "measured_in_run": refined.number}
+    return refined.controller.model_copy(update={"name": found.chosen.controller.name, "meta": meta})
 
 
 def _front_picture(found: Tuning) -> dict[str, bytes] | None:

@@ -8,6 +8,7 @@ from hil.analysis.tuning._front import Point, front_of, metrics_of, point_of
 from hil.analysis.tuning._loops import SpeedLoops
 from hil.analysis.tuning._parameters import PARAMETERS, Space, values_of, with_values
 from hil.analysis.tuning._pool import Pool
+from hil.analysis.tuning._refine import Bench, Measured, Patience, RefinedRun, Refinement, refine
 from hil.analysis.tuning._search import Effort
 from hil.analysis.tuning._trial import CarryOut, Predicted, Trial, Tried, channels_needed
 from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_start, tune
@@ -15,15 +16,20 @@ from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_sta
 __all__ = [
     "PARAMETERS",
     "Agreement",
+    "Bench",
     "CarryOut",
     "Confirmation",
     "Draw",
     "Driven",
     "Effort",
     "Free",
+    "Measured",
+    "Patience",
     "Point",
     "Pool",
     "Predicted",
+    "RefinedRun",
+    "Refinement",
     "Space",
     "SpeedLoops",
     "Standing",
@@ -39,6 +45,7 @@ __all__ = [
     "metrics_of",
     "point_of",
     "read_free",
+    "refine",
     "refuse_model",
     "refuse_start",
     "refuse_unknown_weights",

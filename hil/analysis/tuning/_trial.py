@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -128,10 +128,7 @@ class Trial:
             return Tried(values, number, loop, limits, trouble=str(error))
         limits |= self._run_limits(found)
         criteria = self.judged(found)
-        margins = {
-            c.id: self._weighted(c, m.metric.name)
-            for c, m in zip(criteria, self.driven.criteria, strict=True)
-        }
+        margins = self.margins_of(criteria)
         if self.free.limits.no_worse_than_start and values:
             own = self._starts(number)
             limits["no_worse_than_start"] = min(
@@ -149,6 +146,15 @@ class Trial:
         """The criteria that depend on the controller."""
         plan = self.plan.model_copy(update={"criteria": self.driven.criteria})
         return judge(plan, found.recording, found.segments)
+
+    def margins_of(self, criteria: Iterable[CriterionResult]) -> dict[str, float]:
+        """Weighted margins by id of those `criteria` that depend on the controller, predicted or measured."""
+        known = {criterion.id: criterion for criterion in criteria}
+        return {
+            one.id: self._weighted(known[one.id], one.metric.name)
+            for one in self.driven.criteria
+            if one.id in known
+        }
 
     def _weighted(self, criterion: CriterionResult, metric: str) -> float:
         """Its margin: with a weight of 2 what is left counts half and what is lacking double."""

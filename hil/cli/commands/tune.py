@@ -7,8 +7,11 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_bench
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import Operator, PlanName, SimulatedBenchName
+from hil.cli.commands._options import Operator, PlanName
+
+SEVERAL = ("--envelope",)
 
 
 def command(
@@ -43,7 +46,13 @@ def command(
     processes: Annotated[
         int | None, typer.Option(min=1, max=256, help="predictions at once; default: one for each core")
     ] = None,
-    bench: SimulatedBenchName = "sim",
+    bench: Annotated[
+        str,
+        typer.Option(
+            help="simulated bench to predict on, by file or name; default: sim, or that of --on-bench",
+            autocompletion=shipped_bench(),
+        ),
+    ] = "",
     then_run: Annotated[
         bool,
         typer.Option("--then-run", help="run the plan with it on the bench at once; beside the prediction"),
@@ -57,6 +66,32 @@ def command(
             help="of a criterion's limit: a run that differs by more from its prediction is diagnosed",
         ),
     ] = 5.0,
+    on_bench: Annotated[
+        str,
+        typer.Option(
+            "--on-bench",
+            metavar="BENCH",
+            help="refine there by runs of the plan, within a trust region around the prediction",
+            autocompletion=shipped_bench(),
+        ),
+    ] = "",
+    runs: Annotated[
+        int | None, typer.Option(min=1, max=200, help="with --on-bench: at most so many; default: 20")
+    ] = None,
+    envelope: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CHANNEL=VALUE",
+            help="with --on-bench: largest magnitude that a run may reach, or bench_time_s for all of them; "
+            "default: 1.3 times what is predicted of the plan as it is",
+        ),
+    ] = None,
+    confirm: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME", help="with --on-bench: who takes all its runs upon them, within the envelope"
+        ),
+    ] = "",
     operator: Operator = "",
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier result in --out")
@@ -69,9 +104,15 @@ def command(
     controller.toml, free.toml, tune.json, report.html, report.pdf and a figure. Ctrl-C ends the search and
     keeps the best so far. With --then-run the plan is run with it on the bench at once: run/ has the run, and
     where it is not as predicted diagnosis/ says why. Exit code: 0 every criterion that depends on the
-    controller passes (on every car; with --then-run: in the run, and as predicted), 1 one does not.
+    controller passes (on every car; with --then-run: in the run, and as predicted; with --on-bench: in the
+    best run), 1 one does not, 3 a run failed.
+
+    With --on-bench the controller is refined on that bench: at most --runs runs of the plan, one consent
+    before the first for all of them within an envelope, each predicted first and refused beyond it; bench/
+    has the runs, controller.toml the best that was measured.
     """
     import_python_can()
+    from hil.cli._on_bench import Wanted
     from hil.cli.tune import carry_out
 
     return carry_out(
@@ -89,6 +130,7 @@ def command(
         bench=bench,
         then_run=then_run,
         differ=differ,
+        wanted=Wanted(on_bench, runs, envelope or [], confirm),
         operator=operator,
         overwrite=overwrite,
         json_=json_,

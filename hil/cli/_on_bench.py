@@ -1,0 +1,162 @@
+"""Tuned controllers measured on a bench, within an envelope that somebody has consented to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from hil.analysis.tuning import Measured, Patience, RefinedRun, Trial
+from hil.cli._consent import consent, refuse_nobody
+from hil.cli._named_values import named_numbers
+from hil.cli._one_run import Runs
+from hil.core.controller import Controller, controller_to_toml
+from hil.core.errors import BadInputError
+from hil.core.files import make_directory, write_atomically
+from hil.core.model import Model
+from hil.core.recording import read_recording
+from hil.core.result import Segment
+from hil.engine import RECORDING, BenchFile
+from hil.engine.envelope import Envelope, envelope_of
+from hil.engine.prediction import Prediction
+from hil.engine.trial_runs import TrialRuns
+from reports.tuning_report import Shown
+from test_plans import Choices, load_plan
+
+FOLDER = "bench"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a command line says of runs on a bench."""
+
+    bench: str
+    runs: int | None
+    envelope: list[str]
+    confirm: str
+
+    def refuse_alone(self) -> None:
+        """Raises:
+        BadInputError: how the bench is used is said, but not which.
+        """
+        given = {"--runs": self.runs is not None, "--envelope": self.envelope, "--confirm": self.confirm}
+        for option, is_given in given.items():
+            if is_given and not self.bench:
+                fix = "add --on-bench BENCH, or leave it out"
+                raise BadInputError(f"{option} goes with --on-bench", where=option, fix=fix)
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """A bench, what may be done on it, and who said so."""
+
+    bench: BenchFile
+    envelope: Envelope
+    name: str
+
+
+def allowed_on(wanted: Wanted, bench: BenchFile, trial: Trial, model: Model) -> Allowed:
+    """Predict the plan as it is, draw an envelope around it, and have somebody consent to that.
+
+    Raises:
+        BadInputError: the envelope makes no sense or leaves no room, or nobody consents.
+    """
+    refuse_nobody(trial.plan, bench, wanted.confirm)
+    asked = named_numbers(wanted.envelope, "--envelope")
+    predicted = predicted_run(trial, model, None)
+    lasts_s = float(predicted.recording.time_s[-1])
+    envelope = envelope_of(bench, predicted.peaks, wanted.runs or Patience.runs, lasts_s, asked)
+    return Allowed(bench, envelope, consent((trial.plan,), bench, envelope, wanted.confirm))
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A run that was made: where it is, and the exit code that it alone would have had."""
+
+    folder: Path
+    exit_code: int
+    segments: tuple[Segment, ...]
+
+
+class WireBench:
+    """A plan on a bench, each run in a folder of its own below `place`.
+
+    Args:
+        plan: as the command was given it.
+        trial: what is tuned; it predicts runs.
+        model: of the axle, for these predictions.
+        allowed: the bench; the envelope is watched on it beside its own limits.
+        runs: whether results are replaced, and what must not be.
+    """
+
+    def __init__(
+        self,
+        plan: str,
+        trial: Trial,
+        model: Model,
+        allowed: Allowed,
+        runs: Runs,
+        place: Path,
+    ) -> None:
+        self._plan, self._name = plan, name_in(plan, trial.driven.file)
+        self._trial, self._model = trial, model
+        self.allowed, self._envelope, self._place = allowed, allowed.envelope, place
+        self._runs = _answered(runs, allowed.name)
+        self._watched = allowed.envelope.watched_on(allowed.bench)
+        self.carried: dict[int, Carried] = {}
+        self.bench_time_s = 0.0
+
+    def refused(self, controller: Controller) -> str:
+        """Why a run with it would leave the envelope; '' if it would not."""
+        predicted = predicted_run(self._trial, self._model, controller)
+        beyond = self._envelope.beyond(predicted.peaks)
+        if beyond:
+            return f"the run would leave the envelope: {beyond}"
+        lasts_s = float(predicted.recording.time_s[-1])
+        if self.bench_time_s + lasts_s > self._envelope.bench_time_s:
+            left = self._envelope.bench_time_s - self.bench_time_s
+            return f"the envelope has {left:.0f} s left, a run takes {lasts_s:.0f} s"
+        return ""
+
+    def run(self, controller: Controller, number: int) -> Measured:
+        """Carry the plan out with it."""
+        folder = self._place / f"{number:02d}"
+        make_directory(self._place)
+        file = self._place / f"{number:02d}.toml"
+        write_atomically(file, controller_to_toml(controller))
+        plan = load_plan(self._plan, Choices({self._name: file}))
+        with self._runs.finished(plan, self._watched, folder) as run:
+            result = run.result
+            self.carried[number] = Carried(folder, run.exit_code, tuple(result.segments))
+            error = run.outcome.error
+        self.bench_time_s += result.bench_time_s
+        if error is not None or result.safe_state == "not_confirmed":
+            return Measured((), error.what if error else "the safe state is not confirmed")
+        return Measured(result.criteria)
+
+    def shown(self, run: RefinedRun, name: str = "measured") -> Shown:
+        """A run as one of the compared responses."""
+        carried = self.carried[run.number]
+        recording = read_recording(carried.folder / RECORDING, least_samples=0, allow_missing=True)
+        return Shown(name, recording, carried.segments)
+
+    @property
+    def exit_code(self) -> int:
+        """The largest of runs that failed or were interrupted; 0 if none was."""
+        return max((one.exit_code for one in self.carried.values() if one.exit_code > 1), default=0)
+
+
+def predicted_run(trial: Trial, model: Model, controller: Controller | None) -> Prediction:
+    """A whole run of the trial's plan, with every channel and its peaks; None: the plan's own controller."""
+    assert isinstance(trial.carry_out, TrialRuns)
+    return trial.carry_out(model, controller, 0.0, 0, whole=True)
+
+
+def name_in(plan: str, file: Path) -> str:
+    """What a plan calls a controller file."""
+    text = load_plan(plan).text
+    return next((name for name in (str(file), file.name) if name in text), file.name)
+
+
+def _answered(runs: Runs, name: str) -> Runs:
+    """Runs for which somebody has answered beforehand, prompts and hazards included."""
+    return replace(runs, confirmed_by=name, hazard_confirmed_by=name) if name else runs

@@ -1,0 +1,85 @@
+"""`hil tune --on-bench`: refines what was found where it is measured, and tells of every run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from hil.analysis.tuning import Patience, Refinement, Tuning, refine
+from hil.cli._on_bench import FOLDER, Allowed, WireBench
+from hil.cli._output import console, note, plain_table
+from reports.outputs.refinement import (
+    REFINEMENT_HEAD,
+    refinement_rows,
+    refinement_summary,
+    refinement_verdict,
+)
+from reports.parts import Part
+from reports.refinement import refinement_part
+from reports.tuning_report import Shown
+
+
+@dataclass(frozen=True)
+class Refined:
+    """What the runs came to; `exit_code` is the largest of runs that failed or were interrupted, or 0."""
+
+    found: Refinement
+    allowed: Allowed
+    shown: Shown | None
+    exit_code: int
+
+    @property
+    def consented(self) -> str:
+        """To what, by whom."""
+        name = self.allowed.name
+        by = f"{name} consented to" if name else "The bench is simulated, nobody was asked; the envelope was"
+        return f"{by} {self.allowed.envelope.told()}."
+
+    @property
+    def part(self) -> Part:
+        """Of the report."""
+        return refinement_part(self.found, self.consented)
+
+    def as_json(self) -> dict[str, Any]:
+        """`refined` of tune.json."""
+        envelope = self.allowed.envelope
+        stated = {
+            "largest": dict(envelope.largest),
+            "runs": envelope.runs,
+            "bench_time_s": envelope.bench_time_s,
+        }
+        asked = {"bench": self.allowed.bench.name, "consent": self.allowed.name, "envelope": stated}
+        return refinement_summary(self.found, {**asked, "folder": FOLDER})
+
+    def tell(self) -> None:
+        """The runs as a table."""
+        page, table = console(), plain_table("\non the bench: worst margins, %")
+        for number, name in enumerate(REFINEMENT_HEAD):
+            table.add_column(name, justify="right" if number < 5 else "left", no_wrap=number < 6)
+        for row in refinement_rows(self.found):
+            table.add_row(*row)
+        page.print(table)
+        page.print(refinement_verdict(self.found), highlight=False, markup=False, soft_wrap=True)
+
+
+def refined(
+    found: Tuning,
+    wire: WireBench,
+    patience: Patience,
+    processes: int | None,
+    stopped: Callable[[], bool],
+) -> Refined:
+    """Refine on `wire` the controller that was found on the model."""
+    came = refine(
+        found.trial,
+        found.space,
+        found.space.point(found.chosen.values),
+        wire,
+        patience=patience,
+        processes=processes,
+        show=lambda text, share: note(text),
+        stopped=lambda: stopped() or wire.exit_code > 0,
+    )
+    shown = None if came.best is None else wire.shown(came.best)
+    return Refined(came, wire.allowed, shown, wire.exit_code)

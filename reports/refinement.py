@@ -1,0 +1,82 @@
+"""The part of a tuning's report that tells of its runs on a bench, each with its decision and its reason."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from hil.analysis.tuning import RefinedRun, Refinement
+from reports import quantities
+from reports.figure import Figure, Trace
+from reports.labels import Label
+from reports.outputs.refinement import REFINEMENT_HEAD, refinement_rows, refinement_verdict
+from reports.parts import Page, Part, Table
+
+_TEXT = (
+    "Worst margins in %. Predicted: by the model. Expected: as earlier runs correct that. Radius: of the "
+    "trust region around the best run so far, in ranges of the parameters."
+)
+
+
+def refined_page(page: Page, found: Refinement, consented: str) -> Page:
+    """A tuning's page with its runs on a bench before everything else."""
+    best = found.best
+    return replace(
+        page,
+        headline="Nothing was measured" if best is None else f"Worst margin measured {_percent(best.worst)}",
+        tone="fail" if best is None or best.worst < 0 else "pass",
+        lead=f"{refinement_verdict(found)} On the model: {page.lead}",
+        parts=(refinement_part(found, consented), *page.parts),
+    )
+
+
+def refinement_part(found: Refinement, consented: str) -> Part:
+    """The runs as a table and a figure; `consented` says to what, by whom."""
+    runs = Table(REFINEMENT_HEAD, tuple(refinement_rows(found)), 1, 5)
+    figures = (_figure(found),) if len([run for run in found.runs if run.measured]) > 1 else ()
+    text = f"{refinement_verdict(found)} {_TEXT} {consented}"
+    tables = (runs,) if found.best is None else (runs, _margins(found, found.best))
+    return Part("bench", "On the bench", text, tables, figures=figures)
+
+
+def _margins(found: Refinement, best: RefinedRun) -> Table:
+    """Each criterion in the first and in the best run."""
+    first = found.runs[0]
+    rows = [
+        (
+            name.replace(".", " "),
+            *(_percent(one[name]) for one in (first.predicted.margins, first.measured)),
+            *(_percent(one[name]) for one in (best.predicted.margins, best.measured)),
+        )
+        for name in best.measured
+    ]
+    head = ("margin", "first, predicted", "first, measured", "best, predicted", "best, measured")
+    return Table(head, tuple(rows))
+
+
+def _figure(found: Refinement) -> Figure:
+    measured = [run for run in found.runs if run.measured]
+    numbers = np.array([run.number for run in measured], float)
+    series = {
+        "predicted": (np.array([min(run.predicted.margins.values()) for run in measured]), "gain", "dash"),
+        "expected": (np.array([min(run.expected.values()) for run in measured]), "reference", "dot"),
+        "measured": (np.array([run.worst for run in measured]), "phase", "solid"),
+    }
+    return Figure(
+        id="refined-margin",
+        title=Label("Worst margin from run to run"),
+        x_text="run",
+        x_unit="",
+        y_label=Label("worst margin"),
+        y_unit="%",
+        traces=tuple(
+            Trace(Label(name), numbers, 100 * values, role, dash)
+            for name, (values, role, dash) in series.items()
+        ),
+        wide=True,
+    )
+
+
+def _percent(share: float) -> str:
+    return f"{quantities.number(100 * share, 1)}{quantities.THIN}%"
