@@ -18,6 +18,8 @@ _TEXT = (
     "trust region around the best run so far, in ranges of the parameters."
 )
 
+_WORTH_A_LINE = 3  # points
+
 
 def refined_page(page: Page, found: Refinement, consented: str) -> Page:
     """A tuning's page with its runs on a bench before everything else."""
@@ -27,17 +29,18 @@ def refined_page(page: Page, found: Refinement, consented: str) -> Page:
         headline="Nothing was measured" if best is None else f"Worst margin measured {_percent(best.worst)}",
         tone="fail" if best is None or best.worst < 0 else "pass",
         lead=f"{refinement_verdict(found)} On the model: {page.lead}",
-        parts=(refinement_part(found, consented), *page.parts),
+        parts=(*refinement_parts(found, consented), *page.parts),
     )
 
 
-def refinement_part(found: Refinement, consented: str) -> Part:
-    """The runs as a table and a figure; `consented` says to what, by whom."""
+def refinement_parts(found: Refinement, consented: str) -> tuple[Part, ...]:
+    """The runs, and the margins of the first and the best; `consented` says to what, by whom."""
     runs = Table(REFINEMENT_HEAD, tuple(refinement_rows(found)), 1, 5)
-    figures = (_figure(found),) if len([run for run in found.runs if run.measured]) > 1 else ()
-    text = f"{refinement_verdict(found)} {_TEXT} {consented}"
-    tables = (runs,) if found.best is None else (runs, _margins(found, found.best))
-    return Part("bench", "On the bench", text, tables, figures=figures)
+    figures = (_figure(found),) if sum(bool(run.measured) for run in found.runs) >= _WORTH_A_LINE else ()
+    first = Part("bench", "On the bench", f"{_TEXT} {consented}", (runs,), figures=figures)
+    if found.best is None:
+        return (first,)
+    return first, Part("measured", "Measured margins", "", (_margins(found, found.best),))
 
 
 def _margins(found: Refinement, best: RefinedRun) -> Table:

@@ -15,8 +15,6 @@ from reports.outputs.refinement import (
     refinement_summary,
     refinement_verdict,
 )
-from reports.parts import Part
-from reports.refinement import refinement_part
 from reports.tuning_report import Shown
 
 
@@ -35,11 +33,6 @@ class Refined:
         name = self.allowed.name
         by = f"{name} consented to" if name else "The bench is simulated, nobody was asked; the envelope was"
         return f"{by} {self.allowed.envelope.told()}."
-
-    @property
-    def part(self) -> Part:
-        """Of the report."""
-        return refinement_part(self.found, self.consented)
 
     def as_json(self) -> dict[str, Any]:
         """`refined` of tune.json."""
