@@ -43,15 +43,16 @@ def bench_with(folder, **numbers):
 def test_every_run_stands_in_the_report_with_its_decision_and_the_best_is_what_is_loaded(
     tmp_path, inputs, capsys
 ):
-    out, bench = tmp_path / "out", bench_with(tmp_path, torque_delay=0.012, tyre_stiffness=4500.0)
-    options = ["--at-most", "0.02", "--on-bench", bench, "--runs", "3", "--out", str(out)]
-    assert guarded([*inputs, *options]) == 0
+    out, bench = tmp_path / "out", bench_with(tmp_path, shaft_stiffness=4500.0)
+    (tmp_path / "short.yaml").write_text(PLAN.replace("upper: 1}", "upper: 0.012}"))
+    options = ["--on-bench", bench, "--runs", "3", "--out", str(out)]
+    assert guarded([*inputs, *options]) == 1  # better than the first run, and still beyond that limit
     shown = capsys.readouterr().out
     told = json.loads((out / "tune.json").read_text())
     refined = told["refined"]
     assert refined["consent"] == ""
     assert refined["envelope"]["runs"] == 3
-    assert 1 < len(refined["runs"]) <= 3
+    assert len(refined["runs"]) == 3
     assert refined["worst_margin"] > min(refined["runs"][0]["measured"].values())
     best = load_controller(out / "controller.toml")
     assert best.meta["measured_in_run"] == refined["best_run"]
@@ -63,7 +64,7 @@ def test_every_run_stands_in_the_report_with_its_decision_and_the_best_is_what_i
         assert f"{run['number']:02d}.toml" in recording.attachments["plan.yaml"].decode()
     html = (out / "report.html").read_text()
     assert "On the bench" in html
-    assert html.count("as expected") >= 1
+    assert html.count("the region") >= 2
 
 
 @pytest.mark.slow
