@@ -12,6 +12,7 @@ from drivers.samples import Array, Numbers, Samples, Stream
 
 _OVERTAKEN_S = 0.1  # what is missing may have been overtaken: it is awaited for this long
 _SURE = 3  # spreads of two clocks by which an offset must differ to be another
+_MOVED = 2.5  # samples by which rows may come to mean others at once: more is no drift
 _NOTHING = np.zeros(0, np.int64)
 
 
@@ -59,6 +60,7 @@ class Waiting:
         self._kept = self._left_out = 0
         # Its number less that of the time base's sample of the same moment
         self._ahead: int | None = None
+        self.moved_s = 0.0  # by how much rows have come to mean other samples at once, beyond any drift
 
     @property
     def count_of_all(self) -> FrameCount | None:
@@ -197,10 +199,15 @@ class Waiting:
         room = 0.5 + _SURE * (self.clock.spread_s + base.clock.spread_s) / self.stream.period_s
         if self._ahead is None or np.max(np.abs(ahead - self._ahead)) > room:
             wanted = numbers + np.rint(ahead).astype(np.int64)
-            self._ahead = int(wanted[-1] - numbers[-1])
+            self._note_moved(int(wanted[-1] - numbers[-1]))
         else:
             wanted = numbers + self._ahead
         return self._numbered_as(wanted, within)
+
+    def _note_moved(self, ahead: int) -> None:
+        if self._ahead is not None and abs(ahead - self._ahead) > _MOVED:
+            self.moved_s = (ahead - self._ahead) * self.stream.period_s
+        self._ahead = ahead
 
     def _numbered_as(self, wanted: Numbers, within: float) -> Array:
         first = int(wanted[0] - self.numbers[0])

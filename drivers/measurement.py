@@ -100,6 +100,8 @@ class SampleAssembler:
             said = waiting.clock.parted_from(None if waiting is self._base else self._base.clock)
             if waiting.count and waiting.count.stepped_s:
                 said = f"a gap is {waiting.count.stepped_s * 1e3:.1f} ms off a whole number of samples"
+            if waiting.moved_s:
+                said = f"its samples and the rows have moved by {abs(waiting.moved_s) * 1e3:.0f} ms at once"
             if said:
                 raise BenchError(
                     f"{waiting.stream.label}: {said}",

@@ -19,6 +19,7 @@ _FEW = 8  # stretches below which their spread is not known yet
 _FOR_SLOPE = 4  # stretches below which the device's clock is taken for as fast as the bench's
 _PART = 25  # samples of a stretch that are looked at on their own while there are few stretches
 _LARGEST_DRIFT = 1e-3  # quartz is off by a tenth of it at most
+_BEFORE = 3  # stretches before these that say where it lay
 _STEPPED = 15  # stretches in succession that lie aside before two clocks are said to have parted
 
 
@@ -113,12 +114,11 @@ class SampleClock:
 
     def parted_from(self, base: SampleClock | None) -> str:
         """What to say if this clock and another (None: the bench's) have parted; else nothing."""
-        if len(self._stretches) < _STRETCHES:
-            return ""
         drift = (self._slope - (base._slope if base else 0.0)) / self.period_s
-        if abs(drift) > _LARGEST_DRIFT and self.spread_s < self.period_s:
+        known = len(self._stretches) >= _STRETCHES
+        if known and abs(drift) > _LARGEST_DRIFT and self.spread_s < self.period_s:
             return f"its samples come {abs(drift) * 1e6:.0f} ppm too {'slow' if drift > 0 else 'fast'}"
-        if base is None:
+        if base is None or min(len(self._stretches), len(base._stretches)) < _STEPPED + _BEFORE:
             return ""
         aside = self._aside() - base._aside()
         room_s = self.period_s + 2 * (self.spread_s + base.spread_s)

@@ -14,7 +14,7 @@ from hil.core.frames import FrameBlock
 from hil.core.real_time import undisturbed
 from sim_backend.bench import SimulatedBench
 
-_LONGEST_CATCH_UP_S = 0.2  # hosts take a device that is silent for 0.1 s for dead
+_LONGEST_CATCH_UP_S = 0.5  # a host that was held up as well goes on after no longer a pause
 _STALL_S = 0.005
 
 #: A host's frame: when it was sent in seconds since 1970 (None: the wire does not say), identifier, data.

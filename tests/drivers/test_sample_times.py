@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
 from drivers import SampleAssembler
@@ -55,6 +55,15 @@ def aside(columns: Columns, channel: str) -> np.ndarray:
     return np.nan_to_num(columns[channel] - columns["motor_speed_rad_s"], nan=-1000.0)
 
 
+@pytest.mark.parametrize("size_s", [0.001, 0.003, 0.01])
+def test_jitter_of_one_device_up_to_10_ms_ends_no_run(size_s: float) -> None:
+    for seed in range(4):
+        random = np.random.default_rng(seed)
+        block = dyno()
+        assembler, _ = recorded(rmcu(), held_up(block, random.uniform(0, size_s, len(block))))
+        assembler.look_for_parted_clocks()
+
+
 def timing(assembler: SampleAssembler, label: str) -> tuple[int, int]:
     (found,) = (t for t in assembler.timings() if label in t.stream.label)
     return found.lost, found.left_out
@@ -91,6 +100,7 @@ def test_no_jitter_up_to_50_ms_moves_a_sample_of_the_time_base(way: Late) -> Non
     assert samples[-1] == SAMPLES - 1
     assert np.all(aside(columns, "state")[:-50] == 0)  # the other frame of the same device
     assert timing(assembler, "0x110") == (0, 0)
+    assembler.look_for_parted_clocks()
 
 
 @settings(max_examples=20, deadline=None)
@@ -112,8 +122,13 @@ def test_in_bursts_each_row_has_the_dynos_sample_of_the_same_millisecond(every_s
 
 @settings(max_examples=20, deadline=None)
 @given(way=ways())
-def test_a_device_that_jitters_alone_is_off_by_one_constant(way: Late) -> None:
-    _, columns = recorded(rmcu(), way(dyno()))
+def test_a_device_that_jitters_alone_is_off_by_one_constant_or_ends_the_run(way: Late) -> None:
+    assembler, columns = recorded(rmcu(), way(dyno()))
+    try:  # without a counter, frames that are all held up by tens of milliseconds may be taken for lost ones
+        assembler.look_for_parted_clocks()
+    except BenchError:
+        event("said to have parted")
+        return
     places(columns)
     for channel in ("shaft_torque_left_nm", "shaft_torque_right_nm"):
         apart = aside(columns, channel)[70:-120]
@@ -209,4 +224,17 @@ def test_a_device_whose_count_leaves_its_time_ends_the_run() -> None:
     block["time_s"][block["time_s"] > 5.0 + 5.5] += 0.0126  # nothing was lost: it stood still
     assembler, _ = recorded(rmcu(n), block)
     with pytest.raises(BenchError, match="a gap is -?0.4 ms off a whole number"):
+        assembler.look_for_parted_clocks()
+
+
+@pytest.mark.parametrize("before", [1, 200, 1000, 4000])
+def test_time_that_stood_still_for_all_is_no_loss_of_those_who_count_only_frames(before: int) -> None:
+    """A counter says that nothing was lost; who has none takes the pause for 39 lost samples."""
+    n, step = 12000, 4300
+    blocks = [rmcu(n), dyno(n)]
+    for block in blocks:
+        block["time_s"][block["time_s"] > 5.0 + step * PERIOD_S] += 0.039
+    begun = blocks[1]["time_s"] > 5.0 + (step - before) * PERIOD_S
+    assembler, _ = recorded(blocks[0], blocks[1][begun])
+    with pytest.raises(BenchError, match=r"(39.0 ms earlier than their number says|moved by 39 ms at once)"):
         assembler.look_for_parted_clocks()
