@@ -22,6 +22,7 @@ from drivers.log_wire import LogWire
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
 from drivers.panel import Panel, PanelTable
+from drivers.ram import RamMonitor, RamTable
 from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu
 from drivers.samples import Counting, SampleQueue, Samples, SampleSource, Stream
 from drivers.serial_line import SerialLine
@@ -34,6 +35,7 @@ OWN_KINDS: tuple[tuple[str, type[DeviceTable]], ...] = (
     ("rmcu-can", RmcuTable),
     ("rcs-canopen", DynoTable),
     ("rcs-panel", PanelTable),
+    ("ram-xcp", RamTable),
 )
 
 __all__ = [
@@ -65,6 +67,8 @@ __all__ = [
     "Name",
     "Panel",
     "PanelTable",
+    "RamMonitor",
+    "RamTable",
     "RmcuDriver",
     "RmcuTable",
     "SampleAssembler",

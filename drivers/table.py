@@ -104,6 +104,14 @@ class DeviceTable(BaseModel):
         """Those of `identifiers` that only a host sends: who sends them drives this bench."""
         return ()
 
+    def sends_by_itself(self) -> bool:
+        """Whether frames of the device come on its bus though nobody has asked for any."""
+        return True
+
+    def bits_each_second(self) -> float:
+        """Of the frames on its bus that come and go all the time, stuff bits included; 0: nobody knows."""
+        return 0.0
+
     def files(self) -> list[Path]:
         """The files that the table names, such as a DBC: a recording keeps them."""
         return [value for _, value in self if isinstance(value, Path)]

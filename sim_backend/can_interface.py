@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.frames import FrameBlock
-from sim_backend.bench import DYNO_BUS, RMCU_BUS, SimulatedBench
+from sim_backend.bench import SimulatedBench
 
 _BENCHES: dict[str, SimulatedBench] = {}
 _PREPARED: dict[str, Callable[[SimulatedBench], None]] = {}
@@ -52,9 +52,10 @@ class SimulatedBus(can.BusABC):
                 f"no simulated bench '{name}' is running in this process (channel '{channel}')"
             )
         self._bench = _BENCHES[name]
-        if self._bus not in (RMCU_BUS, DYNO_BUS):
+        if self._bus not in self._bench.buses:
+            known = " and ".join(f"'{bus}'" for bus in self._bench.buses)
             raise can.CanInitializationError(
-                f"a simulated bench has the buses '{RMCU_BUS}' and '{DYNO_BUS}' (channel '{channel}')"
+                f"this simulated bench has the buses {known} (channel '{channel}')"
             )
         self._waiting: list[can.Message] = []
         self.channel_info = f"simulated bench {channel}"

@@ -10,8 +10,11 @@ from pydantic import Field
 from drivers.dyno._driver import DynoDriver, DynoNodes
 from drivers.dyno._node import identifiers_of, read_dyno
 from drivers.table import Connections, File, LoadTable, Name
+from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
+from hil.core.frames import most_frame_bits
 
+_PDOS = 4  # values and status, left and right
 NodeId = Annotated[int, Field(ge=1, le=127)]
 
 
@@ -74,6 +77,10 @@ class DynoTable(LoadTable):
         for key, node in self.nodes.items():
             taken |= identifiers_of(node, key)
         return taken
+
+    def bits_each_second(self) -> float:
+        """SYNC and both dynos' PDOs, one each millisecond, as large as they may be."""
+        return (int(most_frame_bits(0, False)) + _PDOS * int(most_frame_bits(8, False))) / TICK_S
 
     def described_in(self) -> dict[str, tuple[str, str]]:
         """Objects that the EDS maps."""

@@ -9,8 +9,10 @@ from pydantic import Field
 
 from drivers.rmcu._driver import RMCU_SIGNALS, RmcuDriver, read_rmcu
 from drivers.table import Connections, DeviceTable, File
+from hil.core.conventions import TICK_S
 from hil.core.dbc import Names
 from hil.core.errors import BadInputError
+from hil.core.frames import most_frame_bits
 from hil.core.printable import printable
 
 
@@ -65,6 +67,12 @@ class RmcuTable(DeviceTable):
         """Those of the messages that are used."""
         layouts = read_rmcu(self.dbc, self.names).layouts
         return {layout.id: f"'{layout.name}'" for layout in layouts.values()}
+
+    def bits_each_second(self) -> float:
+        """Requests, status, and the dyno controller's vehicle speed, one each millisecond."""
+        layouts = read_rmcu(self.dbc, self.names).layouts
+        cyclic = ("RMCU_Request", "RMCU_Status", "RMCU_Control", "RCS_Vehicle")
+        return sum(int(most_frame_bits(layouts[name].length, False)) for name in cyclic) / TICK_S
 
     def described_in(self) -> dict[str, tuple[str, str]]:
         """Signals of the DBC, as it calls them."""

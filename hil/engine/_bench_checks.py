@@ -9,16 +9,17 @@ from typing import Any
 
 import can
 
-from drivers import DynoTable, RmcuTable, read_rmcu
+from drivers import DynoTable, RamTable, RmcuTable, read_rmcu
 from hil.core.errors import BadInputError
 from hil.core.files import is_file
 from hil.core.printable import is_printable, printable
 from hil.core.suggestion import closest, did_you_mean
 from hil.engine._bus_settings import adapter_mistakes, slows_down
-from hil.engine._simulable import check_simulable, rmcu_of
+from hil.engine._simulable import check_simulable, ram_of, rmcu_of
 from hil.engine.bench_tables import BenchFile
 from hil.plant.controller import in_range
-from sim_backend.bench import DYNO_BUS, RMCU_BUS, SENSED_CHANNELS
+from sim_backend.bench import DYNO_BUS, RAM_BUS, RMCU_BUS, SENSED_CHANNELS
+from sim_backend.rmcu import INTERNALS
 
 SIMULATED = "hil-sim"
 
@@ -86,7 +87,7 @@ def device_mistakes(bench: BenchFile) -> list[str]:
             found += _of_held_parameters(bench)
         except BadInputError as error:
             found.append(f"for the simulated bench: {_on_one_line(error)}")
-    return found or list(_of_identifiers(bench))
+    return found or [*_of_identifiers(bench), *_of_loads(bench)]
 
 
 def _buses_of(bench: BenchFile) -> dict[str, str]:
@@ -104,7 +105,7 @@ def _of_uses(bench: BenchFile) -> Iterator[str]:
             yield f"{key} = '{shown}': bus '{shown}' is not under [buses]; known: {known}"
     for name in bench.buses:
         if name not in used.values():
-            yield f"buses.{name}: is used by nothing; name it under [rmcu] or [dyno], or leave it out"
+            yield f"buses.{name}: is used by nothing; name it under [rmcu], [dyno] or [devices], or drop it"
     seen: dict[tuple[str, str, str], str] = {}
     for name, bus in bench.buses.items():
         # Two adapters of one make may both have a channel 0: their options tell which is meant.
@@ -124,6 +125,21 @@ def _of_simulation(bench: BenchFile) -> Iterator[str]:
             if not isinstance(table, kind):
                 known = kind.model_fields["kind"].default
                 yield f"{key}.kind = '{printable(table.kind)}': the simulated bench has only '{known}'"
+        yield from _of_simulated_memory(bench)
+
+
+def _of_simulated_memory(bench: BenchFile) -> Iterator[str]:
+    """What the simulated RMCU has not in its memory."""
+    tables = {key: t for key, t in bench.device_tables.items() if isinstance(t, RamTable)}
+    for key, table in tables.items():
+        if table is not ram_of(bench):
+            yield f"{key}.kind = '{table.kind}': the simulated RMCU can be looked at once; leave one out"
+        if table.bus == _buses_of(bench).get("dyno"):
+            yield f"{key}.bus = '{table.bus}': the simulated RMCU is not on the dynos' bus; give it another"
+        for name in table.channels:
+            if name not in INTERNALS:
+                hint = did_you_mean(name, INTERNALS)
+                yield f"{key}.channels.{printable(name, 60)}: the simulated RMCU has no such variable; {hint}"
 
 
 def _of_sensors(bench: BenchFile) -> Iterator[str]:
@@ -184,10 +200,12 @@ def _of_interfaces(bench: BenchFile) -> Iterator[str]:
 
 def _of_simulated_bus(bench: BenchFile, name: str) -> Iterator[str]:
     bus, buses = bench.buses[name], _buses_of(bench)
-    role = RMCU_BUS if name == buses.get("rmcu") else DYNO_BUS
+    ram = ram_of(bench)
+    memory = ram is not None and ram.bus == name
+    role = RMCU_BUS if name == buses.get("rmcu") else DYNO_BUS if name == buses.get("dyno") else RAM_BUS
     if buses.get("rmcu") == buses.get("dyno"):
         yield f"dyno.bus = '{name}': is also rmcu.bus; the simulated bench has a bus for each"
-    elif name in (buses.get("rmcu"), buses.get("dyno")) and bus.channel != f"{bench.name}/{role}":
+    elif (memory or name in (buses.get("rmcu"), buses.get("dyno"))) and bus.channel != f"{bench.name}/{role}":
         yield (
             f"buses.{name}.channel = '{printable(bus.channel)}': "
             f"with name = '{bench.name}' this simulated bus is '{bench.name}/{role}'"
@@ -209,6 +227,24 @@ def _of_identifiers(bench: BenchFile) -> Iterator[str]:
             yield (
                 f"{second}.bus = '{bus}': is also {first}.bus, and 0x{number:03X} is both "
                 f"{taken[number]} and {later[number]}; give them a bus each, or other identifiers"
+            )
+
+
+def _of_loads(bench: BenchFile) -> Iterator[str]:
+    """A further device for whose frames there is no room beside those that come all the time."""
+    buses = _buses_of(bench)
+    for key, table in bench.device_tables.items():
+        own = table.bits_each_second()
+        if not own or key not in buses or not key.startswith("devices."):
+            continue
+        bus, name = bench.buses[buses[key]], buses[key]
+        others = [t for k, t in bench.device_tables.items() if buses.get(k) == name and k != key]
+        there = sum(other.bits_each_second() for other in others)
+        if there + own > bus.bit_rate:
+            yield (
+                f"{key}.bus = '{printable(name)}': its frames take up to {own / 1e3:.0f} kbit/s, those of "
+                f"others {there / 1e3:.0f}, the bus has {bus.bit_rate / 1e3:.0f}; give it a bus of its own, "
+                "measure fewer channels, or only every 2nd sample (every = 2)"
             )
 
 

@@ -75,7 +75,7 @@ def wire_of(bench: BenchFile) -> PredictedWire:
     )
     earliest_s = min(ends_s[frame] for frame in frames.values())
     named = frozenset(dbc.texts.get(("RMCU_ParameterWrite", "Index"), {}))
-    loads = _loads(bench, dbc, (*left[1:], *right[1:]))
+    loads = _loads(bench)
     return PredictedWire(rounding, master_s, master_s - earliest_s, named, dictionary, loads)
 
 
@@ -88,13 +88,13 @@ def _cyclic(
     return [(rmcu_of(bench).bus, rmcu), (dyno_of(bench).bus, [sync, *dynos])]
 
 
-def _loads(bench: BenchFile, dbc: Dbc, dynos: tuple[FrameLayout, ...]) -> dict[str, float]:
+def _loads(bench: BenchFile) -> dict[str, float]:
     """Share of each bus that is taken, the torque requests of the RMCU's bus included."""
-    (rmcu_bus, rmcu), of_dynos = _cyclic(bench, dbc, dynos)
     found = dict.fromkeys(bench.buses, 0.0)
-    for bus, layouts in ((rmcu_bus, [*rmcu, dbc.layouts["RMCU_Request"]]), of_dynos):
-        rate = bench.buses[bus].bit_rate
-        found[bus] += sum(longest_frame_s(layout.length, rate) for layout in layouts) / TICK_S
+    for table in bench.device_tables.values():
+        bus = getattr(table, "bus", None)
+        if bus in found:
+            found[bus] += table.bits_each_second() / bench.buses[bus].bit_rate
     return found
 
 

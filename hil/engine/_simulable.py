@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-from drivers import DynoTable, RmcuTable
+from drivers import DynoTable, RamTable, RmcuTable
 from hil.core.errors import BadInputError
 from hil.core.model import Model, refuse_without_vehicle
 from hil.core.printable import printable
 from hil.engine.bench_tables import BenchFile
-from sim_backend.bench import Noise, SensorFault, SimulatedBench, SimulationSettings, check_device_files
+from sim_backend.bench import (
+    RAM_BUS,
+    RMCU_BUS,
+    Noise,
+    SensorFault,
+    SimulatedBench,
+    SimulationSettings,
+    check_device_files,
+)
+from sim_backend.rmcu import RamSettings
 
 
 def rmcu_of(bench: BenchFile) -> RmcuTable:
@@ -30,6 +39,11 @@ def dyno_of(bench: BenchFile) -> DynoTable:
     if not isinstance(bench.dyno, DynoTable):
         raise _other_kind("dyno", bench.dyno.kind, bench)
     return bench.dyno
+
+
+def ram_of(bench: BenchFile) -> RamTable | None:
+    """The table of the monitor of the RMCU's memory; the first, if there are several."""
+    return next((table for table in bench.devices.values() if isinstance(table, RamTable)), None)
 
 
 def check_simulable(bench: BenchFile) -> None:
@@ -65,12 +79,30 @@ def simulated(bench: BenchFile, model: Model) -> SimulatedBench:
             wheel_radius_m=bench.vehicle.wheel_radius_m,
             seed=bench.simulation.seed,
             held=bench.simulation.rmcu,
+            ram=_ram_settings(bench),
             sensors={
                 name: SensorFault(table.gain, table.offset)
                 for name, table in bench.simulation.sensors.items()
             },
             noise=Noise(noise.motor_speed_rad_s, noise.wheel_speed_rad_s, noise.shaft_torque_nm),
         )
+    )
+
+
+def _ram_settings(bench: BenchFile) -> RamSettings | None:
+    table = ram_of(bench)
+    if table is None:
+        return None
+    file, variables, (request_id, answer_id) = table.read()
+    return RamSettings(
+        bus=RMCU_BUS if table.bus == rmcu_of(bench).bus else RAM_BUS,
+        bit_rate=bench.buses[table.bus].bit_rate,
+        request_id=request_id,
+        answer_id=answer_id,
+        variables=variables,
+        order=file.order or "<",
+        software=file.software,
+        software_address=file.software_address,
     )
 
 

@@ -131,9 +131,7 @@ def open_bench(file: BenchFile, *, model: Model | None = None) -> Iterator[Bench
         wires = {name: open_wire(file, name, clock, offset_s, opened) for name in file.buses}
         if not file.simulation:
             opened.enter_context(undisturbed(collections=True))
-        connections = connections_of(file, BusLoop(clock, list(wires.values())))
-        if isinstance(clock, SimulatedBench):
-            connections = _with_stand_ins(connections, clock, opened)
+        connections = connections_of(file, BusLoop(clock, list(wires.values())), opened)
         for wire in wires.values():
             connections.loop.on_drained(wire.check)
         bench = _with_devices(file, connections, model, opened)
@@ -187,12 +185,18 @@ def open_wire(
     return wire
 
 
-def connections_of(file: BenchFile, loop: BusLoop) -> Connections:
-    """What the devices of a bench file are opened with; the wires are those of the loop."""
+def connections_of(file: BenchFile, loop: BusLoop, opened: ExitStack | None = None) -> Connections:
+    """What the devices of a bench file are opened with; the wires are those of the loop.
+
+    With `opened`, where time is computed, devices on serial lines find stand-ins, which are closed with it.
+    """
     v = file.vehicle
     vehicle = VehicleParameters(v.wheel_radius_m, v.slip, v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2)
     wires = {wire.name: wire for wire in loop.wires}
-    return Connections(loop, wires, vehicle, simulated=file.simulation is not None)
+    connections = Connections(loop, wires, vehicle, simulated=file.simulation is not None)
+    if opened is not None and isinstance(loop.clock, SimulatedBench):
+        return _with_stand_ins(connections, loop.clock, opened)
+    return connections
 
 
 def _with_stand_ins(connections: Connections, world: SimulatedBench, opened: ExitStack) -> Connections:

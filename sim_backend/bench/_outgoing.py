@@ -13,23 +13,32 @@ from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, empty_block, frames, joined
 from hil.core.signals import FrameLayout
 from hil.plant.closed_loop import tick as T
+from sim_backend.bench._daq_traffic import DaqTraffic
 from sim_backend.bench._traffic import CyclicTraffic, EventSlots, Shown
 from sim_backend.rcs import DynoNode
-from sim_backend.rmcu import RmcuNode
+from sim_backend.rmcu import DaqList, RamSettings, RmcuMemory, RmcuNode
 
-RMCU_BUS, DYNO_BUS = "rmcu", "dyno"
+RMCU_BUS, DYNO_BUS, RAM_BUS = "rmcu", "dyno", "ram"
 _SYNC = FrameLayout("SYNC", 0x80, 0, {})
 
 
 class Outgoing:
-    """Both buses; the nodes are given by `nodes_are` once they are there.
+    """All buses; the nodes are given by `nodes_are` once they are there.
 
     Args:
         vehicle: layout of the frame in which the dyno controller tells the RMCU the vehicle's speed.
+        ram: on which bus the RMCU's memory is looked at, if it is.
     """
 
-    def __init__(self, rmcu_bit_rate: int, dyno_bit_rate: int, vehicle: FrameLayout) -> None:
+    def __init__(
+        self, rmcu_bit_rate: int, dyno_bit_rate: int, vehicle: FrameLayout, ram: RamSettings | None = None
+    ) -> None:
         self._bit_rates = {RMCU_BUS: rmcu_bit_rate, DYNO_BUS: dyno_bit_rate}
+        self._ram = ram
+        if ram is not None:
+            self._bit_rates.setdefault(ram.bus, ram.bit_rate)
+        self._measured: list[DaqTraffic] = []
+        self._later: list[FrameBlock] = []  # measured data that cross their bus after the newest sample
         self._slots = {bus: EventSlots(rate) for bus, rate in self._bit_rates.items()}
         self._pending: dict[str, list[FrameBlock]] = {bus: [] for bus in self._bit_rates}
         self._vehicle = vehicle
@@ -49,6 +58,7 @@ class Outgoing:
         self.dynos_changed()
         self._slots[RMCU_BUS].begin_s = self._rmcu_traffic.time_s + request_s
         self._slots[DYNO_BUS].begin_s = self._dyno_traffic_of((True, True)).time_s
+        self._cyclic_s = {bus: slots.begin_s for bus, slots in self._slots.items()}
         self._refuse_slow_buses()
 
     def rmcu_talks(self, talks: bool) -> None:
@@ -69,6 +79,19 @@ class Outgoing:
         else:
             self._dyno_traffic = None
 
+    def measures(self, lists: list[DaqList], memory: RmcuMemory) -> bool:
+        """Which lists are sent from now on; false if their bus has no room for so many samples."""
+        assert self._ram is not None
+        bus = self._ram.bus
+        begin_s = self._cyclic_s.get(bus, 0.0)
+        self._measured = []
+        for daq in lists:
+            traffic = DaqTraffic(daq, memory, self._ram.answer_id, self._bit_rates[bus], begin_s)
+            self._measured.append(traffic)
+            begin_s = traffic.begin_s
+        self._slots[bus].begin_s = begin_s
+        return not any(traffic.overloaded for traffic in self._measured)
+
     def event(self, bus: str, sample: int, frame_id: int, data: bytes) -> None:
         """A frame that answers or announces something, in a sample."""
         stamp = self._slots[bus].next_s(sample)
@@ -79,6 +102,15 @@ class Outgoing:
         self._pending[RMCU_BUS].append(self._rmcu_traffic.block(rows, first))
         if self._dyno_traffic:
             self._pending[DYNO_BUS].append(self._dyno_traffic.block(rows, first))
+        if self._measured or self._later:
+            self._measure(rows, first)
+
+    def _measure(self, rows: npt.NDArray[np.float64], first: int) -> None:
+        assert self._ram is not None
+        frames = joined([*self._later, *(traffic.block(rows, first) for traffic in self._measured)])
+        late = frames["time_s"] > (first + len(rows)) * TICK_S + 1e-9
+        self._pending[self._ram.bus].append(frames[~late])
+        self._later = [frames[late]] if np.any(late) else []
 
     def taken(self, bus: str) -> FrameBlock:
         """All that was sent on `bus` and not taken yet, in order of time."""
@@ -87,7 +119,8 @@ class Outgoing:
             return empty_block()
         self._pending[bus] = []
         merged = joined(blocks)
-        if any(a["time_s"][-1] > b["time_s"][0] for a, b in pairwise(blocks)):
+        mixed = self._ram is not None and bus == self._ram.bus
+        if mixed or any(a["time_s"][-1] > b["time_s"][0] for a, b in pairwise(blocks)):
             merged = merged[np.argsort(merged["time_s"], kind="stable")]
         return merged
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from hil.core.dbc import Names
 from hil.core.model import Model
+from sim_backend.rmcu import RamSettings
 
 
 @dataclass(frozen=True)
@@ -57,3 +58,4 @@ class SimulationSettings:
     held: Mapping[str, float] = field(
         default_factory=dict
     )  # parameters that the RMCU keeps, whatever it is told
+    ram: RamSettings | None = None  # what its memory shows by XCP

@@ -18,11 +18,11 @@ from hil.plant.closed_loop import drive as drive
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
-from sim_backend.bench._outgoing import DYNO_BUS, RMCU_BUS, Outgoing
+from sim_backend.bench._outgoing import DYNO_BUS, RAM_BUS, RMCU_BUS, Outgoing
 from sim_backend.bench._settings import SENSED_CHANNELS, SensorFault, SimulationSettings
 from sim_backend.bench._tampering import Tamper
 from sim_backend.rcs import DynoNode, read_node
-from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuNode
+from sim_backend.rmcu import LARGEST_TORQUE_NM, NEEDED, RmcuMemory, RmcuNode, XcpSlave
 
 _NOISE_BLOCK = 1000
 _LARGEST_BATCH = 4096
@@ -112,6 +112,17 @@ class SimulatedBench:
         self._compute()
         return self._dynos
 
+    @property
+    def xcp(self) -> XcpSlave | None:
+        """What shows the RMCU's memory; None if nothing does."""
+        return self._xcp
+
+    @property
+    def buses(self) -> tuple[str, ...]:
+        """Its buses."""
+        ram = self.settings.ram
+        return (RMCU_BUS, DYNO_BUS) if ram is None or ram.bus == RMCU_BUS else (RMCU_BUS, DYNO_BUS, ram.bus)
+
     # --- the wire ---
 
     def put(self, bus: str, frame_id: int, data: bytes) -> None:
@@ -164,7 +175,8 @@ class SimulatedBench:
     def _make_nodes(self) -> None:
         s = self.settings
         dbc = read_dbc(s.dbc, NEEDED, s.names)
-        self._outgoing = Outgoing(s.rmcu_bit_rate, s.dyno_bit_rate, dbc.layouts["RCS_Vehicle"])
+        self._outgoing = Outgoing(s.rmcu_bit_rate, s.dyno_bit_rate, dbc.layouts["RCS_Vehicle"], s.ram)
+        self._make_memory()
         self._rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data), s.held)
         request = dbc.layouts["RMCU_Request"]
         self._request_id = request.id
@@ -188,6 +200,20 @@ class SimulatedBench:
         m.gains[memory.SAMPLE_TIME] = TICK_S
         m.gains[memory.TORQUE_LIMIT] = LARGEST_TORQUE_NM  # until a controller sets its own
         self._firmware = (m.numerators, m.denominators, m.filter_states, m.gains, m.states)
+
+    def _make_memory(self) -> None:
+        self._xcp: XcpSlave | None = None
+        ram = self.settings.ram
+        if ram is None:
+            return
+        self._ram_bus, self._command_id = ram.bus, ram.request_id
+        self._ram = memory = RmcuMemory(ram)
+        self._xcp = XcpSlave(
+            memory,
+            lambda address, size: memory.read(self._newest_row(), address, size),
+            lambda packet: self._event(ram.bus, ram.answer_id, packet),
+            ram.order,
+        )
 
     # --- one sample ---
 
@@ -256,7 +282,9 @@ class SimulatedBench:
             _, bus, frame_id, payload, length = inbox.popleft()
             if self._is_deaf(bus):
                 continue
-            if bus == RMCU_BUS:
+            if self._xcp is not None and bus == self._ram_bus and frame_id == self._command_id:
+                self._serve_memory(payload.to_bytes(8, "little")[:length], time_s)
+            elif bus == RMCU_BUS:
                 self._rmcu.receive(frame_id, payload, time_s)
             elif frame_id in _HEARTBEATS:  # they change nothing of what is sent
                 for node in self._dynos:
@@ -272,10 +300,35 @@ class SimulatedBench:
         while self._breaks and self._breaks[0] <= sample:
             self._breaks.popleft()
 
+    def _serve_memory(self, command: bytes, time_s: float) -> None:
+        assert self._xcp is not None
+        ran = self._xcp.running
+        self._emit()  # what is sent may change from here on
+        self._xcp.receive(command, time_s)
+        if ran != self._xcp.running:
+            self._measures()
+
+    def _measures(self) -> None:
+        """What the RMCU's memory is looked at for from now on."""
+        assert self._xcp is not None
+        if not self._outgoing.measures(self._xcp.running, self._ram):
+            self._xcp.overloaded()
+
+    def reset_xcp(self) -> None:
+        """The slave starts again; nobody is connected to it."""
+        if self._xcp is not None:
+            self._compute()
+            self._emit()
+            self._xcp.reset()
+            self._measures()
+
+    def _newest_row(self) -> npt.NDArray[np.float64]:
+        new = self._samples - self._first_row
+        return self._rows[new - 1] if new else self._last_row
+
     def _show_measured(self) -> None:
         """The newest sample, to whoever reads it by SDO."""
-        new = self._samples - self._first_row
-        row = self._rows[new - 1] if new else self._last_row
+        row = self._newest_row()
         for side, node in enumerate(self._dynos[:2]):
             node.measure(
                 row[T.WHEEL_LEFT + side],
@@ -287,6 +340,8 @@ class SimulatedBench:
     def _is_deaf(self, bus: str) -> bool:
         if not self.faults:
             return False
+        if bus == RAM_BUS:
+            return Fault.RMCU_SILENT in self.faults
         deaf = (Fault.RMCU_SILENT, Fault.RMCU_DEAF) if bus == RMCU_BUS else (Fault.DYNO_DEAF,)
         return any(fault in self.faults for fault in deaf)
 
@@ -299,6 +354,8 @@ class SimulatedBench:
             self._rmcu.lose_power()
         if fault is Fault.DYNO_SILENT:
             self._dynos[0].switch_off()
+        if fault in (Fault.RMCU_SILENT, Fault.RMCU_RESET):
+            self.reset_xcp()
         if fault is Fault.RMCU_RESET:
             self._rmcu.reset()
             self._boots_until = self._samples + _BOOT_TICKS

@@ -18,10 +18,12 @@ _RATE_FIX = (
 )
 
 
-def findings_of_bus(name: str, facts: BusFacts, tally: Tally, wire: Wire) -> Iterator[Finding]:
-    """What is wrong with an open bus."""
+def findings_of_bus(
+    name: str, facts: BusFacts, tally: Tally, wire: Wire, *, expected: bool = True
+) -> Iterator[Finding]:
+    """What is wrong with an open bus; `expected`: whether anybody on it sends unasked."""
     where = f"bus '{name}'"
-    if tally.frames == 0:
+    if tally.frames == 0 and (expected or tally.errors):
         errors = f" but {tally.errors} error frames" if tally.errors else ""
         what = f"not one frame came{errors}; the bench file says {facts.bit_rate} bit/s"
         yield Finding("fault", what, where, _RATE_FIX)

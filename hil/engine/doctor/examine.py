@@ -82,7 +82,7 @@ class _Visit:
                 fix = "allow it: '@hil - rtprio 1' in /etc/security/limits.conf, or CAP_SYS_NICE"
                 what = "this system grants no real-time priority: other programs can hold a run up"
                 found.findings.append(Finding("hint", what, "this machine", fix))
-        devices = self._open_devices(connections_of(self._file, loop))
+        devices = self._open_devices(connections_of(self._file, loop, opened))
         listener = Listener([source for device in devices.values() for source in device.sources])
         with request.stop.by_signals(), request.stop.telling(partial(setattr, loop, "stop_requested", True)):
             self._forget_what_waited(loop, listener)
@@ -167,7 +167,9 @@ class _Visit:
             facts.load = round(tally.load(facts.bit_rate, duration_s), 4)
             facts.frames_s = round(tally.frames / duration_s, 1)
             facts.error_frames, facts.unknown = tally.errors, tally.unknown(known, duration_s)
-            self._add(*findings_of_bus(wire.name, facts, tally, wire))
+            on_it = [t for t in self._file.device_tables.values() if getattr(t, "bus", None) == wire.name]
+            expected = any(table.sends_by_itself() for table in on_it)
+            self._add(*findings_of_bus(wire.name, facts, tally, wire, expected=expected))
             try:
                 wire.check()
             except BenchError as error:

@@ -13,7 +13,7 @@ from hil.plant.closed_loop import drive as D
 from hil.plant.controller import memory as M
 from hil.plant.controller.control import control
 
-# Columns of a row: what the bench's frames tell of one sample
+# Columns of a row: what the bench's frames tell of one sample, and then what stands in the RMCU's memory
 (
     MOTOR_SPEED,
     TORQUE_REF,
@@ -35,8 +35,16 @@ from hil.plant.controller.control import control
     LOAD_RIGHT,
     STATUS_LEFT,
     STATUS_RIGHT,
-) = range(20)
-COLUMNS = 20
+    FEEDFORWARD_TORQUE,
+    FEEDBACK_TORQUE,
+    WHEEL_REFERENCE,
+    SLIP_INTEGRAL,
+    SPEED_INTEGRAL,
+    OBSERVED_FORCE,
+    OBSERVER_TORQUE,
+    OBSERVER_SPEED,
+) = range(28)
+COLUMNS = 28
 SENSORS = 5  # motor speed, wheel left, wheel right, shaft left, shaft right
 SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = GAIN, OFFSET, STEP, DELAY
 
@@ -123,6 +131,14 @@ def tick(k, x, p, w, torques, fir, drives, sensors, past, noise, mode, request, 
     row[ALWAYS_ONE] = 1.0
     row[STATUS_LEFT] = status[0]
     row[STATUS_RIGHT] = status[1]
+    row[FEEDFORWARD_TORQUE] = states[M.FEEDFORWARD_TORQUE]
+    row[FEEDBACK_TORQUE] = states[M.FEEDBACK_TORQUE]
+    row[WHEEL_REFERENCE] = states[M.WHEEL_REFERENCE]
+    row[SLIP_INTEGRAL] = states[M.SLIP]
+    row[SPEED_INTEGRAL] = states[M.INTEGRATOR]
+    row[OBSERVED_FORCE] = states[M.ESTIMATE]
+    row[OBSERVER_TORQUE] = z[M.OBSERVER_TORQUE, 0]
+    row[OBSERVER_SPEED] = z[M.OBSERVER_SPEED, 0]
     torques[k % HISTORY] = torque
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     late = max(0.0, p[P.TORQUE_DELAY] - whole * dt)

@@ -17,6 +17,9 @@ def enter(b, a, z, k, s, mode, v_hat, w_m, t_m):  # type: ignore[no-untyped-def]
     s[M.SLIP] = 0.0
     s[M.INTEGRATOR] = 0.0
     s[M.SATURATED] = 0.0
+    s[M.FEEDFORWARD_TORQUE] = 0.0
+    s[M.FEEDBACK_TORQUE] = 0.0
+    s[M.WHEEL_REFERENCE] = 0.0
     settle(b[M.FEEDFORWARD], a[M.FEEDFORWARD], z[M.FEEDFORWARD], 0.0)
     settle(b[M.SPEED_FILTER], a[M.SPEED_FILTER], z[M.SPEED_FILTER], v_hat / k[M.RADIUS])
     settle(b[M.STABILIZER], a[M.STABILIZER], z[M.STABILIZER], 0.0)
@@ -39,7 +42,10 @@ def control(b, a, z, k, s, mode, request, v_hat, w_m, t_m):  # type: ignore[no-u
         # Anti-windup by conditional integration: while the last torque was clipped, both integrators wait.
         hold = s[M.SATURATED] != 0.0
         wheel = wheel_speed_reference(k, s, request, s[M.ESTIMATE], v_hat, hold)
-        torque = feedforward(b, a, z, request) + motor_torque(b, a, z, k, s, wheel, w_m, hold)
+        s[M.WHEEL_REFERENCE] = wheel
+        s[M.FEEDFORWARD_TORQUE] = feedforward(b, a, z, request)
+        s[M.FEEDBACK_TORQUE] = motor_torque(b, a, z, k, s, wheel, w_m, hold)
+        torque = s[M.FEEDFORWARD_TORQUE] + s[M.FEEDBACK_TORQUE]
     clipped = min(max(torque, -limit), limit)
     s[M.SATURATED] = 1.0 if clipped != torque else 0.0
     return clipped

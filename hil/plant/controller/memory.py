@@ -17,8 +17,18 @@ FEEDFORWARD, SPEED_FILTER, STABILIZER, OBSERVER_TORQUE, OBSERVER_SPEED = range(5
 # Gains
 SAMPLE_TIME, TORQUE_LIMIT, K_I_DFC, RADIUS, SIGMA, SLIP_LIMIT, K_P, K_I = range(8)
 
-# States
-SLIP, INTEGRATOR, MODE, ESTIMATE, SATURATED = range(5)
+# States; the last three are what the control came to in between, for whoever looks into the memory: T_m(DFC)*
+# and T_m(WSC)* in N m, ω_l* in rad/s
+(
+    SLIP,
+    INTEGRATOR,
+    MODE,
+    ESTIMATE,
+    SATURATED,
+    FEEDFORWARD_TORQUE,
+    FEEDBACK_TORQUE,
+    WHEEL_REFERENCE,
+) = range(8)
 
 OFF, TORQUE, DRIVING_FORCE, FAULT = range(4)
 
@@ -31,7 +41,7 @@ class Memory:
     denominators: Array = field(default_factory=lambda: _ones())
     filter_states: Array = field(default_factory=lambda: np.zeros((5, LARGEST_ORDER)))
     gains: Array = field(default_factory=lambda: np.zeros(8))
-    states: Array = field(default_factory=lambda: np.zeros(5))
+    states: Array = field(default_factory=lambda: np.zeros(8))
 
     def place(self, index: int, filter_: Filter) -> None:
         """Put a filter into the bank."""

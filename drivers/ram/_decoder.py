@@ -1,0 +1,112 @@
+"""From packets of measured data to samples: whole ones only, with the counts that their time stamps give."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from drivers.ram._packing import Odt
+from drivers.samples import Array, Numbers
+from hil.core.frames import FrameBlock, empty_block, joined
+from hil.core.symbols import Symbol
+from hil.core.xcp import MOST_BYTES, TimeStamps
+
+_NUMBER_BYTES = 1
+_STANDS_STILL = 50  # samples
+
+
+class DaqDecoder:
+    """Reads the packets of one DAQ list.
+
+    Args:
+        first: number of its first ODT.
+        odts: what stands in them, in the order of `symbols`.
+        order: "<" or ">", as the slave counts.
+        period_s: distance of samples.
+
+    Attributes:
+        stands_still: whether the time stamps do not change any more.
+    """
+
+    def __init__(
+        self,
+        first: int,
+        odts: Sequence[Odt],
+        symbols: Sequence[Symbol],
+        stamps: TimeStamps,
+        order: str,
+        period_s: float,
+    ) -> None:
+        self._symbols, self._order = symbols, order
+        self._ticks_each = period_s / stamps.tick_s
+        self._stamp = np.dtype(f"{order}u{stamps.size}")
+        self._turn = 1 << 8 * stamps.size
+        self._numbers = first + np.arange(len(odts))
+        sizes = np.array([_NUMBER_BYTES + sum(entry.size for entry in odt) for odt in odts])
+        sizes[0] += stamps.size
+        self._lengths = sizes
+        # Where in the packets of a sample, 8 bytes each, the symbols' bytes lie, one behind the other
+        begins = np.full(len(odts), _NUMBER_BYTES)
+        begins[0] += stamps.size
+        self._bytes = np.concatenate(
+            [
+                np.arange(MOST_BYTES * odt + begin, MOST_BYTES * odt + end)
+                for odt, (begin, end) in enumerate(zip(begins, sizes, strict=True))
+            ]
+        )
+        self._stamp_bytes = slice(_NUMBER_BYTES, _NUMBER_BYTES + stamps.size)
+        self._ends = np.cumsum([symbol.size for symbol in symbols]).tolist()
+        self._rest: FrameBlock = empty_block()
+        self._newest: int | None = None
+        self._same = 0
+
+    @property
+    def stands_still(self) -> bool:
+        """Whether the time stamps do not change any more, though samples come."""
+        return self._same >= _STANDS_STILL
+
+    def take(self, block: FrameBlock) -> tuple[Array, Array, Numbers]:
+        """Arrival (s) of each whole sample, values (n, symbols), and counts without turns."""
+        frames, places = self._whole(joined([self._rest, block]) if len(self._rest) else block)
+        chosen = frames[places]
+        packets = np.ascontiguousarray(chosen["data"].astype("<u8")).view(np.uint8)
+        packets = packets.reshape(len(places), MOST_BYTES * len(self._numbers))
+        memory = packets[:, self._bytes]
+        values = np.empty((len(places), len(self._symbols)))
+        for column, (symbol, end) in enumerate(zip(self._symbols, self._ends, strict=True)):
+            values[:, column] = symbol.values(memory[:, end - symbol.size : end], self._order)
+        stamps = np.ascontiguousarray(packets[:, self._stamp_bytes]).view(self._stamp)[:, 0]
+        return chosen["time_s"][:, 0].copy(), values, self._counts(stamps.astype(np.int64))
+
+    def _whole(self, frames: FrameBlock) -> tuple[FrameBlock, npt.NDArray[np.intp]]:
+        """Places of the packets of each whole sample; what may yet become one waits for the next block."""
+        count = len(self._numbers)
+        if count > 1:  # a frame that an adapter gives twice
+            again = (frames["data"][1:] == frames["data"][:-1]) & (
+                frames["length"][1:] == frames["length"][:-1]
+            )
+            if np.any(again):
+                frames = frames[np.concatenate([[True], ~again])]
+        numbers = (frames["data"] & np.uint64(0xFF)).astype(np.int64)
+        starts = np.flatnonzero(numbers == self._numbers[0])
+        later = starts[starts + count > len(frames)]
+        self._rest = frames[later[-1] :].copy() if len(later) else empty_block()
+        places = starts[starts + count <= len(frames)][:, None] + np.arange(count)
+        good = np.all(numbers[places] == self._numbers, axis=1)
+        good &= np.all(frames["length"][places] >= self._lengths, axis=1)
+        return frames, places[good]
+
+    def _counts(self, stamps: Numbers) -> Numbers:
+        """Counts of the slave's periods; a stamp goes back by at most a quarter of its turn."""
+        if not len(stamps):
+            return stamps
+        before = stamps[0] if self._newest is None else self._newest
+        steps = np.diff(stamps, prepend=before % self._turn) % self._turn
+        steps[steps > 3 * self._turn // 4] -= self._turn
+        ticks = before + np.cumsum(steps)
+        moved = np.flatnonzero(steps)
+        self._same = len(steps) - 1 - int(moved[-1]) if len(moved) else self._same + len(steps)
+        self._newest = int(ticks[-1])
+        return np.rint(ticks / self._ticks_each).astype(np.int64)

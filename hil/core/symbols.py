@@ -1,0 +1,223 @@
+"""Where a control unit keeps its variables: a table of symbols, from an A2L or a CSV of a linker's map."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.errors import BadInputError
+from hil.core.files import read_bytes
+from hil.core.printable import printable
+from hil.core.suggestion import did_you_mean
+
+#: Data types by their names in A2L files, as numpy calls them without their byte order.
+TYPES = {
+    "UBYTE": "u1",
+    "SBYTE": "i1",
+    "UWORD": "u2",
+    "SWORD": "i2",
+    "ULONG": "u4",
+    "SLONG": "i4",
+    "A_UINT64": "u8",
+    "A_INT64": "i8",
+    "FLOAT32_IEEE": "f4",
+    "FLOAT64_IEEE": "f8",
+}
+_COLUMNS = ("symbol", "address", "type")
+_MORE_COLUMNS = ("unit", "scale", "offset")
+_HIGHEST_ADDRESS = 0xFFFF_FFFF
+_LARGEST_ID = 0x7FF
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A variable: its value is raw * scale + offset, in `unit`.
+
+    `kind`: numpy's name of its type without byte order; `order`: "<", ">", or "" as the control unit counts;
+    `unusable`: why it cannot be measured, '' if it can.
+    """
+
+    name: str
+    address: int
+    kind: str
+    unit: str = ""
+    scale: float = 1.0
+    offset: float = 0.0
+    extension: int = 0
+    order: str = ""
+    unusable: str = ""
+
+    @property
+    def size(self) -> int:
+        """Bytes that it takes."""
+        return np.dtype(self.kind).itemsize
+
+    def dtype(self, order: str) -> np.dtype[np.generic]:
+        """Its type in memory, on a control unit that counts in `order`."""
+        return np.dtype((self.order or order) + self.kind)
+
+    def raw(self, values: npt.NDArray[np.float64], order: str) -> npt.NDArray[np.uint8]:
+        """Values, shape (n,), as they stand in memory, shape (n, size); held at the ends of the type."""
+        dtype = self.dtype(order)
+        numbers = (values - self.offset) / self.scale
+        if dtype.kind in "iu":
+            ends = np.iinfo(str(dtype))
+            # the largest float below the end: the end itself may round to beyond it
+            numbers = np.clip(np.rint(numbers), float(ends.min), np.nextafter(float(ends.max) + 1.0, 0.0))
+        return numbers.astype(dtype).view(np.uint8).reshape(len(values), -1)
+
+    def values(self, raw: npt.NDArray[np.uint8], order: str) -> npt.NDArray[np.float64]:
+        """What memory, shape (n, size), says, shape (n,)."""
+        numbers = np.ascontiguousarray(raw).view(self.dtype(order))[:, 0].astype(np.float64)
+        return numbers * self.scale + self.offset
+
+
+@dataclass(frozen=True)
+class Symbols:
+    """All symbols of a file, and what else it says of the control unit.
+
+    Attributes:
+        by_name: the symbols.
+        order: byte order, "<" or ">"; '' if the file does not say.
+        request_id, answer_id: identifiers of XCP on CAN; None if the file does not say.
+        software: what identifies the software that the addresses are of, '' if nothing does.
+        software_address: where that text stands in memory.
+    """
+
+    by_name: Mapping[str, Symbol]
+    order: str = ""
+    request_id: int | None = None
+    answer_id: int | None = None
+    software: str = ""
+    software_address: int | None = None
+    file: Path = field(default_factory=Path)
+
+    def find(self, name: str) -> Symbol:
+        """A symbol that can be measured.
+
+        Raises:
+            BadInputError: there is none of that name, or it cannot be measured.
+        """
+        symbol = self.by_name.get(name)
+        if symbol is None:
+            raise BadInputError(
+                f"has no symbol '{printable(name, 60)}'",
+                where=str(self.file),
+                fix=did_you_mean(name, self.by_name),
+            )
+        if symbol.unusable:
+            raise BadInputError(
+                f"symbol '{printable(name, 60)}' {symbol.unusable}",
+                where=str(self.file),
+                fix="measure another one, or give the symbols as a CSV table",
+            )
+        return symbol
+
+
+def read_symbols(path: Path) -> Symbols:
+    """Read an A2L (`.a2l`) or a CSV with the columns symbol, address, type, unit, scale and offset.
+
+    Raises:
+        BadInputError: it cannot be read, or is neither.
+    """
+    from hil.core.a2l import read_a2l  # here: it knows what symbols are
+
+    data = read_bytes(path)
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")  # older tools write degrees and squares so
+    if path.suffix.lower() == ".a2l":
+        return replace(read_a2l(text, str(path)), file=path)
+    if path.suffix.lower() == ".csv":
+        return Symbols(dict(_rows(text, str(path))), file=path)
+    raise BadInputError("is no table of symbols", where=str(path), fix="give an A2L (.a2l) or a CSV (.csv)")
+
+
+def refuse_extended(number: int, what: str, where: str) -> int:
+    """An identifier of 11 bits as it is.
+
+    Raises:
+        BadInputError: it has more.
+    """
+    if not 0 <= number <= _LARGEST_ID:
+        raise BadInputError(
+            f"{what} 0x{number:X} is no identifier of 11 bits",
+            where=where,
+            fix="only standard frames are sent: give request_id and answer_id in the bench file",
+        )
+    return number
+
+
+def _rows(text: str, where: str) -> list[tuple[str, Symbol]]:
+    lines = csv.reader(io.StringIO(text))
+    found: dict[str, Symbol] = {}
+    try:
+        header = [name.strip().lower() for name in next(lines, [])]
+        missing = [name for name in _COLUMNS if name not in header]
+        if missing:
+            raise BadInputError(
+                f"column '{missing[0]}' is missing",
+                where=f"{where}, line 1",
+                fix=f"begin it with: {','.join((*_COLUMNS, *_MORE_COLUMNS))}",
+            )
+        for row in lines:
+            if not any(cell.strip() for cell in row):
+                continue
+            place = f"{where}, line {lines.line_num}"
+            symbol = _symbol_of(dict(zip(header, (cell.strip() for cell in row), strict=False)), place)
+            if symbol.name in found:
+                raise BadInputError(
+                    f"symbol '{printable(symbol.name, 60)}' stands twice", where=place, fix="leave one out"
+                )
+            found[symbol.name] = symbol
+    except csv.Error as error:
+        raise BadInputError(f"is no CSV: {error}", where=f"{where}, line {lines.line_num}") from error
+    return list(found.items())
+
+
+def _symbol_of(cells: Mapping[str, str], where: str) -> Symbol:
+    kind = TYPES.get(cells.get("type", "").upper())
+    if kind is None:
+        raise BadInputError(
+            f"type '{printable(cells.get('type', ''), 40)}' is none",
+            where=where,
+            fix=f"write one of {', '.join(TYPES)}",
+        )
+    name = cells.get("symbol", "")
+    if not name:
+        raise BadInputError("a symbol has no name", where=where, fix="write it in the column 'symbol'")
+    try:
+        address = int(cells.get("address", ""), 0)
+    except ValueError:
+        address = -1
+    if not 0 <= address <= _HIGHEST_ADDRESS:
+        raise BadInputError(
+            f"address '{printable(cells.get('address', ''), 40)}' is none",
+            where=where,
+            fix="write it as 0x20000100",
+        )
+    scale, offset = (
+        _number(cells, key, default, where) for key, default in (("scale", 1.0), ("offset", 0.0))
+    )
+    if scale == 0.0:
+        raise BadInputError("scale is 0", where=where, fix="leave it empty for 1")
+    return Symbol(name, address, kind, printable(cells.get("unit", ""), 20), scale, offset)
+
+
+def _number(cells: Mapping[str, str], key: str, default: float, where: str) -> float:
+    text = cells.get(key, "")
+    try:
+        value = float(text) if text else default
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise BadInputError(f"{key} '{printable(text, 40)}' is no number", where=where, fix="correct it")
+    return value
