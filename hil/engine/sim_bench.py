@@ -10,15 +10,16 @@ from typing import Any
 
 import tomli_w
 
-from drivers import RmcuTable
+from drivers import PanelTable, RamTable, RmcuTable
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import Model, load_model, model_from_dict, model_to_toml
 from hil.core.printable import printable
-from hil.engine._simulable import dyno_of, rmcu_of, simulated
+from hil.engine._simulable import dyno_of, ram_of, rmcu_of, simulated
 from hil.engine.bench_tables import BenchFile
 from hil.engine.stopping import StopRequest
-from sim_backend.bench import DYNO_BUS, RMCU_BUS
+from sim_backend.bench import DYNO_BUS, RAM_BUS, RMCU_BUS, SimulatedBench
+from sim_backend.rcs import EmulatedPanel, PanelPort
 from sim_backend.serving import (
     BenchServer,
     BusServer,
@@ -74,8 +75,9 @@ class SimBenchRequest:
         for_s: ends by itself after this many seconds of the wall clock.
         transport: one of `TRANSPORTS`.
         port: first UDP or TCP port; 0 takes free ones.
-        interfaces: of SocketCAN, for the RMCU's bus and the dynos': "can1:can0" serves at can1 those who open
-            can0, another controller on the same bus; "vcan0" serves its own.
+        interfaces: of SocketCAN, for the RMCU's bus, the dynos' and that of the RMCU's memory, if it has one
+            of its own: "can1:can0" serves at can1 those who open can0, another controller on the same bus;
+            "vcan0" serves its own.
         ready: called once, when hosts can connect.
     """
 
@@ -102,22 +104,26 @@ def serve(request: SimBenchRequest) -> Served:
     assert bench.simulation is not None
     model = with_hidden(load_model(bench.simulation.model), request.hidden)
     world = simulated(bench, model)
-    roles = {RMCU_BUS: rmcu_of(bench).bus, DYNO_BUS: dyno_of(bench).bus}
+    roles = _roles(bench)
     with contextlib.ExitStack() as opened:
         servers: dict[str, BusServer] = {}
         for number, (role, name) in enumerate(roles.items()):
             port = request.port + number if request.port else 0
             servers[role] = _server(request, number, port, bench.buses[name].bit_rate, name)
             opened.callback(servers[role].close)
-        server = BenchServer(world, servers, request.time_scale)
+        panels = _panels(bench, world, opened)
+        duties = [port.tick for port in panels.values()]
+        server = BenchServer(world, servers, request.time_scale, duties=duties)
         tables = {
             name: {**servers[role].table, "bit_rate": bench.buses[name].bit_rate}
             for role, name in roles.items()
         }
-        text = bench_text(bench, tables, request.time_scale)
+        ports = {name: port.port for name, port in panels.items()}
+        text = bench_text(bench, tables, request.time_scale, ports)
         added = {_effect_and_parameter(name)[0] for name in request.hidden}
         told = tuple(f"{use.id}: {_numbers(use.values)}" for use in model.effects if use.id in added)
-        request.ready(Serving(text, tables, told, tuple(bench.devices)))
+        left_out = tuple(name for name in bench.devices if not _is_served(bench, name))
+        request.ready(Serving(text, tables, told, left_out))
         server.serve(lambda: request.stop.times > 0, request.for_s)
         frames = {roles[role]: (sent, received) for role, (sent, received) in server.frames.items()}
         lost = {name: servers[role].lost for role, name in roles.items()}
@@ -152,17 +158,61 @@ def with_hidden(model: Model, hidden: Mapping[str, str]) -> Model:
     return model_from_dict(data, "--hide")
 
 
-def bench_text(bench: BenchFile, buses: Mapping[str, Mapping[str, Any]], time_scale: float) -> str:
-    """The bench file for those who connect: the same devices and limits, these buses, no simulation."""
+def bench_text(
+    bench: BenchFile,
+    buses: Mapping[str, Mapping[str, Any]],
+    time_scale: float,
+    ports: Mapping[str, str] | None = None,
+) -> str:
+    """The bench file for those who connect: the same devices and limits, these buses, no simulation.
+
+    Args:
+        ports: serial ports of devices, by their names.
+    """
     data = tomllib.loads(bench.text)
-    for key in ("simulation", "devices", "time_scale"):
+    for key in ("simulation", "time_scale"):
         data.pop(key, None)
+    devices = {name: table for name, table in data.pop("devices", {}).items() if _is_served(bench, name)}
+    for name, table in devices.items():
+        described = bench.devices[name]
+        if isinstance(described, RamTable):
+            table["symbols"] = str(described.symbols)
+        if ports and name in ports:
+            table["port"] = ports[name]
+    if devices:
+        data["devices"] = devices
     if time_scale != 1.0:
         data["time_scale"] = time_scale
     data["buses"] = {name: dict(table) for name, table in buses.items()}
     data["rmcu"]["dbc"] = str(rmcu_of(bench).dbc)
     data["dyno"]["eds"] = str(dyno_of(bench).eds)
     return tomli_w.dumps(data)
+
+
+def _roles(bench: BenchFile) -> dict[str, str]:
+    """Buses of the simulated bench, and what the bench file calls them."""
+    roles = {RMCU_BUS: rmcu_of(bench).bus, DYNO_BUS: dyno_of(bench).bus}
+    ram = ram_of(bench)
+    if ram is not None and ram.bus not in roles.values():
+        roles[RAM_BUS] = ram.bus
+    return roles
+
+
+def _is_served(bench: BenchFile, name: str) -> bool:
+    """Whether something stands in for a device beside RMCU and dynos."""
+    return isinstance(bench.devices[name], PanelTable | RamTable)
+
+
+def _panels(bench: BenchFile, world: SimulatedBench, opened: contextlib.ExitStack) -> dict[str, PanelPort]:
+    """A pseudo-terminal for each panel of the bench file."""
+    radius_m = bench.vehicle.wheel_radius_m
+    found = {}
+    for name, table in bench.devices.items():
+        if isinstance(table, PanelTable):
+            panel = EmulatedPanel(lambda vehicle: world.set_vehicle(vehicle.at_wheels(radius_m)))
+            found[name] = PanelPort(panel, waits=False)
+            opened.callback(found[name].close)
+    return found
 
 
 def _checked(request: SimBenchRequest) -> BenchFile:
@@ -184,11 +234,12 @@ def _checked(request: SimBenchRequest) -> BenchFile:
         raise BadInputError(
             f"--port is {request.port}", fix=f"give 1 to {_HIGHEST_PORT - 1}, or 0 for free ones"
         )
-    wanted = 2 if request.transport == "socketcan" else 0
+    wanted = len(_roles(bench)) if request.transport == "socketcan" else 0
     if len(request.interfaces) != wanted:
         raise BadInputError(
             f"--interface is given {len(request.interfaces)} times, {wanted} are needed",
-            fix="'--transport socketcan --interface vcan0 --interface vcan1': RMCU's bus, then the dynos'",
+            fix="'--transport socketcan --interface vcan0 --interface vcan1': RMCU's bus, then the dynos', "
+            "then that of a RAM monitor",
         )
     if request.seed is None:
         return bench

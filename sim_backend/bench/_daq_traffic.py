@@ -40,8 +40,7 @@ class DaqTraffic:
         self._to, self._from = np.array(packets, np.int64), np.array(bytes_, np.int64)
         self._numbers = daq.first + np.arange(len(daq.odts))
         frame_s = longest_frame_s(MOST_BYTES, bit_rate)
-        # Between them there is room for an answer
-        each = max(1, math.floor((TICK_S - begin_s - frame_s) / frame_s + 1e-9))
+        each = max(1, math.floor((TICK_S - begin_s) / frame_s + 1e-9))
         place = np.arange(len(daq.odts))
         self._after_s = place // each * TICK_S + begin_s + (place % each + 1) * frame_s
         ticks = math.ceil(len(daq.odts) / each)

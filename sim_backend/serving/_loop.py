@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -16,6 +16,7 @@ from sim_backend.bench import SimulatedBench
 
 _LONGEST_CATCH_UP_S = 0.5  # a host that was held up as well goes on after no longer a pause
 _STALL_S = 0.005
+_DUTIES_EVERY = 10  # turns
 
 #: A host's frame: when it was sent in seconds since 1970 (None: the wire does not say), identifier, data.
 HostFrame = tuple[float | None, int, bytes]
@@ -72,6 +73,7 @@ class BenchServer:
 
     Args:
         time_scale: seconds of bench time in a second of the wall clock.
+        duties: called a hundred times a second of bench time: what serves lines that are no buses.
         clock: seconds of the wall clock, monotonic.
         sleep: waits for some seconds of it.
     """
@@ -82,11 +84,12 @@ class BenchServer:
         buses: Mapping[str, BusServer],
         time_scale: float = 1.0,
         *,
+        duties: Sequence[Callable[[], None]] = (),
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._world, self.buses, self._scale = world, dict(buses), time_scale
-        self._clock, self._sleep = clock, sleep
+        self._clock, self._sleep, self._duties = clock, sleep, duties
         self.pace = Pace()
         self.frames: dict[str, list[int]] = {bus: [0, 0] for bus in buses}  # sent, received
         self._world.sleep_until(world.now_s() + TICK_S)  # what is compiled is compiled before time counts
@@ -104,6 +107,9 @@ class BenchServer:
             while not stop() and self._clock() - start_s < for_s:
                 origin_s += self._turn(origin_s, epoch_s)
                 turn += 1
+                if turn % _DUTIES_EVERY == 0:
+                    for duty in self._duties:
+                        duty()
                 self.pace.bench_time_s = self._world.now_s() - first_s
                 next_s = origin_s + (self._world.now_s() + TICK_S) / self._scale
                 self._sleep(max(0.0, next_s - self._clock()))

@@ -14,6 +14,7 @@ from hil.core.model import load_model
 from hil.engine.bench import open_bench
 from hil.engine.bench_file import bench_from_dict, load_bench
 from hil.engine.sim_bench import Serving, SimBenchRequest, bench_text, serve, with_hidden
+from hil.engine.stopping import StopRequest
 from tests.benches_for_tests import SIM
 
 MODEL = load_model(SIM.simulation.model)
@@ -156,3 +157,29 @@ def test_a_bench_at_another_pace_is_refused(tmp_path: Any) -> None:
     finally:
         request.stop.ask()
         thread.join()
+
+
+def test_panel_and_memory_are_served_too(tmp_path: Any) -> None:
+    given: list[Serving] = []
+    stop = StopRequest()
+    request = SimBenchRequest(load_bench("sim_whole"), port=0, ready=given.append, stop=stop)
+    serving = threading.Thread(target=serve, args=(request,))
+    serving.start()
+    try:
+        while not given:
+            serving.join(0.05)
+        file = loaded(given[0].bench_file, tmp_path)
+        assert (given[0].left_out, list(given[0].buses)) == ((), ["rmcu", "dyno", "ram"])
+        with open_bench(file) as bench:
+            bench.loop.run_for(0.1)
+            bench.start_heartbeats()
+            bench.further["panel"].come_up()
+            bench.further["ram"].come_up()
+            bench.loop.run_for(0.3)
+            troubles = [text for device in bench.further.values() for text in device.troubles()]
+            assert troubles == []
+            ((source,),) = [device.sources for device in bench.further.values() if device.sources]
+            assert sum(len(samples.time_s) for samples in source.samples()) > 100
+    finally:
+        stop.times = 1
+        serving.join()
