@@ -9,6 +9,7 @@ from test_plans.metrics import METRICS, Metric, NoValueError
 from test_plans.pace import Outlook, Pace
 from test_plans.plan import Plan, estimate_duration_s
 from test_plans.schema import plan_schema
+from test_plans.sequence import Sequence, library_sequences, load_sequence
 from test_plans.steps import STEPS, Step
 
 __all__ = [
@@ -26,13 +27,16 @@ __all__ = [
     "Plan",
     "PlannedSegment",
     "Quantity",
+    "Sequence",
     "Step",
     "Work",
     "controller_choices",
     "estimate_duration_s",
     "judge",
     "library_plans",
+    "library_sequences",
     "load_plan",
+    "load_sequence",
     "plan_from_text",
     "plan_schema",
 ]

@@ -35,6 +35,7 @@ _COMMANDS = {
     "identify": "Frequency responses and fits from recordings.",
     "design": "Controller from a model, with margins.",
     "tune": "Controller for the largest worst margin over a plan's criteria.",
+    "autotune": "Identify, diagnose, add, tune, confirm on a bench, and again.",
     "diagnose": "Find where model and measurement disagree, name the effect, add it.",
     "compare": "The same plan on several runs, side by side.",
     "explain": "What would bring a predicted run to target figures.",

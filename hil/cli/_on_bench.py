@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
-from hil.analysis.tuning import Measured, Patience, RefinedRun, Trial
+from hil.analysis.tuning import Measured, Patience, Trial
 from hil.cli._consent import consent, refuse_nobody
 from hil.cli._named_values import named_numbers
 from hil.cli._one_run import Runs
@@ -14,7 +15,7 @@ from hil.core.errors import BadInputError
 from hil.core.files import make_directory, write_atomically
 from hil.core.model import Model
 from hil.core.recording import read_recording
-from hil.core.result import Segment
+from hil.core.result import CriterionResult, Segment
 from hil.engine import RECORDING, BenchFile
 from hil.engine.envelope import Envelope, envelope_of
 from hil.engine.prediction import Prediction
@@ -53,6 +54,33 @@ class Allowed:
     envelope: Envelope
     name: str
 
+    @property
+    def watched(self) -> BenchFile:
+        """The bench with the envelope among its limits."""
+        return self.envelope.watched_on(self.bench)
+
+    def answered(self, runs: Runs) -> Runs:
+        """Runs for which it was answered beforehand, prompts and hazards included."""
+        name = self.name
+        return replace(runs, confirmed_by=name, hazard_confirmed_by=name) if name else runs
+
+    def told(self) -> str:
+        """To what somebody consented, and who."""
+        by = (
+            f"{self.name} consented to" if self.name else "The bench is simulated, nobody was asked; allowed:"
+        )
+        return f"{by} {self.envelope.told()}."
+
+    def as_json(self) -> dict[str, Any]:
+        """Bench, consent and envelope."""
+        envelope = self.envelope
+        stated = {
+            "largest": dict(envelope.largest),
+            "runs": envelope.runs,
+            "bench_time_s": envelope.bench_time_s,
+        }
+        return {"bench": self.bench.name, "consent": self.name, "envelope": stated}
+
 
 def allowed_on(wanted: Wanted, bench: BenchFile, trial: Trial, model: Model) -> Allowed:
     """Predict the plan as it is, draw an envelope around it, and have somebody consent to that.
@@ -75,6 +103,12 @@ class Carried:
     folder: Path
     exit_code: int
     segments: tuple[Segment, ...]
+    criteria: tuple[CriterionResult, ...]
+
+    def shown(self, name: str) -> Shown:
+        """It as one of the compared responses."""
+        recording = read_recording(self.folder / RECORDING, least_samples=0, allow_missing=True)
+        return Shown(name, recording, self.segments)
 
 
 class WireBench:
@@ -100,8 +134,7 @@ class WireBench:
         self._plan, self._name = plan, name_in(plan, trial.driven.file)
         self._trial, self._model = trial, model
         self.allowed, self._envelope, self._place = allowed, allowed.envelope, place
-        self._runs = _answered(runs, allowed.name)
-        self._watched = allowed.envelope.watched_on(allowed.bench)
+        self._runs, self._watched = allowed.answered(runs), allowed.watched
         self.carried: dict[int, Carried] = {}
         self.bench_time_s = 0.0
 
@@ -126,18 +159,17 @@ class WireBench:
         plan = load_plan(self._plan, Choices({self._name: file}))
         with self._runs.finished(plan, self._watched, folder) as run:
             result = run.result
-            self.carried[number] = Carried(folder, run.exit_code, tuple(result.segments))
+            self.carried[number] = Carried(folder, run.exit_code, tuple(result.segments), result.criteria)
             error = run.outcome.error
         self.bench_time_s += result.bench_time_s
         if error is not None or result.safe_state == "not_confirmed":
             return Measured((), error.what if error else "the safe state is not confirmed")
         return Measured(result.criteria)
 
-    def shown(self, run: RefinedRun, name: str = "measured") -> Shown:
-        """A run as one of the compared responses."""
-        carried = self.carried[run.number]
-        recording = read_recording(carried.folder / RECORDING, least_samples=0, allow_missing=True)
-        return Shown(name, recording, carried.segments)
+    def predicted(self, controller: Controller) -> Shown:
+        """A whole run with it as the model has it, as one of the compared responses."""
+        found = predicted_run(self._trial, self._model, controller)
+        return Shown("predicted", found.recording, found.segments)
 
     @property
     def exit_code(self) -> int:
@@ -155,8 +187,3 @@ def name_in(plan: str, file: Path) -> str:
     """What a plan calls a controller file."""
     text = load_plan(plan).text
     return next((name for name in (str(file), file.name) if name in text), file.name)
-
-
-def _answered(runs: Runs, name: str) -> Runs:
-    """Runs for which somebody has answered beforehand, prompts and hazards included."""
-    return replace(runs, confirmed_by=name, hazard_confirmed_by=name) if name else runs

@@ -27,23 +27,9 @@ class Refined:
     shown: Shown | None
     exit_code: int
 
-    @property
-    def consented(self) -> str:
-        """To what, by whom."""
-        name = self.allowed.name
-        by = f"{name} consented to" if name else "The bench is simulated, nobody was asked; the envelope was"
-        return f"{by} {self.allowed.envelope.told()}."
-
     def as_json(self) -> dict[str, Any]:
         """`refined` of tune.json."""
-        envelope = self.allowed.envelope
-        stated = {
-            "largest": dict(envelope.largest),
-            "runs": envelope.runs,
-            "bench_time_s": envelope.bench_time_s,
-        }
-        asked = {"bench": self.allowed.bench.name, "consent": self.allowed.name, "envelope": stated}
-        return refinement_summary(self.found, {**asked, "folder": FOLDER})
+        return refinement_summary(self.found, {**self.allowed.as_json(), "folder": FOLDER})
 
     def tell(self) -> None:
         """The runs as a table."""
@@ -74,5 +60,5 @@ def refined(
         show=lambda text, share: note(text),
         stopped=lambda: stopped() or wire.exit_code > 0,
     )
-    shown = None if came.best is None else wire.shown(came.best)
+    shown = None if came.best is None else wire.carried[came.best.number].shown("measured")
     return Refined(came, wire.allowed, shown, wire.exit_code)

@@ -18,7 +18,7 @@ from reports.diagnosis import diagnosis_html, diagnosis_pdf
 from reports.origin import Origin, origin_of
 from reports.quantities import chance
 
-_FILES = ("model.toml", "diagnosis.json", "report.html", "report.pdf")
+FILES = ("model.toml", "diagnosis.json", "report.html", "report.pdf")
 _WORTH_A_LINE = 0.02
 _MOST_WORSE = 3
 
@@ -41,11 +41,11 @@ def carry_out(
     _refuse_twice(recordings, holdout or [])
     inputs = [model, *recordings, *(holdout or [])]
     with results_in(
-        out, _FILES, inputs=inputs, overwrite=overwrite, default="diagnose", summary="diagnosis.json"
+        out, FILES, inputs=inputs, overwrite=overwrite, default="diagnose", summary="diagnosis.json"
     ) as place:
         with progress("diagnosis") as show:
-            read = _read(recordings, base, show)
-            held = _read(holdout or [], base, show)
+            read = stretches_of(recordings, base, show)
+            held = stretches_of(holdout or [], base, show)
             found = diagnose(
                 base, read, held, noise=known, least=smallest, at_most_s=60.0 * at_most, show=show
             )
@@ -88,7 +88,7 @@ def _refuse_twice(recordings: list[Path], holdout: list[Path]) -> None:
             raise BadInputError(f"is given twice as {role}", where=str(twice), fix="give it once")
 
 
-def _read(paths: list[Path], base: Model, show: Show) -> list[Recording]:
+def stretches_of(paths: list[Path], base: Model, show: Show) -> list[Recording]:
     """The stretches of all files that a model can explain: driven by torque alone, or by its load too."""
     parts = []
     for path in paths:
@@ -156,5 +156,5 @@ def text_of(found: Diagnosis, out: Path) -> str:
         lines.append(f"made worse: {len(found.worse) - _MOST_WORSE} more, see diagnosis.json")
     lines += [f"note: {note}" for note in found.notes]
     plans = sorted({a.plan for a in found.alternatives if a.plan and a.plan_text})
-    lines += ["", f"written to {out}: {', '.join([*_FILES, *plans])}"]
+    lines += ["", f"written to {out}: {', '.join([*FILES, *plans])}"]
     return "\n".join(lines)

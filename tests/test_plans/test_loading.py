@@ -206,4 +206,10 @@ def test_a_stimulus_with_odd_numbers_is_read_or_refused(changes: dict[str, float
 
 
 def test_built_in_plans() -> None:
-    assert library_plans() == ("acceptance", "commissioning", "identification", "slip")
+    assert library_plans() == (
+        "acceptance",
+        "commissioning",
+        "identification",
+        "short_identification",
+        "slip",
+    )

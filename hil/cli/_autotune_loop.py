@@ -1,0 +1,183 @@
+"""The loop closed: identify, diagnose, add, tune, confirm, until run and prediction agree and nothing grows.
+
+Every stage ends in a decision, which is kept with its reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from hil.analysis.diagnosis import INTERRUPTED, Diagnosis
+from hil.analysis.tuning import Confirmation, confirmation
+from hil.cli._autotune_stages import MODEL, EndedError, Stages, Told
+from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
+from hil.cli._on_bench import WireBench
+from hil.cli._refine_on_bench import Refined
+from hil.cli._tuning import Asked
+from hil.engine import RECORDING
+from reports.outputs.autotune import Closing, Decision, Stage, effects_in_words
+from reports.tuning_report import Shown
+
+
+class AutotuneLoop:
+    """Carries the stages out below `place`; `closing` is what is known, `keep` is called at each decision.
+
+    `model` is the newest that a diagnosis has made, else the one that was given; `shown` are the runs whose
+    responses are worth comparing.
+    """
+
+    def __init__(self, told: Told, place: Path, closing: Closing, keep: Callable[[], None]) -> None:
+        self._told, self.closing, self._keep = told, closing, keep
+        self._stages = Stages(told, place)
+        self._explained: list[Path] = []
+        self.shown: list[Shown] = []
+        self.model = told.given
+
+    def carry_out(self) -> int:
+        """All stages; the exit code. What ended it stands in `closing`."""
+        code = 0
+        try:
+            self._identify()
+            before = self._before()
+            for number in range(1, self._told.sequence.rounds + 1):
+                self._round(number, before)
+            raise EndedError(f"all {self._told.sequence.rounds} rounds were made")
+        except EndedError as ended:
+            self.closing.ended, code = str(ended), ended.exit_code
+        except KeyboardInterrupt:
+            INTERRUPTS.answered()
+            self.closing.ended, code = "interrupted", EXIT_CODE
+        return code or int(not self.closing.content)
+
+    def _identify(self) -> None:
+        carried = self._stages.run(self._told.identify, "identify")
+        self._explained.append(carried.folder / RECORDING)
+        what = f"{len(carried.segments)} segments recorded"
+        why = "what a model lacks shows where torque varies"
+        self._decide(0, "identify", what, "let the diagnosis explain them", why, carried.folder)
+
+    def _before(self) -> Confirmation:
+        """The plan that accepts as it is: what is to be bettered, and what the given model says of it."""
+        trial, closing = self._told.asked.trial, self.closing
+        carried = self._stages.run(trial.plan, "before")
+        found = confirmation(trial.tried({}, 0).criteria, carried.criteria, self._told.agree)
+        closing.before_margins = trial.margins_of(carried.criteria)
+        self.shown.append(carried.shown("before"))
+        what = (
+            f"worst margin {_percent(min(closing.before_margins.values()))}; the given model is {_off(found)}"
+        )
+        agrees = "agrees" if found.agrees else "does not agree"
+        why = (
+            f"it {agrees} within {_percent(found.allowed)}; what is missing shows in recordings of excitation"
+        )
+        self._decide(0, "before", what, "diagnose", why, carried.folder)
+        return found
+
+    def _round(self, number: int, before: Confirmation) -> None:
+        folder = self._stages.place / f"round-{number}"
+        asked = self._better_model(number, folder / "diagnosis")
+        if not self._foretells(before, number, asked):
+            asked = self._better_model(number, folder / "diagnosis-2")
+        found = self._stages.tune(asked, number)
+        worst = found.chosen.worst
+        what = f"predicted worst margin {_percent(worst.worst)} ({worst.binding.replace('.', ' ')}); {found.runs} predictions"
+        why = f"the plan's own controller has {_percent(found.start.worst.worst)} on this model"
+        self._decide(number, "tune", what, "confirm it on the bench", why, folder / "tuned")
+        came, wire = self._stages.confirm(asked, found, folder / "tuned")
+        grown = self._weigh(number, came, wire, folder / "tuned")
+        self._refuse_another(came, wire, grown=grown)
+
+    def _better_model(self, number: int, folder: Path) -> Asked:
+        """What is missing in the given model: an earlier round's name may have been a wrong one."""
+        found = self._stages.diagnose(self._explained, number, folder)
+        self.closing.diagnosis, self.model = found, folder / MODEL
+        self._judge(number, found, folder)
+        return self._stages.asked_on(self.model)
+
+    def _judge(self, number: int, found: Diagnosis, folder: Path) -> None:
+        what = f"verdict {found.verdict}"
+        what += f": {effects_in_words(found)}" if found.effects else ""
+        if found.unfinished == INTERRUPTED:
+            raise EndedError.interrupted()
+        if found.verdict == "unknown":
+            why = found.unfinished or found.signature or "no known effect closes the gap"
+            self._decide(number, "diagnose", what, "end", why, folder)
+            raise EndedError(f"the diagnosis does not know what is missing: {why}")
+        gaps = ", ".join(
+            f"{name} {100 * found.gap_before[name].gap:.3g} % to {100 * gap.gap:.3g} %"
+            for name, gap in found.gap_after.items()
+        )
+        names = ", ".join(effect.use.id for effect in found.effects)
+        decided = f"add {names}" if names else "keep the model, its numbers corrected"
+        self._decide(number, "diagnose", what, decided, f"gaps: {gaps}", folder)
+
+    def _foretells(self, before: Confirmation, number: int, asked: Asked) -> bool:
+        """Whether the better model foretells the plan as it was run; if not, that run is explained, too."""
+        recording = self._stages.place / "before" / RECORDING
+        measured = [one.measured for one in before.criteria]
+        found = confirmation(asked.trial.tried({}, 0).criteria, measured, self._told.agree)
+        enough = found.agrees or recording in self._explained
+        if not enough:
+            self._explained.append(recording)
+        what = f"of the plan as it was run before, the better model is {_off(found)}"
+        decided = "tune on it" if enough else "let the diagnosis explain that run, too"
+        self._decide(number, "diagnose", what, decided, f"{_percent(found.allowed)} are allowed")
+        return enough
+
+    def _weigh(self, number: int, came: Refined, wire: WireBench, folder: Path) -> bool:
+        """Keep the best; whether this round's is better than those before, by as much as counts."""
+        closing, best = self.closing, came.found.best
+        if best is None:
+            self._decide(number, "confirm", "nothing was measured", "end", came.found.ended, folder)
+            raise (
+                EndedError.interrupted()
+                if came.exit_code == EXIT_CODE
+                else EndedError(came.found.ended, came.exit_code)
+            )
+        first = came.found.runs[0].beside_prediction(self._told.agree)
+        earlier = (closing.agrees, closing.best.worst) if closing.best is not None else (False, float("-inf"))
+        kept = (first.agrees, best.worst) > earlier
+        if kept:
+            closing.best, closing.best_round, closing.agrees = best, number, first.agrees
+            self.shown[1:] = [wire.carried[best.number].shown("autotuned"), wire.predicted(best.controller)]
+        what = (
+            f"{len(came.found.runs)} runs, the prediction of the first {_off(first)}; "
+            f"best measured worst margin {_percent(best.worst)}"
+        )
+        if first.agrees:
+            decided, why = ("keep it" if kept else "keep the earlier one"), came.found.ended
+        else:
+            decided = "let the diagnosis explain that run, too"
+            names = ", ".join(one.id.replace(".", " ") for one in first.beyond)
+            why = f"not as predicted within {_percent(first.allowed)}: {names}"
+        self._decide(number, "confirm", what, decided, why, folder)
+        return best.worst - earlier[1] >= self._told.sequence.grow_percent / 100
+
+    def _refuse_another(self, came: Refined, wire: WireBench, *, grown: bool) -> None:
+        """Raise where another round could bring nothing; else say what is to be explained in it."""
+        found = came.found
+        if came.exit_code == EXIT_CODE or found.ended == "stopped":
+            raise EndedError.interrupted()
+        if came.exit_code or found.runs[-1].decision == "refused":
+            raise EndedError(found.ended, came.exit_code)
+        agrees = found.runs[0].beside_prediction(self._told.agree).agrees
+        all_made = len(found.runs) >= self._told.sequence.runs
+        if agrees and not (all_made and grown):
+            raise EndedError(f"prediction and run agree, and the margin no longer grows: {found.ended}")
+        self._explained.append(wire.carried[1].folder / RECORDING)
+
+    def _decide(
+        self, number: int, stage: Stage, found: str, decided: str, why: str, folder: Path | None = None
+    ) -> None:
+        where = "" if folder is None else str(folder.relative_to(self._stages.place))
+        self.closing.decisions.append(Decision(number, stage, found, decided, why, where))
+        self._keep()
+
+
+def _off(found: Confirmation) -> str:
+    return f"up to {_percent(max((one.apart or 0.0 for one in found.criteria), default=0.0))} of a limit off"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2f} %"

@@ -1,0 +1,120 @@
+"""The report of `hil autotune`: every decision with its reason, what was named, margins and responses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hil.analysis.comparison import ComparedRun
+from hil.core.result import RunResult
+from reports import quantities
+from reports.comparison import overlay
+from reports.origin import Origin
+from reports.outputs.autotune import Closing, closing_verdict
+from reports.parts import Page, Part, Table
+from reports.tuning_report import Shown
+
+
+def autotune_page(
+    closing: Closing,
+    shown: Sequence[Shown],
+    segments: Sequence[str],
+    title: str,
+    consented: str,
+    origin: Origin,
+) -> Page:
+    """The page; `shown` are the runs whose responses are compared, in `segments`."""
+    best = closing.best
+    return Page(
+        kind="Autotune",
+        title=title,
+        headline="No controller confirmed"
+        if best is None
+        else f"Worst margin measured {_percent(best.worst)}",
+        tone="pass" if closing.content else "fail",
+        lead=closing_verdict(closing),
+        notes=(consented,),
+        parts=(*_parts(closing), *_responses(closing, shown, segments), origin.part),
+        mark=origin.mark,
+    )
+
+
+def _parts(closing: Closing) -> list[Part]:
+    parts = [
+        Part(
+            "decisions",
+            "Decisions",
+            "Each stage in its order; its folder has its own report.",
+            (_decisions(closing),),
+        )
+    ]
+    if closing.diagnosis is not None and closing.diagnosis.effects:
+        words = "By the newest diagnosis, with the chance that a name is right."
+        parts.append(Part("named", "What the model lacked", words, (_effects(closing),)))
+    if closing.best is not None:
+        words = "Before: the plan's own controller in that place, measured. The others: the best run."
+        parts.append(Part("margins", "Margins", words, (_margins(closing),)))
+    return parts
+
+
+def _decisions(closing: Closing) -> Table:
+    rows = tuple(
+        (str(one.round), one.stage, one.found, one.decided, one.why, one.folder) for one in closing.decisions
+    )
+    return Table(("round", "stage", "found", "decided", "why", "folder"), rows, numbers_from=9)
+
+
+def _effects(closing: Closing) -> Table:
+    assert closing.diagnosis is not None
+    rows = []
+    for effect in closing.diagnosis.effects:
+        for name, value in effect.use.values.items():
+            if name not in effect.standard_error:
+                continue
+            error = quantities.number(effect.standard_error[name])
+            number = value if isinstance(value, str) else quantities.number(value)
+            rows.append((effect.use.id, f"{100 * effect.confidence:.0f} %", name, number, error))
+    return Table(("effect", "chance", "parameter", "value", "standard error"), tuple(rows), 3)
+
+
+def _margins(closing: Closing) -> Table:
+    best = closing.best
+    assert best is not None
+    rows = [
+        (
+            name.replace(".", " "),
+            _percent(closing.before_margins.get(name)),
+            *(_percent(of[name]) for of in (best.predicted.margins, best.expected, best.measured)),
+        )
+        for name in best.measured
+    ]
+    least = (best.predicted.margins, best.expected, best.measured)
+    rows.append(("worst", _percent(closing.before_worst), *(_percent(min(of.values())) for of in least)))
+    return Table(("criterion", "before", "predicted", "expected", "measured"), tuple(rows))
+
+
+def _responses(closing: Closing, shown: Sequence[Shown], segments: Sequence[str]) -> list[Part]:
+    if not shown or closing.best is None:
+        return []
+    compared = tuple(_compared(run) for run in shown)
+    driven = [segment for segment in shown[0].segments if segment.id in segments]
+    return [
+        Part(segment.id, f"Responses: {segment.id}", "", figures=overlay(compared, segment))
+        for segment in driven
+    ]
+
+
+def _compared(run: Shown) -> ComparedRun:
+    result = RunResult(
+        verdict="pass",
+        plan="",
+        bench="",
+        real_time_factor=0.0,
+        bench_time_s=0.0,
+        safe_state="not_needed",
+        segments=run.segments,
+    )
+    return ComparedRun(run.name, run.recording, result)
+
+
+def _percent(share: float | None) -> str:
+    return quantities.DASH if share is None else f"{quantities.number(100 * share, 1)}{quantities.THIN}%"

@@ -1,0 +1,103 @@
+"""A sequence file: which plans `hil autotune` runs one after the other, and when it is content."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pydantic import Field
+
+from hil.core.errors import BadInputError
+from hil.core.files import is_file, read_text
+from hil.core.suggestion import did_you_mean
+from test_plans.building import Strict, brief, build, mapping_at
+from test_plans.yaml_document import read_yaml
+
+SEQUENCES = Path(__file__).parent / "sequences"
+_EXAMPLE = "name: mine, then identify: and accept:"
+
+
+class SequenceKeys(Strict):
+    """The keys of a sequence file."""
+
+    name: str = Field(
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$",
+        description="letters, digits, _, - and ., at most 64: what results are filed under",
+    )
+    title: str = Field(default="", max_length=200, description="what the report is headed with")
+    description: str = Field(default="", max_length=10_000, description="what it is for")
+    identify: str = Field(min_length=1, description="plan whose recording the diagnosis explains")
+    accept: str = Field(min_length=1, description="plan whose worst margin is to be as large as it can be")
+    controller: str = Field(default="", description="which of its controllers is tuned; '' for the last")
+    free: str = Field(default="", description="what is free, as for hil tune --free; '' for as shipped")
+    rounds: int = Field(default=3, ge=1, le=20, description="of diagnosis, tuning and confirmation, at most")
+    runs: int = Field(default=6, ge=1, le=50, description="on the bench in a round, at most")
+    agree_percent: float = Field(
+        default=3.0, gt=0, le=1000, description="of a limit: how far a run may be from its prediction"
+    )
+    grow_percent: float = Field(
+        default=0.2, gt=0, le=100, description="of a limit: a margin that would grow by less does not grow"
+    )
+    draws: int = Field(default=0, ge=0, le=5000, description="cars around the model; 0: the model alone")
+    seed: int = Field(default=0, ge=0, le=2**31, description="of draws and search")
+    generations: int = Field(default=20, ge=1, le=1000, description="of the search over the whole space")
+    diagnose_minutes: float = Field(
+        default=15.0, gt=0, le=1440, description="processor time of one diagnosis, at most"
+    )
+
+
+class Sequence(SequenceKeys):
+    """A checked sequence file; plans and files that it names lie beside it, or are built in."""
+
+    source: Path
+
+    @property
+    def identify_plan(self) -> str:
+        """As `load_plan` takes it."""
+        return _beside(self.source, self.identify)
+
+    @property
+    def accept_plan(self) -> str:
+        """As `load_plan` takes it."""
+        return _beside(self.source, self.accept)
+
+    @property
+    def free_file(self) -> Path | None:
+        """None: as shipped."""
+        return self.source.parent / self.free if self.free else None
+
+
+def library_sequences() -> tuple[str, ...]:
+    """Names of the built-in sequences."""
+    return tuple(sorted(path.stem for path in SEQUENCES.glob("*.yaml")))
+
+
+def load_sequence(name_or_path: str | Path) -> Sequence:
+    """Read a sequence from a file, or a built-in one by its name.
+
+    Raises:
+        BadInputError: no such file, or all that is wrong with it: line, key, and what to do.
+    """
+    path = _path_of(name_or_path)
+    document = read_yaml(read_text(path), str(path))
+    content = mapping_at(document.value, document, (), _EXAMPLE)
+    keys = build(SequenceKeys, content, document, ())
+    return Sequence(**keys.model_dump(), source=path)
+
+
+def _path_of(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or is_file(path):
+        return path
+    names = library_sequences()
+    if path.name in names:
+        return SEQUENCES / f"{path.name}.yaml"
+    raise BadInputError(
+        f"there is no sequence {brief(path.name)}, neither a file nor a built-in one",
+        fix=f"{did_you_mean(path.name, names)}; a file's name ends in .yaml",
+    )
+
+
+def _beside(source: Path, plan: str) -> str:
+    """A plan's file beside the sequence's; else what was written: a path, or a built-in plan's name."""
+    beside = source.parent / plan
+    return str(beside) if is_file(beside) else plan
