@@ -81,7 +81,8 @@ class AutotuneLoop:
             asked = self._better_model(number, folder / "diagnosis-2")
         found = self._stages.tune(asked, number)
         worst = found.chosen.worst
-        what = f"predicted worst margin {_percent(worst.worst)} ({worst.binding.replace('.', ' ')}); {found.runs} predictions"
+        binds = worst.binding.replace(".", " ")
+        what = f"predicted worst margin {_percent(worst.worst)} ({binds}); {found.runs} predictions"
         why = f"the plan's own controller has {_percent(found.start.worst.worst)} on this model"
         self._decide(number, "tune", what, "confirm it on the bench", why, folder / "tuned")
         came, wire = self._stages.confirm(asked, found, folder / "tuned")

@@ -17,12 +17,15 @@ from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.cli.test_commands import HIL
 from tests.hil.cli.test_tune_on_bench import FREE, HARDWARE, MODEL
 
-CHIRP = """
+CHIRP_STEP = (
+    "chirp: {segment: c, quantity: motor_torque, from_hz: 0.5, to_hz: 30, duration_s: 8, amplitude_nm: 20}"
+)
+CHIRP = f"""
 name: chirp
 steps:
-  - hold_speed: {speed_km_h: 20, duration_s: 1}
-  - chirp: {segment: c, quantity: motor_torque, from_hz: 0.5, to_hz: 30, duration_s: 8, amplitude_nm: 20}
-finally: [ramp_down: {duration_s: 1}]
+  - hold_speed: {{speed_km_h: 20, duration_s: 1}}
+  - {CHIRP_STEP}
+finally: [ramp_down: {{duration_s: 1}}]
 """
 SEQUENCE = """
 name: short
@@ -159,7 +162,7 @@ def test_wrong_input_is_one_message_and_leaves_nothing(tmp_path, arguments, said
         ("sequence.yaml", "identify: chirp.yaml", "identify: none.yaml", "none.yaml"),
         ("sequence.yaml", "free: free.toml", "free: none.toml", "none.toml"),
         ("sequence.yaml", "free: free.toml", "controller: other", "driven by a controller 'other'"),
-        ("chirp.yaml", "chirp: {segment: c, ", "chirp: {", "no segment to explain"),
+        ("chirp.yaml", CHIRP_STEP, "wait: {duration_s: 1}", "no segment to explain"),
     ],
 )
 def test_a_sequence_that_cannot_be_carried_out_is_refused(tmp_path, sequence, file, old, new, said, capsys):
