@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run serve page-picture api-fuzz service-kills openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run autotune serve page-picture api-fuzz service-kills openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -62,6 +62,10 @@ test-can-vm: setup
 # What takes minutes: the fixed part of the blind diagnosis set, bad inputs, the wheel, long hunts for faults.
 test-slow: setup
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m slow --durations 40
+
+# The closed loop of tuning on a bench in virtual time that hides backlash and dead time from the model.
+autotune: setup
+	$(BIN)/python -m benchmarks.autotune
 
 # Hundreds of degenerate recordings through every analysis.
 hunt: setup

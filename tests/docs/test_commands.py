@@ -46,6 +46,7 @@ steps:
 finally: [ramp_down: {{duration_s: 0.5}}]
 """,
 }
+SEQUENCE = "name: mine\nidentify: identification\naccept: acceptance\nrounds: 1\nruns: 1\ngenerations: 1\n"
 TARGETS = '[targets]\n"gain_0kmh.peak_shaft_torque" = 300.0\n'
 SEGMENTS = '{"segments": [{"id": "gain_0kmh", "start_s": 1.0, "step_s": 1.5, "end_s": 2.5}]}'
 #: Without end, or with a question: ended by Ctrl-C, or answered by nobody.
@@ -58,10 +59,11 @@ CODES = {
     ("report",): (0, 1),  # of a run that crashed: it never passes
     ("monitor",): (0, 2, 130),  # a simulated bench has nothing to monitor
     ("jog",): (0, 1),
+    ("autotune",): (0, 1),
 }
 LINES = documented()
 #: Pages whose commands take minutes: searches, and a bench in wall-clock time at a fifth of its rate.
-LONG = ("compare-runs", "diagnose", "explain", "identify-and-design", "sim-bench", "tune")
+LONG = ("autotune", "compare-runs", "diagnose", "explain", "identify-and-design", "sim-bench", "tune")
 PAGES = [
     pytest.param(page, marks=pytest.mark.hunt if Path(page).stem in LONG else pytest.mark.slow)
     for page in sorted({line.page for line in LINES})
@@ -93,6 +95,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "benches/paper_targets.toml").write_text(TARGETS)
     for name, text in PLANS.items():
         (folder / name).write_text(text)
+    (folder / "mine.yaml").write_text(SEQUENCE)
     for name in ("my_bench.toml", "net.toml"):
         shutil.copy(folder / "bench.toml", folder / name)
     shutil.copy(folder / "axle.toml", folder / "base.toml")
