@@ -33,11 +33,11 @@ _NAMES = (SUMMARY, CONTROLLER, MODEL, HTML, PDF)
 
 def carry_out(
     *,
-    sequence: str,
     model: Path,
+    sequence: str,
     bench: str,
     out: Path | None,
-    envelope: list[str],
+    envelope: list[str] | None,
     confirm: str,
     operator: str,
     processes: int | None,
@@ -45,7 +45,9 @@ def carry_out(
     json_: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    told = _told(load_sequence(sequence), model, bench, envelope, confirm, operator, processes, overwrite)
+    told = _told(
+        load_sequence(sequence), model, bench, envelope or [], confirm, operator, processes, overwrite
+    )
     inputs = told.runs.inputs
     with results_in(
         out, _NAMES, inputs=inputs, overwrite=overwrite, default=told.sequence.name, summary=SUMMARY

@@ -39,12 +39,16 @@ def carry_out(
     bench: str,
     then_run: bool,
     differ: float,
-    wanted: Wanted,
+    on_bench: str,
+    runs: int | None,
+    envelope: list[str] | None,
+    confirm: str,
     operator: str,
     overwrite: bool,
     json_: bool,
 ) -> int:
     """Carry the command out; its exit code."""
+    wanted = Wanted(on_bench, runs, envelope or [], confirm)
     wanted.refuse_alone()
     if wanted.bench and (bench or then_run):
         option = "--bench" if bench else "--then-run"
@@ -74,13 +78,13 @@ def carry_out(
         if then_run and not stop.times:
             if not json_:
                 print(text_of(found, str(place.folder)))
-            runs = Runs(None, operator, "", "", "", asked.inputs, overwrite)
-            ran = run_tuned(found, plan, place.folder, OnTheWire(asked.bench, differ / 100, runs), model)
+            carried = Runs(None, operator, "", "", "", asked.inputs, overwrite)
+            ran = run_tuned(found, plan, place.folder, OnTheWire(asked.bench, differ / 100, carried), model)
             summary = write_results(asked, found, place.write, ran)
         if allowed is not None and not stop.times:
-            runs = Runs(None, operator, "", "", "", asked.inputs, overwrite)
+            carried = Runs(None, operator, "", "", "", asked.inputs, overwrite)
             patience = Patience(allowed.envelope.runs)
-            wire = WireBench(plan, asked.trial, axle, allowed, runs, place.folder / FOLDER)
+            wire = WireBench(plan, asked.trial, axle, allowed, carried, place.folder / FOLDER)
             with stop.by_signals():
                 refinement = refined(found, wire, patience, processes, lambda: stop.times > 0)
                 summary = write_results(asked, found, place.write, refinement=refinement)

@@ -64,7 +64,7 @@ def command(
         model=model,
         bench=bench,
         out=out,
-        envelope=envelope or [],
+        envelope=envelope,
         confirm=confirm,
         operator=operator,
         processes=processes,

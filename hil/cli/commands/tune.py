@@ -112,7 +112,6 @@ def command(
     has the runs, controller.toml the best that was measured.
     """
     import_python_can()
-    from hil.cli._on_bench import Wanted
     from hil.cli.tune import carry_out
 
     return carry_out(
@@ -130,7 +129,10 @@ def command(
         bench=bench,
         then_run=then_run,
         differ=differ,
-        wanted=Wanted(on_bench, runs, envelope or [], confirm),
+        on_bench=on_bench,
+        runs=runs,
+        envelope=envelope,
+        confirm=confirm,
         operator=operator,
         overwrite=overwrite,
         json_=json_,
