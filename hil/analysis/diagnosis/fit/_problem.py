@@ -58,7 +58,8 @@ class Problem:
     model's numbers: beside errors a thousand times the noise it would say nothing, and what the recordings
     do not tell would run away. `proven` is the largest power, (3,), that noise may have in the weighed
     errors of each channel. Every simulation asks `allowance` first. `functions` are those of a
-    transfer-function model. A problem never changes: other angles make another one.
+    transfer-function model. `zero_known` says that a recording from rest begins at the angle
+    from which the base model's ripples count. A problem never changes: other angles make another one.
     """
 
     traces: tuple[Trace, ...]
@@ -73,6 +74,7 @@ class Problem:
     misfit: float = 1.0
     allowance: Allowance = UNBOUNDED
     functions: Mapping[str, TransferFunction] | None = None
+    zero_known: bool = True
 
     @cached_property
     def channels(self) -> int:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 import numpy.typing as npt
 
@@ -14,6 +17,8 @@ from hil.analysis.diagnosis.search._thresholds import (
     ALIGNMENT_ROUNDS,
     WHOLE_ORDER,
     WHOLE_WORSE,
+    ZERO_DOUBTED,
+    ZERO_WRONG,
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, angle_known, track
 
@@ -31,10 +36,26 @@ def adds_ripple(hypothesis: Hypothesis) -> bool:
 
 
 def with_base_angles(problem: Problem, first: Fit) -> tuple[Problem, Fit]:
-    """Angles corrected by the ripples that the base model knows, and its fit with them."""
-    base = first.hypothesis
-    if not has_ripple(base):
+    """Angles corrected by the ripples that the base model knows, and its fit with them.
+
+    A recording from rest is taken to begin at the angle from which the model's ripples count, as runs on a
+    bench that was just switched on do; where this leaves much and another zero far less, it did not.
+    """
+    if not has_ripple(first.hypothesis):
         return problem, first
+    counted = _base_in_turns(problem, first)
+    left = counted[1].total - problem.rows
+    if left < ZERO_DOUBTED * problem.rows or not any(
+        map(partial(angle_known, problem), range(len(first.starts)))
+    ):
+        return counted
+    free = _base_in_turns(replace(problem, zero_known=False), first)
+    return free if free[1].total - problem.rows < ZERO_WRONG * left else counted
+
+
+def _base_in_turns(problem: Problem, first: Fit) -> tuple[Problem, Fit]:
+    """Track and fit while it gains something."""
+    base = first.hypothesis
     theta, starts, turned = first.theta, first.starts, problem
     if not all(angle_known(problem, index) for index in range(len(starts))):
         theta = base.start()  # fitted parameters were bent to make up for a wrong phase

@@ -10,6 +10,13 @@ ALIGNMENT_ROUNDS: Annotated[int, Means("rounds", "of tracking and fitting at mos
 ALIGNMENT_LITTLE: Annotated[
     float, Means("of what is left", "a round that gains less is the last", "alignment")
 ] = 0.02
+ZERO_DOUBTED: Annotated[
+    float,
+    Means("of pure noise", "left by a model with ripples: maybe they count from another angle", "alignment"),
+] = 0.02
+ZERO_WRONG: Annotated[
+    float, Means("of what is left", "another zero that leaves less is the right one", "alignment")
+] = 0.5
 WHOLE_ORDER: Annotated[
     tuple[float, float],
     Means("orders", "an order so far from a whole one may be that one, bent by drift", "alignment"),

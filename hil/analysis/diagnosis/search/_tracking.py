@@ -109,7 +109,8 @@ def track(
 
 def angle_known(problem: Problem, index: int) -> bool:
     """Whether a recording's angle counts from the bench's own zero, as the phases of a model do."""
-    return problem.resting[index] or problem.traces[index].first_wheel_angle_rad != 0.0
+    counted = problem.resting[index] or problem.traces[index].first_wheel_angle_rad != 0.0
+    return problem.zero_known and counted
 
 
 def _turned(problem: Problem, index: int, column: int, times: Array, drift: Array) -> Array:

@@ -1,5 +1,6 @@
 """Ripples follow a measured angle that drifts: the ripple itself tells how."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 from scipy.signal import lfilter
 
 from hil.analysis.diagnosis.data._noise import noise_levels
-from hil.analysis.diagnosis.data._trace import trace_of
+from hil.analysis.diagnosis.data._trace import Trace, trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
@@ -104,7 +105,8 @@ def test_a_followed_ripple_promises_more_than_one_that_is_not(tmp_path):
     assert tracked_gain(problem, base, HIGH) == pytest.approx(closed, rel=0.1)
 
 
-def test_a_ripple_that_the_model_knows_is_followed_from_mid_motion_on():
+def cut_from_motion() -> tuple[Model, Trace]:
+    """A model with a ripple, and a recording of it that begins 3 s after the wheels began to turn."""
     ripple = EffectUse("wheel_order_disturbance", {"order": 3.0, "amplitude_nm": 30.0, "phase_rad": 0.0})
     known = MODEL.with_effects(ripple)
     at = np.arange(0.0, 7.0, 1e-3)
@@ -114,9 +116,24 @@ def test_a_ripple_that_the_model_knows_is_followed_from_mid_motion_on():
     channels = {TIME: at[3000:], INPUT: torque[3000:]}
     for name, noise in zip(OUTPUTS, (0.02, 0.0015, 0.7), strict=True):
         channels[name] = clean[name][3000:] + rng.normal(0.0, noise, 4000)
-    traces = [trace_of(Recording(channels, Path("cut.csv")))]
-    problem = problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
+    return known, trace_of(Recording(channels, Path("cut.csv")))
+
+
+def test_a_ripple_that_the_model_knows_is_followed_from_mid_motion_on():
+    known, trace = cut_from_motion()
+    problem = problem_of([trace], noise_levels([trace]), BASE["gear_ratio"])
     first = fit(problem, Hypothesis(known))
     assert first.cost > 1000.0 * problem.rows  # nobody knows the wheel's angle where the recording begins
     _, found = with_base_angles(problem, first)
+    assert found.cost < 2.0 * problem.rows
+
+
+@pytest.mark.parametrize("turned_rad", [0.7, 2.5])
+def test_where_an_angle_was_not_counted_from_the_models_zero_the_ripple_tells(turned_rad):
+    """Who turned the wheels before this run, nobody knows; the recording counts from its own beginning."""
+    known, trace = cut_from_motion()
+    trace = replace(trace, first_wheel_angle_rad=48.0 + turned_rad)
+    problem = problem_of([trace], noise_levels([trace]), BASE["gear_ratio"])
+    moved, found = with_base_angles(problem, fit(problem, Hypothesis(known)))
+    assert not moved.zero_known
     assert found.cost < 2.0 * problem.rows
