@@ -39,7 +39,9 @@ class SequenceKeys(Strict):
     )
     draws: int = Field(default=0, ge=0, le=5000, description="cars around the model; 0: the model alone")
     seed: int = Field(default=0, ge=0, le=2**31, description="of draws and search")
-    generations: int = Field(default=20, ge=1, le=1000, description="of the search over the whole space")
+    starts: int = Field(
+        default=6, ge=0, le=1000, description="points that the search goes uphill from, beside the plan's own"
+    )
     diagnose_minutes: float = Field(
         default=15.0, gt=0, le=1440, description="processor time of one diagnosis, at most"
     )

@@ -24,7 +24,6 @@ from hil.engine import StopRequest
 from reports.origin import origin_of
 from test_plans import Plan, Sequence
 
-_BETWEEN = 0.4  # generations on the worst cars for each of those on the model itself
 MODEL = "model.toml"
 
 
@@ -112,12 +111,11 @@ class Stages:
     def tune(self, asked: Asked, number: int) -> Tuning:
         """Search on the model."""
         told, stop = self._told, StopRequest()
-        generations = told.sequence.generations
         with progress(f"round {number}: tune") as show, stop.by_signals():
             found = tune(
                 asked.trial,
                 seed=told.sequence.seed,
-                effort=Effort(far=generations, between=max(1, round(_BETWEEN * generations))),
+                effort=Effort(starts=told.sequence.starts),
                 processes=told.processes,
                 show=lambda text, share: show(text, share),
                 stopped=lambda: stop.times > 0,

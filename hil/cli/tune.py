@@ -20,8 +20,6 @@ from hil.core.errors import BadInputError
 from hil.engine import DEFAULT_BENCH, StopRequest
 from reports.outputs.tuning import text_of
 
-_BETWEEN = 0.4  # generations on the worst cars for each of those on the model itself
-
 
 def carry_out(
     *,
@@ -33,7 +31,7 @@ def carry_out(
     start: Path | None,
     draws: int,
     seed: int,
-    generations: int,
+    starts: int,
     at_most: float | None,
     processes: int | None,
     bench: str,
@@ -64,11 +62,11 @@ def carry_out(
     with results_in(
         out, NAMES, inputs=asked.inputs, overwrite=overwrite, default="tune", summary=SUMMARY
     ) as place:
-        with progress(f"tune {asked.plan.name}") as show, stop.by_signals():
+        with progress(f"tune {asked.plan.name}") as show, stop.by_signals(), stop.telling(_at_once(stop)):
             found = tune(
                 asked.trial,
                 seed=seed,
-                effort=Effort(far=generations, between=max(1, round(_BETWEEN * generations))),
+                effort=Effort(starts=starts),
                 processes=processes,
                 show=lambda text, share: show(text, share),
                 stopped=_stopped(stop, at_most),
@@ -110,6 +108,17 @@ def carry_out(
             else int(not (ran.confirmation.agrees and ran.confirmation.passed))
         )
     return 0 if found.chosen.worst.worst >= 0 else 1
+
+
+def _at_once(stop: StopRequest) -> Callable[[], None]:
+    """Asked once, what is best so far is still compared and written, which takes a while; not asked again."""
+
+    def told() -> None:
+        if stop.times > 1:
+            INTERRUPTS.arrived = True
+            raise KeyboardInterrupt
+
+    return told
 
 
 def _stopped(stop: StopRequest, at_most_min: float | None) -> Callable[[], bool]:

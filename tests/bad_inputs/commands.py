@@ -25,7 +25,7 @@ USUAL: dict[str, tuple[str, ...]] = {
         "--among", "dead_time", "--evaluations", "20", "--out", "out",
     ),
     "tune": (
-        "acceptance", "--model", "model.toml", "--bench", "bench.toml", "--generations", "1",
+        "acceptance", "--model", "model.toml", "--bench", "bench.toml", "--starts", "1",
         "--at-most", "0.02", "--processes", "1", "--out", "out",
     ),
     "doctor": ("bench.toml", "--for", "0.3"),

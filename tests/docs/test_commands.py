@@ -46,7 +46,7 @@ steps:
 finally: [ramp_down: {{duration_s: 0.5}}]
 """,
 }
-SEQUENCE = "name: mine\nidentify: identification\naccept: acceptance\nrounds: 1\nruns: 1\ngenerations: 1\n"
+SEQUENCE = "name: mine\nidentify: identification\naccept: acceptance\nrounds: 1\nruns: 1\nstarts: 0\n"
 TARGETS = '[targets]\n"gain_0kmh.peak_shaft_torque" = 300.0\n'
 SEGMENTS = '{"segments": [{"id": "gain_0kmh", "start_s": 1.0, "step_s": 1.5, "end_s": 2.5}]}'
 #: Without end, or with a question: ended by Ctrl-C, or answered by nobody.

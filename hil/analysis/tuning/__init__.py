@@ -1,5 +1,6 @@
 """A controller for the largest worst margin over a plan's criteria."""
 
+from hil.analysis.tuning._ascent import Ascent, scatter, score
 from hil.analysis.tuning._confirmed import Agreement, Confirmation, confirmation
 from hil.analysis.tuning._draws import Draw, draws_of
 from hil.analysis.tuning._driven import Driven, driven_by
@@ -16,6 +17,7 @@ from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_sta
 __all__ = [
     "PARAMETERS",
     "Agreement",
+    "Ascent",
     "Bench",
     "CarryOut",
     "Confirmation",
@@ -49,6 +51,8 @@ __all__ = [
     "refuse_model",
     "refuse_start",
     "refuse_unknown_weights",
+    "scatter",
+    "score",
     "shipped_free",
     "tune",
     "values_of",

@@ -1,26 +1,31 @@
-"""Global, then local; few cars while far, all of them at the end.
+"""Global, then local; few cars while far, many at the end.
 
-Differential evolution (Storn and Price, J. Global Optimization 11 (1997) 341) over the whole space on the
-model itself, again around the best on the cars that were worst for it, then the method of Nelder and Mead
-(Computer Journal 7 (1965) 308) on a set of cars that grows: every car is tried with the best, the worst join
-the set, until the worst of all is in it. The same seed gives the same candidates on any number of cores.
+Far: points all over the space are tried on the model itself, and from the best of them and from the start it
+goes uphill there (`Ascent`). Near: every car is tried with the best, those that matter join the model itself,
+and from the best of all hills it goes uphill on these together; again, until no car changes what counts. The
+same seed gives the same candidates on any number of cores.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import differential_evolution, minimize
 
+from hil.analysis.tuning._ascent import Ascent, scatter, score
 from hil.analysis.tuning._parameters import Space
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Tried
 
 Array = npt.NDArray[np.float64]
+
+_FAR, _NEAR = 0.2, 0.08  # radius that an ascent begins with, as a share of the parameters' ranges
+_SHORTEST = 1e-3  # step that ends it
+_SCATTERED = 10  # points for each that is gone uphill from
+_AT_ONCE = 32  # predictions between looks whether somebody asks to stop
+_SAME = 1e-4  # of scores: less than this is no difference
 
 
 @dataclass(frozen=True)
@@ -28,18 +33,17 @@ class Effort:
     """How much is tried.
 
     Attributes:
-        far: generations on the model itself; between: on the worst cars.
-        members: of a generation, for each free parameter.
-        near: candidates of one local search, for each free parameter.
-        rounds: of local searches at most.
-        joining: cars that join the set in a round.
+        starts: of ascents on the model itself, beside the plan's own controller: the best of ten times as
+            many points all over the space.
+        far, near: rounds of an ascent at most, on the model itself and on several cars.
+        joins: times that cars join.
+        joining: cars that join at once.
     """
 
-    far: int = 20
-    between: int = 8
-    members: int = 5
-    near: int = 16
-    rounds: int = 4
+    starts: int = 6
+    far: int = 25
+    near: int = 12
+    joins: int = 8
     joining: int = 4
 
 
@@ -72,107 +76,125 @@ class Search:
         self._pool, self._space, self._seed, self._effort = pool, space, seed, effort
         self._show, self._stopped = show, stopped
         self.archive: list[Tried] = []
-        self.best = start
-        self._best_score, self._doing = -np.inf, ""
+        self.best = np.clip(start, 0.0, 1.0)
+        self._best_score = self._best_worst = -np.inf
+        self._doing = ""
         self._active: tuple[int, ...] = (0,)
+        self._joined: tuple[float, Array] | None = None  # best of those that were tried on every car
         self.ended = "converged"
 
     def carry_out(self) -> None:
         """Search; ends early when somebody asks to stop, and keeps what is known."""
-        cars = len(self._pool.trial.draws)
         try:
-            self._evolve("far", self._effort.far, np.clip(self.best, 0.0, 1.0), 0.5)
-            if cars > 1:
-                self._join()
-                self._evolve("between", self._effort.between, self.best, 0.15)
-            for number in range(self._effort.rounds):
-                self._descend(number)
-                if cars == 1 or not self._join():
-                    return
-            self.ended = "rounds used up"
+            hills = self._far()
+            if len(self._pool.trial.draws) > 1:
+                self.ended = "rounds used up"
+                self._near(hills)
         except StoppedError:
             self.ended = "stopped"
 
-    def everywhere(self, point: Array) -> list[Tried]:
-        """A candidate on every car, by number; goes on when somebody asks to stop."""
-        values = self._space.values(point)
-        return self._pool.tried([(values, number) for number in range(len(self._pool.trial.draws))])
+    def everywhere(self) -> list[Tried]:
+        """The best on every car, by number; goes on when somebody asks to stop.
 
-    def _evolve(self, name: str, generations: int, start: Array, width: float) -> None:
-        """Differential evolution on the active cars, its first generation `width` around `start`."""
-        self._begin(name)
-        random = np.random.default_rng([self._seed, len(self._active)])
-        members = max(8, self._effort.members * self._space.size)
-        first = start + width * random.uniform(-1, 1, (members, self._space.size))
-        if width >= 0.5:  # all over the cube
-            first = random.uniform(0, 1, first.shape)
-        first[0] = start
-        settings: Any = {
-            "bounds": [(0.0, 1.0)] * self._space.size,
-            "init": np.clip(first, 0.0, 1.0),
-            "maxiter": generations,
-            "vectorized": True,
-            "updating": "deferred",
-            "polish": False,
-            "tol": 0.0,
-            "seed": random,
-        }
-        differential_evolution(self._costs, **settings)
+        What was best on some cars gives way to what is known to be better on all of them.
+        """
+        found = self._on_all(self.best)
+        if self._joined is not None and self._joined[0] > score(found):
+            self.best = self._joined[1]
+            found = self._on_all(self.best)
+        return found
 
-    def _descend(self, number: int) -> None:
-        """Nelder and Mead on the active cars from the best so far."""
-        self._begin(f"near, {len(self._active)} cars")
-        step = 0.08 / (1 + number)
-        inward = np.where(self.best > 0.5, -step, step)
-        simplex = np.vstack([self.best, self.best + np.diag(inward)])
-        options: Any = {
-            "initial_simplex": simplex,
-            "maxfev": self._effort.near * self._space.size,
-            "xatol": 1e-3,
-            "fatol": 1e-5,
-            "adaptive": True,
-        }
-        bounds: Any = [(0.0, 1.0)] * self._space.size
-        minimize(self._cost, self.best, method="Nelder-Mead", bounds=bounds, options=options)
+    def _far(self) -> list[Array]:
+        """Uphill on the model itself from several points; where that ended, best first."""
+        self._begin("far")
+        random = np.random.default_rng(self._seed)
+        points = scatter(self._space.size, _SCATTERED * self._effort.starts, random)
+        own = self.best
+        scores: list[float] = []
+        for first in range(0, len(points), _AT_ONCE):
+            scores += [score(cars) for cars in self._tried(points[first : first + _AT_ONCE])]
+        order = np.argsort(scores, kind="stable")[::-1]
+        begun = [own, *(points[i] for i in order[: self._effort.starts])]
+        ends = [self._uphill(point, _FAR, self._effort.far) for point in begun]
+        ends.append(self._uphill(self.best, _NEAR, self._effort.far))
+        ends.sort(key=lambda end: -end[0])
+        return [point for _, point in ends]
 
-    def _costs(self, points: Any) -> Any:
-        """Of a generation, a column for each candidate."""
-        return -np.array(self._scores(list(points.T)))
+    def _near(self, hills: Sequence[Array]) -> None:
+        """Uphill on the cars that matter, which become more."""
+        candidates = list(hills)
+        for number in range(self._effort.joins):
+            if not self._join():
+                self.ended = "converged"
+                return
+            self._begin(f"near, {len(self._active)} cars")
+            candidates = [self.best, *candidates] if number == 0 else [self.best]
+            scores = [score(cars) for cars in self._tried(candidates)]
+            self._uphill(candidates[int(np.argmax(scores))], _NEAR, self._effort.near)
+        self._join()
 
-    def _cost(self, point: Any) -> float:
-        return -self._scores([point])[0]
+    def _uphill(self, start: Array, radius: float, rounds: int) -> tuple[float, Array]:
+        """Ascend on the active cars; score and place of the best on the way."""
+        best = [(-np.inf, start)]
+
+        def tried_on(points: Sequence[Array]) -> Sequence[Sequence[Tried]]:
+            found = self._tried(points)
+            best.extend((score(cars), point) for cars, point in zip(found, points, strict=True))
+            best[:] = [max(best, key=lambda one: one[0])]
+            return found
+
+        limits = self._pool.trial.limits
+        criteria = [criterion.id for criterion in self._pool.trial.driven.criteria]
+        Ascent(tried_on, criteria, limits).carry_out(start, radius, _SHORTEST, rounds)
+        return best[0]
+
+    def _join(self) -> bool:
+        """Let the cars that lower the best's score most join the active ones; whether any does."""
+        self._show(f"all {len(self._pool.trial.draws)} cars", None)
+        found = self._on_all(self.best, self._refuse_if_stopped)
+        whole = score(found)
+        if self._joined is None or whole > self._joined[0]:
+            self._joined = whole, self.best
+        active = list(self._active)
+        while len(active) < len(self._active) + self._effort.joining:
+            known = [found[number] for number in active]
+            if score(known) < whole + _SAME:
+                break
+            lowered = [score([*known, one]) for one in found]
+            active.append(int(np.argmin(lowered)))
+        joined = len(active) > len(self._active)
+        self._active = tuple(active)
+        return joined
 
     def _begin(self, doing: str) -> None:
         """Scores on other cars are not to be compared with those before."""
-        self._doing, self._best_score = doing, -np.inf
+        self._doing = doing
+        self._best_score = self._best_worst = -np.inf
 
-    def _join(self) -> bool:
-        """Let the cars on which the best is worst join the active ones; whether any has."""
-        self._refuse_if_stopped()
-        self._show(f"all {len(self._pool.trial.draws)} cars", None)
-        found = sorted(self.everywhere(self.best), key=lambda tried: tried.score)
-        least = min(tried.score for tried in found if tried.draw in self._active)
-        worse = [t.draw for t in found if t.score < least and t.draw not in self._active]
-        self._active = (*self._active, *worse[: self._effort.joining])
-        return bool(worse)
+    def _on_all(self, point: Array, ask: Callable[[], None] = lambda: None) -> list[Tried]:
+        """A candidate on every car; `ask` is called now and then, and may raise."""
+        values, cars = self._space.values(point), range(len(self._pool.trial.draws))
+        found: list[Tried] = []
+        for first in range(0, len(cars), _AT_ONCE):
+            ask()
+            found += self._pool.tried([(values, number) for number in cars[first : first + _AT_ONCE]])
+        return found
 
-    def _scores(self, points: Sequence[Array]) -> list[float]:
-        """Of each candidate on the active cars: the worst."""
+    def _tried(self, points: Sequence[Array]) -> list[list[Tried]]:
+        """Each candidate on the active cars."""
         self._refuse_if_stopped()
-        points = [np.clip(point, 0.0, 1.0) for point in points]
-        values = [self._space.values(point) for point in points]
-        work = [(one, number) for one in values for number in self._active]
-        found = self._pool.tried(work)
-        self.archive += [tried for tried in found if tried.draw == 0]
         cars = len(self._active)
-        scores = [min(t.score for t in found[i * cars : (i + 1) * cars]) for i in range(len(points))]
-        for point, score in zip(points, scores, strict=True):
-            if score > self._best_score:
-                self.best, self._best_score = point.copy(), score
-        self._show(
-            f"{self._doing}: {self._pool.runs} runs, worst margin {100 * self._best_score:.1f} %", None
-        )
-        return scores
+        values = [self._space.values(point) for point in points]
+        found = self._pool.tried([(one, number) for one in values for number in self._active])
+        self.archive += [tried for tried in found if tried.draw == 0]
+        each = [found[i * cars : (i + 1) * cars] for i in range(len(points))]
+        for point, tried in zip(points, each, strict=True):
+            if score(tried) > self._best_score:
+                self.best, self._best_score = np.array(point), score(tried)
+                self._best_worst = min(one.worst for one in tried)
+        worst = f"worst margin {100 * self._best_worst:.1f} %"
+        self._show(f"{self._doing}: {self._pool.runs} runs, {worst}", None)
+        return each
 
     def _refuse_if_stopped(self) -> None:
         if self._stopped():

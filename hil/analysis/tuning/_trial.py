@@ -23,10 +23,15 @@ from test_plans import Plan, judge
 
 #: What a candidate counts that keeps no hard limit, and one that cannot be run at all.
 INFEASIBLE, UNSTABLE = -2.0, -20.0
-_LEAST = (
-    -1.9
-)  # a margin below this counts no less: any candidate within the hard limits is better than one beyond
-_MEAN_SHARE = 0.01  # of the mean margin in what is searched for: it decides between equals
+_LEAST = -1.9  # what a margin counts at least: any candidate within the hard limits is better than one beyond
+#: Of the mean margin in what is searched for: of controllers that are nearly equal in the worst margin, the
+#: one with more elsewhere is better.
+MEAN_SHARE = 0.05
+
+
+def counted(margin: float) -> float:
+    """What a margin counts in a search: itself, but from -1 to -1.9 where more than the limit is lacking."""
+    return margin if margin >= -1.0 else _LEAST + (1.0 + _LEAST) / margin
 
 
 class Predicted(Protocol):
@@ -88,9 +93,11 @@ class Tried:
 
     @property
     def score(self) -> float:
-        """What a search makes as large as it can: the worst margin and, for a hundredth, the mean of all."""
-        mean = float(np.mean([max(_LEAST, m) for m in self.margins.values()])) if self.margins else 0.0
-        return self.worst + (_MEAN_SHARE * mean if self.feasible else 0.0)
+        """What a search makes as large as it can: the worst margin and, for a twentieth, the mean of all."""
+        if not self.feasible:
+            return self.worst
+        least = [counted(margin) for margin in self.margins.values()]
+        return float(min(least) + MEAN_SHARE * np.mean(least))
 
     @property
     def binding(self) -> str:
@@ -163,6 +170,11 @@ class Trial:
             return 0.0 if criterion.verdict in ("pass", "informational") else -1.0
         weight = self.free.weight(criterion.id, metric)
         return margin / weight if margin > 0 else margin * weight
+
+    @property
+    def limits(self) -> tuple[str, ...]:
+        """Names of the hard limits that are asked for."""
+        return tuple(name for name, value in self.free.limits if value is not None and value is not False)
 
     def _loop_limits(self, loop: Margins) -> dict[str, float]:
         limits = self.free.limits

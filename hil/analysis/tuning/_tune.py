@@ -114,15 +114,19 @@ def tune(
         )
         search.carry_out()
         show("comparing", None)
+        everywhere = tuple(search.everywhere())
         chosen = Standing(
             "tuned",
             trial.controller(space.values(search.best)),
             space.values(search.best),
-            tuple(search.everywhere(search.best)),
+            everywhere,
         )
         start = _standing(pool, "start", {})
-        others = tuple(_standing(pool, name, values) for name, values in _paper(trial).items())
-        sensitivities = {} if search.ended == "stopped" else _sensitivities(pool, space, search.best)
+        others: tuple[Standing, ...] = ()
+        sensitivities: dict[str, dict[str, float]] = {}
+        if search.ended != "stopped":
+            others = tuple(_standing(pool, name, values) for name, values in _paper(trial).items())
+            sensitivities = _sensitivities(pool, space, search.best)
     _refuse_infeasible(chosen, start, trial)
     return Tuning(
         trial,

@@ -36,9 +36,12 @@ def command(
         typer.Option(min=0, max=5000, help="cars drawn from uncertainty and tolerances; 0: the model alone"),
     ] = 0,
     seed: Annotated[int, typer.Option(min=0, help="of draws and search")] = 0,
-    generations: Annotated[
-        int, typer.Option(min=1, max=1000, help="of the search over the whole space, on the model itself")
-    ] = 20,
+    starts: Annotated[
+        int,
+        typer.Option(
+            min=0, max=1000, help="points from which it goes uphill on the model itself, beside the start"
+        ),
+    ] = 6,
     at_most: Annotated[
         float | None,
         typer.Option(metavar="MINUTES", min=0.01, help="end the search then, with the best so far"),
@@ -123,7 +126,7 @@ def command(
         start=start,
         draws=draws,
         seed=seed,
-        generations=generations,
+        starts=starts,
         at_most=at_most,
         processes=processes,
         bench=bench,

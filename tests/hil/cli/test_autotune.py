@@ -34,7 +34,7 @@ accept: short.yaml
 free: free.toml
 rounds: 2
 runs: 2
-generations: 1
+starts: 1
 """
 
 

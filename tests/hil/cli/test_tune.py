@@ -26,7 +26,7 @@ def inputs(tmp_path):
 @pytest.mark.slow
 def test_a_controller_with_more_margin_is_written_with_its_reasons(tmp_path, inputs, capsys):
     out = tmp_path / "out"
-    options = ["--draws", "2", "--generations", "2", "--processes", "1", "--out", str(out)]
+    options = ["--draws", "2", "--starts", "1", "--processes", "1", "--out", str(out)]
     assert guarded(["tune", *inputs, *options]) == 0
     shown = capsys.readouterr().out
     told = json.loads((out / "tune.json").read_text())
@@ -46,7 +46,7 @@ def test_a_controller_with_more_margin_is_written_with_its_reasons(tmp_path, inp
 def test_it_is_run_at_once_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path, inputs, monkeypatch):
     asked: list[dict[str, object]] = []
     monkeypatch.setattr("hil.cli.diagnose.carry_out", lambda **options: asked.append(options))
-    options = ["--generations", "1", "--at-most", "0.05", "--processes", "1", "--then-run"]
+    options = ["--starts", "1", "--at-most", "0.05", "--processes", "1", "--then-run"]
     assert guarded(["tune", *inputs, *options, "--out", str(tmp_path / "same")]) == 0
     told = json.loads((tmp_path / "same" / "tune.json").read_text())["confirmed"]
     assert told["agrees"]
@@ -89,7 +89,7 @@ def test_wrong_input_is_one_message_and_leaves_nothing(tmp_path, inputs, options
 @pytest.mark.slow
 def test_ctrl_c_keeps_the_best_so_far(tmp_path, inputs):
     out = tmp_path / "out"
-    options = ["--generations", "900", "--out", str(out), "--verbose"]
+    options = ["--starts", "90", "--out", str(out), "--verbose"]
     process = subprocess.Popen([HIL, "tune", *inputs, *options], stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
     for line in process.stderr:
@@ -104,3 +104,19 @@ def test_ctrl_c_keeps_the_best_so_far(tmp_path, inputs):
     told = json.loads((out / "tune.json").read_text())
     assert told["ended"] == "stopped"
     assert load_controller(out / "controller.toml").name == "tuned"
+
+
+@pytest.mark.slow
+def test_a_second_ctrl_c_ends_it_at_once_and_leaves_nothing(tmp_path, inputs):
+    out = tmp_path / "out"
+    options = ["--starts", "90", "--draws", "200", "--out", str(out), "--verbose"]
+    process = subprocess.Popen([HIL, "tune", *inputs, *options], stderr=subprocess.PIPE, text=True)
+    assert process.stderr is not None
+    for sign in ("worst margin", "comparing"):
+        next(line for line in process.stderr if sign in line)
+        process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said.count("error: interrupted") == 1
+    assert "Traceback" not in said
+    assert not out.exists()

@@ -22,7 +22,7 @@ HARDWARE = "benches/rear_axle_socketcan.toml"
 def inputs(tmp_path):
     (tmp_path / "short.yaml").write_text(PLAN)
     (tmp_path / "free.toml").write_text(FREE)
-    options = ["--free", str(tmp_path / "free.toml"), "--generations", "1", "--processes", "1"]
+    options = ["--free", str(tmp_path / "free.toml"), "--starts", "1", "--processes", "1"]
     return ["tune", str(tmp_path / "short.yaml"), "--model", MODEL, *options]
 
 

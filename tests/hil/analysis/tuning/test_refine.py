@@ -74,7 +74,7 @@ def test_what_a_run_has_shown_is_expected_of_the_next_one(trial):
 
 
 def test_on_the_model_itself_nothing_is_gained_after_a_search(trial):
-    search = tune(trial, effort=Effort(far=6, near=20), processes=1)
+    search = tune(trial, effort=Effort(starts=2), processes=1)
     space = Space(trial.free.free)
     bench = ComputedBench(trial, MODEL)
     found = refined(trial, bench, space.point(search.chosen.values), patience=Patience(least_gain=0.01))

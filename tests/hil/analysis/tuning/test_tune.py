@@ -10,7 +10,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from tests.hil.analysis.tuning.trials import FREE, MODEL, trial_of
 
-QUICK = Effort(far=1, between=1, members=4, near=4, rounds=2, joining=1)
+QUICK = Effort(starts=1, far=2, near=1, joins=2, joining=1)
 
 
 def test_the_worst_margin_grows_on_every_car_and_the_front_holds_what_none_beats():
@@ -38,6 +38,24 @@ def test_a_search_that_is_stopped_keeps_the_best_so_far():
     asked = itertools.count()
     found = tune(trial_of(), effort=QUICK, processes=1, stopped=lambda: next(asked) > 1)
     assert found.ended == "stopped"
+    assert found.chosen.worst.worst >= found.start.worst.worst
+
+
+def test_no_candidate_that_was_tried_beats_the_chosen_in_every_criterion():
+    found = tune(trial_of(), seed=2, effort=QUICK, processes=1)
+    own = found.chosen.nominal.margins
+    rivals = [tried.margins for tried in found.archive if tried.feasible]
+    assert len(rivals) > 20
+    assert not any(all(rival[name] > own[name] for name in own) for rival in rivals)
+
+
+def test_cars_join_until_no_car_is_worse_than_those_that_were_searched_on():
+    trial = trial_of(draws=6)
+    effort = Effort(starts=0, far=2, near=1, joins=6, joining=3)
+    seen: list[str] = []
+    found = tune(trial, effort=effort, processes=1, show=lambda text, share: seen.append(text))
+    assert found.ended == "converged"
+    assert any("4 cars" in text for text in seen)
     assert found.chosen.worst.worst >= found.start.worst.worst
 
 
