@@ -10,11 +10,13 @@ from pathlib import Path
 
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis
 from hil.analysis.tuning import Confirmation, confirmation
-from hil.cli._autotune_stages import MODEL, EndedError, Stages, Told
+from hil.cli._autotune_stages import MODEL, EndedError, Recorded, Stages, Told
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._on_bench import WireBench
 from hil.cli._refine_on_bench import Refined
+from hil.cli._streams import complain
 from hil.cli._tuning import Asked
+from hil.core.errors import HilError
 from hil.engine import RECORDING
 from reports.outputs.autotune import Closing, Decision, Stage, effects_in_words
 from reports.tuning_report import Shown
@@ -30,7 +32,7 @@ class AutotuneLoop:
     def __init__(self, told: Told, place: Path, closing: Closing, keep: Callable[[], None]) -> None:
         self._told, self.closing, self._keep = told, closing, keep
         self._stages = Stages(told, place)
-        self._explained: list[Path] = []
+        self._explained: list[Recorded] = []
         self.shown: list[Shown] = []
         self.model = told.given
 
@@ -45,6 +47,9 @@ class AutotuneLoop:
             raise EndedError(f"all {self._told.sequence.rounds} rounds were made")
         except EndedError as ended:
             self.closing.ended, code = str(ended), ended.exit_code
+        except HilError as error:  # such as recordings that cannot belong to the model
+            complain("error", str(error))
+            self.closing.ended, code = error.what, error.exit_code
         except KeyboardInterrupt:
             INTERRUPTS.answered()
             self.closing.ended, code = "interrupted", EXIT_CODE
@@ -52,7 +57,7 @@ class AutotuneLoop:
 
     def _identify(self) -> None:
         carried = self._stages.run(self._told.identify, "identify")
-        self._explained.append(carried.folder / RECORDING)
+        self._explained.append(Recorded(carried.folder / RECORDING))
         what = f"{len(carried.segments)} segments recorded"
         why = "what a model lacks shows where torque varies"
         self._decide(0, "identify", what, "let the diagnosis explain them", why, carried.folder)
@@ -115,7 +120,7 @@ class AutotuneLoop:
 
     def _foretells(self, before: Confirmation, number: int, asked: Asked) -> bool:
         """Whether the better model foretells the plan as it was run; if not, that run is explained, too."""
-        recording = self._stages.place / "before" / RECORDING
+        recording = Recorded(self._stages.place / "before" / RECORDING)
         measured = [one.measured for one in before.criteria]
         found = confirmation(asked.trial.tried({}, 0).criteria, measured, self._told.agree)
         enough = found.agrees or recording in self._explained
@@ -149,7 +154,8 @@ class AutotuneLoop:
         if first.agrees:
             decided, why = ("keep it" if kept else "keep the earlier one"), came.found.ended
         else:
-            decided = "let the diagnosis explain that run, too"
+            last = number == self._told.sequence.rounds
+            decided = "end" if last else "let the diagnosis explain that run, too"
             names = ", ".join(one.id.replace(".", " ") for one in first.beyond)
             why = f"not as predicted within {_percent(first.allowed)}: {names}"
         self._decide(number, "confirm", what, decided, why, folder)
@@ -166,7 +172,8 @@ class AutotuneLoop:
         all_made = len(found.runs) >= self._told.sequence.runs
         if agrees and not (all_made and grown):
             raise EndedError(f"prediction and run agree, and the margin no longer grows: {found.ended}")
-        self._explained.append(wire.carried[1].folder / RECORDING)
+        segments = self._told.asked.trial.driven.segments  # the others are as they were before
+        self._explained.append(Recorded(wire.carried[1].folder / RECORDING, segments))
 
     def _decide(
         self, number: int, stage: Stage, found: str, decided: str, why: str, folder: Path | None = None
@@ -177,6 +184,9 @@ class AutotuneLoop:
 
 
 def _off(found: Confirmation) -> str:
+    unknown = [one.id.replace(".", " ") for one in found.criteria if one.apart is None]
+    if unknown:
+        return f"of another mind whether there is a value for {', '.join(unknown)}"
     return f"up to {_percent(max((one.apart or 0.0 for one in found.criteria), default=0.0))} of a limit off"
 
 

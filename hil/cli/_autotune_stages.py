@@ -14,13 +14,17 @@ from hil.cli._one_run import Runs
 from hil.cli._output import progress
 from hil.cli._place import results_in
 from hil.cli._refine_on_bench import Refined, refined
+from hil.cli._result_file import RESULT
 from hil.cli._tuning import NAMES as TUNING_NAMES
 from hil.cli._tuning import SUMMARY as TUNING_SUMMARY
 from hil.cli._tuning import Asked, asked_of, write_results
 from hil.cli.diagnose import FILES as DIAGNOSIS_NAMES
 from hil.cli.diagnose import output_files, stretches_of
+from hil.core.errors import HilError
 from hil.core.model import load_model
-from hil.engine import StopRequest
+from hil.core.recording import Recording, read_recording
+from hil.core.result import RunResult
+from hil.engine import RECORDING, BenchFile, StopRequest
 from reports.origin import origin_of
 from test_plans import Plan, Sequence
 
@@ -42,7 +46,10 @@ class EndedError(Exception):
 
 @dataclass(frozen=True)
 class Told:
-    """What the loop is told; `given` is the model that was given, `processes` predictions at once."""
+    """What the loop is told; `given` is the model that was given, `processes` predictions at once.
+
+    With `resume` plans that were run as they are, within the same envelope, are not run again.
+    """
 
     sequence: Sequence
     given: Path
@@ -52,11 +59,25 @@ class Told:
     allowed: Allowed
     runs: Runs
     processes: int | None
+    resume: bool = False
 
     @property
     def agree(self) -> float:
         """How far a run may be from its prediction, a share of a limit."""
         return self.sequence.agree_percent / 100
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A run that is to be explained: its recording, and which of its segments (none named: all)."""
+
+    recording: Path
+    segments: tuple[str, ...] = ()
+
+    def has(self, stretch: Recording) -> bool:
+        """Whether a stretch of it is to be explained."""
+        name = stretch.source.name.removeprefix(f"{self.recording.stem} ")
+        return not self.segments or name in self.segments
 
 
 class Stages:
@@ -68,12 +89,18 @@ class Stages:
 
     def __init__(self, told: Told, place: Path) -> None:
         self._told, self.place = told, place
-        self._spent_s = 0.0
+        self._spent_s, self._runs = 0.0, 0
 
     def run(self, plan: Plan, name: str) -> Carried:
         """A plan as it is."""
         told, folder = self._told, self.place / name
-        with told.runs.finished(plan, told.allowed.watched, folder) as run:
+        self._runs += 1
+        bench = told.allowed.watched(self._runs)
+        made = earlier_run(plan, bench, folder) if told.resume else None
+        if made is not None:
+            self._spent_s += made.bench_time_s
+            return Carried(folder, 0, tuple(made.segments), made.criteria)
+        with told.runs.finished(plan, bench, folder) as run:
             result, code, error = run.result, run.exit_code, run.outcome.error
         self._spent_s += result.bench_time_s
         if code == EXIT_CODE:
@@ -83,9 +110,9 @@ class Stages:
             raise EndedError(f"{plan.name}: {reason}", code if code > 1 else 0)
         return Carried(folder, code, tuple(result.segments), result.criteria)
 
-    def diagnose(self, recordings: Several[Path], number: int, folder: Path) -> Diagnosis:
+    def diagnose(self, runs: Several[Recorded], number: int, folder: Path) -> Diagnosis:
         """What the given model lacks to explain recordings."""
-        told = self._told
+        told, recordings = self._told, [one.recording for one in runs]
         base, inputs = load_model(told.given), [told.given, *recordings]
         claim = results_in(
             folder, DIAGNOSIS_NAMES, inputs=inputs, overwrite=told.runs.overwrite, summary="diagnosis.json"
@@ -93,14 +120,14 @@ class Stages:
         with claim as place, progress(f"round {number}: diagnosis") as show:
             found = diagnose(
                 base,
-                stretches_of(list(recordings), base, show),
+                [part for one in runs for part in stretches_of([one.recording], base, show) if one.has(part)],
                 at_most_s=60.0 * told.sequence.diagnose_minutes,
                 show=show,
             )
             if found.unfinished == INTERRUPTED:
                 INTERRUPTS.answered()
             show("writing the report")
-            origin = origin_of({"model": [told.given], "recording": list(recordings)})
+            origin = origin_of({"model": [told.given], "recording": recordings})
             place.write(output_files(found, told.given.name, origin), inputs)
         return found
 
@@ -144,11 +171,24 @@ class Stages:
                 told.runs,
                 folder / FOLDER,
             )
-            wire.bench_time_s = self._spent_s
+            wire.bench_time_s, wire.earlier_runs = self._spent_s, self._runs
             came = refined(found, wire, patience, told.processes, lambda: stop.times > 0)
-            self._spent_s = wire.bench_time_s
+            self._spent_s, self._runs = wire.bench_time_s, self._runs + len(wire.carried)
             write_results(asked, found, place.write, refinement=came)
         return came, wire
+
+
+def earlier_run(plan: Plan, bench: BenchFile, folder: Path) -> RunResult | None:
+    """The result of a whole run of this very plan on this very bench file in a folder, if there is one."""
+    try:
+        result = RunResult.model_validate_json((folder / RESULT).read_text("utf-8"))
+        recording = read_recording(folder / RECORDING, least_samples=0, allow_missing=True)
+    except (OSError, ValueError, HilError):
+        return None
+    same = (("plan.yaml", plan.text), ("bench.toml", bench.text))
+    if any(recording.attachments.get(name) != text.encode() for name, text in same):
+        return None
+    return None if result.verdict == "error" or result.safe_state == "not_confirmed" else result
 
 
 def asked_for(sequence: Sequence, model: Path, bench: str) -> Asked:

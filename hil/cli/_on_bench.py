@@ -17,6 +17,7 @@ from hil.core.model import Model
 from hil.core.recording import read_recording
 from hil.core.result import CriterionResult, Segment
 from hil.engine import RECORDING, BenchFile
+from hil.engine.bench_file import with_seed
 from hil.engine.envelope import Envelope, envelope_of
 from hil.engine.prediction import Prediction
 from hil.engine.trial_runs import TrialRuns
@@ -54,10 +55,11 @@ class Allowed:
     envelope: Envelope
     name: str
 
-    @property
-    def watched(self) -> BenchFile:
-        """The bench with the envelope among its limits."""
-        return self.envelope.watched_on(self.bench)
+    def watched(self, run: int) -> BenchFile:
+        """The bench with the envelope among its limits; a simulated one has noise of its own in each run."""
+        simulation = self.bench.simulation
+        bench = self.bench if simulation is None else with_seed(self.bench, simulation.seed + run)
+        return self.envelope.watched_on(bench)
 
     def answered(self, runs: Runs) -> Runs:
         """Runs for which it was answered beforehand, prompts and hazards included."""
@@ -114,6 +116,8 @@ class Carried:
 class WireBench:
     """A plan on a bench, each run in a folder of its own below `place`.
 
+    `bench_time_s` and `earlier_runs` count from what was done on the bench before.
+
     Args:
         plan: as the command was given it.
         trial: what is tuned; it predicts runs.
@@ -134,9 +138,9 @@ class WireBench:
         self._plan, self._name = plan, name_in(plan, trial.driven.file)
         self._trial, self._model = trial, model
         self.allowed, self._envelope, self._place = allowed, allowed.envelope, place
-        self._runs, self._watched = allowed.answered(runs), allowed.watched
+        self._runs = allowed.answered(runs)
         self.carried: dict[int, Carried] = {}
-        self.bench_time_s = 0.0
+        self.bench_time_s, self.earlier_runs = 0.0, 0
 
     def refused(self, controller: Controller) -> str:
         """Why a run with it would leave the envelope; '' if it would not."""
@@ -157,7 +161,8 @@ class WireBench:
         file = self._place / f"{number:02d}.toml"
         write_atomically(file, controller_to_toml(controller))
         plan = load_plan(self._plan, Choices({self._name: file}))
-        with self._runs.finished(plan, self._watched, folder) as run:
+        bench = self.allowed.watched(self.earlier_runs + number)
+        with self._runs.finished(plan, bench, folder) as run:
             result = run.result
             self.carried[number] = Carried(folder, run.exit_code, tuple(result.segments), result.criteria)
             error = run.outcome.error

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -41,16 +42,19 @@ def carry_out(
     confirm: str,
     operator: str,
     processes: int | None,
+    resume: bool,
     overwrite: bool,
     json_: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    told = _told(
-        load_sequence(sequence), model, bench, envelope or [], confirm, operator, processes, overwrite
-    )
+    if resume and out is None:
+        raise BadInputError("--resume goes with --out", where="--resume", fix="name the folder to go on in")
+    kept = resume or overwrite
+    told = _told(load_sequence(sequence), model, bench, envelope or [], confirm, operator, processes, kept)
+    told = replace(told, resume=resume)
     inputs = told.runs.inputs
     with results_in(
-        out, _NAMES, inputs=inputs, overwrite=overwrite, default=told.sequence.name, summary=SUMMARY
+        out, _NAMES, inputs=inputs, overwrite=kept, default=told.sequence.name, summary=SUMMARY
     ) as place:
         closing = Closing(_asked_for(told), [_consented(told.allowed)])
 

@@ -6,14 +6,14 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from hil.analysis.tuning import Effort, Patience, tune
+from hil.analysis.tuning import Effort, Patience, Tuning, tune
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._on_bench import FOLDER, Wanted, WireBench, allowed_on
 from hil.cli._one_run import Runs
 from hil.cli._output import print_json, progress
 from hil.cli._place import results_in
-from hil.cli._refine_on_bench import refined
-from hil.cli._then_run import OnTheWire, refuse_unasked, tell
+from hil.cli._refine_on_bench import Refined, refined
+from hil.cli._then_run import OnTheWire, Ran, refuse_unasked, tell
 from hil.cli._then_run import then_run as run_tuned
 from hil.cli._tuning import NAMES, SUMMARY, asked_of, write_results
 from hil.core.errors import BadInputError
@@ -47,17 +47,14 @@ def carry_out(
 ) -> int:
     """Carry the command out; its exit code."""
     wanted = Wanted(on_bench, runs, envelope or [], confirm)
-    wanted.refuse_alone()
-    if wanted.bench and (bench or then_run):
-        option = "--bench" if bench else "--then-run"
-        raise BadInputError(f"{option} does not go with --on-bench", where=option, fix="leave it out")
-    asked = asked_of(
-        plan, model, free, controller, start, draws, seed, wanted.bench or bench or DEFAULT_BENCH
-    )
+    _refuse_together(wanted, bench, then_run=then_run)
+    used = wanted.bench or bench or DEFAULT_BENCH
+    asked = asked_of(plan, model, free, controller, start, draws, seed, used)
     if then_run:
         refuse_unasked(asked.plan)
     axle = asked.trial.draws[0].model
     allowed = allowed_on(wanted, asked.bench, asked.trial, axle) if wanted.bench else None
+    carried = Runs(None, operator, "", "", "", asked.inputs, overwrite)
     stop, ran, refinement = StopRequest(), None, None
     with results_in(
         out, NAMES, inputs=asked.inputs, overwrite=overwrite, default="tune", summary=SUMMARY
@@ -73,41 +70,50 @@ def carry_out(
             )
             show("figures and report")
             summary = write_results(asked, found, place.write)
+        if not json_:
+            print(text_of(found, str(place.folder)))
         if then_run and not stop.times:
-            if not json_:
-                print(text_of(found, str(place.folder)))
-            carried = Runs(None, operator, "", "", "", asked.inputs, overwrite)
-            ran = run_tuned(found, plan, place.folder, OnTheWire(asked.bench, differ / 100, carried), model)
+            wire = OnTheWire(asked.bench, differ / 100, carried)
+            ran = run_tuned(found, plan, place.folder, wire, model)
             summary = write_results(asked, found, place.write, ran)
         if allowed is not None and not stop.times:
-            carried = Runs(None, operator, "", "", "", asked.inputs, overwrite)
-            patience = Patience(allowed.envelope.runs)
-            wire = WireBench(plan, asked.trial, axle, allowed, carried, place.folder / FOLDER)
+            on = WireBench(plan, asked.trial, axle, allowed, carried, place.folder / FOLDER)
             with stop.by_signals():
-                refinement = refined(found, wire, patience, processes, lambda: stop.times > 0)
+                patience = Patience(allowed.envelope.runs)
+                refinement = refined(found, on, patience, processes, lambda: stop.times > 0)
                 summary = write_results(asked, found, place.write, refinement=refinement)
         if json_:
             print_json(summary)
         elif ran is not None:
             tell(ran)
         elif refinement is not None:
-            print(text_of(found, str(place.folder)))
             refinement.tell()
-        else:
-            print(text_of(found, str(place.folder)))
-    if stop.times or (refinement is not None and refinement.exit_code == EXIT_CODE):
+    code = _exit_code(found, ran, refinement)
+    if stop.times or code == EXIT_CODE:
         INTERRUPTS.tell()
         return EXIT_CODE
+    return code
+
+
+def _refuse_together(wanted: Wanted, bench: str, *, then_run: bool) -> None:
+    """Raises:
+    BadInputError: an option without the one that it goes with, or beside one that it does not go with.
+    """
+    wanted.refuse_alone()
+    if wanted.bench and (bench or then_run):
+        option = "--bench" if bench else "--then-run"
+        raise BadInputError(f"{option} does not go with --on-bench", where=option, fix="leave it out")
+
+
+def _exit_code(found: Tuning, ran: Ran | None, refinement: Refined | None) -> int:
     if refinement is not None:
         best = refinement.found.best
         return refinement.exit_code or int(best is None or best.worst < 0)
-    if ran is not None:
-        return (
-            ran.exit_code
-            if ran.exit_code > 1
-            else int(not (ran.confirmation.agrees and ran.confirmation.passed))
-        )
-    return 0 if found.chosen.worst.worst >= 0 else 1
+    if ran is None:
+        return int(found.chosen.worst.worst < 0)
+    if ran.exit_code > 1:
+        return ran.exit_code
+    return int(not (ran.confirmation.agrees and ran.confirmation.passed))
 
 
 def _at_once(stop: StopRequest) -> Callable[[], None]:

@@ -37,6 +37,10 @@ def command(
     processes: Annotated[
         int | None, typer.Option(min=1, max=256, help="predictions at once; default: one for each core")
     ] = None,
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="go on in --out: what was run there before the first round is kept"),
+    ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier result in --out")
     ] = False,
@@ -68,6 +72,7 @@ def command(
         confirm=confirm,
         operator=operator,
         processes=processes,
+        resume=resume,
         overwrite=overwrite,
         json_=json_,
     )

@@ -104,6 +104,31 @@ def test_what_the_diagnosis_does_not_know_ends_it_with_that_reason(tmp_path, seq
     assert told["worst_margin"]["measured"] is None
     assert not (out / "controller.toml").exists()
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF")
+    runs = [out / name / "recording.mcap" for name in ("identify", "before")]
+    made = [run.stat().st_mtime_ns for run in runs]
+    assert guarded(["autotune", sequence, *options, "--resume"]) == 1
+    assert [run.stat().st_mtime_ns for run in runs] == made
+    again = json.loads((out / "autotune.json").read_text())
+    assert again["decisions"][:3] == told["decisions"][:3]
+    (tmp_path / "chirp.yaml").write_text(CHIRP.replace("amplitude_nm: 20", "amplitude_nm: 18"))
+    assert guarded(["autotune", sequence, *options, "--resume"]) == 1  # another plan is run
+    assert runs[0].stat().st_mtime_ns != made[0]
+
+
+@pytest.mark.hunt
+def test_a_run_that_is_not_as_predicted_is_explained_in_another_round(tmp_path, sequence):
+    out, bench = tmp_path / "out", bench_that_hides(tmp_path, backlash=0.01, dead_time=0.003)
+    (tmp_path / "sequence.yaml").write_text(SEQUENCE + "agree_percent: 0.05\n")
+    options = ["--model", MODEL, "--bench", bench, "--processes", "1", "--out", str(out)]
+    assert guarded(["autotune", sequence, *options]) == 1
+    told = json.loads((out / "autotune.json").read_text())
+    assert told["ended"] == "all 2 rounds were made"
+    assert not told["agrees"]
+    confirmed = [one for one in told["decisions"] if one["stage"] == "confirm"]
+    assert [one["decided"] for one in confirmed] == ["let the diagnosis explain that run, too", "end"]
+    assert (out / "round-1/diagnosis-2/diagnosis.json").is_file()
+    explained = (out / "round-2/diagnosis/report.html").read_text()
+    assert explained.count("recording.mcap") >= 3
 
 
 @pytest.mark.slow
@@ -139,12 +164,14 @@ def test_whoever_ends_it_what_is_known_is_kept(tmp_path, sequence, kind):
         (["--envelope", "motor_torque_nm=1"], "would leave the envelope"),
         (["--envelope", "bench_time_s=1"], "one run takes"),
         (["--bench", "nowhere"], "nowhere"),
+        (["--resume"], "--resume goes with --out"),
     ],
 )
 def test_wrong_input_is_one_message_and_leaves_nothing(tmp_path, arguments, said, capsys):
     out = tmp_path / "out"
     own = ["--model", MODEL, *arguments] if "--model" not in arguments else arguments
-    assert guarded(["autotune", *own, "--out", str(out)]) == 2
+    place = [] if "--resume" in arguments else ["--out", str(out)]
+    assert guarded(["autotune", *own, *place]) == 2
     assert said in capsys.readouterr().err
     assert not out.exists()
 
