@@ -59,12 +59,12 @@ def test_every_run_stands_in_the_report_with_its_decision_and_the_best_is_what_i
     of_run = load_controller(out / f"bench/{refined['best_run']:02d}.toml")
     assert best.dfc == of_run.dfc
     for run in refined["runs"]:
-        assert run["reason"] in " ".join(shown.split()) or run["decision"] in shown
+        assert run["decision"] in shown
         recording = read_recording(out / f"bench/{run['number']:02d}/recording.mcap", allow_missing=True)
         assert f"{run['number']:02d}.toml" in recording.attachments["plan.yaml"].decode()
     html = (out / "report.html").read_text()
     assert "On the bench" in html
-    assert html.count("the region") >= 2
+    assert all(run["reason"] in html for run in refined["runs"])
 
 
 @pytest.mark.slow
