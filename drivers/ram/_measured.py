@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from drivers.samples import Samples, Stream
 
-_LOOK_S = 1.0
+_LOOK_S, _LEAST_SAMPLES = 0.5, 20
 
 
 class Measured:
-    """A `SampleSource`; `lost`: the share of samples that never came, over the last whole second."""
+    """A `SampleSource`; `lost`: the share of samples that never came, over the last half second or so."""
 
     def __init__(self, stream: Stream) -> None:
         self.streams = (stream,)
+        self._look_s = max(_LOOK_S, _LEAST_SAMPLES * stream.period_s)
         self._waiting: list[Samples] = []
         self.begin(0.0)
 
@@ -37,7 +38,7 @@ class Measured:
             self._first = int(samples.counts[0]) - 1
         self._newest = max(self._newest or self._first, int(samples.counts.max()))
         self._came += len(samples.counts)
-        if now_s - self._since_s >= _LOOK_S:
+        if now_s - self._since_s >= self._look_s:
             wanted = self._newest - self._first
             self.lost = max(0.0, 1.0 - self._came / wanted) if wanted > 0 else 0.0
             self._since_s, self._first, self._came = now_s, self._newest, 0

@@ -36,6 +36,7 @@ class FaultRow:
     within_s: float | None = NOTICED_S
     other: Mapping[str, Expected] = field(default_factory=dict)
     device: bool = False  # whether the oil unit is there
+    beside: str = ""  # "panel", "patient panel", "ram": what else stands beside the bench
     ponder: str = "well"
 
     def expects(self, phase: str) -> Expected:

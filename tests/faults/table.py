@@ -22,6 +22,7 @@ from tests.faults.expected import (
     FaultRow,
     row,
 )
+from tests.faults.further_rows import FURTHER
 from tests.faults.stage import Injection
 from tests.faults.third_party import Oil
 
@@ -359,4 +360,11 @@ _OF_CODE = (
         phases=("writing",),
     ),
 )
-FAULTS: tuple[FaultRow, ...] = (*_OF_DEVICES, *_OF_WIRES, *_OF_SENSORS, *_OF_THE_COMPUTER, *_OF_CODE)
+FAULTS: tuple[FaultRow, ...] = (
+    *_OF_DEVICES,
+    *_OF_WIRES,
+    *_OF_SENSORS,
+    *FURTHER,
+    *_OF_THE_COMPUTER,
+    *_OF_CODE,
+)

@@ -41,6 +41,23 @@ _CRITERIA = (
     "criteria:\n  - {segment: s, metric: peak, channel: motor_torque_ref_nm, upper: 30, unit: N m}\n"
     "  - {segment: s, metric: rows}\n"
 )
+# Asked twice a second, the panel is missed after 0.6 s
+_BESIDE = {
+    "": "",
+    "panel": '\n[devices.panel]\nkind = "rcs-panel"\nport = "/dev/ttyUSB0"\ngone_after_s = 0.6\n',
+    "patient panel": '\n[devices.panel]\nkind = "rcs-panel"\nport = "/dev/ttyUSB0"\n',
+    "ram": f'''
+[buses.ram]
+interface = "hil-sim"
+channel = "{BENCH}/ram"
+bit_rate = 1000000
+[devices.ram]
+kind = "ram-xcp"
+bus = "ram"
+symbols = "A2L"
+channels = {{ dfc_torque_nm = "Tm_DFC_ref", wsc_torque_nm = "Tm_WSC_ref", slip_ref = "y_DFC" }}
+''',
+}
 
 
 @dataclass(frozen=True)
@@ -211,5 +228,6 @@ def written(fault: FaultRow, phase: str, folder: Path) -> tuple[Path, Path]:
         text = text.replace(f'"{name}"', f'"{SIM.source.parent / name}"')
     if fault.device:
         text += '\n[devices.oil]\nkind = "oil"\n\n[limits.channels]\noil_temperature_k = {above = 363.0}\n'
+    text += _BESIDE[fault.beside].replace("A2L", str(SIM.source.parent / "rmcu.a2l"))
     bench.write_text(text)
     return plan, bench

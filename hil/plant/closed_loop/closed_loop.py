@@ -128,6 +128,30 @@ class ClosedLoop:
         """Let `samples` milliseconds pass without torque being asked for."""
         self._advance(np.zeros(samples))
 
+    def next_row(self, mode: int, request_nm: float) -> Array:
+        """The sample that comes next if this is asked for, shape (columns,); nothing moves."""
+        s = self.plant
+        row = np.zeros((1, T.COLUMNS))
+        modes = np.array([mode], np.int64)
+        advance(
+            self.samples,
+            s.x.copy(),
+            s.vector,
+            s.scalars.copy(),
+            s.torques.copy(),
+            tuple(part.copy() for part in self._firmware),
+            s.drives.copy(),
+            s.sensors,
+            s.past.copy(),
+            np.tile(s.noise, (1, 1)),
+            modes,
+            np.array([request_nm]),
+            modes,
+            self._status,
+            row,
+        )
+        return row.reshape(-1)
+
     def recorded(self, first: int, last: int, names: Collection[str] | None = None) -> dict[str, Array]:
         """The channels of a recording from sample `first` to before `last`, by name, with `time_s`.
 

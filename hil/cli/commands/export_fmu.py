@@ -1,0 +1,28 @@
+"""`hil export-fmu`: a model with its controller for other simulation tools."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def command(
+    model: Annotated[Path, typer.Argument(help="model file")],
+    out: Annotated[Path, typer.Option(help="unit to write: NAME.fmu")],
+    controller: Annotated[
+        Path | None, typer.Option(help="controller file; without it motor torque is asked for")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
+    ] = False,
+) -> int:
+    """Write a model, with its controller, as an FMI 2 co-simulation unit.
+
+    The unit computes with this package: where it is used, Python with eaxle-hil has to be installed.
+    """
+    from hil.cli.export_fmu import carry_out
+
+    return carry_out(model=model, controller=controller, out=out, overwrite=overwrite, as_json=as_json)

@@ -1,0 +1,34 @@
+"""`hil export-fmu`: a model with its controller for other simulation tools."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hil.cli._output import console, print_json
+from hil.cli._place import refuse_file
+from hil.core.controller import load_controller
+from hil.core.errors import BadInputError
+from hil.core.files import read_text
+from hil.core.model import load_model
+from hil.fmu import export_fmu
+
+
+def carry_out(*, model: Path, controller: Path | None, out: Path, overwrite: bool, as_json: bool) -> int:
+    """Carry the command out; its exit code."""
+    if out.suffix.lower() != ".fmu":
+        raise BadInputError("is no unit by its name", where=str(out), fix="give a name that ends in .fmu")
+    refuse_file(out, [model, *([controller] if controller else [])], overwrite=overwrite)
+    chosen = load_model(model)
+    loaded = (load_controller(controller), read_text(controller)) if controller else None
+    export_fmu(chosen, out, loaded)
+    asked = "driving_torque_ref_nm" if controller else "motor_torque_ref_nm"
+    if as_json:
+        print_json({"file": str(out), "fmi": "2.0", "kind": "co-simulation", "input": asked})
+        return 0
+    console().print(
+        f"{out}: FMI 2, co-simulation; input {asked}; computes where eaxle-hil is installed",
+        highlight=False,
+        soft_wrap=True,
+        markup=False,
+    )
+    return 0

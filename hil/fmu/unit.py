@@ -1,0 +1,69 @@
+"""The script in an exported unit; it runs where the package eaxle-hil is installed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from pythonfmu import Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Real
+
+try:
+    from hil.core.controller import load_controller
+    from hil.core.model import load_model
+    from hil.fmu.axle import OUTPUTS, Axle
+except ImportError as error:
+    raise ImportError(
+        "this unit computes with the Python package eaxle-hil: install it for this Python"
+    ) from error
+
+
+class EAxle(Fmi2Slave):  # type: ignore[misc]
+    """An electric axle in its vehicle, with its controller if it was exported with one."""
+
+    description = "Electric axle; needs Python with the package eaxle-hil"
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._axle: Axle | None = None
+        controlled = (Path(self.resources) / "controller.toml").is_file()
+        asked = "driving_torque_ref_nm" if controlled else "motor_torque_ref_nm"
+        self._asked = asked
+        self.initial_speed_m_s = 0.0
+        self.wheel_radius_m = 0.33
+        for name, about in (("initial_speed_m_s", "of the vehicle"), ("wheel_radius_m", "of the tyre")):
+            self.register_variable(
+                Real(name, causality=Fmi2Causality.parameter, variability=Fmi2Variability.tunable,
+                     initial=Fmi2Initial.exact, start=getattr(self, name), description=about)
+            )  # fmt: skip
+        setattr(self, asked, 0.0)
+        self.register_variable(
+            Real(asked, causality=Fmi2Causality.input, start=0.0, description="torque that is asked for, N.m")
+        )
+        self._shown = [name for name in OUTPUTS if name != asked]
+        for name in self._shown:
+            unit, about, _, _ = OUTPUTS[name]
+            setattr(self, name, 0.0)
+            self.register_variable(Real(name, causality=Fmi2Causality.output, description=f"{about}, {unit}"))
+
+    def exit_initialization_mode(self) -> None:
+        """The parameters are known: bring the wheels to their speed."""
+        folder = Path(self.resources)
+        file = folder / "controller.toml"
+        controller = load_controller(file) if file.is_file() else None
+        model = load_model(folder / "model.toml")
+        self._axle = Axle(model, controller, self.wheel_radius_m, self.initial_speed_m_s)
+        self._show(self._axle)
+
+    def do_step(self, current_time: float, step_size: float) -> bool:
+        """A whole number of milliseconds."""
+        del current_time
+        assert self._axle is not None
+        self._axle.torque_nm = getattr(self, self._asked)
+        self._axle.step(step_size)
+        self._show(self._axle)
+        return True
+
+    def _show(self, axle: Axle) -> None:
+        values = axle.outputs()
+        for name in self._shown:
+            setattr(self, name, values[name])
