@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import SubElement
 
 from pythonfmu import Fmi2Causality, Fmi2Initial, Fmi2Slave, Fmi2Variability, Real
 
@@ -44,6 +45,15 @@ class EAxle(Fmi2Slave):  # type: ignore[misc]
             unit, about, _, _ = OUTPUTS[name]
             setattr(self, name, 0.0)
             self.register_variable(Real(name, causality=Fmi2Causality.output, description=f"{about}, {unit}"))
+
+    def to_xml(self, model_options: Any = None) -> Any:
+        """As FMI 2 wants it: the outputs are known from the beginning (pythonfmu leaves that out)."""
+        root = super().to_xml(model_options or {})
+        structure = root.find("ModelStructure")
+        known = SubElement(structure, "InitialUnknowns")
+        for output in structure.find("Outputs"):
+            SubElement(known, "Unknown", attrib=dict(output.attrib))
+        return root
 
     def exit_initialization_mode(self) -> None:
         """The parameters are known: bring the wheels to their speed."""
