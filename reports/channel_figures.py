@@ -28,6 +28,7 @@ _PANELS: tuple[tuple[str, ...], ...] = (
     ("driving_torque_ref_nm", "driving_torque_est_nm"),
     ("dyno_torque_ref_nm",),
 )
+_OF_SIDES = ("dyno_torque_left_nm", "dyno_torque_right_nm")  # their sum is a channel
 _MOST_UNKNOWN_CHANNELS = 12
 _SPECTRUM_TO_HZ = 100.0
 
@@ -67,12 +68,24 @@ def overview_section(recording: Recording, segments: Sequence[Segment]) -> Secti
     where = _whole(recording, "overview")
     if where is None:
         return None
-    clipped = [(max(s.start_s, where.start_s), min(s.end_s, where.end_s), s.id) for s in segments]
-    bands = tuple(Band(start, end, label) for start, end, label in clipped if end > start)
+    bands = _bands(where, segments)
     names = (INPUT, *(name for name in OUTPUTS if name != "wheel_speed_rad_s"))
     drawn = [_time_figure(where, (name,), bands) for name in names]
     figures = tuple(replace(figure, wide=True) for figure in drawn if figure is not None)
     return Section("overview", "The whole run", "", figures) if figures else None
+
+
+def further_section(recording: Recording, segments: Sequence[Segment]) -> Section | None:
+    """What devices of their own have measured in the whole run, on its time; None without any."""
+    where = _whole(recording, "further")
+    if where is None:
+        return None
+    names = [name for name in recording.channels if name not in CHANNELS and name not in _OF_SIDES]
+    drawn = [_time_figure(where, (name,), _bands(where, segments)) for name in names[:_MOST_UNKNOWN_CHANNELS]]
+    figures = tuple(figure for figure in drawn if figure is not None)
+    left_out = len(names) - _MOST_UNKNOWN_CHANNELS
+    notes = (f"{left_out} further channels are in the recording only.",) if left_out > 0 else ()
+    return Section("further", "Further channels", "", figures, notes) if figures else None
 
 
 def channels_section(recording: Recording) -> Section:
@@ -88,6 +101,12 @@ def channels_section(recording: Recording) -> Section:
     left_out = len(unknown) - len(drawn)
     notes = (f"{left_out} further channels are in the table only.",) if left_out > 0 else ()
     return Section("channels", "Channels", "", tuple(f for f in figures if f is not None), notes)
+
+
+def _bands(where: _Stretch, segments: Sequence[Segment]) -> tuple[Band, ...]:
+    """Segments as shades behind a figure of the whole recording."""
+    clipped = [(max(s.start_s, where.start_s), min(s.end_s, where.end_s), s.id) for s in segments]
+    return tuple(Band(start, end, label) for start, end, label in clipped if end > start)
 
 
 def _whole(recording: Recording, section_id: str) -> _Stretch | None:

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from hil.core.channels import CHANNELS
+from hil.core.printable import printable
 
 _SHORT = {
     "motor_torque_ref_nm": "Torque request",
@@ -67,7 +68,7 @@ class Label(NamedTuple):
 def channel_label(name: str) -> Label:
     """Short words and symbol of a channel; an unknown channel keeps its name."""
     symbol = CHANNELS[name].symbol if name in CHANNELS else ""
-    return Label(_SHORT.get(name, name), symbol)
+    return Label(_SHORT.get(name, printable(name, 80)), symbol)
 
 
 def pieces(text: str) -> list[tuple[str, bool]]:
@@ -82,7 +83,7 @@ def sentence_html(text: str) -> str:
 
 def channel_unit(name: str, stated: Mapping[str, str] | None = None) -> str:
     """Unit of a known channel, else the one that a recording states (its table `units`), else ''."""
-    return CHANNELS[name].unit if name in CHANNELS else (stated or {}).get(name, "")
+    return CHANNELS[name].unit if name in CHANNELS else printable((stated or {}).get(name, ""), 20)
 
 
 def _symbol_html(symbol: str) -> str:

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
-from reports.channel_figures import channels_section, overview_section, sweep_section
+from reports.channel_figures import channels_section, further_section, overview_section, sweep_section
 from reports.figure import Section
 from reports.step_figures import step_section
 
 
 def sections(recording: Recording, result: RunResult | None) -> list[Section]:
-    """Steps by initial speed, other segments one by one, the whole run; without segments the channels."""
+    """Steps by initial speed, other segments, the whole run, further channels; without segments all."""
     if result is None or not result.segments:
         return _anchored([_filled(channels_section(recording))])
     criteria = {criterion.id: criterion for criterion in result.criteria}
@@ -23,8 +23,9 @@ def sections(recording: Recording, result: RunResult | None) -> list[Section]:
             steps.setdefault(segment.initial_speed_km_h, []).append(segment)
     found = [step_section(recording, group, criteria) for group in steps.values()]
     found += [sweep_section(recording, s) for s in result.segments if s.kind != "step"]
-    overview = overview_section(recording, result.segments)
-    return _anchored([_filled(section) for section in (*found, *([overview] if overview else []))])
+    whole = (overview_section(recording, result.segments), further_section(recording, result.segments))
+    found += [section for section in whole if section]
+    return _anchored([_filled(section) for section in found])
 
 
 def _filled(section: Section) -> Section:

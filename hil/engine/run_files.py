@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 
+from hil.core.channels import CHANNELS
 from hil.core.clock import utc
 from hil.core.model import model_to_toml
 from hil.core.recording import ACCEPTED_EXPIRY, DEVICE
@@ -49,6 +50,14 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> dict[
     writer.describe("versions", versions())
     dates = {name: date.isoformat() for name, date in request.bench.calibration.items()}
     writer.describe("calibration", dates)
+    units = {
+        name: unit
+        for stream in bench.streams
+        for name, unit in zip(stream.channels, stream.units, strict=True)
+        if name not in CHANNELS and unit
+    }
+    if units:
+        writer.describe("units", units)
     return inputs
 
 

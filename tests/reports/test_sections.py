@@ -122,3 +122,25 @@ def test_peaks_that_criteria_judge_are_marked_where_they_are(recording: Recordin
         highest = int(np.nanargmax(trace.y[after]))
         assert (mark.x, mark.y) == (pytest.approx(trace.x[after][highest]), trace.y[after][highest])
         assert f"at {quantities.quantity(mark.x, 's', 3)}" in figure.caption
+
+
+def test_what_further_devices_measured_is_drawn_on_the_same_time(
+    recording: Recording, result: RunResult
+) -> None:
+    further = {
+        "slip_ref": np.sin(recording.time_s),
+        "oil_temperature_k": np.full(len(recording.time_s), 330.0),
+    }
+    more = Recording(
+        {**recording.channels, **further, "dyno_torque_left_nm": recording.time_s},
+        recording.source,
+        metadata={"units": {"oil_temperature_k": "K"}},
+    )
+    overview, section = sections(more, result)[-2:]
+    assert [figure.id for figure in section.figures] == ["further-slip_ref", "further-oil_temperature_k"]
+    assert section.figures[0].bands == overview.figures[0].bands
+    assert [figure.y_unit for figure in section.figures] == ["", "K"]
+    many = {f"channel_{n}": recording.time_s for n in range(20)}
+    section = sections(Recording({**recording.channels, **many}, recording.source), result)[-1]
+    assert len(section.figures) == 12
+    assert section.notes == ("8 further channels are in the recording only.",)
