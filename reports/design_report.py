@@ -50,7 +50,8 @@ def design_page(
 
 _MARGINS = (
     "Sampled: as the RMCU closes the loop, with its hold and with what sampling folds back from beyond half "
-    "its rate (aliasing). Continuous: the same controller without sampling. Limits are judged by the first."
+    "its rate (aliasing). Continuous: the same controller without sampling. Limits are judged by the first. "
+    "|S| = |1/(1 + L)|; gain, phase and delay say by how much each alone may grow until the loop is unstable."
 )
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from hil.core.file_format import FORMAT, FormatNumber
 from hil.core.result import VariableValue
 from test_plans.building import Strict
 from test_plans.conductor import PlannedSegment
@@ -19,6 +20,7 @@ from test_plans.variables import Variable
 class PlanKeys(Strict):
     """The keys of a plan that are plain text."""
 
+    format: FormatNumber = FORMAT
     name: str = Field(
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$",
         description="letters, digits, _, - and ., at most 64: what results are filed under",

@@ -21,6 +21,7 @@ from hil.cli._named_values import named_numbers
 from hil.cli._output import console, plain_table, print_json, progress, to_json
 from hil.cli._place import results_in
 from hil.core.errors import BadInputError
+from hil.core.file_format import FORMAT
 from hil.core.model import Model, load_model
 from hil.engine import BenchFile, StopRequest, load_bench
 from hil.engine.prediction import predict
@@ -103,6 +104,7 @@ def _summary(found: Explanation, seed: int, files: list[str]) -> dict[str, Any]:
         "targets": dict(found.targets.values),
         "tolerance": found.targets.tolerance,
         "reached": found.reached,
+        "format": FORMAT,
         "verdict": found.verdict,
         "caution": caution(found),
         "rivals": [rival.as_json(model_name(n)) for n, rival in enumerate(found.rivals, 1)],

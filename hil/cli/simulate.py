@@ -25,6 +25,7 @@ def carry_out(
     recording = read_recording(source)
     warn_of_damage([recording])
     simulated = replay(chosen, recording)
+    notes = [*recording.notes, *simulated.notes]
     write_recording(simulated, out)
     if as_json:
         print_json(
@@ -32,11 +33,11 @@ def carry_out(
                 "file": str(out),
                 "samples": len(simulated.time_s),
                 "channels": list(simulated.channels),
-                "notes": simulated.notes,
+                "notes": notes,
             }
         )
         return 0
-    for note in simulated.notes:
+    for note in notes:
         console().print(f"note: {note}", highlight=False)
     console().print(f"{len(simulated.time_s)} samples: {out}", highlight=False)
     return 0

@@ -20,11 +20,13 @@ from hil.core.chain import WHEEL_RADIUS_M
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, finite_number, shown
 from hil.core.errors import BadInputError
+from hil.core.file_format import FORMAT, readable_format
 from hil.core.file_kind import refuse_other_kind
 from hil.core.mistakes import Mistakes
 from hil.core.suggestion import closest, did_you_mean
 
 _KEYS = (
+    "format",
     "kind",
     "parameters",
     "tolerance",
@@ -53,6 +55,8 @@ def model_from_dict(data: Mapping[str, Any], where: str, text: str = "") -> Mode
     refuse_other_kind(data, "model", where)
     mistakes = Mistakes()
     _no_others(data, _KEYS, "", mistakes)
+    with mistakes.of("format"):
+        _readable(data.get("format", FORMAT))
     kind = ""
     with mistakes.of("kind"):
         kind = _kind(data.get("kind"))
@@ -70,6 +74,13 @@ def model_from_dict(data: Mapping[str, Any], where: str, text: str = "") -> Mode
     )
     mistakes.refuse(where, text)
     return model
+
+
+def _readable(number: Any) -> None:
+    try:
+        readable_format(number)
+    except ValueError as error:
+        raise BadInputError(f"format = {shown(number)}: {error}") from None
 
 
 def _kind(kind: Any) -> str:

@@ -13,6 +13,7 @@ from typing import Any, Literal
 import tomli_w
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from hil.core.file_format import FORMAT, FormatNumber
 from hil.core.file_kind import refuse_other_kind
 from hil.core.files import write_atomically
 from hil.core.mistakes import keyed, refuse
@@ -99,6 +100,7 @@ class Plant(_Table):
 class Controller(_Table):
     """One controller file."""
 
+    format: FormatNumber = FORMAT
     name: str = Field(min_length=1)
     sample_time_s: float = Field(0.001, gt=0)
     torque_limit_nm: float = Field(gt=0, description="largest |T_m*|")

@@ -22,6 +22,7 @@ from hil.core._model_types import (
 )
 from hil.core.chain import WHEEL_RADIUS_M
 from hil.core.errors import BadInputError
+from hil.core.file_format import FORMAT
 from hil.core.files import write_atomically
 from hil.core.toml_file import parse_toml, toml_text
 
@@ -48,7 +49,7 @@ def save_model(model: Model, path: Path) -> None:
 
 def model_to_toml(model: Model) -> str:
     """The text of a model file."""
-    data: dict[str, Any] = {"kind": model.kind}
+    data: dict[str, Any] = {"format": FORMAT, "kind": model.kind}
     if model.wheel_radius_m != WHEEL_RADIUS_M:
         data["wheel_radius_m"] = model.wheel_radius_m
     if model.load_input:

@@ -7,6 +7,7 @@ from typing import Any
 
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS, SENSED, Effect
+from hil.core.file_format import FORMAT_SCHEMA
 from hil.core.model import LOAD_INPUTS, MODEL_KINDS, WHEEL_RADII_M, parameter_names, parameter_unit
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
@@ -25,6 +26,7 @@ def model_schema() -> dict[str, Any]:
         "title": "Model file",
         "type": "object",
         "properties": {
+            "format": FORMAT_SCHEMA,
             "kind": {"enum": list(MODEL_KINDS), "description": "which equations"},
             "parameters": {"type": "object"},
             "tolerance": {"type": "object", "description": "how well parameters are known, relative"},

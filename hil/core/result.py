@@ -7,6 +7,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from hil.core.file_format import FORMAT, FormatNumber
+
 Verdict = Literal["pass", "fail", "error"]
 #: `informational`: no limit. `did_not_settle`: a failure if it has a limit, else counts as neither.
 #: `not_judged`: its segment was not carried out whole. `error`: could not be computed.
@@ -258,6 +260,7 @@ class RunResult(_Frozen):
         """Without what is only known once the files are written."""
         return self.model_copy(update={"files": {}, "sha256": {}, "samples_sha256": ""})
 
+    format: FormatNumber = FORMAT
     verdict: Verdict
     plan: str
     bench: str

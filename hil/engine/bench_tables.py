@@ -9,6 +9,7 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, SerializeAsAny, model_validator
 
 from drivers import DeviceTable, File, LoadTable, Name
+from hil.core.file_format import FORMAT, FormatNumber
 from hil.engine.limit_tables import Bound, Interlock, Limit, Limits, Table
 
 
@@ -184,6 +185,7 @@ class ReportTable(Table):
 class BenchFile(Table):
     """One bench file; paths are absolute once it is loaded."""
 
+    format: FormatNumber = FORMAT
     name: Name
     title: str = ""
     operator: str = ""

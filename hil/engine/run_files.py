@@ -6,6 +6,7 @@ import time
 
 from hil.core.channels import CHANNELS
 from hil.core.clock import utc
+from hil.core.file_format import FORMAT
 from hil.core.model import model_to_toml
 from hil.core.recording import ACCEPTED_EXPIRY, DEVICE
 from hil.core.result import AcceptedExpiry, RunResult
@@ -39,6 +40,7 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> dict[
             "title": request.plan.title,
             "bench": request.bench.title or request.bench.name,
             "operator": request.operator or request.bench.operator,
+            "format": str(FORMAT),
             "started_at": utc(time.time_ns()),
             "simulated": str(bench.simulated).lower(),
             **{key: name for key, name in confirmed.items() if name},

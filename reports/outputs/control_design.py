@@ -11,6 +11,7 @@ import numpy as np
 from hil.analysis.control_design import Design, measured_loop
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.core.controller import controller_to_toml
+from hil.core.file_format import FORMAT
 from reports import drawings as figures
 
 
@@ -44,6 +45,7 @@ def summary_of(found: Design, paper: Design | None, model: str, files: list[str]
     """The content of `design.json`."""
     controller = found.controller
     summary = {
+        "format": FORMAT,
         "model": model,
         "controller": "controller.toml",
         "stabilisation": found.chosen,
@@ -114,6 +116,9 @@ def text_of(found: Design, paper: Design | None, out: Path) -> str:
             f"{m.gain_margin_db:>7.1f}  {m.phase_margin_deg:>7.1f}  {m.delay_margin_s * 1e3:>8.1f}  "
             f"{'yes' if m.stable else 'NO'}{'  <- taken' if name == found.chosen else ''}"
         )
+    lines.append(
+        "gain, phase, delay: how much each alone may grow until the loop is unstable; |S| = |1/(1 + L)|"
+    )
     r = found.robustness
     lines.append(
         f"worst of {r.source}: |S|max {r.sensitivity_peak:.2f}, max 8-20 Hz {r.comfort_peak:.3f}, "

@@ -13,6 +13,7 @@ from hil.analysis.frequency_response import Experiment, frf_to_csv
 from hil.analysis.identification import CHAINS, Identification
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
+from hil.core.file_format import FORMAT
 from hil.core.model import model_to_toml
 from reports import drawings as figures
 
@@ -56,6 +57,7 @@ def summary_of(found: Identification, experiments: list[Experiment], files: list
     poles = fit.modes.pole_locations()
     sure = found.verdict == "linear"  # misfit that is no noise makes standard errors meaningless
     return {
+        "format": FORMAT,
         "verdict": found.verdict,
         "warnings": list(found.warnings),
         "quality": {

@@ -11,6 +11,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from hil.core.channels import unit_of
+from hil.core.file_format import FORMAT
 from hil.core.recording._table import Event, Recording
 
 #: Name of the text where a format has named places: an attachment of MDF4, a key of Parquet's metadata.
@@ -43,6 +44,7 @@ class _Evidence(BaseModel):
     model_config = ConfigDict(extra="ignore")
 
     format: Literal["hil recording"] = "hil recording"
+    version: int = FORMAT
     source: str = Field("", description="file that was exported")
     samples: int
     first_time_s: float

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap
 from hil.analysis.diagnosis.tell._words import Where
 from hil.core.effects import EFFECTS
+from hil.core.file_format import FORMAT
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
@@ -129,6 +130,7 @@ class Diagnosis:
     def as_json(self) -> dict[str, Any]:
         """The content of `diagnosis.json`."""
         return {
+            "format": FORMAT,
             "verdict": self.verdict,
             **({"unfinished": self.unfinished} if self.unfinished else {}),
             "effects": [_effect(e) for e in self.effects],
