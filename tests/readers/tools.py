@@ -10,10 +10,11 @@ import tempfile
 from pathlib import Path
 
 import can
+import pytest
 
 PLACE = Path(tempfile.gettempdir()) / "eaxle-hil-readers"
 _NODE = ("axe-core", "puppeteer-core")
-_PYTHON = ("polars", "duckdb", "junitparser", "mdfreader")
+_PYTHON = ("polars", "duckdb", "junitparser", "lxml", "mdfreader")
 _JARS = {"nu.validator:validator": "26.5.2", "org.verapdf.apps:greenfield-apps": "1.28.2"}
 _POM = """<project xmlns="http://maven.apache.org/POM/4.0.0"><modelVersion>4.0.0</modelVersion>
 <groupId>r</groupId><artifactId>r</artifactId><version>1</version><dependencies>{}</dependencies></project>"""
@@ -50,18 +51,35 @@ def node_modules() -> Path:
 def python_packages() -> Path:
     """A folder with the tools of PyPI, for PYTHONPATH of a process of its own."""
     folder = PLACE / "python"
-    if not (folder / "polars").is_dir():
+    if not (folder / "lxml").is_dir():
         ran(sys.executable, "-m", "pip", "install", "--quiet", "--target", folder, *_PYTHON)
     return folder
 
 
 def python_can_source() -> Path:
     """The source package of python-can: the logs that it is tested with are in no other."""
-    folder = PLACE / f"python_can-{can.__version__}"
-    if not (folder / "test/data").is_dir():
+    return _source_package("python-can", can.__version__)
+
+
+def jenkins_schema() -> Path:
+    """The schema of JUnit files of Jenkins' xUnit plugin; pytest tests its own files with it."""
+    return _source_package("pytest", pytest.__version__) / "testing/example_scripts/junit-10.xsd"
+
+
+def _source_package(name: str, version: str) -> Path:
+    folder = PLACE / f"{name.replace('-', '_')}-{version}"
+    if not folder.is_dir():
         PLACE.mkdir(parents=True, exist_ok=True)
-        wanted = f"python-can=={can.__version__}"
-        download = ("-m", "pip", "download", "--quiet", "--no-deps", "--no-binary", "python-can", wanted)
+        download = (
+            "-m",
+            "pip",
+            "download",
+            "--quiet",
+            "--no-deps",
+            "--no-binary",
+            name,
+            f"{name}=={version}",
+        )
         ran(sys.executable, *download, "--dest", PLACE)
         with tarfile.open(PLACE / f"{folder.name}.tar.gz") as archive:
             archive.extractall(PLACE, filter="data")
