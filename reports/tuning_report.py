@@ -21,6 +21,15 @@ from reports.parts import Cell, Map, Page, Part, Table
 
 _LEADS = "Each margin on the car that is worst for it, weighted; in brackets: on the model itself."
 
+_LIMITS = {
+    "sensitivity_peak": "|S|max",
+    "gain_margin_db": "gain margin, dB",
+    "phase_margin_deg": "phase margin, °",
+    "delay_margin_s": "delay margin, s",
+    "motor_torque_nm": "motor torque, N m",
+    "motor_energy_j": "motor energy, J",
+}
+
 
 @dataclass(frozen=True)
 class Shown:
@@ -56,7 +65,7 @@ def tuning_page(
 
 def _parts(found: Tuning, runs: Sequence[Shown], files: Mapping[str, bytes], origin: Origin) -> list[Part]:
     parts = [
-        Part("margins", "Margins", _LEADS, (_margins(found),)),
+        Part("margins", "Margins", _margins_text(found), (_margins(found),)),
         Part("limits", "Hard limits", _limits_text(found), (_limits(found),)),
         Part("parameters", "Parameters", "", (_parameters(found),)),
         Part("binding", "What binds", _binding_text(found), (_binding(found),)),
@@ -91,9 +100,9 @@ def _parts(found: Tuning, runs: Sequence[Shown], files: Mapping[str, bytes], ori
         Part(
             "search",
             "The search",
-            f"{found.runs} predicted runs of the plan; {found.ended}. Differential evolution over the whole "
-            "space on the model itself, then on the cars that were worst, then the method of Nelder and Mead "
-            "on a growing set of cars.",
+            f"{found.runs} predicted runs of the plan; {found.ended}. From the start and the best of points "
+            "all over the space uphill on the model itself, by linear programmes on the slopes of all "
+            "margins and hard limits; then on a growing set of cars.",
         )
     )
     return [*parts, origin.part]
@@ -134,16 +143,26 @@ def _compared(run: Shown, found: Tuning) -> ComparedRun:
     return ComparedRun(run.name, run.recording, result)
 
 
+def _margins_text(found: Tuning) -> str:
+    """An interrupted search compares nothing beside the start."""
+    same = found.ended != "stopped" and all(one.name != "paper's lead" for one in found.others)
+    return f"{_LEADS} The start has the paper's lead." if same else _LEADS
+
+
 def _margins(found: Tuning) -> Table:
     names = tuple(one.name for one in found.shown)
     rows = [
         (criterion.id.replace(".", " "), *(_margin(one, criterion.id) for one in found.shown))
         for criterion in found.trial.driven.criteria
     ]
-    rows.append(
-        ("worst", *(_percent(one.worst.worst) if one.worst.feasible else "none" for one in found.shown))
-    )
+    rows.append(("worst", *(_worst(one, found) for one in found.shown)))
     return Table(("criterion", *names), tuple(rows))
+
+
+def _worst(one: Standing, found: Tuning) -> str:
+    if not one.worst.feasible:
+        return "none"
+    return _percent(min(one.least_margin(criterion.id) for criterion in found.trial.driven.criteria))
 
 
 def _margin(one: Standing, id_: str) -> str:
@@ -171,7 +190,7 @@ def _limits(found: Tuning) -> Table:
         cells = (_percent(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown)
         limit = getattr(found.trial.free.limits, name)
         value = "yes" if isinstance(limit, bool) else quantities.nominal(limit)
-        rows.append((name.replace("_", " "), value, *cells))
+        rows.append((_LIMITS.get(name, name.replace("_", " ")), value, *cells))
     return Table(("limit", "value", *names), tuple(rows))
 
 
@@ -205,7 +224,7 @@ def _binding(found: Tuning) -> Table:
     for tried in sorted(found.chosen.tried, key=lambda one: one.worst)[:5]:
         differs = found.trial.draws[tried.draw].differs
         words = ", ".join(f"{name} {quantities.number(value)}" for name, value in differs.items())
-        car = "the model itself" if tried.draw == 0 else f"draw {tried.draw}"
+        car = "the model itself" if tried.draw == 0 else f"draw\u00a0{tried.draw}"
         rows.append((car, _percent(tried.worst), tried.binding.replace(".", " "), words))
     return Table(("car", "worst margin", "binding criterion", "differs"), tuple(rows), 1, 2)
 

@@ -28,7 +28,7 @@ def front(
         best: M x 3, those of them that no other beats in all three.
         named: controllers that are marked.
     """
-    figure = style.new_figure(17, 9)
+    figure = style.new_figure(22, 10.5)
     panels = figure.subplots(1, 2)
     for axes, column in zip(panels, (1, 2), strict=True):
         axes.plot(every[:, 0], every[:, column], ".", color=style.GREY, markersize=3, alpha=0.35)
