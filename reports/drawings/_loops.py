@@ -58,7 +58,8 @@ def nyquist(
     for axes in panels:
         style.style_axes(axes)
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False, fontsize=8.5)
+    columns = 5 if both else 3
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, fontsize=8.5)
     return figure
 
 
