@@ -83,6 +83,16 @@ def test_on_the_model_itself_nothing_is_gained_after_a_search(trial):
     assert "would grow by no more than" in found.ended
 
 
+def test_hard_limits_hold_on_every_car():
+    text = f"{FREE}[limits]\nphase_margin_deg = 45.0\n[tolerance]\ndead_time_s = 0.002\n"
+    trial = trial_of(text, draws=3)
+    found = refined(trial, ComputedBench(trial, OTHER), patience=Patience(runs=4))
+    alone = refined(trial_of(text), ComputedBench(trial, OTHER), patience=Patience(runs=4))
+    assert len(found.runs) > 1
+    assert all(trial.tried(run.values, car).feasible for run in found.runs for car in range(4))
+    assert not all(trial.tried(run.values, car).feasible for run in alone.runs for car in range(4))
+
+
 def test_a_first_run_that_is_not_as_predicted_is_the_last_where_that_is_asked_for(trial):
     found = refined(trial, ComputedBench(trial, OTHER), patience=Patience(stop_beyond=0.001))
     assert len(found.runs) == 1
