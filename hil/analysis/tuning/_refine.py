@@ -195,7 +195,7 @@ class _Refining:
             controller,
             self._radius,
             promise.tried,
-            promise.margins,
+            promise.corrected.margins,
             {},
             (),
             "refused",

@@ -84,7 +84,7 @@ def test_on_the_model_itself_nothing_is_gained_after_a_search(trial):
 
 
 def test_hard_limits_hold_on_every_car():
-    text = f"{FREE}[limits]\nphase_margin_deg = 45.0\n[tolerance]\ndead_time_s = 0.002\n"
+    text = f"{FREE}[limits]\nphase_margin_deg = 45.0\n[tolerance]\ndead_time_s = 0.006\n"
     trial = trial_of(text, draws=3)
     found = refined(trial, ComputedBench(trial, OTHER), patience=Patience(runs=4))
     alone = refined(trial_of(text), ComputedBench(trial, OTHER), patience=Patience(runs=4))
