@@ -136,20 +136,16 @@ class Stages:
         return asked_for(self._told.sequence, model, self._told.bench)
 
     def tune(self, asked: Asked, number: int) -> Tuning:
-        """Search on the model."""
-        told, stop = self._told, StopRequest()
-        with progress(f"round {number}: tune") as show, stop.by_signals():
-            found = tune(
+        """Search on the model; an interrupt ends it, for nothing of it was measured."""
+        told = self._told
+        with progress(f"round {number}: tune") as show:
+            return tune(
                 asked.trial,
                 seed=told.sequence.seed,
                 effort=Effort(starts=told.sequence.starts),
                 processes=told.processes,
                 show=lambda text, share: show(text, share),
-                stopped=lambda: stop.times > 0,
             )
-        if stop.times:
-            raise EndedError.interrupted()
-        return found
 
     def confirm(self, asked: Asked, found: Tuning, folder: Path) -> tuple[Refined, WireBench]:
         """Run what was found, and refine it unless the first run is not as predicted."""
