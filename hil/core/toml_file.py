@@ -9,6 +9,7 @@ from typing import Any
 
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
+from hil.core.printable import printable
 
 #: Model and controller files hold some thousand numbers at most; tomllib needs a second for each of these.
 LARGEST_BYTES = 5_000_000
@@ -31,8 +32,8 @@ def toml_text(path: Path) -> str:
     return read_text(path)
 
 
-def parse_toml(text: str, where: str) -> dict[str, Any]:
-    """Contents of a TOML text; `where` names it in messages.
+def parse_toml(text: str, where: str, fix: str = "") -> dict[str, Any]:
+    """Contents of a TOML text; `where` names it in messages, `fix` is what to do.
 
     Raises:
         BadInputError: not TOML.
@@ -40,6 +41,6 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except ValueError as error:  # also numbers of more digits than Python converts
-        raise BadInputError(f"not a TOML file: {error}", where=where) from error
+        raise BadInputError(f"not a TOML file: {printable(error, 200)}", where=where, fix=fix) from error
     except RecursionError as error:
-        raise BadInputError("not a TOML file: nested too deeply", where=where) from error
+        raise BadInputError("not a TOML file: nested too deeply", where=where, fix=fix) from error

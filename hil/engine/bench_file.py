@@ -13,11 +13,11 @@ from pydantic import ValidationError
 from drivers import DeviceTable
 from hil.core.errors import BadInputError
 from hil.core.file_kind import refuse_other_kind
-from hil.core.files import read_text
 from hil.core.mistakes import keyed, refuse
 from hil.core.printable import is_printable, printable
 from hil.core.suggestion import did_you_mean
 from hil.core.table_mistakes import told
+from hil.core.toml_file import parse_toml, toml_text
 from hil.engine._bench_checks import contradictions, device_mistakes, file_mistakes, unprintable
 from hil.engine.bench_tables import BenchFile
 from hil.engine.device_kinds import device_tables
@@ -39,13 +39,8 @@ def load_bench(name_or_path: str | Path) -> BenchFile:
     path = Path(name_or_path)
     if path.suffix != ".toml":
         path = _shipped_bench(str(name_or_path))
-    text = read_text(path)
-    try:
-        data = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
-        raise BadInputError(
-            f"not a TOML file: {printable(error, 200)}", where=printable(path, 200), fix=_FIX
-        ) from error
+    text = toml_text(path)
+    data = parse_toml(text, printable(path, 200), _FIX)
     refuse_other_kind(data, "bench file", printable(path, 200))
     return bench_from_dict(data, text, path)
 
