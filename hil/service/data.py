@@ -181,6 +181,9 @@ class ForecastData(_Data):
     duration_s: float
     predicted: dict[str, PredictedPeak]
     criteria: list[PredictedCriterion]
+    bus_loads: dict[str, float] = Field(
+        {}, description="share of each bus that the frames of every millisecond take, at most"
+    )
 
 
 class TrendPoint(_Data):
