@@ -19,6 +19,7 @@ _SETTINGS = {
     "EFW2": ("AFW2", 100.0, "f2_ns2_m2", 1.0),
     "ESLP": ("ASLP", 50.0, "slip", 0.01),
 }
+_LATE_TICKS, _LOOK_TICKS, _LOOK_S = 60, 10, 0.02
 _READ = {read: write for write, (read, *_) in _SETTINGS.items()}
 
 
@@ -91,7 +92,7 @@ class PanelPort:
     """
 
     def __init__(self, panel: EmulatedPanel, *, waits: bool = True) -> None:
-        self.panel, self._waits = panel, waits
+        self.panel, self._waits, self._quiet = panel, waits, _LATE_TICKS
         self._own, self._theirs = pty.openpty()
         tty.setraw(self._theirs)
         os.set_blocking(self._own, False)
@@ -99,10 +100,15 @@ class PanelPort:
 
     def tick(self) -> None:
         """Answer what came."""
+        self._quiet += 1
+        if self._waits and self._quiet > _LATE_TICKS and self._quiet % _LOOK_TICKS == 0:
+            # Asked twice a second: the terminal may be behind computed time
+            select.select([self._own], [], [], _LOOK_S)
         try:
             said = self.panel.hear(os.read(self._own, 4096))
         except BlockingIOError:
             return
+        self._quiet = 0
         if said:
             os.write(self._own, said)
         if said and self._waits:
