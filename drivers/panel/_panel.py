@@ -78,7 +78,8 @@ class Panel:
         if self.alarms:
             raise self._failed(f"has alarms: {', '.join(self.alarms)}", "clear their cause at the panel")
         if self.state != REMOTE:
-            raise self._failed(f"stays {self.state or 'silent'}", "let the panel be remote")
+            stands = {"SMAN": "local", "": "silent"}.get(self.state, printable(self.state, 20))
+            raise self._failed(f"stays {stands}", "let the panel be remote")
 
     def beat(self) -> None:
         """Ask for state and alarms; the answers are looked at when they come."""

@@ -75,6 +75,14 @@ FURTHER: tuple[FaultRow, ...] = (
     xcp("lost-many", "1 of 5 packets of samples lost", F.one_of(5), "are lost", **_SLOW),
     xcp("overload", "it is overloaded, and says so", F.overloaded(), "overloaded", **_SLOW),
     row(
+        "xcp-bus-off",
+        "adapter off its bus",
+        lambda: I.Refused(RAM_BUS),
+        "interface is down|stopped",
+        beside="ram",
+        within_s=1.3,
+    ),
+    row(
         "xcp-reset",
         "its XCP starts anew",
         lambda: I.Does(lambda stage: stage.world.reset_xcp()),

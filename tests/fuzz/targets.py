@@ -21,6 +21,7 @@ from hil.core.recording import Recording, read_recording, recover_recording, wri
 from hil.engine import RunRequest, load_bench, run_plan
 from test_plans import load_plan
 from tests.benches_for_tests import SIM, plan, running, sim_bench
+from tests.fuzz import further_targets
 
 _BENCHES, _LIBRARY = SIM.source.parent, Path(load_plan("acceptance").source).parent
 
@@ -116,6 +117,9 @@ def eds(path: Path) -> object:
     return read_eds(path, 3, [(0x1017, 0)])
 
 
+_SYMBOLS = (
+    b"symbol,address,type,unit,scale,offset\nspeed,0x2000,UWORD,rad/s,0.5,-10\nraw,8196,FLOAT32_IEEE,,,\n"
+)
 _MODELS = tuple(_BENCHES / f"{name}.toml" for name in ("three_inertia", "paper_functions"))
 _CONTROLLERS = tuple(sorted((_LIBRARY / "controllers").glob("*.toml")))
 
@@ -133,5 +137,10 @@ TARGETS: Mapping[str, Target] = {
     "blf": Target(lambda: logs(".blf"), ".blf", read_can_log),
     "candump": Target(lambda: logs(".log"), ".log", read_can_log),
     "recover": Target(of_a_run, ".mcap", recovered),
+    "a2l": Target(of_files(_BENCHES / "rmcu.a2l"), ".a2l", further_targets.symbols),
+    "symbols": Target(lambda: [_SYMBOLS], ".csv", further_targets.symbols),
+    "telegrams": Target(further_targets.of_telegrams, ".bin", further_targets.telegrams),
+    "xcp-answers": Target(further_targets.from_the_slave, ".bin", further_targets.heard_by_the_monitor),
+    "xcp-commands": Target(further_targets.to_the_slave, ".bin", further_targets.heard_by_the_slave),
     "frames": Target(_frames, ".bin", on_the_bus),
 }
