@@ -10,7 +10,8 @@ from drivers.ram._monitor import RamMonitor
 from drivers.ram._packing import bits_of, packed
 from drivers.table import Connections, DeviceTable, File
 from hil.core.errors import BadInputError
-from hil.core.symbols import Symbol, Symbols, read_symbols, refuse_extended
+from hil.core.symbol_files import read_symbols
+from hil.core.symbols import Symbol, Symbols, refuse_extended
 from hil.core.xcp import MOST_BYTES
 
 _STAMP_BYTES = 2  # of most slaves on CAN

@@ -1,19 +1,15 @@
-"""Where a control unit keeps its variables: a table of symbols, from an A2L or a CSV of a linker's map."""
+"""Where a control unit keeps its variables: symbols, as a file of them says."""
 
 from __future__ import annotations
 
-import csv
-import io
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from hil.core.errors import BadInputError
-from hil.core.files import read_bytes
 from hil.core.printable import printable
 from hil.core.suggestion import did_you_mean
 
@@ -30,9 +26,6 @@ TYPES = {
     "FLOAT32_IEEE": "f4",
     "FLOAT64_IEEE": "f8",
 }
-_COLUMNS = ("symbol", "address", "type")
-_MORE_COLUMNS = ("unit", "scale", "offset")
-_HIGHEST_ADDRESS = 0xFFFF_FFFF
 _LARGEST_ID = 0x7FF
 
 
@@ -121,26 +114,6 @@ class Symbols:
         return symbol
 
 
-def read_symbols(path: Path) -> Symbols:
-    """Read an A2L (`.a2l`) or a CSV with the columns symbol, address, type, unit, scale and offset.
-
-    Raises:
-        BadInputError: it cannot be read, or is neither.
-    """
-    from hil.core.a2l import read_a2l  # here: it knows what symbols are
-
-    data = read_bytes(path)
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = data.decode("latin-1")  # older tools write degrees and squares so
-    if path.suffix.lower() == ".a2l":
-        return replace(read_a2l(text, str(path)), file=path)
-    if path.suffix.lower() == ".csv":
-        return Symbols(dict(_rows(text, str(path))), file=path)
-    raise BadInputError("is no table of symbols", where=str(path), fix="give an A2L (.a2l) or a CSV (.csv)")
-
-
 def refuse_extended(number: int, what: str, where: str) -> int:
     """An identifier of 11 bits as it is.
 
@@ -154,70 +127,3 @@ def refuse_extended(number: int, what: str, where: str) -> int:
             fix="only standard frames are sent: give request_id and answer_id in the bench file",
         )
     return number
-
-
-def _rows(text: str, where: str) -> list[tuple[str, Symbol]]:
-    lines = csv.reader(io.StringIO(text))
-    found: dict[str, Symbol] = {}
-    try:
-        header = [name.strip().lower() for name in next(lines, [])]
-        missing = [name for name in _COLUMNS if name not in header]
-        if missing:
-            raise BadInputError(
-                f"column '{missing[0]}' is missing",
-                where=f"{where}, line 1",
-                fix=f"begin it with: {','.join((*_COLUMNS, *_MORE_COLUMNS))}",
-            )
-        for row in lines:
-            if not any(cell.strip() for cell in row):
-                continue
-            place = f"{where}, line {lines.line_num}"
-            symbol = _symbol_of(dict(zip(header, (cell.strip() for cell in row), strict=False)), place)
-            if symbol.name in found:
-                raise BadInputError(
-                    f"symbol '{printable(symbol.name, 60)}' stands twice", where=place, fix="leave one out"
-                )
-            found[symbol.name] = symbol
-    except csv.Error as error:
-        raise BadInputError(f"is no CSV: {error}", where=f"{where}, line {lines.line_num}") from error
-    return list(found.items())
-
-
-def _symbol_of(cells: Mapping[str, str], where: str) -> Symbol:
-    kind = TYPES.get(cells.get("type", "").upper())
-    if kind is None:
-        raise BadInputError(
-            f"type '{printable(cells.get('type', ''), 40)}' is none",
-            where=where,
-            fix=f"write one of {', '.join(TYPES)}",
-        )
-    name = cells.get("symbol", "")
-    if not name:
-        raise BadInputError("a symbol has no name", where=where, fix="write it in the column 'symbol'")
-    try:
-        address = int(cells.get("address", ""), 0)
-    except ValueError:
-        address = -1
-    if not 0 <= address <= _HIGHEST_ADDRESS:
-        raise BadInputError(
-            f"address '{printable(cells.get('address', ''), 40)}' is none",
-            where=where,
-            fix="write it as 0x20000100",
-        )
-    scale, offset = (
-        _number(cells, key, default, where) for key, default in (("scale", 1.0), ("offset", 0.0))
-    )
-    if scale == 0.0:
-        raise BadInputError("scale is 0", where=where, fix="leave it empty for 1")
-    return Symbol(name, address, kind, printable(cells.get("unit", ""), 20), scale, offset)
-
-
-def _number(cells: Mapping[str, str], key: str, default: float, where: str) -> float:
-    text = cells.get(key, "")
-    try:
-        value = float(text) if text else default
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise BadInputError(f"{key} '{printable(text, 40)}' is no number", where=where, fix="correct it")
-    return value

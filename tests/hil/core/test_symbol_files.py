@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.core.errors import BadInputError
-from hil.core.symbols import TYPES, Symbol, read_symbols
+from hil.core.symbol_files import read_symbols
+from hil.core.symbols import TYPES, Symbol
 from hil.engine.bench_file import shipped
 
 A2L = """ASAP2_VERSION 1 61
