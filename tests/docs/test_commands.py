@@ -134,6 +134,9 @@ def prepare(page: str, stage: Path) -> None:
         Path("segments.json").write_text(SEGMENTS)
     if page.endswith("first-run.md"):
         hil("run", "acceptance", "--out", "out/acceptance")
+    if page.endswith("model-to-fmu.md"):
+        Path("why").mkdir()
+        shutil.copy("axle.toml", "why/model.toml")
     if page.endswith("diagnose.md"):
         Path("why").mkdir()
         shutil.copy("identification", "why/separate_running_resistance.yaml")
