@@ -28,7 +28,7 @@ from test_plans import Array, Plan, Step, Work
 _LONGEST_STEP_S, _WITH_A_GAP_S = 5e-4, 2.5e-4
 #: A chain without rates beyond this, its torque rippling a few times a turn, needs a step a sample for that.
 _CALM_RAD_S, _WHEEL, _CALM_ORDER = 150.0, "wheel_order_disturbance", 5.0
-_CARS_KEPT = 24  # whose beginning is kept: 4 MB each
+_CARS_KEPT = 24  # whose beginning is kept: 5 MB each
 
 
 @dataclass
