@@ -13,7 +13,7 @@ from drivers.table import Connections
 from hil.core.ak import Request, Telegrams, answer_of
 from hil.core.errors import BadInputError
 from hil.core.frames import FRAME
-from hil.core.symbols import read_symbols
+from hil.core.symbol_files import read_symbols
 from hil.core.xcp import Command
 from hil.engine import load_bench
 from hil.plant.closed_loop import tick as T
