@@ -56,6 +56,14 @@ class Closing:
         return min(self.before_margins.values(), default=None)
 
     @property
+    def traded(self) -> tuple[str, ...]:
+        """Criteria in which the plan's own controller had more margin on the bench than the best has."""
+        measured = {} if self.best is None else self.best.measured
+        return tuple(
+            name for name, margin in measured.items() if margin < self.before_margins.get(name, margin)
+        )
+
+    @property
     def content(self) -> bool:
         """Whether prediction and run agree, and nothing that depends on the controller fails."""
         return self.agrees and self.best is not None and self.best.worst >= 0
@@ -74,6 +82,7 @@ def closing_summary(closing: Closing, files: list[str]) -> dict[str, Any]:
             "measured": None if best is None else best.worst,
         },
         "margins": {} if best is None else {name: _margins(closing, name) for name in best.measured},
+        "traded": list(closing.traded),
         "effects": [] if found is None else found.as_json()["effects"],
         "parameter_updates": {} if found is None else found.as_json()["parameter_updates"],
         "best": {} if best is None else {"round": closing.best_round, "run": best.number},
@@ -100,9 +109,11 @@ def closing_verdict(closing: Closing) -> str:
         return f"No controller was confirmed: {closing.ended or 'not yet'}."
     own = "" if before is None else f"; the plan's own controller has {100 * before:.1f} % on that bench"
     how = "as predicted" if closing.agrees else "not as predicted"
+    names = ", ".join(name.replace(".", " ") for name in closing.traded)
+    less = f" Less margin than before have: {names}." if names else ""
     return (
         f"Worst margin measured {100 * best.worst:.1f} % (round {closing.best_round}, run {best.number}), "
-        f"{how}{own}. Ended: {closing.ended or 'not yet'}."
+        f"{how}{own}.{less} Ended: {closing.ended or 'not yet'}."
     )
 
 
