@@ -125,7 +125,7 @@ def refine(
         stopped: asked between predictions and between runs; what was measured is kept.
     """
     with Pool(trial, processes) as pool:
-        step = TrustStep(pool, space, stopped)
+        step = TrustStep(pool, space, start, stopped)
         return _Refining(trial, space, bench, patience or Patience(), step, show, stopped).carry_out(start)
 
 

@@ -17,6 +17,8 @@ from hil.analysis.tuning._trial import Tried
 Array = npt.NDArray[np.float64]
 
 _ROUNDS = 6
+_CHECKED = 5  # of the candidates that promise most, on every car
+_SAME = 1e-4  # of margins: less than this is no difference
 _RADIUS, _SHORTEST = 0.5, 0.02  # of the first and of the last step of an ascent, shares of the region's width
 
 
@@ -39,10 +41,11 @@ class Promise:
 
 
 class TrustStep:
-    """Looks for candidates around a centre; hard limits hold on every car of the trial."""
+    """Looks for candidates around a centre, no worse on other cars of the trial than what is at `start`."""
 
-    def __init__(self, pool: Pool, space: Space, stopped: Callable[[], bool]) -> None:
+    def __init__(self, pool: Pool, space: Space, start: Array, stopped: Callable[[], bool]) -> None:
         self._pool, self._space, self._stopped = pool, space, stopped
+        self._least = min((car.worst for car in self._on_others(start)), default=0.0)
 
     def best(self, centre: Promise, correction: Correction, radius: float) -> Promise:
         """What promises most within `radius`; the centre itself if nothing promises more."""
@@ -66,7 +69,7 @@ class TrustStep:
             return centre
         better = [one for one in seen if one.corrected.score > centre.corrected.score]
         better.sort(key=lambda one: -one.corrected.score)
-        return next((one for one in better if self._on_every_car(one)), centre)
+        return next((one for one in better[:_CHECKED] if self._on_every_car(one)), centre)
 
     def promise(self, point: Array, correction: Correction) -> Promise | None:
         """A candidate on the model itself; None beyond a hard limit."""
@@ -81,9 +84,14 @@ class TrustStep:
         ]
 
     def _on_every_car(self, one: Promise) -> bool:
-        """Whether it keeps the hard limits on all of them."""
-        values, cars = self._space.values(one.point), range(1, len(self._pool.trial.draws))
-        return all(tried.feasible for tried in self._pool.tried([(values, number) for number in cars]))
+        """Whether it keeps the hard limits on the others, too, and no worse there than the start."""
+        tried = self._on_others(one.point)
+        return all(car.feasible and car.worst >= self._least - _SAME for car in tried)
+
+    def _on_others(self, point: Array) -> list[Tried]:
+        """A candidate on every car but the model itself."""
+        values, cars = self._space.values(point), range(1, len(self._pool.trial.draws))
+        return self._pool.tried([(values, number) for number in cars])
 
 
 def _corrected(tried: Tried, correction: Array) -> Tried:
