@@ -13,7 +13,7 @@ from hil.core.model import load_model
 from hil.fmu import export_fmu
 
 
-def carry_out(*, model: Path, controller: Path | None, out: Path, overwrite: bool, as_json: bool) -> int:
+def carry_out(*, model: Path, out: Path, controller: Path | None, overwrite: bool, as_json: bool) -> int:
     """Carry the command out; its exit code."""
     if out.suffix.lower() != ".fmu":
         raise BadInputError("is no unit by its name", where=str(out), fix="give a name that ends in .fmu")

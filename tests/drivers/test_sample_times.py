@@ -55,8 +55,8 @@ def aside(columns: Columns, channel: str) -> np.ndarray:
     return np.nan_to_num(columns[channel] - columns["motor_speed_rad_s"], nan=-1000.0)
 
 
-@pytest.mark.parametrize("size_s", [0.001, 0.003, 0.01])
-def test_jitter_of_one_device_up_to_10_ms_ends_no_run(size_s: float) -> None:
+@pytest.mark.parametrize("size_s", [0.001, 0.002, 0.003])
+def test_jitter_of_one_device_up_to_3_ms_ends_no_run(size_s: float) -> None:
     for seed in range(4):
         random = np.random.default_rng(seed)
         block = dyno()
@@ -70,10 +70,13 @@ def timing(assembler: SampleAssembler, label: str) -> tuple[int, int]:
 
 
 @st.composite
-def ways(draw: st.DrawFn) -> Late:
-    """What an adapter does to the stamps of frames, in the order in which they come."""
+def ways(draw: st.DrawFn, held_up_s: float = 0.05) -> Late:
+    """What an adapter does to the stamps of frames, in the order in which they come.
+
+    `held_up_s`: at most so much where every frame is late by a delay of its own and none overtakes another.
+    """
     kind = draw(st.sampled_from(["bursts", "held up", "noise", "pauses", "outliers"]))
-    size_s = draw(st.floats(1e-4, 0.05))
+    size_s = draw(st.floats(1e-4, held_up_s if kind == "held up" else 0.05))
     random = np.random.default_rng(draw(st.integers(0, 1000)))
 
     def late(block: FrameBlock) -> FrameBlock:
@@ -121,10 +124,10 @@ def test_in_bursts_each_row_has_the_dynos_sample_of_the_same_millisecond(every_s
 
 
 @settings(max_examples=20, deadline=None)
-@given(way=ways())
+@given(way=ways(held_up_s=0.003))  # beyond, who has no counter may take all frames held up for one lost
 def test_a_device_that_jitters_alone_is_off_by_one_constant_or_ends_the_run(way: Late) -> None:
     assembler, columns = recorded(rmcu(), way(dyno()))
-    try:  # without a counter, frames that are all held up by tens of milliseconds may be taken for lost ones
+    try:
         assembler.look_for_parted_clocks()
     except BenchError:
         event("said to have parted")
