@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, event, given, settings
+from hypothesis import assume, event, given, note, settings
 from hypothesis import strategies as st
 
 from drivers import SampleAssembler
@@ -55,8 +55,8 @@ def aside(columns: Columns, channel: str) -> np.ndarray:
     return np.nan_to_num(columns[channel] - columns["motor_speed_rad_s"], nan=-1000.0)
 
 
-@pytest.mark.parametrize("size_s", [0.001, 0.002, 0.003])
-def test_jitter_of_one_device_up_to_3_ms_ends_no_run(size_s: float) -> None:
+@pytest.mark.parametrize("size_s", [0.001, 0.002])
+def test_jitter_of_one_device_up_to_2_ms_ends_no_run(size_s: float) -> None:
     for seed in range(4):
         random = np.random.default_rng(seed)
         block = dyno()
@@ -70,14 +70,16 @@ def timing(assembler: SampleAssembler, label: str) -> tuple[int, int]:
 
 
 @st.composite
-def ways(draw: st.DrawFn, held_up_s: float = 0.05) -> Late:
+def ways(draw: st.DrawFn, held_up_s: float = 0.05, noise_s: float = 0.05) -> Late:
     """What an adapter does to the stamps of frames, in the order in which they come.
 
-    `held_up_s`: at most so much where every frame is late by a delay of its own and none overtakes another.
+    `held_up_s`, `noise_s`: at most so much where every frame is late by a delay of its own, in order or not.
     """
     kind = draw(st.sampled_from(["bursts", "held up", "noise", "pauses", "outliers"]))
-    size_s = draw(st.floats(1e-4, held_up_s if kind == "held up" else 0.05))
-    random = np.random.default_rng(draw(st.integers(0, 1000)))
+    size_s = draw(st.floats(1e-4, {"held up": held_up_s, "noise": noise_s}.get(kind, 0.05)))
+    seed = draw(st.integers(0, 1000))
+    note(f"{kind} {size_s} s, seed {seed}")
+    random = np.random.default_rng(seed)
 
     def late(block: FrameBlock) -> FrameBlock:
         if kind == "bursts":
@@ -124,7 +126,7 @@ def test_in_bursts_each_row_has_the_dynos_sample_of_the_same_millisecond(every_s
 
 
 @settings(max_examples=20, deadline=None)
-@given(way=ways(held_up_s=0.003))  # beyond, who has no counter may take all frames held up for one lost
+@given(way=ways(held_up_s=0.002, noise_s=0.01))  # beyond, who has no counter may take delays for a loss
 def test_a_device_that_jitters_alone_is_off_by_one_constant_or_ends_the_run(way: Late) -> None:
     assembler, columns = recorded(rmcu(), way(dyno()))
     try:
