@@ -8,6 +8,7 @@ from test_plans.loading import library_plans, load_plan, plan_from_text
 from test_plans.metrics import METRICS, Metric, NoValueError
 from test_plans.pace import Outlook, Pace
 from test_plans.plan import Plan, estimate_duration_s
+from test_plans.rejudging import rejudged
 from test_plans.schema import plan_schema
 from test_plans.sequence import Sequence, library_sequences, load_sequence
 from test_plans.steps import STEPS, Step
@@ -39,4 +40,5 @@ __all__ = [
     "load_sequence",
     "plan_from_text",
     "plan_schema",
+    "rejudged",
 ]

@@ -5,9 +5,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from hil.cli.report import rejudged
 from hil.core.recording import read_recording
 from reports import write_figures
+from test_plans import rejudged
 
 WANTED = ("steps-20kmh-shaft-torque-enlarged", "steps-20kmh-motor-speed-spectrum")
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hil.cli._result_file import RESULT, text_of
-from hil.cli.report import rejudged
 from hil.core.errors import BadInputError
 from hil.core.files import read_bytes, sha256_of
 from hil.core.recording import Recording, read_recording, run_of
@@ -16,6 +15,7 @@ from hil.core.signatures import BrokenSignatureError, fingerprint, hashes_of, re
 from hil.engine import RECORDING
 from reports import HTML, PDF, claim_of
 from reports.provenance import stored_files
+from test_plans import rejudged
 
 RECORDINGS = (".mcap", ".csv", ".parquet", ".mf4", ".mat")
 REPORTS = (".html", ".pdf", ".json")

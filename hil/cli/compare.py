@@ -9,11 +9,11 @@ from typing import Any
 from hil.analysis.comparison import ComparedRun, Comparison, compare
 from hil.cli._output import Show, console, plain_table, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import refuse_missing, results_in
-from hil.cli.report import rejudged
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from hil.engine import RECORDING
 from reports.comparison import comparison_html, comparison_pdf, lead, value_text
+from test_plans import rejudged
 
 SUMMARY, HTML, PDF = "comparison.json", "report.html", "report.pdf"
 

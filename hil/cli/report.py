@@ -16,11 +16,11 @@ from hil.cli._output import (
 from hil.cli._place import refuse_missing, results_in
 from hil.cli._result_file import RESULT, write_result
 from hil.cli._streams import complain
-from hil.core.recording import Recording, read_recording, run_of
-from hil.core.result import RunResult, verdict_of
+from hil.core.recording import read_recording
+from hil.core.result import RunResult
 from hil.engine import RECORDING
 from reports import HTML, JUNIT, PDF, recording_named_in, write_reports
-from test_plans import judge, plan_from_text
+from test_plans import rejudged
 
 
 def carry_out(
@@ -82,21 +82,3 @@ def _told(result: RunResult | None, files: dict[str, str], path: Path, folder: P
         if result.reason:
             complain("error", result.reason)
     return {"pass": 0, "fail": 1, "error": 1}[result.verdict]
-
-
-def rejudged(recording: Recording) -> RunResult | None:
-    """The run's result with its criteria computed again; None for a recording without a run."""
-    stored = run_of(recording)
-    if stored is None:
-        return None
-    where = str(recording.source)
-    text = recording.attachments.get("plan.yaml", b"").decode(errors="replace")
-    plan = plan_from_text(text, f"{where}: plan.yaml", recording.source.parent, files_required=False)
-    criteria = judge(plan, recording, stored.segments)
-    reason = stored.reason
-    if recording.damage:  # what is lost or changed somewhere proves nothing anywhere
-        reason = "\n".join(
-            [*([reason] if reason else []), f"the recording is damaged: {recording.damage[0]}"]
-        )
-    verdict = verdict_of(criteria, stopped=reason != "")
-    return stored.model_copy(update={"criteria": criteria, "verdict": verdict, "reason": reason})

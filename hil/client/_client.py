@@ -17,6 +17,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from hil.core.errors import BenchError
 from hil.core.files import replacing
+from hil.service.comparison_data import ComparisonData, TracesData
 from hil.service.data import (
     OVER,
     Answer,
@@ -163,6 +164,29 @@ class Client:
             if found.state in OVER:
                 return
             time.sleep(_LOOK_S)
+
+    def comparison(self, first: int, other: int) -> ComparisonData:
+        """Two runs of one plan side by side."""
+        query = f"first={first}&other={other}"
+        return self._one(ComparisonData, "GET", f"/comparisons?{query}", within_s=_FORECAST_WITHIN_S)
+
+    def traces(
+        self,
+        first: int,
+        other: int,
+        segment: str,
+        channel: str,
+        *,
+        within_s: tuple[float, float] | None = None,
+        most: int = 600,
+    ) -> TracesData:
+        """A channel of a segment of two runs, in `most` buckets; `within_s` of the step, or the whole."""
+        asked: dict[str, object] = {"first": first, "other": other, "segment": segment, "channel": channel}
+        asked |= {"most": most}
+        if within_s is not None:
+            asked |= {"start_s": within_s[0], "end_s": within_s[1]}
+        query = urllib.parse.urlencode(asked)
+        return self._one(TracesData, "GET", f"/comparisons/traces?{query}", within_s=_FORECAST_WITHIN_S)
 
     def download(self, run: int, name: str, path: Path) -> None:
         """Write a file of a run, whole or not at all.

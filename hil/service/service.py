@@ -15,6 +15,7 @@ from hil.core.result import CriterionResult
 from hil.engine import RECORDING
 from hil.service.benches import Bench
 from hil.service.data import OVER, BenchData, RunData
+from hil.service.desk import Desk
 from hil.service.forecasts import Forecasts
 from hil.service.live import LiveRun
 from hil.service.plans import Plans
@@ -60,6 +61,7 @@ class Service:
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         self.plans = Plans(folder / "plans")
         self.forecasts = Forecasts(commands.hil)
+        self.desk = Desk()
         self.queue = Queue(benches, self.runs, self.leases, folder / "runs", commands.run, self.changed)
         self.began_s = time.monotonic()
         self.closing = False

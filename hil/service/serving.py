@@ -142,6 +142,7 @@ async def _served(request: ServeRequest, engine: Engine, service: Service, liste
     finally:
         service.closing = True
         server.should_exit = True
+        service.desk.close()
         for bench in service.benches:
             service.changed(bench)
     done, _ = await asyncio.wait(tasks, timeout=_LAST_ANSWERS_S + 3.0)

@@ -1,15 +1,26 @@
 """Runs of one plan side by side: criteria, and how far responses are apart."""
 
-from hil.analysis.comparison._comparison import Comparison, CriterionRow, ResponseRow, compare, difference
+from hil.analysis.comparison._comparison import (
+    Comparison,
+    CriterionRow,
+    ResponseRow,
+    aligned,
+    compare,
+    difference,
+)
+from hil.analysis.comparison._differences import Difference, differences
 from hil.analysis.comparison._runs import ComparedRun, controllers_that_differ, refuse_other_plans
 
 __all__ = [
     "ComparedRun",
     "Comparison",
     "CriterionRow",
+    "Difference",
     "ResponseRow",
+    "aligned",
     "compare",
     "controllers_that_differ",
     "difference",
+    "differences",
     "refuse_other_plans",
 ]

@@ -125,7 +125,7 @@ def _responses(runs: Sequence[ComparedRun]) -> tuple[ResponseRow, ...]:
     rows = []
     for segment in runs[0].result.segments:
         for channel in CHANNELS:
-            first = _aligned(runs[0], segment.id, channel)
+            first = aligned(runs[0], segment.id, channel)
             if first is None:
                 continue
             spread = float(np.nanstd(first[1]))
@@ -141,7 +141,7 @@ def difference(
 
     Over the time that both have; None if one of them has not got the segment or the channel.
     """
-    one, two = _aligned(first, segment, channel), _aligned(other, segment, channel)
+    one, two = aligned(first, segment, channel), aligned(other, segment, channel)
     if one is None or two is None:
         return None
     time, values = one
@@ -149,7 +149,8 @@ def difference(
     return time[both], np.interp(time[both], *two) - values[both]
 
 
-def _aligned(run: ComparedRun, segment: str, channel: str) -> tuple[Array, Array] | None:
+def aligned(run: ComparedRun, segment: str, channel: str) -> tuple[Array, Array] | None:
+    """Time from the step in s and a channel over a segment; None where a run has not got one of them."""
     found = next((s for s in run.result.segments if s.id == segment), None)
     if found is None or channel not in run.recording:
         return None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import yaml
@@ -13,9 +14,10 @@ from hil.core.recording import Recording
 from hil.core.result import RunResult
 
 PLAN = "plan.yaml"
-_CONTROLLERS = "controller/"
+CONTROLLERS = "controller/"
 #: What makes two plans the same: what is done and what is judged, not what it is called.
 _PARTS = ("steps", "finally", "criteria")
+_STEP, _FILE = "set_controller", "file"
 
 
 @dataclass(frozen=True)
@@ -47,23 +49,60 @@ def refuse_other_plans(runs: Sequence[ComparedRun]) -> None:
 
 
 def controllers_that_differ(runs: Sequence[ComparedRun]) -> tuple[str, ...]:
-    """Names of controllers that some run was given in another version than the first run."""
+    """Names of controllers of which some run had another version than the first, or loaded elsewhere."""
     first = _controllers(runs[0].recording)
-    others = (_controllers(run.recording) for run in runs[1:])
-    return tuple(
-        sorted({name for other in others for name in first | other if first.get(name) != other.get(name)})
-    )
+    differing: set[str] = set()
+    for run in runs[1:]:
+        other = _controllers(run.recording)
+        differing |= {name for name in first | other if first.get(name) != other.get(name)}
+        differing |= {name for pair in loaded_in_turn(runs[0], run) if len(set(pair)) > 1 for name in pair}
+    return tuple(sorted(differing))
+
+
+def loaded_in_turn(first: ComparedRun, other: ComparedRun) -> tuple[tuple[str, str], ...]:
+    """Names of the controllers that each step of the plan loaded in both runs, in the plan's order."""
+    pairs = zip(_loaded(_plan_of(first.recording)), _loaded(_plan_of(other.recording)), strict=False)
+    return tuple(dict.fromkeys((Path(one).name, Path(two).name) for one, two in pairs))
 
 
 def _controllers(recording: Recording) -> dict[str, bytes]:
     return {
-        name.removeprefix(_CONTROLLERS): content
+        name.removeprefix(CONTROLLERS): content
         for name, content in recording.attachments.items()
-        if name.startswith(_CONTROLLERS)
+        if name.startswith(CONTROLLERS)
     }
 
 
+def _loaded(value: object) -> Iterator[str]:
+    """Files that steps load, also steps within steps."""
+    if isinstance(value, dict):
+        loaded = value.get(_STEP)
+        if isinstance(loaded, dict) and isinstance(loaded.get(_FILE), str):
+            yield loaded[_FILE]
+        yield from _loaded(list(value.values()))
+    elif isinstance(value, list):
+        for one in value:
+            yield from _loaded(one)
+
+
+def _without_files(value: object) -> object:
+    """Steps whichever controllers they load: those are told apart by what is in them."""
+    if isinstance(value, dict):
+        return {
+            key: {**one, _FILE: ""}
+            if key == _STEP and isinstance(one, dict) and _FILE in one
+            else _without_files(one)
+            for key, one in value.items()
+        }
+    return [_without_files(one) for one in value] if isinstance(value, list) else value
+
+
 def _parts(recording: Recording) -> dict[str, Any]:
+    content = _plan_of(recording)
+    return {part: _without_files(content.get(part)) for part in _PARTS}
+
+
+def _plan_of(recording: Recording) -> dict[str, Any]:
     try:
         content = yaml.safe_load(recording.attachments.get(PLAN, b"").decode())
     except (yaml.YAMLError, UnicodeDecodeError) as error:
@@ -74,4 +113,4 @@ def _parts(recording: Recording) -> dict[str, Any]:
         raise BadInputError(
             f"has no {PLAN}", where=str(recording.source), fix="compare recordings of hil run"
         )
-    return {part: content.get(part) for part in _PARTS}
+    return content

@@ -1,11 +1,13 @@
 // The page: one bench at a time, its state, its run, its queue and its results. The service says what is new.
 
 import { get, post, ask } from "./api.js";
-import { SpectrumChart, TimeChart, number } from "./chart.js";
+import { SpectrumChart, TimeChart } from "./chart.js";
+import { beginComparison, list as listCompared } from "./compare.js";
+import { at, badge, cell, row } from "./dom.js";
+import { number } from "./frame.js";
 import { begin, predictAgain } from "./start.js";
 import { drawTrend, showTrends } from "./trends.js";
 
-const at = (id) => document.getElementById(id);
 const STATES = { free: "Free", running: "Running", ending: "A lost run is being ended", in_use: "In use", emergency_stop: "Emergency stop" };
 const ROLES = ["viewer", "operator", "engineer", "admin"];
 const KINDS = { "report.html": "report", "report.pdf": "PDF", "recording.mcap": "recording", "result.json": "result", "log.txt": "log" };
@@ -47,6 +49,7 @@ async function open() {
   at("bench").replaceChildren(...benches.map((one) => new Option(one.name, one.name)));
   const asked = decodeURIComponent(location.hash.slice(1));
   at("bench").value = benches.some((one) => one.name === asked) ? asked : benches[0].name;
+  beginComparison(() => bench, act);
   watch();
   if (may("operator")) await act(() => begin(() => bench, () => {}, failed));
   else at("start").closest("section").hidden = true;
@@ -117,31 +120,10 @@ function showNow() {
   dirty = true;
 }
 
-function cell(text, kind = "", tag = "td") {
-  const made = document.createElement(tag);
-  if (text instanceof Node) made.append(text); else made.textContent = text;
-  if (kind) made.className = kind;
-  if (tag === "th") made.scope = "row";
-  return made;
-}
-
-function badge(verdict) {
-  const made = document.createElement("span");
-  made.className = `verdict ${verdict}`;
-  made.textContent = verdict.replaceAll("_", " ");
-  return made;
-}
-
 function button(text, label, work) {
   const made = Object.assign(document.createElement("button"), { type: "button", textContent: text });
   made.setAttribute("aria-label", label);
   made.onclick = () => act(work);
-  return made;
-}
-
-function row(...cells) {
-  const made = document.createElement("tr");
-  made.append(...cells);
   return made;
 }
 
@@ -174,6 +156,7 @@ async function showResults() {
   const runs = await act(() => get(`/runs?bench=${encodeURIComponent(bench)}&most=30&${query}`)) ?? [];
   const newest = runs.find((run) => run.state === "ended");
   if (newest) await act(() => showTrends(bench, newest.plan)); else at("trends").hidden = true;
+  await act(() => listCompared(bench));
   at("no-results").hidden = runs.length > 0;
   at("results").hidden = runs.length === 0;
   at("results").tBodies[0].replaceChildren(...runs.map((run) => {

@@ -1,10 +1,10 @@
 // The form that starts a plan: what it will do is predicted first.
 
 import { get, post } from "./api.js";
-import { number } from "./chart.js";
+import { at, said } from "./dom.js";
+import { number } from "./frame.js";
 
 const WAIT_MS = 400;
-const at = (id) => document.getElementById(id);
 let plans = [], timer = 0, asked = 0;
 
 export async function begin(bench, queued, failed) {
@@ -104,11 +104,4 @@ function table(found) {
   const buses = loads.length ? [said(`Load of the buses: ${loads.join(", ")}.`, overloaded ? "bad" : "")] : [];
   const criteria = failing ? [said(`${failing} of ${found.criteria.length} criteria are predicted to fail.`, "bad")] : [];
   return [verdict, ...buses, ...criteria, scroll];
-}
-
-function said(text, kind = "") {
-  const made = document.createElement("p");
-  made.textContent = text;
-  made.className = kind;
-  return made;
 }

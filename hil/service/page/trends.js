@@ -1,9 +1,10 @@
 // How the criteria of a plan went from run to run.
 
 import { get } from "./api.js";
-import { TrendChart, number } from "./chart.js";
+import { TrendChart } from "./chart.js";
+import { at } from "./dom.js";
+import { number } from "./frame.js";
 
-const at = (id) => document.getElementById(id);
 let found = [], chart = null;
 
 export async function showTrends(bench, plan) {

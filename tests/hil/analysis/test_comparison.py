@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.comparison import ComparedRun, compare, difference
+from hil.analysis.comparison import ComparedRun, compare, difference, differences
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, RunResult, Segment
@@ -112,3 +112,41 @@ def test_the_page_shows_every_run_and_stands_on_its_own():
     assert page.count("<figure") == 4  # two responses, their difference, one spectrum
     assert "http://" not in page.replace("http://www.w3.org", "")
     assert comparison_pdf(found).startswith(b"%PDF")
+
+
+LOADING = b"name: one\nsteps: [{set_controller: {file: %s.toml}}]\ncriteria: []\n"
+
+
+def loading(name, controllers, loads, **more):
+    """A run that loads one of its controllers."""
+    one = run(name, plan=LOADING % loads.encode())
+    attachments = {f"controller/{key}.toml": value for key, value in controllers.items()}
+    recording = dataclasses.replace(
+        one.recording, attachments={"plan.yaml": LOADING % loads.encode(), **attachments, **more}
+    )
+    return ComparedRun(name, recording, one.result)
+
+
+def test_another_controller_is_no_other_plan_and_what_differs_in_it_is_named():
+    old, new = b"[wsc]\ngain = 1.0\npole = 2\n", b"[wsc]\ngain = 1.5\npole = 2\n"
+    first, other = loading("a", {"old": old}, "old"), loading("b", {"new": new}, "new")
+    assert compare([first, other]).notes == ("Controllers differ between the runs: new.toml, old.toml.",)
+    told = [(one.kind, one.name, one.first, one.other) for one in differences(first, other)]
+    assert told == [("controller", "file", "old", "new"), ("controller", "old: wsc.gain", "1.0", "1.5")]
+
+
+def test_controllers_that_changed_places_are_noted():
+    both = {"gain": b"p = 1", "phase": b"p = 2"}
+    assert compare([loading("a", both, "gain"), loading("b", both, "phase")]).notes != ()
+
+
+def test_values_of_model_and_bench_that_differ_are_named_and_where_a_model_is_from_is_not():
+    first = loading("a", {}, "c", **{"model.toml": b"[parameters]\nj = 1\n[meta]\nfrom = 'x'\n"})
+    other = loading(
+        "b", {}, "c", **{"model.toml": b"[parameters]\nj = 2\nk = 3\n", "bench.toml": b"seed = 2"}
+    )
+    assert [(one.kind, one.name, one.first, one.other) for one in differences(first, other)] == [
+        ("model", "parameters.j", "1", "2"),
+        ("model", "parameters.k", "–", "3"),
+        ("bench", "seed", "–", "2"),
+    ]

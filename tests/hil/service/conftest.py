@@ -1,10 +1,12 @@
-"""One service for all tests that leave it as they found it."""
+"""One service for all tests that leave it as they found it, and a browser."""
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 
 import pytest
+from playwright import sync_api as playwright
 
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
@@ -16,3 +18,23 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         one.give("short", SHORT)
         one.give("asking", ASKING)
         yield one
+
+
+@pytest.fixture
+def page(there: Served) -> Iterator[playwright.Page]:
+    with playwright.sync_playwright() as started:
+        browser = started.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1280, "height": 900})
+        troubles: list[str] = []
+        page.on("pageerror", lambda error: troubles.append(str(error)))
+        page.on("console", lambda line: troubles.append(line.text) if line.type == "error" else None)
+        page.on("request", lambda request: _refuse_elsewhere(request.url, there.url, troubles))
+        page.set_default_timeout(60_000)
+        yield page
+        browser.close()
+    assert [one for one in troubles if "401 (Unauthorized)" not in one] == []  # asking who one is
+
+
+def _refuse_elsewhere(url: str, home: str, troubles: list[str]) -> None:
+    if not url.startswith(("http://127.0.0.1:", "data:", "blob:")):
+        troubles.append(f"asked elsewhere: {url} from {home}")

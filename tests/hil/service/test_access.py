@@ -45,6 +45,8 @@ LEAST = {
     ("POST", "/runs/{run}/answer"): "operator",
     ("POST", "/runs/{run}/abort"): "operator",
     ("GET", "/runs/{run}/files/{name}"): "viewer",
+    ("GET", "/comparisons"): "viewer",
+    ("GET", "/comparisons/traces"): "viewer",
     ("GET", "/trends"): "viewer",
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",

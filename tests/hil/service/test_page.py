@@ -31,21 +31,6 @@ def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
         yield service
 
 
-@pytest.fixture
-def page(there: Served) -> Iterator[playwright.Page]:
-    with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1280, "height": 900})
-        troubles: list[str] = []
-        page.on("pageerror", lambda error: troubles.append(str(error)))
-        page.on("console", lambda line: troubles.append(line.text) if line.type == "error" else None)
-        page.on("request", lambda request: _refuse_elsewhere(request.url, there.url, troubles))
-        page.set_default_timeout(60_000)
-        yield page
-        browser.close()
-    assert [one for one in troubles if "401 (Unauthorized)" not in one] == []  # asking who one is
-
-
 def test_a_plan_is_foreseen_queued_watched_stopped_and_found(page: playwright.Page, there: Served) -> None:
     page.goto(there.url)
     expect = playwright.expect
@@ -129,8 +114,3 @@ def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwri
         playwright.expect(page.get_by_role("heading", name="Emergency stop")).to_be_visible()
         assert page.get_by_role("button", name="It is safe: reset the emergency stop").is_hidden()
         assert page.get_by_role("heading", name="Start a plan").is_hidden()
-
-
-def _refuse_elsewhere(url: str, home: str, troubles: list[str]) -> None:
-    if not url.startswith(("http://127.0.0.1:", "data:", "blob:")):
-        troubles.append(f"asked elsewhere: {url} from {home}")

@@ -1,0 +1,67 @@
+"""Two runs side by side."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query
+
+from hil.engine import RECORDING
+from hil.service.api._access import TheService, Viewer
+from hil.service.api._problems import RefusedError, missing
+from hil.service.comparison_data import ChannelName, ComparisonData, SegmentName, TracesData
+from hil.service.data import OVER, RunData, RunId
+from hil.service.service import Service
+
+router = APIRouter(prefix="/comparisons", tags=["runs"])
+_Seconds = Annotated[float | None, Query(ge=-1e6, le=1e6, allow_inf_nan=False)]
+
+
+@router.get("", name="compare_runs")
+async def compare_runs(
+    service: TheService, me: Viewer, first: Annotated[RunId, Query()], other: Annotated[RunId, Query()]
+) -> ComparisonData:
+    """Criteria of two runs of one plan with their differences, and what they were given differently."""
+    del me
+    one, two = _over(service, first), _over(service, other)
+    found = await service.desk.ask("comparison", first=_named(service, one), other=_named(service, two))
+    return ComparisonData(first=one, other=two, **found)
+
+
+@router.get("/traces", name="compare_traces")
+async def compare_traces(
+    service: TheService,
+    me: Viewer,
+    first: Annotated[RunId, Query()],
+    other: Annotated[RunId, Query()],
+    segment: Annotated[SegmentName, Query()],
+    channel: Annotated[ChannelName, Query()],
+    start_s: _Seconds = None,
+    end_s: _Seconds = None,
+    most: Annotated[int, Query(ge=10, le=4000)] = 600,
+) -> TracesData:
+    """A channel of a segment of both, as the lowest and the highest value in each of `most` buckets."""
+    del me
+    runs: dict[str, Any] = {
+        name: _named(service, _over(service, run)) for name, run in (("first", first), ("other", other))
+    }
+    found = await service.desk.ask(
+        "traces", **runs, segment=segment, channel=channel, start_s=start_s, end_s=end_s, most=most
+    )
+    return TracesData(**found)
+
+
+def _over(service: Service, run: int) -> RunData:
+    found = service.runs.get(run)
+    if found is None:
+        raise missing("run", run)
+    if found.state not in OVER:
+        raise RefusedError(409, f"run {run} is not over", fix="wait for its end")
+    return service.with_progress(found)
+
+
+def _named(service: Service, run: RunData) -> tuple[str, str]:
+    """The run's name in a comparison, and its recording."""
+    if RECORDING not in run.files:
+        raise RefusedError(409, f"run {run.id} left no recording", fix="compare runs that measured")
+    return f"run {run.id}", str((service.queue.folder_of(run.id) / RECORDING).resolve())

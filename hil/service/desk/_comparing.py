@@ -1,0 +1,146 @@
+"""Two runs side by side: what `hil compare` finds, and their traces as envelopes."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.comparison import ComparedRun, aligned, compare, differences
+from hil.core.channels import TIME, unit_of
+from hil.core.errors import BadInputError
+from hil.core.recording import read_recording
+from hil.service.desk._numbers import number, numbers
+from test_plans import rejudged
+
+Array = npt.NDArray[np.float64]
+
+_KEPT = 4  # recordings that stay read
+_MOST_DIFFERENCES = 200
+
+
+def comparison(first: list[str], other: list[str]) -> dict[str, Any]:
+    """Fields of `ComparisonData`, runs given as (name, recording).
+
+    Raises:
+        BadInputError: a recording cannot be read, or they are of different plans.
+    """
+    one, two = _run(*first), _run(*other)
+    try:
+        found = compare([one, two])
+    except BadInputError as error:
+        raise _by_name(error, one, two) from None
+    told = differences(one, two)
+    return {
+        "plan": one.result.plan,
+        "verdicts": [one.result.verdict, two.result.verdict],
+        "distance": found.distances[1],
+        "differences": [vars(each) for each in told[:_MOST_DIFFERENCES]],
+        "notes": list(found.notes),
+        "criteria": [
+            {
+                "id": row.id,
+                "title": row.title,
+                "unit": row.unit,
+                "limit": row.limit,
+                "values": [number(value) for value in row.values],
+                "verdicts": row.verdicts,
+                "relative": row.relative[1],
+            }
+            for row in found.criteria
+        ],
+        "responses": [
+            {"segment": row.segment, "channel": row.channel, "gap": number(row.gaps[1])}
+            for row in found.responses
+        ],
+        "segments": [
+            {
+                "id": segment.id,
+                "kind": segment.kind,
+                "start_s": segment.start_s - segment.step_s,
+                "end_s": segment.end_s - segment.step_s,
+                "channels": _common(one, two),
+            }
+            for segment in one.result.segments
+            if any(segment.id == each.id for each in two.result.segments)
+        ],
+    }
+
+
+def traces(
+    first: list[str],
+    other: list[str],
+    segment: str,
+    channel: str,
+    start_s: float | None,
+    end_s: float | None,
+    most: int,
+) -> dict[str, Any]:
+    """Fields of `TracesData`: lowest and highest value in equal buckets of the time from each run's step.
+
+    Raises:
+        BadInputError: a run has not got the segment or the channel.
+    """
+    runs = [_run(*first), _run(*other)]
+    found = []
+    for run in runs:
+        stretch = aligned(run, segment, channel)
+        if stretch is None:
+            raise BadInputError(
+                f"has no '{channel}' in a segment '{segment}'", where=run.name, fix="see its comparison"
+            )
+        found.append(stretch)
+    from_s = max(start_s if start_s is not None else -np.inf, min(time[0] for time, _ in found))
+    to_s = min(end_s if end_s is not None else np.inf, max(time[-1] for time, _ in found))
+    if not from_s < to_s:
+        raise BadInputError("nothing was measured then", where=segment)
+    finest_s = min(float(np.median(np.diff(time))) for time, _ in found)
+    width_s = max((to_s - from_s) / most, finest_s)
+    count = int(np.ceil((to_s - from_s) / width_s * (1 - 1e-9)))
+    envelopes = [_envelope(*stretch, from_s, width_s, count) for stretch in found]
+    return {
+        "segment": segment,
+        "channel": channel,
+        "unit": runs[0].recording.metadata.get("units", {}).get(channel) or unit_of(channel),
+        "start_s": from_s,
+        "width_s": width_s,
+        "runs": [{"lowest": numbers(low), "highest": numbers(high)} for low, high in envelopes],
+    }
+
+
+@functools.lru_cache(_KEPT)
+def _run(name: str, path: str) -> ComparedRun:
+    recording = read_recording(Path(path), allow_missing=True)
+    result = rejudged(recording)
+    if result is None:
+        raise BadInputError("is no run of a plan", where=name)
+    return ComparedRun(name, recording, result)
+
+
+def _by_name(error: BadInputError, *runs: ComparedRun) -> BadInputError:
+    """The same in which runs are called by their names and not by where their files lie."""
+    what, where = error.what, error.where
+    for run in runs:
+        path = str(run.recording.source)
+        what, where = what.replace(path, run.name), where.replace(path, run.name)
+    return BadInputError(what, where=where, fix=error.fix)
+
+
+def _common(one: ComparedRun, two: ComparedRun) -> list[str]:
+    return [name for name in one.recording.channels if name != TIME and name in two.recording]
+
+
+def _envelope(time: Array, values: Array, from_s: float, width_s: float, count: int) -> tuple[Array, Array]:
+    """NaN where nothing was measured."""
+    bucket = np.floor((time - from_s) / width_s + 1e-6).astype(np.int64)
+    inside = (bucket >= 0) & (bucket < count)
+    bucket, values = bucket[inside], values[inside]
+    low, high = np.full(count, np.nan), np.full(count, np.nan)
+    if len(bucket):
+        starts = np.flatnonzero(np.diff(bucket, prepend=-1))
+        low[bucket[starts]] = np.fmin.reduceat(values, starts)
+        high[bucket[starts]] = np.fmax.reduceat(values, starts)
+    return low, high

@@ -1,0 +1,99 @@
+"""The service's side of the desk: questions out, answers in, each a line of JSON."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import sys
+from typing import Any
+
+from hil.core.errors import BadInputError, BenchError
+
+_WITHIN_S = 60.0
+_LONGEST_ANSWER_BYTES = 1 << 26
+_NICENESS = 10  # a run needs its processor first
+
+
+class Desk:
+    """A process that answers one question after the other; begun with the first, ended when nobody asks."""
+
+    def __init__(self) -> None:
+        self._turn = asyncio.Lock()
+        self._process: asyncio.subprocess.Process | None = None
+
+    async def ask(self, task: str, **asked: object) -> dict[str, Any]:
+        """What one of the tasks in `__main__` gives for arguments of JSON.
+
+        Raises:
+            BadInputError: what was asked cannot be answered.
+            BenchError: it took too long, or its process failed.
+        """
+        question = json.dumps({"task": task, "asked": asked}).encode() + b"\n"
+        async with self._turn:
+            try:
+                line = await asyncio.wait_for(self._answer(question), _WITHIN_S)
+            except BaseException as error:
+                self.close()  # its answer would be taken for the next question's
+                if isinstance(error, TimeoutError):
+                    raise BenchError(f"took more than {_WITHIN_S:g} s", where=task) from error
+                raise
+        if not line:
+            raise BenchError("its process ended", where=task, fix="look at the service's log")
+        return _read(line)
+
+    def close(self) -> None:
+        """End the process, whatever it does."""
+        if self._process is not None:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.kill()
+        self._process = None
+
+    async def _answer(self, question: bytes) -> bytes:
+        """The line that answers; a process that had just ended for want of questions is begun anew."""
+        was_there = self._process is not None
+        line = await self._asked(question)
+        return line or (await self._asked(question) if was_there else b"")
+
+    async def _asked(self, question: bytes) -> bytes:
+        process = self._process or await self._begun()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        with contextlib.suppress(ConnectionError):
+            process.stdin.write(question)
+            await process.stdin.drain()
+        line = await process.stdout.readline()
+        if not line:
+            await process.wait()
+            self._process = None
+        return line
+
+    async def _begun(self) -> asyncio.subprocess.Process:
+        self._process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            "-m",
+            __package__,
+            stdin=asyncio.subprocess.PIPE,
+            stdout=asyncio.subprocess.PIPE,
+            env={
+                "OPENBLAS_NUM_THREADS": "1",
+                **os.environ,
+                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+            },
+            start_new_session=True,
+            limit=_LONGEST_ANSWER_BYTES,
+        )
+        with contextlib.suppress(OSError):
+            os.setpriority(os.PRIO_PROCESS, self._process.pid, _NICENESS)
+        return self._process
+
+
+def _read(line: bytes) -> dict[str, Any]:
+    found = json.loads(line)
+    refused = found.get("refused")
+    if refused is None:
+        answer: dict[str, Any] = found["answer"]
+        return answer
+    kind = BadInputError if refused["bad_input"] else BenchError
+    raise kind(refused["what"], where=refused["where"], fix=refused["fix"])

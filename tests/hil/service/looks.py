@@ -1,0 +1,46 @@
+"""What every part of the page keeps: nothing that axe finds, nothing cut off, at every width and light."""
+
+from __future__ import annotations
+
+import pytest
+from playwright import sync_api as playwright
+
+from tests.readers.tools import NotHereError, node_modules
+
+WIDTHS = (1280, 820, 380)
+_RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]}
+
+
+def refuse_hard_to_use(page: playwright.Page) -> None:
+    """As it is open now; skips the rest of a test where there is no axe."""
+    try:
+        axe = node_modules() / "node_modules/axe-core/axe.min.js"
+    except NotHereError as missing:
+        pytest.skip(str(missing))
+    page.evaluate(axe.read_text("utf-8"))
+    for width in WIDTHS:
+        page.set_viewport_size({"width": width, "height": 900})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        for scheme in ("light", "dark"):
+            page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
+            found = page.evaluate("rules => axe.run(document, rules)", _RULES)["violations"]
+            told = [(one["id"], [node["html"] for node in one["nodes"]]) for one in found]
+            assert told == [], (width, scheme)
+
+
+def roles_drawn(page: playwright.Page, canvas: str, roles: tuple[str, ...]) -> set[str]:
+    """Which of the house's colours a canvas has."""
+    page.wait_for_timeout(100)
+    return set(page.evaluate(_ROLES_DRAWN, [canvas, list(roles)]))
+
+
+_ROLES_DRAWN = """([id, roles]) => {
+  const canvas = document.getElementById(id), style = getComputedStyle(document.documentElement);
+  const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+  const words = new Set(new Uint32Array(data.buffer));
+  return roles.filter((role) => {
+    const hex = style.getPropertyValue(`--series-${role}`).trim();
+    const [r, g, b] = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+    return words.has((0xff000000 | (b << 16) | (g << 8) | r) >>> 0);
+  });
+}"""
