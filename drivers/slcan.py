@@ -20,7 +20,9 @@ from drivers import linux_errors as errors
 from drivers.serial_line import written_at_once
 
 _QUIET_S = 0.02  # after this long without an answer the adapter has said all to being opened
+_ANSWERED_S = 0.1  # and after this long even if its bus is never quiet
 _LONGEST_LINE = 200
+_NO_LINE = b"?"  # begins nothing that an adapter says
 _STATES = {
     "a": (errors.CONTROLLER, errors.ACTIVE_AGAIN),
     "w": (errors.CONTROLLER, errors.WARNING),
@@ -109,11 +111,14 @@ class SlcanBus(slcanBus):
 
     def _forget_answers(self) -> None:
         """What the adapter answers to being opened: a bell for closing what was closed already."""
-        quiet_since = time.monotonic()
+        opened = quiet_since = time.monotonic()
         while time.monotonic() - quiet_since < _QUIET_S:
             if self.serialPortOrig.in_waiting:
                 self.serialPortOrig.reset_input_buffer()
                 quiet_since = time.monotonic()
+            if quiet_since - opened > _ANSWERED_S:  # others talk: what is read next may be the end of a line
+                self._buffer = bytearray(_NO_LINE)
+                return
             time.sleep(0.002)
 
 

@@ -23,9 +23,13 @@ class PseudoAdapter:
         self.path = os.ttyname(self._theirs)
 
     def say(self, *lines: str) -> None:
-        """Send lines to the host."""
-        os.write(self._ours, "".join(f"{line}\r" for line in lines).encode())
+        """Send lines to the host, and wait until they are there."""
+        self.mutter(*lines)
         select.select([self._theirs], [], [], 1.0)
+
+    def mutter(self, *lines: str) -> None:
+        """Send lines to the host, whether it reads or not."""
+        os.write(self._ours, "".join(f"{line}\r" for line in lines).encode())
 
     def heard(self) -> list[str]:
         """Every line that the host has sent since the last call."""

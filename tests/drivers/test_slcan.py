@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterator
 
 import can
 import pytest
@@ -33,6 +34,37 @@ def wired() -> Iterator[tuple[PseudoAdapter, BusLoop, Wire]]:
 def test_it_is_opened_with_the_bit_rate_of_the_bench_file():
     with wired() as (adapter, _, _):
         assert adapter.heard()[-4:] == ["S6", "", "O", "O"]
+
+
+def test_it_is_opened_on_a_bus_that_is_never_quiet():
+    with plugged_in() as adapter, _talking(adapter) as talks:
+        bus = open_can(adapter.settings())
+        assert talks()
+        heard = [bus.recv(1.0) for _ in range(100)]
+        assert talks()
+        bus.shutdown()
+    assert all(m and not m.is_error_frame and (m.arbitration_id, len(m.data)) == (0x1E0, 8) for m in heard)
+
+
+@contextlib.contextmanager
+def _talking(adapter: PseudoAdapter) -> Iterator[Callable[[], bool]]:
+    """Others send a frame each millisecond, for three seconds at most; whether they still do."""
+    over = threading.Event()
+
+    def talk() -> None:
+        for _ in range(3000):
+            if over.wait(0.001):
+                return
+            with contextlib.suppress(BlockingIOError):
+                adapter.mutter("t1e08e1a1b255e1a1e1a1")
+
+    thread = threading.Thread(target=talk)
+    thread.start()
+    try:
+        yield thread.is_alive
+    finally:
+        over.set()
+        thread.join()
 
 
 def test_frames_pass_both_ways():

@@ -68,6 +68,7 @@ function watch() {
   take("samples", (data) => { of(data.run); Object.values(charts).forEach((chart) => chart.add?.(data)); showNow(); });
   take("spectrum", (data) => { of(data.run); charts.spectrum.found = data; at("now-band").textContent = `${number(data.band_energy)} (rad/s)²`; dirty = true; });
   take("criteria", (data) => { of(data.run); showCriteria(data.criteria); });
+  take("here", () => {});  // nothing is new
   events.onopen = here;
   events.onerror = () => { at("lost").hidden = false; };
 }
