@@ -50,7 +50,7 @@ def the_effect_that_is_named(tmp_path, recording):
 def test_what_a_bench_in_another_process_hides_is_named(tmp_path):
     (tmp_path / "chirps.yaml").write_text(PLAN)
     recording = run_on_a_bench_that_hides(
-        tmp_path, "dead_time=0.002", tmp_path / "chirps.yaml", ["0.2", "0.2", "0.2", "0.2"]
+        tmp_path, "dead_time=0.002", tmp_path / "chirps.yaml", ["1", "0.4", "0.2", "0.2"]
     )
     effect = the_effect_that_is_named(tmp_path, recording)
     assert effect["id"] == "dead_time"

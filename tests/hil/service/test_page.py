@@ -80,7 +80,7 @@ def test_a_run_is_queued_and_ended_by_keyboard_alone(page: playwright.Page, ther
     expect(page.locator("#results tbody tr").first).to_contain_text("stopped by the operator")
 
 
-def test_a_service_that_has_nothing_to_say_is_not_taken_for_lost(page: playwright.Page, there: Served) -> None:
+def test_a_service_without_news_is_not_taken_for_lost(page: playwright.Page, there: Served) -> None:
     page.goto(there.url)
     playwright.expect(page.get_by_role("heading", name="Free")).to_be_visible()
     page.wait_for_timeout(18_000)  # more than the page waits for a word

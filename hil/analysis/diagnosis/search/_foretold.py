@@ -24,6 +24,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     FORETOLD_SAME,
     LEAST_FORETOLD,
     MOST_APART,
+    MOST_OF_ERROR,
     MUCH_APART,
     PARTED_S,
     PLACES_NM,
@@ -34,17 +35,20 @@ from hil.analysis.diagnosis.search._thresholds import (
 Array = npt.NDArray[np.float64]
 
 
-def foretold_where(problem: Problem, base: Fit, one: Fit) -> list[Flags] | None:
+def foretold_where(problem: Problem, base: Fit, one: Fit, *, fitted: bool = False) -> list[Flags] | None:
     """Of each recording the blocks that `one` foretells; None where it does so nearly everywhere.
 
     Args:
         base: the model without what is in question; how far apart its simulations come is the measure.
+        fitted: `one` is at its best: where little is chaotic, but most of what it leaves lies there, that
+            little is told as well.
     """
     plain = float(np.median(np.concatenate(_parted(problem, base))))
     parted = _parted(problem, one)
-    if _share([w > CHAOTIC * plain for w in parted]) < UNFORETOLD:
-        return None
     apart = [w > MUCH_APART * plain for w in parted]
+    chaotic = _share([w > CHAOTIC * plain for w in parted])
+    if chaotic == 0.0 or (chaotic < UNFORETOLD and not (fitted and _holds_most(problem, one, apart))):
+        return None
     begun = [w > MOST_APART for w in _parted_from_start(problem, one)]
     flags = []
     for trace, pushed, first in zip(problem.traces, apart, begun, strict=True):
@@ -55,14 +59,16 @@ def foretold_where(problem: Problem, base: Fit, one: Fit) -> list[Flags] | None:
     return flags
 
 
-def where_foretold(problem: Problem, base: Fit, one: Fit) -> tuple[Problem, Fit] | None:
+def where_foretold(
+    problem: Problem, base: Fit, one: Fit, *, fitted: bool = False
+) -> tuple[Problem, Fit] | None:
     """`one` fitted where it foretells the motion, and the problem judged there alone.
 
     None where it does so nearly everywhere; or so rarely that nothing could be said of the rest.
     """
     judged, before = None, one
     for _ in range(FORETOLD_ROUNDS):
-        flags = foretold_where(problem, base, one)
+        flags = foretold_where(problem, base, one, fitted=fitted)
         if flags is None or _share(flags) < LEAST_FORETOLD:
             break
         judged = problem.judging(flags)
@@ -84,6 +90,17 @@ def left_out(problem: Problem) -> list[str]:
             "(with a torque that is a thousandth off it is another)"
         )
     return words
+
+
+def _holds_most(problem: Problem, one: Fit, apart: Sequence[Flags]) -> bool:
+    """Whether most of what a fit leaves lies in these windows, or beside them."""
+    length, inside, whole = _blocks_of_window(problem), 0.0, 0.0
+    for errors, flags in zip(one.errors, apart, strict=True):
+        power = np.sum(errors.channels**2, axis=1)
+        near = np.repeat(np.convolve(flags, np.ones(5), "same") > 0.0, length)[: len(power)]
+        inside += float(np.sum(power[: len(near)][near]))
+        whole += float(np.sum(power))
+    return inside > MOST_OF_ERROR * whole
 
 
 def _share(flags: Sequence[Flags]) -> float:

@@ -52,8 +52,8 @@ Array = npt.NDArray[np.float64]
 class Step:
     """One step: what was tried on top of `parent`, best first.
 
-    `foretold` is set where a promising effect makes parts of the recordings chaotic, and nothing else was
-    tried then: the problem judged elsewhere alone, and the effect fitted there.
+    `foretold` is set where a promising effect makes parts of the recordings chaotic, and what was tried
+    beside it says nothing then: the problem judged elsewhere alone, and the effect fitted there.
     """
 
     parent: Fit
@@ -94,7 +94,12 @@ def grow(
     step.fits.sort(key=lambda f: f.total + price(f))
     if step.fits:
         step.fits[:] = _contended(problem, evidence, step.fits)
-        step.fits[0] = _polished(evidence, aligned(problem, step.fits[0]))
+        best = aligned(problem, step.fits[0])
+        if not problem.partial and width_of(best.hypothesis) is not None and not evidence.closed(best):
+            step.foretold = where_foretold(problem, parent, best, fitted=True)
+            if step.foretold:
+                return
+        step.fits[0] = _polished(evidence, best)
 
 
 def _freed(problem: Problem, parent: Fit, other: Fit) -> Fit:

@@ -85,11 +85,14 @@ def _fitted(problem: Problem, best: Fit, begun: list[_Begun]) -> list[Fit]:
 
 
 def _promising(problem: Problem, best: Fit, index: int) -> list[_Begun]:
-    """Other widths with their best places, most promising first."""
+    """Other widths with their best places, and other places with this width; most promising first."""
     own = _middling(problem, best, index, 1.0)
     likely = [width for width in WIDTHS if _middling(problem, best, index, width) < PLACES_MIDDLING * own]
     begun = [_begun(problem, best, index, width) for width in likely]
     worth = [one for one in begun if one.total < PLACES_WORTH * best.total]
+    elsewhere = _begun(problem, best, index, 1.0)
+    if elsewhere.total < (1.0 - AS_GOOD) * best.total:
+        worth.append(elsewhere)
     return sorted(worth, key=lambda one: one.total)[:PLACES_TRIED]
 
 

@@ -185,6 +185,14 @@ MOST_APART: Annotated[
 UNFORETOLD: Annotated[float, Means("of the recordings", "less of it is borne: all is judged", "foretold")] = (
     0.01
 )
+MOST_OF_ERROR: Annotated[
+    float,
+    Means(
+        "of what a fit leaves",
+        "lies where the motion is chaotic: that is not judged, be it ever so short",
+        "foretold",
+    ),
+] = 0.5
 LEAST_FORETOLD: Annotated[
     float, Means("of the recordings", "must be foretold: of less nothing is concluded", "foretold")
 ] = 0.4

@@ -7,7 +7,7 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
-from hil.analysis.diagnosis.search._foretold import foretold_where, left_out, where_foretold
+from hil.analysis.diagnosis.search._foretold import _holds_most, foretold_where, left_out, where_foretold
 from tests.hil.analysis.diagnosis.one_recording import MODEL
 from tests.hil.analysis.diagnosis.played import SECONDS, supposed, with_play
 
@@ -30,6 +30,17 @@ def test_where_a_wide_play_bounces_nobody_foretells_it() -> None:
     time = np.linspace(0.0, SECONDS, len(flags[0]))
     assert flags[0][(time > 2.0) & (time < 8.0)].all()
     assert not flags[0][(time > 14.0) & (time < 15.0)].any()
+
+
+def test_it_is_told_where_most_of_what_is_left_lies() -> None:
+    problem, base, near = fitted(0.03)
+    flags = foretold_where(problem, base, near)
+    assert flags is not None
+    length = 62  # blocks of a window
+    apart = [~each[: len(each) // length * length : length] for each in flags]
+    assert _holds_most(problem, near, apart)
+    assert not _holds_most(problem, near, [~each for each in apart])
+    assert not _holds_most(problem, near, [np.zeros_like(each) for each in apart])
 
 
 @pytest.mark.slow

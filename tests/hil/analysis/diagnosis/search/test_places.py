@@ -60,6 +60,15 @@ def test_reversals_tell_the_width_whatever_the_first_place() -> None:
     assert float(standard_errors(evidence.problem, found)[-1]) < 0.01
 
 
+def test_the_right_width_begun_in_a_wrong_place_is_begun_elsewhere() -> None:
+    problem = _problem(60.0 * np.sign(np.sin(2 * np.pi * np.arange(3000) / 700.0)))
+    evidence, right = _from(problem, HALF_GAP)
+    wrong = [start + np.array([0.0, 0.0, 40.0, 0.0, 0.0]) for start in right.starts]
+    stuck = fit(problem, right.hypothesis, wrong, right.theta, rounds=0)
+    assert stuck.total > 20.0 * right.total
+    assert placed(evidence, stuck).total < 1.1 * right.total
+
+
 def test_what_remembers_no_place_is_left_as_it_is() -> None:
     problem = _problem(np.full(500, 10.0))
     one = fit(problem, Hypothesis(MODEL, (LAG,)), rounds=0)
