@@ -36,6 +36,7 @@ _COMMANDS = {
     "design": "Controller from a model, with margins.",
     "tune": "Controller for the largest worst margin over a plan's criteria.",
     "autotune": "Identify, diagnose, add, tune, confirm on a bench, and again.",
+    "campaign": "Many simulations: parameters varied, cars drawn, controllers compared.",
     "diagnose": "Find where model and measurement disagree, name the effect, add it.",
     "compare": "The same plan on several runs, side by side.",
     "explain": "What would bring a predicted run to target figures.",
@@ -54,7 +55,7 @@ _COMMANDS = {
     "reset": "Let a bench be armed again after an emergency stop.",
     "list": "What there is: plans, benches, effects, steps, metrics, devices.",
     "init": "A folder of one's own, ready to run: plan, bench, model, test.",
-    "schema": "JSON schemas of plan, bench, model and controller files, for editors.",
+    "schema": "JSON schemas of plan, bench, model, controller and campaign files, for editors.",
 }
 
 

@@ -41,6 +41,11 @@ def shipped_bench() -> Complete:
     return _completing(lambda: _stems("benches", "*.toml", "[buses."))
 
 
+def shipped_campaign() -> Complete:
+    """Completes with the names of shipped campaigns; the shell offers files where none fits."""
+    return _completing(lambda: _stems("hil", "analysis/campaigns/library/*.yaml"))
+
+
 def _completing(words: Callable[[], Iterable[str]]) -> Complete:
     def complete(incomplete: str) -> list[str]:
         return [word for word in words() if word.startswith(incomplete)]

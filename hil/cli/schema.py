@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from hil.analysis.campaigns import campaign_schema
 from hil.cli._output import print_json
 from hil.core.controller import controller_schema
 from hil.core.errors import BadInputError
@@ -19,6 +20,7 @@ _SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
     "bench": bench_schema,
     "model": model_schema,
     "controller": controller_schema,
+    "campaign": campaign_schema,
 }
 
 

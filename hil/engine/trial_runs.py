@@ -135,6 +135,18 @@ class _Here:
         return cls(wire_of(bench), walk.controllers, steps[:same], steps[same:])
 
 
+def controller_files(plan: Plan, bench: BenchFile) -> tuple[Path, ...]:
+    """The controller files that a plan loads, in order.
+
+    Raises:
+        BadInputError: the plan asks for more than the bench allows.
+    """
+    walk = _Loaded(bench)
+    for step in (*plan.steps, *plan.finally_):
+        step.carry_out(walk)
+    return tuple(walk.controllers)
+
+
 class _Loaded(Rehearsal):
     """Remembers the controllers that steps load, and whether one analyses."""
 

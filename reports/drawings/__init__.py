@@ -2,6 +2,7 @@
 
 from reports.drawings._bode import Curve, bode, coherence
 from reports.drawings._canvas import render
+from reports.drawings._distribution import distribution
 from reports.drawings._drawing import Drawing
 from reports.drawings._front import front
 from reports.drawings._loops import Loops, nyquist, sensitivity, trade_off_chart
@@ -12,6 +13,7 @@ __all__ = [
     "Loops",
     "bode",
     "coherence",
+    "distribution",
     "front",
     "nyquist",
     "render",

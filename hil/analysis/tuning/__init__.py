@@ -4,10 +4,17 @@ from hil.analysis.tuning._ascent import Ascent, scatter, score
 from hil.analysis.tuning._confirmed import Agreement, Confirmation, confirmation
 from hil.analysis.tuning._draws import Draw, draws_of
 from hil.analysis.tuning._driven import Driven, driven_by
-from hil.analysis.tuning._free import Free, free_from_toml, read_free, refuse_unknown_weights, shipped_free
+from hil.analysis.tuning._free import (
+    Free,
+    Tolerance,
+    free_from_toml,
+    read_free,
+    refuse_unknown_weights,
+    shipped_free,
+)
 from hil.analysis.tuning._front import Point, front_of, metrics_of, point_of
 from hil.analysis.tuning._loops import SpeedLoops
-from hil.analysis.tuning._parameters import PARAMETERS, Space, values_of, with_values
+from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS, Space, values_of, with_values
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._refine import Bench, Measured, Patience, RefinedRun, Refinement, refine
 from hil.analysis.tuning._search import Effort
@@ -15,6 +22,7 @@ from hil.analysis.tuning._trial import CarryOut, Predicted, Trial, Tried, channe
 from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_start, tune
 
 __all__ = [
+    "ALTERNATIVES",
     "PARAMETERS",
     "Agreement",
     "Ascent",
@@ -35,6 +43,7 @@ __all__ = [
     "Space",
     "SpeedLoops",
     "Standing",
+    "Tolerance",
     "Trial",
     "Tried",
     "Tuning",

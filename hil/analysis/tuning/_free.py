@@ -46,6 +46,17 @@ class Tolerance(_Table):
     order_phase: bool = False
     sensor_noise: float = Field(0.0, ge=0, le=100)
 
+    @classmethod
+    def names(cls) -> tuple[str, ...]:
+        """As they stand side by side in a file: parameters of models, then the others."""
+        return (*_CHAIN, *(name for name in cls.model_fields if name != "relative"))
+
+    @staticmethod
+    def apart(table: dict[str, Any]) -> dict[str, Any]:
+        """A file's table with the model's parameters in a table of their own, `relative`."""
+        relative = {name: value for name, value in table.items() if name in _CHAIN}
+        return {k: v for k, v in table.items() if k not in relative} | {"relative": relative}
+
 
 class Free(_Table):
     """What a tuning may change (`free`: bounds by parameter), and what must hold.
@@ -62,10 +73,7 @@ class Free(_Table):
     @field_validator("tolerance", mode="before")
     @classmethod
     def _parameters_apart(cls, table: Any) -> Any:
-        if not isinstance(table, dict):
-            return table
-        relative = {name: value for name, value in table.items() if name in _CHAIN}
-        return {k: v for k, v in table.items() if k not in relative} | {"relative": relative}
+        return Tolerance.apart(table) if isinstance(table, dict) else table
 
     def weight(self, criterion: str, metric: str) -> float:
         """How much more a criterion matters than others."""

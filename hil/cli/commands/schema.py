@@ -14,14 +14,15 @@ def command(
     kind: Annotated[
         str,
         typer.Argument(
-            help="what the schema is for: plan, bench, model or controller",
-            autocompletion=one_of("plan", "bench", "model", "controller"),
+            help="what the schema is for: plan, bench, model, controller or campaign",
+            autocompletion=one_of("plan", "bench", "model", "controller", "campaign"),
         ),
     ] = "plan",
 ) -> int:
-    """Print the JSON schema of plan, bench, model or controller files.
+    """Print the JSON schema of plan, bench, model, controller or campaign files.
 
-    Editors complete and check with it: yaml-language-server for plans, Taplo (Even Better TOML) for the rest.
+    Editors complete and check with it: yaml-language-server for plans and campaigns, Taplo (Even Better
+    TOML) for the rest.
     """
     import_python_can()
     from hil.cli.schema import carry_out

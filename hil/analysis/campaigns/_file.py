@@ -1,0 +1,258 @@
+"""A campaign file: which simulations of a plan are made, and how many of them are to pass."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from hil.analysis.tuning import Tolerance
+from hil.core.errors import BadInputError
+from hil.core.file_format import FORMAT, FormatNumber
+from hil.core.files import is_file, read_text
+from hil.core.suggestion import did_you_mean
+from test_plans.building import Strict, brief, build, list_at, mapping_at
+from test_plans.loading import LIBRARY
+from test_plans.mistakes import PlanMistakes
+from test_plans.yaml_document import Document, KeyPath, read_yaml
+
+CAMPAIGNS = Path(__file__).parent / "library"
+#: Beyond it the table of results no longer fits the memory of a small machine.
+MOST_SIMULATIONS = 1_000_000
+_EXAMPLE = "name: my_campaign, then plan: acceptance"
+_AXIS_EXAMPLE = "[20, 30, 40], or {from: 20, to: 40, count: 5}"
+_MOST_VALUES = 100_000
+
+
+class Span(Strict):
+    """Evenly spaced values, ends included; `scale: log` spaces their logarithms."""
+
+    from_: float = Field(alias="from", description="first value")
+    to: float = Field(description="last value")
+    count: int = Field(ge=2, le=_MOST_VALUES, description="how many values, both ends included")
+    scale: Literal["linear", "log"] = Field(default="linear", description="what is spaced evenly")
+
+
+class CampaignKeys(Strict):
+    """The keys of a campaign file that are plain text or numbers."""
+
+    format: FormatNumber = FORMAT
+    name: str = Field(
+        pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$",
+        description="letters, digits, _, - and ., at most 64: what results are filed under",
+    )
+    title: str = Field(default="", max_length=200, description="what the report is headed with")
+    description: str = Field(default="", max_length=10_000, description="what it is for")
+    plan: str = Field(min_length=1, description="plan file beside this one, or the name of a built-in plan")
+    bench: str = Field(
+        default="sim", min_length=1, description="simulated bench: file beside this one, or a shipped one"
+    )
+    model: str = Field(default="", description="model file beside this one; '' for the bench's own")
+    controller: str = Field(
+        default="", description="which of the plan's controllers is replaced or varied; '' for the last"
+    )
+    controllers: list[str] = Field(
+        default=[], description="files that take its place, one after the other; none for the plan's own"
+    )
+    draws: int = Field(
+        default=0, ge=0, le=MOST_SIMULATIONS, description="cars drawn around each model; 0: the model alone"
+    )
+    seed: int = Field(default=0, ge=0, le=2**31, description="of the draws and of their sensors' noise")
+    criteria: list[str] = Field(
+        default=[], description="ids of the plan's criteria that count; none for all of them"
+    )
+    pass_share: float | None = Field(
+        default=None, ge=0, le=1, description="share of each controller's simulations that is to pass"
+    )
+
+
+class CampaignFile(CampaignKeys):
+    """A checked campaign file, as far as it can be checked alone.
+
+    Attributes:
+        vary: what is varied by name, each with its values.
+        tolerance: what differs from car to car.
+        source: its path; text: its YAML.
+    """
+
+    vary: dict[str, tuple[float, ...]]
+    tolerance: Tolerance
+    source: Path
+    text: str
+
+    @property
+    def document(self) -> Document:
+        """Its YAML with the places of keys, for messages."""
+        return read_yaml(self.text, str(self.source))
+
+    def beside(self, name: str, *others: Path) -> Path | None:
+        """A file that it names: beside itself, else in one of `others`; None if there is none."""
+        places = (self.source.parent, *others)
+        return next((place / name for place in places if is_file(place / name)), None)
+
+
+def library_campaigns() -> tuple[str, ...]:
+    """Names of the built-in campaigns."""
+    return tuple(sorted(path.stem for path in CAMPAIGNS.glob("*.yaml")))
+
+
+def load_campaign_file(name_or_path: str | Path) -> CampaignFile:
+    """Read a campaign from a file, or a built-in one by its name.
+
+    Raises:
+        BadInputError: no such file, or all that is wrong with it: line, key, and what to do.
+    """
+    path = _path_of(name_or_path)
+    return campaign_from_text(read_text(path), path)
+
+
+def campaign_from_text(text: str, path: Path) -> CampaignFile:
+    """Check the text of a campaign file; paths in it are relative to `path`.
+
+    Raises:
+        BadInputError: all that is wrong with it: line, key, and what to do.
+    """
+    document, mistakes = read_yaml(text, str(path)), PlanMistakes()
+    content = mapping_at(document.value, document, (), _EXAMPLE)
+    keys: CampaignKeys | None = None
+    vary: dict[str, tuple[float, ...]] = {}
+    tolerance = Tolerance()
+    known = (*CampaignKeys.model_fields, "vary", "tolerance")
+    for key in content:
+        with mistakes.collected():
+            if key not in known:
+                fix = did_you_mean(key, known)
+                raise BadInputError(f"unknown key {key!r}", where=document.place((key,)), fix=fix)
+    with mistakes.collected():
+        named = {key: value for key, value in content.items() if key in CampaignKeys.model_fields}
+        keys = build(CampaignKeys, named, document, ())
+    with mistakes.collected():
+        vary = _vary_at(content.get("vary"), document)
+    with mistakes.collected():
+        tolerance = _tolerance_at(content.get("tolerance"), document)
+    mistakes.refuse()
+    assert keys is not None
+    return CampaignFile(**keys.model_dump(), vary=vary, tolerance=tolerance, source=path, text=text)
+
+
+def _vary_at(value: object, document: Document) -> dict[str, tuple[float, ...]]:
+    example = "model.vehicle_inertia: {from: 200, to: 400, count: 5}"
+    table = {} if value is None else mapping_at(value, document, ("vary",), example)
+    mistakes, found = PlanMistakes(), {}
+    for name, entry in table.items():
+        with mistakes.collected():
+            found[name] = _values_at(entry, document, ("vary", name))
+    mistakes.refuse()
+    return found
+
+
+def _values_at(entry: object, document: Document, path: KeyPath) -> tuple[float, ...]:
+    """The values of one axis: a list, or a range."""
+    if isinstance(entry, dict):
+        span = build(Span, entry, document, path)
+        if span.scale == "log" and min(span.from_, span.to) <= 0:
+            raise BadInputError(
+                "a logarithm needs values above 0",
+                where=document.place(path),
+                fix="from and to above 0, or scale: linear",
+            )
+        space = np.geomspace if span.scale == "log" else np.linspace
+        return tuple(float(f"{value:.12g}") for value in space(span.from_, span.to, span.count))
+    numbers = list_at(entry, document, path, _AXIS_EXAMPLE)
+    for index, number in enumerate(numbers):
+        plain = isinstance(number, int | float) and not isinstance(number, bool) and math.isfinite(number)
+        if not plain:
+            where = document.place((*path, index))
+            raise BadInputError(f"{brief(number)} is no number", where=where, fix=f"write: {_AXIS_EXAMPLE}")
+    if not 0 < len(set(numbers)) == len(numbers) <= _MOST_VALUES:
+        what = "a value stands twice" if numbers else "there are no values"
+        raise BadInputError(what, where=document.place(path), fix=f"write: {_AXIS_EXAMPLE}")
+    return tuple(float(number) for number in numbers)
+
+
+def _tolerance_at(value: object, document: Document) -> Tolerance:
+    path: KeyPath = ("tolerance",)
+    table = {} if value is None else mapping_at(value, document, path, "vehicle_inertia: 0.1")
+    mistakes = PlanMistakes()
+    for name in table:
+        with mistakes.collected():
+            if name not in Tolerance.names():
+                where, fix = document.place((*path, name)), did_you_mean(name, Tolerance.names())
+                raise BadInputError(f"unknown key {name!r}", where=where, fix=fix)
+    mistakes.refuse()
+    found = build(Tolerance, Tolerance.apart(table), document, path)
+    for name, width in found.relative.items():
+        if not 0 <= width < 1:
+            raise BadInputError(
+                f"{width:g} is no half width",
+                where=document.place((*path, name)),
+                fix="it is a share of the number: from 0 to below 1, 0.1 for 10 %",
+            )
+    return found
+
+
+def campaign_schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of a campaign's YAML, for editors."""
+    schema = CampaignKeys.model_json_schema()
+    definitions: dict[str, Any] = {"Span": Span.model_json_schema()}
+    number = {"type": "number"}
+    tolerance: Mapping[str, Any] = Tolerance.model_json_schema()["properties"]
+    share = {"type": "number", "minimum": 0, "exclusiveMaximum": 1, "description": "half width, relative"}
+    schema["properties"] |= {
+        "vary": {
+            "type": ["object", "null"],
+            "description": "controller.NAME, model.NAME, effect.ID.NAME, plan.NAME: values of each",
+            "propertyNames": {"pattern": r"^(controller|model|plan)\.[^.]+$|^effect\.[^.]+\.[^.]+$"},
+            "additionalProperties": {
+                "anyOf": [{"type": "array", "items": number, "minItems": 1}, {"$ref": "#/$defs/Span"}]
+            },
+        },
+        "tolerance": {
+            "type": ["object", "null"],
+            "description": "what differs from car to car",
+            "properties": {name: tolerance.get(name, share) for name in Tolerance.names()},
+            "additionalProperties": False,
+        },
+    }
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **schema,
+        "title": "Campaign",
+        "$defs": definitions,
+    }
+
+
+def controller_file(file: CampaignFile, name: str) -> Path:
+    """A controller that a campaign names: beside it, or a built-in one, with or without its ending.
+
+    Raises:
+        BadInputError: there is none.
+    """
+    built_in = LIBRARY / "controllers"
+    for candidate in (name, f"{name}.toml"):
+        found = file.beside(candidate, built_in)
+        if found is not None:
+            return found
+    known = sorted(path.name for path in built_in.glob("*.toml"))
+    path: KeyPath = ("controllers", file.controllers.index(name))
+    where = file.document.place(path)
+    raise BadInputError(
+        f"there is no controller file {brief(name)}", where=where, fix=did_you_mean(name, known)
+    )
+
+
+def _path_of(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or is_file(path):
+        return path
+    names = library_campaigns()
+    if path.name in names:
+        return CAMPAIGNS / f"{path.name}.yaml"
+    raise BadInputError(
+        f"there is no campaign {brief(path.name)}, neither a file nor a built-in one",
+        fix=f"{did_you_mean(path.name, names)}; a file's name ends in .yaml",
+    )

@@ -1,0 +1,27 @@
+"""Campaigns: many simulations of a plan, in this process or on dask.distributed, resumed where they were."""
+
+from hil.campaign._batches import BATCH_S, Batch, Carriers, Here, batch_size
+from hil.campaign._carry_out import Progress, carry_out
+from hil.campaign._parts import BEGUN, FOLDER, Parts, begun_batch, write_begun
+from hil.campaign._setting import Setting, Source, load_setting
+from hil.campaign._simulations import Row, Simulations
+
+__all__ = [
+    "BATCH_S",
+    "BEGUN",
+    "FOLDER",
+    "Batch",
+    "Carriers",
+    "Here",
+    "Parts",
+    "Progress",
+    "Row",
+    "Setting",
+    "Simulations",
+    "Source",
+    "batch_size",
+    "begun_batch",
+    "carry_out",
+    "load_setting",
+    "write_begun",
+]
