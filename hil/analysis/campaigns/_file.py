@@ -237,7 +237,7 @@ def controller_file(file: CampaignFile, name: str) -> Path:
         found = file.beside(candidate, built_in)
         if found is not None:
             return found
-    known = sorted(path.name for path in built_in.glob("*.toml"))
+    known = sorted(path.stem for path in built_in.glob("*.toml"))
     path: KeyPath = ("controllers", file.controllers.index(name))
     where = file.document.place(path)
     raise BadInputError(
