@@ -30,6 +30,12 @@ class Documented:
         return f"{self.page}: hil {shlex.join(self.arguments)}"
 
 
+def blocks_of(page: str, language: str) -> list[str]:
+    """What stands in a page's blocks of a language."""
+    blocks = _BLOCK.findall((ROOT / page).read_text("utf-8"))
+    return [block for kind, block in blocks if kind == language]
+
+
 def documented() -> list[Documented]:
     """Every command line of every page, in order."""
     found = []

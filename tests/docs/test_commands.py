@@ -19,7 +19,7 @@ from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat, PublicFormat
 
 from hil.cli._app import _COMMANDS, _app_of
-from tests.docs.documented import ROOT, Documented, documented
+from tests.docs.documented import ROOT, Documented, blocks_of, documented
 from tests.docs.test_own_plan import PLANS as PLANS_OF_PAGE
 from tests.hil.cli.test_commands import HIL, hil
 
@@ -63,7 +63,16 @@ CODES = {
 }
 LINES = documented()
 #: Pages whose commands take minutes: searches, and a bench in wall-clock time at a fifth of its rate.
-LONG = ("autotune", "compare-runs", "diagnose", "explain", "identify-and-design", "sim-bench", "tune")
+LONG = (
+    "autotune",
+    "campaigns",
+    "compare-runs",
+    "diagnose",
+    "explain",
+    "identify-and-design",
+    "sim-bench",
+    "tune",
+)
 PAGES = [
     pytest.param(page, marks=pytest.mark.hunt if Path(page).stem in LONG else pytest.mark.slow)
     for page in sorted({line.page for line in LINES})
@@ -137,6 +146,9 @@ def prepare(page: str, stage: Path) -> None:
     if page.endswith("model-to-fmu.md"):
         Path("why").mkdir()
         shutil.copy("axle.toml", "why/model.toml")
+    if page.endswith("campaigns.md"):
+        Path("acceptance").unlink()  # the built-in one has the criteria that the page names
+        Path("lead_or_notch.yaml").write_text(blocks_of(page, "yaml")[0])
     if page.endswith("diagnose.md"):
         Path("why").mkdir()
         shutil.copy("identification", "why/separate_running_resistance.yaml")

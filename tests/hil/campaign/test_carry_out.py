@@ -1,4 +1,4 @@
-"""What is handed out, what is kept, and what is gone on with: in this process, and on a scheduler's workers."""
+"""What is handed out, kept and gone on with: in this process, and on a scheduler's workers."""
 
 import json
 
@@ -7,8 +7,19 @@ import pyarrow.parquet as pq
 import pytest
 from distributed import LocalCluster
 
-from hil.campaign import BEGUN, FOLDER, Batch, Here, Parts, Simulations, batch_size, begun_batch, carry_out
-from hil.campaign import load_setting, write_begun
+from hil.campaign import (
+    BEGUN,
+    FOLDER,
+    Batch,
+    Here,
+    Parts,
+    Simulations,
+    batch_size,
+    begun_batch,
+    carry_out,
+    load_setting,
+    write_begun,
+)
 from hil.campaign.on_dask import Workers
 from hil.core.errors import BadInputError, BenchError
 from tests.hil.campaign.short import written

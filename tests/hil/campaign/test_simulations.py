@@ -10,6 +10,7 @@ from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from hil.engine.prediction import predict
 from test_plans import judge
+from tests.docs.documented import blocks_of
 from tests.hil.campaign.short import CAMPAIGN, written
 
 OWN = "name: own\nplan: short.yaml\n"
@@ -25,7 +26,11 @@ def test_a_row_is_the_run_that_its_number_says(tmp_path):
     simulations = Simulations(setting)
     row = simulations.row(13)
     assert row["controller"] == "phase_stabilization"
-    assert (row["draw"], row["model.vehicle_inertia"], row["controller.feed_forward_time_s"]) == (2, 350, 0.15)
+    assert (row["draw"], row["model.vehicle_inertia"], row["controller.feed_forward_time_s"]) == (
+        2,
+        350,
+        0.15,
+    )
     model = setting.model.with_parameters(vehicle_inertia=350.0)
     car = draws_of(model, setting.file.tolerance, 2, 3)[2]
     assert row["model.tyre_stiffness"] == car.model.parameters["tyre_stiffness"] != 5000
@@ -67,6 +72,13 @@ def test_a_simulation_that_fails_is_a_row(tmp_path, monkeypatch):
     row = simulations.row(0)
     assert (row["verdict"], row["error"], row["draw"]) == ("error", "no such axle", 0)
     assert math.isfinite(row["processor_s"])
+
+
+def test_the_example_of_the_page_is_a_campaign(tmp_path):
+    (tmp_path / "page.yaml").write_text(blocks_of("docs/how-to/campaigns.md", "yaml")[0])
+    setting = load_setting(tmp_path / "page.yaml")
+    assert len(setting.cases) == 120
+    assert Simulations(setting).row(119)["error"] is None
 
 
 @pytest.mark.parametrize(

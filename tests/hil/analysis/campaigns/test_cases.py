@@ -10,7 +10,8 @@ AXES = st.lists(
     st.tuples(st.sampled_from(["plan", "model", "effect", "controller"]), st.integers(1, 3)), max_size=4
 ).map(
     lambda found: [
-        Axis(group, f"n{place}", "", tuple(map(float, range(size)))) for place, (group, size) in enumerate(found)
+        Axis(group, f"n{place}", "", tuple(map(float, range(size))))
+        for place, (group, size) in enumerate(found)
     ]
 )
 
@@ -30,7 +31,10 @@ def test_numbers_and_combinations_are_one_to_one(axes, controllers, draws):
 
 def test_what_a_car_keeps_changes_slowest():
     cases = Cases([Axis("controller", "a", "", (1.0, 2.0)), Axis("model", "b", "", (3.0, 4.0))], 1, 2)
-    order = [(c.values["model"]["b"], c.draw, c.values["controller"]["a"]) for c in map(cases.__getitem__, range(8))]
+    order = [
+        (c.values["model"]["b"], c.draw, c.values["controller"]["a"])
+        for c in map(cases.__getitem__, range(8))
+    ]
     assert order == sorted(order)
     with pytest.raises(IndexError):
         cases[8]

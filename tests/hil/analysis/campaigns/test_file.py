@@ -1,4 +1,4 @@
-"""Campaign files: what they say, and that every mistake is told with its line, key and what would be right."""
+"""Campaign files: what they say; every mistake is told with line, key and what would be right."""
 
 from pathlib import Path
 
@@ -100,13 +100,17 @@ def test_a_controller_that_drives_nothing_is_not_varied():
 def test_a_new_effect_may_need_all_of_its_numbers():
     numbers = [p for p in EFFECTS["motor_order_ripple"].parameters if not p.optional]
     assert len(numbers) > 1
-    text = "".join(f"  effect.motor_order_ripple.{p.name}: [{max(p.lower, min(1.0, p.upper))}]\n" for p in numbers)
+    text = "".join(
+        f"  effect.motor_order_ripple.{p.name}: [{max(p.lower, min(1.0, p.upper))}]\n" for p in numbers
+    )
     assert [axis.unit for axis in axes(f"vary:\n{text}")] == [p.unit for p in numbers]
 
 
 def test_controllers_are_found_beside_the_file_and_among_the_built_in(tmp_path):
     (tmp_path / "own.toml").write_text("")
-    file = campaign_from_text(f"{HEAD}controllers: [own.toml, phase_stabilization, ow]", tmp_path / "mine.yaml")
+    file = campaign_from_text(
+        f"{HEAD}controllers: [own.toml, phase_stabilization, ow]", tmp_path / "mine.yaml"
+    )
     assert controller_file(file, "own.toml") == tmp_path / "own.toml"
     assert controller_file(file, "phase_stabilization").is_file()
     with pytest.raises(BadInputError, match="there is no controller file 'ow'"):
