@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from hil.analysis.campaigns import campaign_schema
 from hil.cli._output import print_json
 from hil.core.controller import controller_schema
 from hil.core.errors import BadInputError
@@ -15,12 +14,21 @@ from hil.core.suggestion import did_you_mean
 from hil.engine.bench_schema import bench_schema
 from test_plans import plan_schema
 
+
+def _campaign_schema() -> dict[str, Any]:
+    from hil.analysis.campaigns import (
+        campaign_schema,
+    )  # with statistics: a second that the others do not need
+
+    return campaign_schema()
+
+
 _SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
     "plan": plan_schema,
     "bench": bench_schema,
     "model": model_schema,
     "controller": controller_schema,
-    "campaign": campaign_schema,
+    "campaign": _campaign_schema,
 }
 
 

@@ -13,6 +13,7 @@ from hil.campaign import (
     Batch,
     Here,
     Parts,
+    Progress,
     Simulations,
     batch_size,
     begun_batch,
@@ -37,7 +38,7 @@ def parts(tmp_path, simulations):
 
 
 def test_every_simulation_stands_once_with_units(parts, simulations):
-    shown = []
+    shown: list[Progress] = []
     assert carry_out(simulations, parts, Here(simulations), show=shown.append)
     table = parts.table()
     assert list(table["simulation"]) == list(range(16))
@@ -114,6 +115,7 @@ class Deadly:
 
     def done(self):
         for batch, rows in self._here.done():
+            assert rows is not None
             for number, row in zip(range(batch.first, batch.last + 1), rows, strict=True):
                 yield Batch(number, number), None if number == self._deadly else [row]
 

@@ -31,6 +31,7 @@ def test_a_row_is_the_run_that_its_number_says(tmp_path):
         350,
         0.15,
     )
+    assert setting.replaced is not None
     model = setting.model.with_parameters(vehicle_inertia=350.0)
     car = draws_of(model, setting.file.tolerance, 2, 3)[2]
     assert row["model.tyre_stiffness"] == car.model.parameters["tyre_stiffness"] != 5000

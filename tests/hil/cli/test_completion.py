@@ -27,7 +27,8 @@ def offered(*words: str) -> set[str]:
         (("run", "acceptance", "--ben"), {"--bench"}),
         (("run", "acceptance", "--bench", "pa"), {"paper_car"}),
         (("doctor", "rear"), {"rear_axle_socketcan"}),
-        (("schema", "c"), {"controller"}),
+        (("schema", "co"), {"controller"}),
+        (("campaign", "rob"), {"robustness"}),
         (("run", "./my"), set()),  # then the shell offers files
     ],
 )
