@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run autotune serve page-picture api-fuzz service-kills openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run autotune serve page-picture api-fuzz service-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -112,6 +112,11 @@ api-fuzz: setup
 service-kills: setup
 	HIL_SERVICE_KILLS=50 $(BIN)/python -m pytest -q tests/hil/service/test_service_kills.py
 
+# The service's tests on a PostgreSQL server of Debian's, begun and ended by them; as root it is installed.
+service-stores: setup
+	$(BIN)/python -m tests.hil.service.postgresql
+	HIL_SERVICE_DATABASE=postgresql $(BIN)/python -m pytest -q tests/hil/service
+
 # The service's OpenAPI document: docs/reference/openapi.json. A test fails when it is not that of the code.
 openapi: setup
 	$(BIN)/python -m hil.service > docs/reference/openapi.json
@@ -140,7 +145,7 @@ figures: setup
 # Pins every dependency with hashes and without addresses of package indexes.
 lock: $(BIN)/uv
 	printf 'uv==%s\n' "$$($(BIN)/uv --version | cut -d' ' -f2)" | $(BIN)/uv pip compile --quiet --no-header --universal --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/tool.txt -
-	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra service --extra fmu --extra campaign --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
+	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra service --extra postgresql --extra s3 --extra fmu --extra campaign --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
 
 clean:
 	rm -rf $(VENV) out

@@ -21,10 +21,12 @@ from hil.engine.border_messages import Progressed, Refused, RunAsked, Told
 from hil.service.benches import Bench
 from hil.service.data import BenchState, RunData, RunState
 from hil.service.run_process import RunProcess, alive_in, result_in
-from hil.service.store import LeaseStore, RunStore, TakenRun
+from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore, TakenRun
 
 _LOOK_S = 0.5  # how often a bench is looked at that cannot be driven now
 _USED_S = 1.0  # how old that look may be for those who ask over the API
+_HELD_AGAIN_S = 20.0  # a third of how long a bench is held
+_LAST_WRITE_S = 5.0  # how long the end of a run waits for a database that is away when the service ends
 _NOTHING = "the service ended before anything was recorded; the run can be queued again"
 _KEPT = "the service ended meanwhile; what was measured until then is kept"
 
@@ -52,6 +54,9 @@ class _Place:
     left: list[RunData] = field(default_factory=list)  # of an earlier service, perhaps still ending
     used_by: str = ""
     looked_s: float = -1e9
+    held_by: str = ""  # another service of the same database
+    held_s: float = -1e9
+    unsure: int | None = None  # taken while the database went away: perhaps so, and certainly not begun
 
 
 class Queue:
@@ -68,17 +73,22 @@ class Queue:
         benches: dict[str, Bench],
         runs: RunStore,
         leases: LeaseStore,
+        held: BenchStore,
         folder: Path,
         command: Sequence[str],
         changed: Callable[[str], None] = lambda bench: None,
     ) -> None:
         self._places = {name: _Place(bench) for name, bench in benches.items()}
-        self._runs, self._leases, self._folder, self._command = runs, leases, folder, command
+        self._runs, self._leases, self._held = runs, leases, held
+        self._folder, self._command = folder, command
         self._changed = changed
         self._wake = asyncio.Event()
         self._tasks: set[asyncio.Task[None]] = set()
         self._closing = False
-        for run in runs.running():
+        self._closing_s = 0.0
+        for place in self._places.values():
+            self._refuse_held(place)
+        for run in runs.running(held.service):
             if run.bench in self._places:
                 self._places[run.bench].left.append(run)
             elif not alive_in(self.folder_of(run.id)):
@@ -111,21 +121,24 @@ class Queue:
             return "running", place.running.doing
         if place.left:
             return "ending", f"run {place.left[0].id} of an earlier service is being ended"
+        if place.held_by:
+            return "in_use", place.held_by
         used = self._used_by(place)
         return ("in_use", used) if used else ("free", "")
 
     async def work(self) -> None:
         """Begin runs as benches become free, until `close`."""
         while not self._closing:
-            for place in self._places.values():
-                await self._look(place)
+            with contextlib.suppress(DatabaseAwayError):  # nothing is begun until it answers
+                for place in self._places.values():
+                    await self._look(place)
             with contextlib.suppress(TimeoutError):
                 await asyncio.wait_for(self._wake.wait(), _LOOK_S)
             self._wake.clear()
 
     async def close(self, hurry: Callable[[], bool]) -> None:
         """Begin nothing more and end what is under way; wait for its end unless somebody is in a hurry."""
-        self._closing = True
+        self._closing, self._closing_s = True, time.monotonic()
         self._wake.set()
         for place in self._places.values():
             if place.running is not None:
@@ -133,21 +146,47 @@ class Queue:
         while self._tasks and not hurry():
             await asyncio.wait(self._tasks, timeout=0.1)
 
+    def _refuse_held(self, place: _Place) -> None:
+        place.held_by, place.held_s = self._held.hold(place.bench.name), time.monotonic()
+        if place.held_by:
+            raise BenchError(
+                f"another service of the same database drives the bench: {place.held_by}",
+                where=place.bench.name,
+                fix="end that one, or leave this bench to it",
+            )
+
+    def _hold(self, place: _Place) -> None:
+        """Go on driving a bench, or hear who does."""
+        if time.monotonic() - place.held_s > _HELD_AGAIN_S:
+            there = self._held.hold(place.bench.name)
+            place.held_s = time.monotonic()
+            if there != place.held_by:
+                place.held_by = there
+                self._changed(place.bench.name)
+
     async def _look(self, place: _Place) -> None:
+        self._hold(place)
+        if place.unsure is not None:
+            self._runs.put_back(place.unsure)
+            place.unsure = None
         for left in list(place.left):
             if not alive_in(self.folder_of(left.id)):
                 self._conclude_left(left)
                 place.left.remove(left)
                 self._changed(left.bench)
-        if place.running is not None or place.left or place.bench.stopped():
+        if place.running is not None or place.left or place.held_by or place.bench.stopped():
             return
         lease = self._leases.of(place.bench.name)
         run = self._runs.next_of(place.bench.name, lease.holder if lease else None)
         if run is None or self._used_by(place, fresh=True):
             return
-        taken = self._runs.take(run.id)
+        place.unsure = run.id
+        taken = self._runs.take(run.id, self._held.service)
+        place.unsure = None
         if taken is not None:
             await self._begin(place, taken)
+        else:
+            place.held_s = -1e9  # it is looked at once more whose the bench is
 
     def _used_by(self, place: _Place, *, fresh: bool = False) -> str:
         if fresh or time.monotonic() - place.looked_s > _USED_S:
@@ -163,7 +202,8 @@ class Queue:
             process = await RunProcess.begin(self._command, asked)
         except (HilError, OSError) as error:
             code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
-            self._runs.end(run.id, "ended", exit_code=code, reason=str(error))
+            why = str(error)
+            await self._written(lambda: self._runs.end(run.id, "ended", exit_code=code, reason=why))
             self._changed(run.bench)
             return
         place.running = RunningRun(run, folder, process)
@@ -187,25 +227,42 @@ class Queue:
             self._changed(running.data.bench)
         code = await running.process.exit_code()
         try:
-            self._conclude(place, running, code, refused)
+            await self._conclude(place, running, code, refused)
         finally:
             place.running = None
             self.wake()
             self._changed(running.data.bench)
 
-    def _conclude(self, place: _Place, running: RunningRun, code: int, refused: HilError | None) -> None:
+    async def _written(self, write: Callable[[], object]) -> None:
+        """Write to the store as soon as it answers; what a service could not write the next one does."""
+        while True:
+            try:
+                write()
+            except DatabaseAwayError:
+                if self._closing and time.monotonic() > self._closing_s + _LAST_WRITE_S:
+                    return
+                await asyncio.sleep(_LOOK_S)
+            else:
+                return
+
+    async def _conclude(
+        self, place: _Place, running: RunningRun, code: int, refused: HilError | None
+    ) -> None:
         run, result = running.data, result_in(running.folder)
         recorded = (running.folder / RECORDING).exists()
         if refused is not None and not recorded and not self._closing and self._used_by(place, fresh=True):
             logger.info("run %d waits again: somebody was quicker on %s", run.id, run.bench)
-            self._runs.put_back(run.id)
+            await self._written(lambda: self._runs.put_back(run.id))
             return
         reason = "" if result is not None else str(refused or f"its process ended with code {code}")
         if result is None and recorded:
             reason += f"\n  hil recover {running.folder} makes a whole recording of what was measured"
         state: RunState = "interrupted" if self._closing else "ended"
         dut = place.bench.file.dut.get("serial", place.bench.file.dut.get("name", ""))
-        self._runs.end(run.id, state, exit_code=code, result=result, reason=reason, dut=dut)
+        running.doing = "its end is being written"
+        await self._written(
+            lambda: self._runs.end(run.id, state, exit_code=code, result=result, reason=reason, dut=dut)
+        )
         logger.info("run %d ended on %s with code %d", run.id, run.bench, code)
 
     def _conclude_left(self, run: RunData) -> None:

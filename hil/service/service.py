@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import logging
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from sqlalchemy import Engine
@@ -20,11 +22,24 @@ from hil.service.forecasts import Forecasts
 from hil.service.live import LiveRun
 from hil.service.plans import Plans
 from hil.service.queue import Queue
-from hil.service.store import LeaseStore, LogStore, RunStore, TokenStore
+from hil.service.store import (
+    BenchStore,
+    DatabaseAwayError,
+    LeaseStore,
+    LogStore,
+    Presence,
+    RunStore,
+    TokenStore,
+)
 from test_plans import plan_from_text
 
 _LOOK_S = 0.1
 _JUDGE_S = 1.0
+_ASK_S = 1.0  # a database that is away
+_MOST_SHOWN = 100
+_LAST = 2**31 - 1
+
+logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -48,29 +63,56 @@ class OnShow:
     judged_s: float = 0.0
 
 
+@dataclass
+class Waiting:
+    """What the store has of a bench: runs that wait, in their order, how many they are, and a lease."""
+
+    runs: list[RunData] = field(default_factory=list)
+    count: int = 0
+    lease: str = ""
+
+
 class Service:
     """Everything that the API needs. All of it is used from one event loop, and nothing in it waits.
 
     Args:
         folder: where everything is kept.
+        held: the benches that it drives, for other services of the same database.
+
+    Raises:
+        BenchError: another service drives one of the benches, or the database is away.
     """
 
-    def __init__(self, folder: Path, engine: Engine, benches: dict[str, Bench], commands: Commands) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        engine: Engine,
+        held: BenchStore,
+        benches: dict[str, Bench],
+        commands: Commands,
+    ) -> None:
         self.benches = benches
+        self.database = Presence(engine)
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         self.plans = Plans(folder / "plans")
         self.forecasts = Forecasts(commands.hil)
         self.desk = Desk()
-        self.queue = Queue(benches, self.runs, self.leases, folder / "runs", commands.run, self.changed)
+        self._held = held
+        runs_folder = folder / "runs"
+        self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, commands.run, self.changed)
         self.began_s = time.monotonic()
         self.closing = False
         self.viewers: dict[str, set[asyncio.Event]] = {name: set() for name in benches}
         self.on_show: dict[str, OnShow] = {}
         self._version: dict[str, int] = dict.fromkeys(benches, 0)
+        self._waiting = {name: Waiting() for name in benches}
+        self._unwritten: list[tuple[str, str, str, str]] = []
 
     def changed(self, bench: str) -> None:
-        """Something of a bench is to be shown anew."""
+        """Something of a bench is to be shown anew; those of other services are shown there."""
+        if bench not in self.benches:
+            return
         self._version[bench] += 1
         self._tell(bench)
 
@@ -80,8 +122,9 @@ class Service:
 
     def bench_data(self, name: str) -> BenchData:
         """A bench as it is now."""
-        bench, running, lease = self.benches[name], self.queue.running(name), self.leases.of(name)
+        bench, running, waiting = self.benches[name], self.queue.running(name), self.waiting(name)
         state, why = self.queue.state(name)
+        why = f"{why}; {self.database.away}".removeprefix("; ") if self.database.away else why
         return BenchData(
             name=name,
             title=bench.file.title,
@@ -89,11 +132,22 @@ class Service:
             state=state,
             why=why,
             running=running.data.id if running else None,
-            waiting=self.runs.waiting(name),
+            waiting=waiting.count,
             limits=bench.limits,
             units=bench.units,
-            lease=lease.holder if lease else "",
+            lease=waiting.lease,
         )
+
+    def waiting(self, bench: str) -> Waiting:
+        """What waits for a bench; as it was last known while the database is away."""
+        with contextlib.suppress(DatabaseAwayError):
+            lease = self.leases.of(bench)
+            found = self.runs.all(
+                bench=bench, states=("queued", "waiting_approval"), before=_LAST, most=_MOST_SHOWN
+            )
+            found.sort(key=lambda run: (-run.priority, run.id))
+            self._waiting[bench] = Waiting(found, self.runs.waiting(bench), lease.holder if lease else "")
+        return self._waiting[bench]
 
     def with_progress(self, run: RunData) -> RunData:
         """A run with what only this process knows: how far it is, which files it has left."""
@@ -118,20 +172,53 @@ class Service:
             if not path.name.startswith(hidden) and path.is_file() and not path.is_symlink()
         )
 
+    def stop_run_in_emergency(self, bench: str) -> None:
+        """Tell the run under way, if there is one; asks nobody anything before."""
+        running = self.queue.running(bench)
+        if running is not None:
+            running.process.stop_in_emergency()
+
     async def stop_in_emergency(self, bench: str, by: str) -> None:
         """Have a bench safe at once and keep it so, whatever its run is doing and whether there is one.
 
         Raises:
             HilError: the stop cannot be latched; a run was told to stop all the same.
         """
-        running = self.queue.running(bench)
-        if running is not None:
-            running.process.stop_in_emergency()
+        self.stop_run_in_emergency(bench)
         try:
+            running = self.queue.running(bench)
             folder = running.folder if running is not None else Path()
             self.benches[bench].stop(by, folder)
         finally:
             self.changed(bench)
+
+    def write_down(self, who: str, role: str, action: str, target: str) -> None:
+        """Write what must not fail for the audit log's sake: later, if the database is away."""
+        try:
+            self.log.add(who, role, action, target)
+        except DatabaseAwayError:
+            self._unwritten.append((who, role, action, target))
+            logger.warning("%s: %s, %s; to be written when the database answers", who, action, target)
+
+    async def watch_database(self) -> None:
+        """Ask a database that is away whether it is back, until the service is closed."""
+        while not self.closing:
+            await asyncio.sleep(_ASK_S)
+            if self.database.away:
+                if not await asyncio.to_thread(self.database.ask):
+                    continue
+                self.queue.wake()
+                for bench in self.benches:
+                    self.changed(bench)
+            with contextlib.suppress(DatabaseAwayError):
+                while self._unwritten:
+                    self.log.add(*self._unwritten[0])
+                    del self._unwritten[0]
+
+    def give_benches_back(self) -> None:
+        """Let other services drive them; while the database is away they are free by themselves later."""
+        with contextlib.suppress(DatabaseAwayError):
+            self._held.give_back()
 
     async def follow(self) -> None:
         """Read what runs measure, until the service is closed."""

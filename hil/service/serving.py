@@ -7,6 +7,7 @@ import contextlib
 import ipaddress
 import logging
 import math
+import secrets
 import socket
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -17,7 +18,7 @@ import uvicorn
 from sqlalchemy import Engine
 
 from hil.core.errors import BadInputError, BenchError
-from hil.core.files import make_directory
+from hil.core.files import make_directory, read_text, write_atomically
 from hil.core.locks import HeldError, lock_on
 from hil.core.printable import printable
 from hil.engine import StopRequest
@@ -25,7 +26,7 @@ from hil.service.api import Rates, application
 from hil.service.benches import benches_of
 from hil.service.data import ROLES, Role, TokenMade
 from hil.service.service import Commands, Service
-from hil.service.store import LogStore, TokenStore, open_database
+from hil.service.store import BenchStore, LogStore, TokenStore, open_database
 
 _LOOK_S = 0.1
 _LAST_ANSWERS_S = 2
@@ -77,11 +78,9 @@ def serve(request: ServeRequest) -> None:
         try:
             _refuse_open_to_all(request.host, TokenStore(engine))
             with _listening(request.host, request.port) as listening:
-                asyncio.run(
-                    _served(
-                        request, engine, Service(request.folder, engine, benches, request.commands), listening
-                    )
-                )
+                held = BenchStore(engine, _name_of(request.folder), _place_of(request.folder))
+                service = Service(request.folder, engine, held, benches, request.commands)
+                asyncio.run(_served(request, service, listening))
         finally:
             engine.dispose()
 
@@ -109,8 +108,7 @@ def make_token(folder: Path, database: str, name: str, role: str) -> TokenMade:
         engine.dispose()
 
 
-async def _served(request: ServeRequest, engine: Engine, service: Service, listening: socket.socket) -> None:
-    del engine
+async def _served(request: ServeRequest, service: Service, listening: socket.socket) -> None:
     host, port = listening.getsockname()[:2]
     names = (*_THIS_MACHINE, request.host, *request.hosts)
     config = uvicorn.Config(
@@ -127,6 +125,7 @@ async def _served(request: ServeRequest, engine: Engine, service: Service, liste
         asyncio.create_task(service.queue.work()),
         asyncio.create_task(service.follow()),
         asyncio.create_task(server.serve(sockets=[listening])),
+        asyncio.create_task(service.watch_database()),
     ]
     try:
         while not server.started and not tasks[2].done():
@@ -148,6 +147,7 @@ async def _served(request: ServeRequest, engine: Engine, service: Service, liste
     done, _ = await asyncio.wait(tasks, timeout=_LAST_ANSWERS_S + 3.0)
     for task in done:
         task.result()  # a mistake of ours in one of them is told
+    service.give_benches_back()
 
 
 class _Server(uvicorn.Server):
@@ -171,6 +171,18 @@ def _alone_in(folder: Path) -> Iterator[None]:
             where=str(folder),
             fix="give another folder with --data, or use that service",
         ) from None
+
+
+def _name_of(folder: Path) -> str:
+    """What this service is called among those of a database: made once, and kept in its folder."""
+    path = folder / "service.id"
+    if not path.is_file():
+        write_atomically(path, secrets.token_hex(16))
+    return read_text(path).strip()[:40]
+
+
+def _place_of(folder: Path) -> str:
+    return f"that of {socket.gethostname()}:{folder.resolve()}"
 
 
 def _database(folder: Path, url: str) -> Engine:

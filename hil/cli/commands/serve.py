@@ -26,7 +26,12 @@ def command(
         typer.Option(metavar="NAME", help="further names by which browsers may call the service"),
     ] = None,
     database: Annotated[
-        str, typer.Option(metavar="URL", help="database in place of SQLite in DIR: postgresql+psycopg://…")
+        str,
+        typer.Option(
+            metavar="URL",
+            envvar="HIL_DATABASE",
+            help="in place of SQLite in DIR: postgresql://user@host/name",
+        ),
     ] = "",
     rate: Annotated[
         float,

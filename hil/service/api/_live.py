@@ -121,14 +121,12 @@ class _Watching:
 
 def _state(service: Service, bench: str) -> dict[str, Any]:
     running = service.queue.running(bench)
-    waiting = service.runs.all(bench=bench, states=("queued", "waiting_approval"), before=2**31 - 1, most=100)
-    waiting.sort(key=lambda run: (-run.priority, run.id))
     run = service.with_progress(running.data) if running else None
     return {
         "bench": service.bench_data(bench).model_dump(mode="json"),
         "running": run.model_dump(mode="json") if run else None,
         "told": running.told if running else "",
-        "queue": [one.model_dump(mode="json") for one in waiting],
+        "queue": [one.model_dump(mode="json") for one in service.waiting(bench).runs],
     }
 
 

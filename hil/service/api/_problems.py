@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException
 
 from hil.core.errors import BadInputError, HilError
 from hil.service.data import Problem
+from hil.service.store import DatabaseAwayError
 
 _MEANINGS = {
     400: "the body cannot be read as what its type says",
@@ -68,7 +69,8 @@ async def _of_ours(request: Request, error: Exception) -> JSONResponse:
     del request
     assert isinstance(error, HilError)
     status = 422 if isinstance(error, BadInputError) else 503
-    return _answer(status, Problem(what=error.what, where=error.where, fix=error.fix))
+    headers = {"Retry-After": "5"} if isinstance(error, DatabaseAwayError) else None
+    return _answer(status, Problem(what=error.what, where=error.where, fix=error.fix), headers)
 
 
 async def _not_valid(request: Request, error: Exception) -> JSONResponse:

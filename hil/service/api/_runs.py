@@ -159,8 +159,9 @@ def _there(service: Service, run: int) -> RunData:
 
 
 def _running(service: Service, run: int) -> RunningRun:
-    _there(service, run)
-    found = service.queue.running_run(run)
+    there, found = _there(service, run), service.queue.running_run(run)
+    if found is None and there.bench not in service.benches:
+        raise RefusedError(409, f"run {run} is another service's", fix=f"ask the one of {there.bench}")
     if found is None:
         raise RefusedError(409, f"run {run} is not under way")
     return found

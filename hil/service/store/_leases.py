@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import datetime
 
-from sqlalchemy import Engine, delete
+from sqlalchemy import Engine, delete, or_
 from sqlalchemy.orm import sessionmaker
 
 from hil.service.data import LeaseData
-from hil.service.store._opening import aware, now
+from hil.service.store._opening import aware, now_there
 from hil.service.store._tables import LeaseRow
+from hil.service.store._upsert import put
 
 
 class LeaseStore:
@@ -22,18 +23,17 @@ class LeaseStore:
         """Who has it now."""
         with self._transaction() as session:
             row = session.get(LeaseRow, bench)
-            return None if row is None else _lease(row)
+            return None if row is None else _lease(row, now_there(session))
 
     def take(self, bench: str, holder: str, for_s: float) -> LeaseData | None:
         """Have a bench from now on for a while; None if somebody else has it."""
-        until = now() + datetime.timedelta(seconds=for_s)
         with self._transaction() as session:
-            row = session.get(LeaseRow, bench)
-            there = None if row is None else _lease(row)
-            if there is not None and there.holder != holder:
-                return None
-            session.merge(LeaseRow(bench=bench, holder=holder, until=until))
-        return LeaseData(bench=bench, holder=holder, until=until)
+            moment = now_there(session)
+            until = moment + datetime.timedelta(seconds=for_s)
+            free = or_(LeaseRow.holder == holder, LeaseRow.until <= moment)
+            row = {"bench": bench, "holder": holder, "until": until}
+            taken = put(session, LeaseRow, row, where=free)
+        return LeaseData(bench=bench, holder=holder, until=until) if taken else None
 
     def give_back(self, bench: str) -> None:
         """Nobody has it any more."""
@@ -41,8 +41,8 @@ class LeaseStore:
             session.execute(delete(LeaseRow).where(LeaseRow.bench == bench))
 
 
-def _lease(row: LeaseRow) -> LeaseData | None:
+def _lease(row: LeaseRow, moment: datetime.datetime) -> LeaseData | None:
     """None if it is over."""
     until = aware(row.until)
     assert until is not None
-    return LeaseData(bench=row.bench, holder=row.holder, until=until) if until > now() else None
+    return LeaseData(bench=row.bench, holder=row.holder, until=until) if until > moment else None

@@ -3,19 +3,28 @@
 from __future__ import annotations
 
 import datetime
+import ssl
 from pathlib import Path
+from typing import Any
 
 import alembic.command
 import alembic.config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Engine, create_engine, event
-from sqlalchemy.engine import make_url
+from sqlalchemy import Connection, DateTime, Engine, create_engine, event, func, select, text
+from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, NoSuchModuleError, SQLAlchemyError
+from sqlalchemy.orm import Session
 
 from hil.core.errors import BadInputError, BenchError
+from hil.service.store._presence import in_words
 
 _MIGRATIONS = Path(__file__).parent / "migrations"
+_PG8000 = "postgresql+pg8000"
+#: The service's loop waits for the database: for one that does not answer this long, once.
+_WITHIN_S = 2
+_MIGRATED_WITHIN_S = 300
+_MIGRATING = 0x68696C  # no two services make the tables at once
 
 
 def now() -> datetime.datetime:
@@ -23,41 +32,94 @@ def now() -> datetime.datetime:
     return datetime.datetime.now(datetime.UTC)
 
 
+def now_there(session: Session) -> datetime.datetime:
+    """This moment by the database's clock, which services on several machines share."""
+    moment = aware(session.scalar(select(func.current_timestamp(type_=DateTime(timezone=True)))))
+    assert moment is not None
+    return moment
+
+
 def aware(moment: datetime.datetime | None) -> datetime.datetime | None:
-    """A moment as it was stored; SQLite forgets the zone, which is always UTC."""
-    return moment.replace(tzinfo=datetime.UTC) if moment is not None and moment.tzinfo is None else moment
+    """A moment as it was stored, in UTC; SQLite forgets that zone, PostgreSQL tells its server's."""
+    if moment is None or moment.tzinfo is not None:
+        return moment and moment.astimezone(datetime.UTC)
+    return moment.replace(tzinfo=datetime.UTC)
 
 
 def open_database(url: str) -> Engine:
     """Open it, with all migrations done.
 
     Args:
-        url: as SQLAlchemy has it: `sqlite:////data/service.sqlite`, `postgresql+psycopg://…`.
+        url: `sqlite:////data/service.sqlite`, `postgresql://user@host/name`; of other drivers as SQLAlchemy
+            has it.
 
     Raises:
         BadInputError: no such kind of database, or one of a newer version of this software.
         BenchError: it cannot be reached or written.
     """
     try:
-        shown = make_url(url).render_as_string(hide_password=True)
-        engine = create_engine(url, pool_pre_ping=True)
-    except (ArgumentError, NoSuchModuleError, ImportError, ValueError) as error:
+        chosen, options = _for_driver(make_url(url))
+        if chosen.drivername == _PG8000:
+            options["timeout"] = _MIGRATED_WITHIN_S
+        migrating = _engine(chosen, options)
+    except (ArgumentError, NoSuchModuleError, ImportError, ValueError, TypeError) as error:
         raise BadInputError(
-            f"no database can be opened by this URL: {type(error).__name__}",
+            f"no database can be opened by this URL: {_cannot(error)}",
             where="--database",
-            fix="sqlite:////folder/file or postgresql+psycopg://user@host/name",
+            fix="sqlite:////folder/file or postgresql://user@host/name (pip install 'eaxle-hil[postgresql]')",
         ) from error
-    if engine.dialect.name == "sqlite":
-        event.listen(engine, "connect", _settle)
+    shown = chosen.render_as_string(hide_password=True)
     try:
-        _migrate(engine, shown)
-    except SQLAlchemyError as error:
+        _migrate(migrating, shown)
+    except (SQLAlchemyError, OSError) as error:
         raise BenchError(
-            f"the database cannot be used: {str(error.__cause__ or error).strip()[:300]}",
+            f"the database cannot be used: {in_words(error.__cause__ or error)}",
             where=shown,
             fix="look whether it is there, and whether it may be written",
         ) from error
+    finally:
+        migrating.dispose()
+    return _engine(chosen, options | ({"timeout": _WITHIN_S} if "timeout" in options else {}))
+
+
+def _engine(url: URL, options: dict[str, Any]) -> Engine:
+    engine = create_engine(url, connect_args=options)
+    if engine.dialect.name == "sqlite":
+        event.listen(engine, "connect", _settle)
     return engine
+
+
+def _for_driver(url: URL) -> tuple[URL, dict[str, Any]]:
+    """The URL, with what stands in it as libpq has it, for the driver that this software brings.
+
+    `host=/folder` is that of a socket; `sslmode=verify-full`, with `sslrootcert`, has TLS with the server's
+    certificate checked, `sslmode=require` without. Without `sslmode` there is TLS if the server has it.
+    """
+    if url.drivername in ("postgres", "postgresql"):
+        url = url.set(drivername=_PG8000)
+    options: dict[str, Any] = {}
+    if url.drivername != _PG8000:
+        return url, options
+    query = {name: str(value) for name, value in url.query.items()}
+    folder, mode, roots = (query.pop(name, "") for name in ("host", "sslmode", "sslrootcert"))
+    if folder:
+        options["unix_sock"] = f"{folder}/.s.PGSQL.{url.port or 5432}"
+    if mode not in ("", "disable", "prefer", "require", "verify-full"):
+        raise ValueError(f"sslmode is '{mode}'; disable, prefer, require, verify-full are known")
+    if mode in ("require", "verify-full"):
+        options["ssl_context"] = context = ssl.create_default_context(cafile=roots or None)
+        if mode == "require":
+            context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    elif mode == "disable":
+        options["ssl_context"] = False
+    return url.set(query=query), options
+
+
+def _cannot(error: Exception) -> str:
+    """Why, without what may be a password."""
+    kinds = {ImportError: "its driver is not installed", ArgumentError: "it is no URL"}
+    known = next((said for kind, said in kinds.items() if isinstance(error, kind)), "")
+    return known or (str(error) if "sslmode" in str(error) else type(error).__name__)
 
 
 def _settle(connection: object, record: object) -> None:
@@ -75,6 +137,7 @@ def _migrate(engine: Engine, shown: str) -> None:
     config.set_main_option("path_separator", "os")
     known = {script.revision for script in ScriptDirectory.from_config(config).walk_revisions()}
     with engine.begin() as connection:
+        _alone(connection)
         there = MigrationContext.configure(connection).get_current_revision()
         if there is not None and there not in known:
             raise BadInputError(
@@ -84,3 +147,9 @@ def _migrate(engine: Engine, shown: str) -> None:
             )
         config.attributes["connection"] = connection
         alembic.command.upgrade(config, "head")
+
+
+def _alone(connection: Connection) -> None:
+    """Let others wait until the transaction has ended."""
+    if connection.dialect.name == "postgresql":
+        connection.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _MIGRATING})

@@ -13,8 +13,9 @@ from sqlalchemy.orm import Session, sessionmaker
 
 from hil.core.result import CriterionResult, RunResult
 from hil.service.data import RunData, RunState, TrendPoint
-from hil.service.store._opening import aware, now
-from hil.service.store._tables import CriterionRow, RunRow
+from hil.service.store._benches import HELD_S
+from hil.service.store._opening import aware, now, now_there
+from hil.service.store._tables import BenchRow, CriterionRow, RunRow
 
 _SAME = (
     "id", "plan", "title", "bench", "state", "priority", "hazard", "requested_by", "approved_by",
@@ -63,14 +64,15 @@ class RunStore:
         row = RunRow(
             key=wanted.key or None,
             plan=wanted.plan,
-            title=wanted.title,
+            title=wanted.title[:200],
             plan_text=wanted.plan_text,
             plan_source=wanted.plan_source,
+            service="",
             bench=wanted.bench,
             state="queued" if approved else "waiting_approval",
             values_json=json.dumps(dict(wanted.values)),
             priority=wanted.priority,
-            hazard=wanted.hazard,
+            hazard=wanted.hazard[:500],
             confirmed_by=wanted.confirmed_by,
             accept_expired=wanted.accept_expired,
             requested_by=wanted.requested_by,
@@ -125,18 +127,28 @@ class RunStore:
             row = session.scalars(chosen).first()
             return None if row is None else _data(row)
 
-    def take(self, run: int) -> TakenRun | None:
-        """Mark a queued run as running, before anything of it is begun; None if it is not queued any more."""
+    def take(self, run: int, service: str) -> TakenRun | None:
+        """Mark a queued run as running, before anything of it is begun.
+
+        None if it is not queued any more, or its bench is not this service's any more (`BenchStore.hold`).
+        """
         with self._transaction() as session:
-            if not _moved(session, run, ("queued",), state="running", started_at=now()):
+            of_run = select(RunRow.bench).where(RunRow.id == run).scalar_subquery()
+            ours = update(BenchRow).where(BenchRow.bench == of_run, BenchRow.service == service)
+            until = now_there(session) + datetime.timedelta(seconds=HELD_S)
+            if not session.execute(ours.values(until=until).returning(BenchRow.bench)).all():
+                return None
+            changes = {"state": "running", "started_at": now(), "service": service}
+            if not _moved(session, run, ("queued",), **changes):
                 return None
             row = session.get_one(RunRow, run)
             return TakenRun(_data(row), row.plan_text, row.plan_source, row.confirmed_by, row.accept_expired)
 
-    def running(self) -> list[RunData]:
-        """Runs that have begun and not ended, as far as is written."""
+    def running(self, service: str) -> list[RunData]:
+        """Runs that a service has begun and that have not ended, as far as is written."""
+        mine = RunRow.state == "running", RunRow.service.in_((service, ""))
         with self._transaction() as session:
-            return [_data(row) for row in session.scalars(select(RunRow).where(RunRow.state == "running"))]
+            return [_data(row) for row in session.scalars(select(RunRow).where(*mine))]
 
     def end(
         self,
@@ -151,7 +163,8 @@ class RunStore:
         """Write how a running run ended, with its criteria; false if that was written before."""
         with self._transaction() as session:
             changes: dict[str, object] = {"state": state, "ended_at": now(), "exit_code": exit_code}
-            changes["reason"] = reason or (result.reason if result else "")
+            said = reason or (result.reason if result else "")
+            changes["reason"] = said.replace("\0", " ")  # PostgreSQL keeps no text with it
             if result is not None:
                 changes |= {"verdict": result.verdict, "safe_state": result.safe_state}
             if not _moved(session, run, ("running",), **changes):
@@ -179,7 +192,7 @@ class RunStore:
     def put_back(self, run: int) -> bool:
         """Queue a run again of which nothing has happened: its bench was taken by somebody quicker."""
         with self._transaction() as session:
-            return _moved(session, run, ("running",), state="queued", started_at=None)
+            return _moved(session, run, ("running",), state="queued", started_at=None, service="")
 
     def cancel(self, run: int, reason: str) -> bool:
         """End a run that waits; false if it does not wait."""

@@ -15,7 +15,7 @@ class Base(DeclarativeBase):
 
 
 class RunRow(Base):
-    """A run; `plan_text` is the plan with its variables as chosen."""
+    """A run; `plan_text` is the plan with its variables as chosen, `service` the one that has begun it."""
 
     __tablename__ = "runs"
     __table_args__ = (Index("runs_by_bench_and_state", "bench", "state"),)
@@ -26,6 +26,7 @@ class RunRow(Base):
     title: Mapped[str] = mapped_column(String(200))
     plan_text: Mapped[str] = mapped_column(Text)
     plan_source: Mapped[str] = mapped_column(Text)
+    service: Mapped[str] = mapped_column(String(40), server_default="")
     bench: Mapped[str] = mapped_column(String(64))
     state: Mapped[str] = mapped_column(String(20))
     values_json: Mapped[str] = mapped_column(Text)
@@ -42,6 +43,17 @@ class RunRow(Base):
     verdict: Mapped[str | None] = mapped_column(String(10))
     safe_state: Mapped[str | None] = mapped_column(String(20))
     reason: Mapped[str] = mapped_column(Text)
+
+
+class BenchRow(Base):
+    """Which service drives a bench; `place` is where that runs, in words."""
+
+    __tablename__ = "benches"
+
+    bench: Mapped[str] = mapped_column(String(64), primary_key=True)
+    service: Mapped[str] = mapped_column(String(40))
+    place: Mapped[str] = mapped_column(String(300))
+    until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 
 class CriterionRow(Base):

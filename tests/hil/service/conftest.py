@@ -1,4 +1,4 @@
-"""One service for all tests that leave it as they found it, and a browser."""
+"""One service for all tests that leave it as they found it, a browser, and a server of PostgreSQL."""
 
 from __future__ import annotations
 
@@ -8,11 +8,26 @@ from collections.abc import Iterator
 import pytest
 from playwright import sync_api as playwright
 
+from tests.hil.service import served as served_by
+from tests.hil.service.postgresql import Cluster, cluster
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
 
+@pytest.fixture(scope="session")
+def postgresql() -> Iterator[Cluster]:
+    with cluster() as server:
+        yield server
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _database(request: pytest.FixtureRequest) -> None:
+    """With HIL_SERVICE_DATABASE=postgresql every service has a database of this server."""
+    if served_by.ON_POSTGRESQL:
+        served_by.new_database = request.getfixturevalue("postgresql").database
+
+
 @pytest.fixture(scope="package")
-def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+def service(_database: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     folder = tmp_path_factory.mktemp("service")
     with served(folder / "data", state=folder / "state") as one:
         one.give("short", SHORT)

@@ -16,6 +16,11 @@ from typing import Any
 
 HIL = (sys.executable, "-c", "from hil.cli import main; main()")
 
+#: `make service-stores` has the service on PostgreSQL.
+ON_POSTGRESQL = os.environ.get("HIL_SERVICE_DATABASE") == "postgresql"
+new_database: Callable[[], str] = str
+_databases: dict[Path, str] = {}
+
 #: A run of about a second and a half on the simulated bench.
 SHORT = """
 name: short
@@ -91,10 +96,17 @@ class Served:
         return self.until(run, lambda found: found["state"] in ("ended", "interrupted", "cancelled"))
 
 
+def environment_of(data: Path) -> dict[str, str]:
+    """That of commands for a service; each service keeps its database when it is begun anew."""
+    if data not in _databases:
+        _databases[data] = new_database()
+    return {**os.environ, "HIL_DATABASE": _databases[data]}
+
+
 @contextlib.contextmanager
 def served(data: Path, *arguments: str, state: Path | None = None, token: str = "") -> Iterator[Served]:
     """Start it and end it; it may be killed meanwhile."""
-    environment = dict(os.environ)
+    environment = environment_of(data)
     if state is not None:
         environment["HIL_STATE"] = str(state)
     command = [*HIL, "serve", "--data", str(data), "--port", "0", "--json", *arguments]

@@ -14,7 +14,7 @@ import pytest
 
 from hil.service.api import openapi_text
 from hil.service.data import ROLES
-from tests.hil.service.served import HIL, SHORT, RefusedError, Served, served
+from tests.hil.service.served import HIL, SHORT, RefusedError, Served, environment_of, served
 
 ROOT = Path(__file__).parents[3]
 #: The least role that may; "" for everybody. A new endpoint is added here, too.
@@ -178,4 +178,5 @@ def _made(service: Served, name: str, role: str) -> str:
 
 def _token(data: Path, wanted: str) -> str:
     command = [*HIL, "serve", "--data", str(data), "--add-token", wanted]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()[-1]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment_of(data))
+    return done.stdout.splitlines()[-1]

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from playwright import sync_api as playwright
 
-from tests.hil.service.served import ASKING, SHORT, Served, served
+from tests.hil.service.served import ASKING, SHORT, Served, environment_of, served
 from tests.readers.tools import NotHereError, node_modules
 
 pytestmark = [
@@ -115,7 +115,8 @@ def test_nothing_is_found_by_axe_and_nothing_is_cut_off(
 def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwright.Page) -> None:
     from hil.service.serving import make_token
 
-    made = make_token(tmp_path / "data", "", "anna", "viewer")
+    database = environment_of(tmp_path / "data")["HIL_DATABASE"]
+    made = make_token(tmp_path / "data", database, "anna", "viewer")
     with served(tmp_path / "data", state=tmp_path / "state", token=made.secret) as service:
         page.goto(service.url)
         playwright.expect(page.get_by_role("heading", name="Who are you?")).to_be_visible()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import datetime
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -13,16 +16,40 @@ from sqlalchemy import Engine, create_engine, text
 from sqlalchemy.exc import DBAPIError
 
 from hil.core.errors import BadInputError, BenchError
-from hil.service.store import Base, LeaseStore, LogStore, NewRun, RunStore, TokenStore, open_database
+from hil.service.store import (
+    Base,
+    BenchStore,
+    LeaseStore,
+    LogStore,
+    NewRun,
+    RunStore,
+    TokenStore,
+    open_database,
+)
+from tests.hil.service.postgresql import Cluster
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path / 'service.sqlite'}"
+    server: Cluster = request.getfixturevalue("postgresql")
+    return server.database()
 
 
 @pytest.fixture
-def engine(tmp_path: Path) -> Engine:
-    return open_database(f"sqlite:///{tmp_path / 'service.sqlite'}")
+def engine(url: str) -> Iterator[Engine]:
+    engine = open_database(url)
+    BenchStore(engine, "me").hold("sim")
+    yield engine
+    engine.dispose()
 
 
-def wanted(bench: str = "sim", *, by: str = "anna", priority: int = 0, hazard: str = "") -> NewRun:
-    return NewRun("p", "P", "name: p", "p.yaml", bench, {"x": 1.5}, by, priority=priority, hazard=hazard)
+def wanted(
+    bench: str = "sim", *, by: str = "anna", priority: int = 0, hazard: str = "", key: str = ""
+) -> NewRun:
+    more = {"hazard": hazard, "key": key}
+    return NewRun("p", "P", "name: p", "p.yaml", bench, {"x": 1.5}, by, priority=priority, **more)
 
 
 def test_the_migrations_make_the_tables_that_the_code_has(engine: Engine) -> None:
@@ -30,11 +57,11 @@ def test_the_migrations_make_the_tables_that_the_code_has(engine: Engine) -> Non
         assert compare_metadata(MigrationContext.configure(connection), Base.metadata) == []
 
 
-def test_a_database_of_a_newer_version_is_refused(engine: Engine) -> None:
+def test_a_database_of_a_newer_version_is_refused(engine: Engine, url: str) -> None:
     with engine.begin() as connection:
         connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
     with pytest.raises(BadInputError, match="newer version"):
-        open_database(str(engine.url))
+        open_database(url)
 
 
 def test_a_database_that_cannot_be_written_says_so(tmp_path: Path) -> None:
@@ -46,9 +73,9 @@ def test_a_run_is_taken_once_and_ended_once(engine: Engine) -> None:
     runs = RunStore(engine)
     run, is_new = runs.add(wanted(), approved=True)
     assert (is_new, run.state, run.values) == (True, "queued", {"x": 1.5})
-    assert runs.take(run.id) is not None
-    assert runs.take(run.id) is None
-    assert [one.id for one in runs.running()] == [run.id]
+    assert runs.take(run.id, "me") is not None
+    assert runs.take(run.id, "me") is None
+    assert [one.id for one in runs.running("me")] == [run.id]
     assert runs.end(run.id, "ended", exit_code=0)
     assert not runs.end(run.id, "interrupted")
     assert runs.get(run.id).state == "ended"
@@ -66,12 +93,15 @@ def test_a_hazardous_run_waits_for_approval(engine: Engine) -> None:
 
 @given(st.lists(st.tuples(st.sampled_from("ab"), st.integers(-3, 3)), max_size=12))
 def test_each_bench_gets_its_runs_by_priority_and_then_as_they_came(asked: list[tuple[str, int]]) -> None:
-    runs = RunStore(_in_memory())
+    engine = _in_memory()
+    runs = RunStore(engine)
+    for bench in "ab":
+        BenchStore(engine, "me").hold(bench)
     added = [(b, -p, runs.add(wanted(b, priority=p), approved=True)[0].id) for b, p in asked]
     for bench in "ab":
         order = []
         while (run := runs.next_of(bench, None)) is not None:
-            runs.take(run.id)
+            runs.take(run.id, "me")
             order.append(run.id)
         assert order == [number for b, _, number in sorted(added) if b == bench]
 
@@ -83,7 +113,7 @@ def test_only_its_holders_runs_come_while_a_bench_is_leased(engine: Engine) -> N
     assert runs.next_of("sim", "anna") is not None
     assert leases.take("sim", "bert", 60.0).holder == "bert"
     assert leases.take("sim", "anna", 60.0) is None
-    assert leases.take("sim", "bert", -1.0) is not None  # its time is over: nobody has it
+    assert leases.take("sim", "bert", -1.5) is not None  # its time is over: nobody has it
     assert leases.of("sim") is None
     assert leases.take("sim", "anna", 60.0) is not None
     leases.give_back("sim")
@@ -109,6 +139,55 @@ def test_the_database_itself_keeps_the_audit_log_as_it_is(engine: Engine, change
     with engine.connect() as connection, pytest.raises(DBAPIError, match="append-only"):
         connection.execute(text(change))
     assert [(one.who, one.action) for one in log.newest(100, 10)] == [("anna", "queue")]
+
+
+def test_a_bench_is_one_services_until_it_is_unheard_of_and_has_no_run(engine: Engine) -> None:
+    one, other, runs = (
+        BenchStore(engine, "one", "here"),
+        BenchStore(engine, "other", "there"),
+        RunStore(engine),
+    )
+    assert (one.hold("b"), other.hold("b"), other.hold("c")) == ("", "here", "")
+    run, _ = runs.add(wanted("b"), approved=True)
+    assert runs.take(run.id, "other") is None
+    assert runs.take(run.id, "one") is not None
+    one.hold("b", -2.0)
+    assert "unheard of since" in other.hold("b")  # its run may be under way all the same
+    assert (runs.running("other"), [found.id for found in runs.running("one")]) == ([], [run.id])
+    runs.end(run.id, "ended")
+    assert (other.hold("b"), one.hold("b")) == ("", "there")
+    other.give_back()
+    assert one.hold("b") == ""
+
+
+def test_of_many_who_try_at_once_one_gets_it(engine: Engine) -> None:
+    runs, leases = RunStore(engine), LeaseStore(engine)
+    run, _ = runs.add(wanted(), approved=True)
+    with ThreadPoolExecutor(8) as several:
+        taken = list(several.map(lambda _: runs.take(run.id, "me"), range(16)))
+        leased = list(several.map(lambda who: leases.take("sim", str(who), 60.0), range(16)))
+        held = list(several.map(lambda who: BenchStore(engine, str(who)).hold("rig"), range(16)))
+        same = list(several.map(lambda _: runs.add(wanted(key="k"), approved=True), range(16)))
+    assert [one is not None for one in taken].count(True) == 1
+    assert [one is not None for one in leased].count(True) == 1
+    assert held.count("") == 1
+    assert len({found.id for found, _ in same}) == [is_new for _, is_new in same].count(True) == 1
+
+
+def test_moments_are_the_same_wherever_the_database_is(engine: Engine) -> None:
+    run, _ = RunStore(engine).add(wanted(), approved=True)
+    found = RunStore(engine).get(run.id).queued_at
+    assert (found, found.tzinfo) == (run.queued_at, datetime.UTC)
+
+
+def test_what_no_database_can_be_is_said_without_its_password() -> None:
+    for url in ("postgresql+none://hil:secret@h/n", "hil:secret", "postgresql://hil:secret@h/n?sslmode=x"):
+        with pytest.raises(BadInputError, match="no database can be opened") as refused:
+            open_database(url)
+        assert "secret" not in str(refused.value)
+    with pytest.raises(BenchError, match="cannot be used") as unreached:
+        open_database("postgresql://hil:secret@127.0.0.1:9/n")
+    assert "secret" not in str(unreached.value)
 
 
 def _in_memory() -> Engine:

@@ -10,7 +10,7 @@ import pytest
 
 from hil.core.result import CriterionResult, RunResult
 from hil.service.data import RunState, TrendPoint
-from hil.service.store import NewRun, RunStore, open_database
+from hil.service.store import BenchStore, NewRun, RunStore, open_database
 from hil.service.trends import LEAST_POINTS, trends
 
 Points = list[tuple[str, TrendPoint]]
@@ -61,10 +61,12 @@ def test_little_is_not_made_into_a_figure() -> None:
 
 
 def test_the_store_gives_the_newest_runs_of_a_plan_and_a_dut_oldest_first(tmp_path: Path) -> None:
-    runs = RunStore(open_database(f"sqlite:///{tmp_path / 'service.sqlite'}"))
+    engine = open_database(f"sqlite:///{tmp_path / 'service.sqlite'}")
+    runs = RunStore(engine)
+    BenchStore(engine, "me").hold("sim")
     for number in range(6):
         run, _ = runs.add(NewRun("p", "P", "name: p", "p.yaml", "sim", {}, "anna"), approved=True)
-        runs.take(run.id)
+        runs.take(run.id, "me")
         one = CriterionResult(id="s.peak", value=float(number), unit="N m", upper=9.0, verdict="pass")
         result = RunResult(
             verdict="pass", plan="p", bench="sim", real_time_factor=1.0, bench_time_s=1.0,
@@ -76,6 +78,6 @@ def test_the_store_gives_the_newest_runs_of_a_plan_and_a_dut_oldest_first(tmp_pa
     assert [point.value for _, point in runs.criteria("sim", "p", "A", 100)] == [1.0, 3.0]
     assert runs.criteria("other", "p", None, 3) == []
     run, _ = runs.add(NewRun("p", "P", "name: p # changed", "p.yaml", "sim", {}, "anna"), approved=True)
-    runs.take(run.id)
+    runs.take(run.id, "me")
     runs.end(run.id, "ended", exit_code=0, result=result)
     assert [point.run for _, point in runs.criteria("sim", "p", None, 100)] == [run.id]

@@ -1,0 +1,54 @@
+"""Which service drives a bench, where several share a database."""
+
+from __future__ import annotations
+
+import datetime
+
+from sqlalchemy import Engine, and_, delete, exists, or_, select
+from sqlalchemy.orm import sessionmaker
+
+from hil.service.store._opening import aware, now_there
+from hil.service.store._tables import BenchRow, RunRow
+from hil.service.store._upsert import put
+
+HELD_S = 60.0
+
+
+class BenchStore:
+    """Benches that a service drives, each until a moment that it puts off again and again.
+
+    A bench stays with its service beyond that moment while a run of it is under way, as far as is written:
+    the run goes on without the database.
+
+    Args:
+        service: which one, the same each time that it begins in its folder.
+        place: where it is, in words.
+    """
+
+    def __init__(self, engine: Engine, service: str, place: str = "") -> None:
+        self._transaction = sessionmaker(engine, expire_on_commit=False).begin
+        self.service, self._place = service, place
+
+    def hold(self, bench: str, for_s: float = HELD_S) -> str:
+        """Drive a bench, or go on with it; who drives it if that is somebody else."""
+        with self._transaction() as session:
+            moment = now_there(session)
+            until = moment + datetime.timedelta(seconds=for_s)
+            others = exists().where(
+                RunRow.bench == bench,
+                RunRow.state == "running",
+                RunRow.service.not_in((self.service, "")),
+            )
+            free = or_(BenchRow.service == self.service, and_(BenchRow.until <= moment, ~others))
+            row = {"bench": bench, "service": self.service, "place": self._place[:300], "until": until}
+            if put(session, BenchRow, row, where=free):
+                return ""
+            there = session.scalars(select(BenchRow).where(BenchRow.bench == bench)).one()
+            end = aware(there.until)
+            late = "" if end is None or end > moment else f", unheard of since {end:%Y-%m-%d %H:%M:%S} UTC"
+            return f"{there.place or there.service}{late}"
+
+    def give_back(self) -> None:
+        """Others may drive them."""
+        with self._transaction() as session:
+            session.execute(delete(BenchRow).where(BenchRow.service == self.service))
