@@ -44,6 +44,8 @@ class Health(_Data):
     status: Literal["ok"]
     version: str
     up_s: float = Field(description="seconds since the service began")
+    runs_not_stored: int = Field(0, description="runs whose files the store has not all; 0 without a store")
+    store_problem: str = Field("", description="why files do not reach the store; '' if they do")
 
 
 class RunWanted(_Data):

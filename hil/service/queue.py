@@ -20,6 +20,7 @@ from hil.engine import RECORDING
 from hil.engine.border_messages import Progressed, Refused, RunAsked, Told
 from hil.service.benches import Bench
 from hil.service.data import BenchState, RunData, RunState
+from hil.service.run_files import folder_of
 from hil.service.run_process import RunProcess, alive_in, result_in
 from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore, TakenRun
 
@@ -96,7 +97,7 @@ class Queue:
 
     def folder_of(self, run: int) -> Path:
         """Where the files of a run are."""
-        return self._folder / f"{run:06d}"
+        return folder_of(self._folder, run)
 
     def wake(self) -> None:
         """Look at all benches now."""

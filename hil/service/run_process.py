@@ -14,10 +14,9 @@ from hil.core.locks import HeldError, lock_on
 from hil.core.result import RunResult
 from hil.engine.border_messages import Message, RunAsked, Typed, from_line, to_line
 from hil.engine.operator import EMERGENCY, END, PAUSE, RESUME
+from hil.service.run_files import LOCK
 
 RESULT = "result.json"
-#: Locked from before the process begins until it has ended, whoever has ended it.
-_ALIVE = "run.lock"
 _LONGEST_LINE = 1 << 24
 
 
@@ -34,7 +33,7 @@ class RunProcess:
         Raises:
             OSError: it cannot be started, or its folder cannot be written.
         """
-        alive = Path(asked.out) / _ALIVE
+        alive = Path(asked.out) / LOCK
         alive.touch()
         with lock_on(alive) as lock:
             process = await asyncio.create_subprocess_exec(
@@ -91,7 +90,7 @@ class RunProcess:
 
 def alive_in(folder: Path) -> bool:
     """Whether a process still works in a run's folder: the run's own, or the one that holds the bench."""
-    for place in (folder / _ALIVE, folder):
+    for place in (folder / LOCK, folder):
         try:
             with lock_on(place):
                 pass

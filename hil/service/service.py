@@ -15,6 +15,8 @@ from sqlalchemy import Engine
 from hil.core.errors import HilError
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
+from hil.service.apart import apart
+from hil.service.archive import Archive, Keeper
 from hil.service.benches import Bench
 from hil.service.data import OVER, BenchData, RunData
 from hil.service.desk import Desk
@@ -22,9 +24,11 @@ from hil.service.forecasts import Forecasts
 from hil.service.live import LiveRun
 from hil.service.plans import Plans
 from hil.service.queue import Queue
+from hil.service.run_files import files_in
 from hil.service.store import (
     BenchStore,
     DatabaseAwayError,
+    FileStore,
     LeaseStore,
     LogStore,
     Presence,
@@ -78,6 +82,8 @@ class Service:
     Args:
         folder: where everything is kept.
         held: the benches that it drives, for other services of the same database.
+        archive: where files of runs are kept for good; None keeps them in the folder.
+        local_days: how long files that the archive has stay in the folder.
 
     Raises:
         BenchError: another service drives one of the benches, or the database is away.
@@ -90,6 +96,8 @@ class Service:
         held: BenchStore,
         benches: dict[str, Bench],
         commands: Commands,
+        archive: Archive | None = None,
+        local_days: float = 30.0,
     ) -> None:
         self.benches = benches
         self.database = Presence(engine)
@@ -100,6 +108,10 @@ class Service:
         self.desk = Desk()
         self._held = held
         runs_folder = folder / "runs"
+        self.keeper: Keeper | None = None
+        if archive is not None:
+            files = FileStore(engine)
+            self.keeper = Keeper(archive, files, held.service, runs_folder, self._shown, local_days)
         self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, commands.run, self.changed)
         self.began_s = time.monotonic()
         self.closing = False
@@ -162,15 +174,18 @@ class Service:
 
     def files_of(self, run: int) -> list[str]:
         """Names of the files that a run has left."""
-        folder = self.queue.folder_of(run)
-        if not folder.is_dir():
-            return []
-        hidden = (".", "run.lock")
-        return sorted(
-            path.name
-            for path in folder.iterdir()
-            if not path.name.startswith(hidden) and path.is_file() and not path.is_symlink()
-        )
+        here = {path.name for path in files_in(self.queue.folder_of(run))}
+        return sorted(here.union(self.keeper.names(run) if self.keeper else ()))
+
+    async def file_of(self, run: int, name: str) -> Path:
+        """A file of a run, brought here from the archive if it is not here any more.
+
+        Raises:
+            BenchError: the archive does not give it.
+        """
+        if self.keeper is not None:
+            return await self.keeper.bring_back(run, name)
+        return self.queue.folder_of(run) / name
 
     def stop_run_in_emergency(self, bench: str) -> None:
         """Tell the run under way, if there is one; asks nobody anything before."""
@@ -205,7 +220,7 @@ class Service:
         while not self.closing:
             await asyncio.sleep(_ASK_S)
             if self.database.away:
-                if not await asyncio.to_thread(self.database.ask):
+                if not await apart(self.database.ask):
                     continue
                 self.queue.wake()
                 for bench in self.benches:
@@ -254,6 +269,9 @@ class Service:
         if found is not None:
             shown.criteria = found
             self.changed(bench)
+
+    def _shown(self) -> set[int]:
+        return {shown.run for shown in self.on_show.values()}
 
     def _tell(self, bench: str) -> None:
         for event in self.viewers[bench]:

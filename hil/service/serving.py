@@ -23,6 +23,7 @@ from hil.core.locks import HeldError, lock_on
 from hil.core.printable import printable
 from hil.engine import StopRequest
 from hil.service.api import Rates, application
+from hil.service.archive import Archive
 from hil.service.benches import benches_of
 from hil.service.data import ROLES, Role, TokenMade
 from hil.service.service import Commands, Service
@@ -45,6 +46,8 @@ class ServeRequest:
         benches: bench files, or names of shipped ones.
         commands: how processes for runs and forecasts are started.
         database: by URL; '' for SQLite in the folder.
+        store: of files of runs, by URL; '' keeps them in the folder only.
+        local_days: how long files that the store has stay in the folder.
         hosts: further names by which browsers may call it.
         port: 0 takes a free one.
         rate: requests that an address may send a second, in the long run.
@@ -58,6 +61,8 @@ class ServeRequest:
     host: str = "127.0.0.1"
     port: int = 8080
     database: str = ""
+    store: str = ""
+    local_days: float = 30.0
     hosts: Sequence[str] = ()
     rate: float = 40.0
     for_s: float = math.inf
@@ -73,13 +78,16 @@ def serve(request: ServeRequest) -> None:
         BenchError: the port is taken, or the database cannot be used.
     """
     benches = benches_of(list(request.benches))
+    archive = Archive(request.store) if request.store else None
     with _alone_in(request.folder):
         engine = _database(request.folder, request.database)
         try:
             _refuse_open_to_all(request.host, TokenStore(engine))
             with _listening(request.host, request.port) as listening:
                 held = BenchStore(engine, _name_of(request.folder), _place_of(request.folder))
-                service = Service(request.folder, engine, held, benches, request.commands)
+                service = Service(
+                    request.folder, engine, held, benches, request.commands, archive, request.local_days
+                )
                 asyncio.run(_served(request, service, listening))
         finally:
             engine.dispose()
@@ -125,28 +133,33 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         asyncio.create_task(service.queue.work()),
         asyncio.create_task(service.follow()),
         asyncio.create_task(server.serve(sockets=[listening])),
-        asyncio.create_task(service.watch_database()),
     ]
+    besides = [asyncio.create_task(service.watch_database())]
+    if service.keeper is not None:
+        besides.append(asyncio.create_task(service.keeper.work()))
     try:
         while not server.started and not tasks[2].done():
             await asyncio.sleep(0.01)
         shown = f"[{host}]" if ":" in host else host
         request.ready(f"http://{shown}:{port}")
         until_s = time.monotonic() + request.for_s
-        while (
-            request.stop.times == 0 and time.monotonic() < until_s and not any(task.done() for task in tasks)
-        ):
+        ended = False
+        while not (ended or request.stop.times or time.monotonic() > until_s):
+            ended = any(task.done() for task in (*tasks, *besides))
             await asyncio.sleep(_LOOK_S)
         await service.queue.close(lambda: request.stop.times > 1)
     finally:
+        for task in besides:
+            task.cancel()  # what is on its way to the store is brought there again
         service.closing = True
         server.should_exit = True
         service.desk.close()
         for bench in service.benches:
             service.changed(bench)
-    done, _ = await asyncio.wait(tasks, timeout=_LAST_ANSWERS_S + 3.0)
+    done, _ = await asyncio.wait([*tasks, *besides], timeout=_LAST_ANSWERS_S + 3.0)
     for task in done:
-        task.result()  # a mistake of ours in one of them is told
+        if not task.cancelled():
+            task.result()  # a mistake of ours in one of them is told
     service.give_benches_back()
 
 

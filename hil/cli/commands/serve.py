@@ -33,6 +33,17 @@ def command(
             help="in place of SQLite in DIR: postgresql://user@host/name",
         ),
     ] = "",
+    store: Annotated[
+        str,
+        typer.Option(
+            metavar="URL",
+            help="keep files of runs there, too: s3://bucket/prefix, or a folder of another disk",
+        ),
+    ] = "",
+    keep_local: Annotated[
+        float,
+        typer.Option(min=0, metavar="DAYS", help="how long files stay in DIR that the store has"),
+    ] = 30.0,
     rate: Annotated[
         float,
         typer.Option(
@@ -64,5 +75,6 @@ def command(
 
     return carry_out(
         data=data, bench=bench or ["sim"], host=host, port=port, allow_host=allow_host or [],
-        database=database, rate=rate, for_s=for_s, add_token=add_token, as_json=as_json,
+        database=database, store=store, local_days=keep_local, rate=rate, for_s=for_s,
+        add_token=add_token, as_json=as_json,
     )  # fmt: skip

@@ -24,7 +24,9 @@ async def compare_runs(
     """Criteria of two runs of one plan with their differences, and what they were given differently."""
     del me
     one, two = _over(service, first), _over(service, other)
-    found = await service.desk.ask("comparison", first=_named(service, one), other=_named(service, two))
+    found = await service.desk.ask(
+        "comparison", first=await _named(service, one), other=await _named(service, two)
+    )
     return ComparisonData(first=one, other=two, **found)
 
 
@@ -43,7 +45,7 @@ async def compare_traces(
     """A channel of a segment of both, as the lowest and the highest value in each of `most` buckets."""
     del me
     runs: dict[str, Any] = {
-        name: _named(service, _over(service, run)) for name, run in (("first", first), ("other", other))
+        name: await _named(service, _over(service, run)) for name, run in (("first", first), ("other", other))
     }
     found = await service.desk.ask(
         "traces", **runs, segment=segment, channel=channel, start_s=start_s, end_s=end_s, most=most
@@ -60,8 +62,8 @@ def _over(service: Service, run: int) -> RunData:
     return service.with_progress(found)
 
 
-def _named(service: Service, run: RunData) -> tuple[str, str]:
+async def _named(service: Service, run: RunData) -> tuple[str, str]:
     """The run's name in a comparison, and its recording."""
     if RECORDING not in run.files:
         raise RefusedError(409, f"run {run.id} left no recording", fix="compare runs that measured")
-    return f"run {run.id}", str((service.queue.folder_of(run.id) / RECORDING).resolve())
+    return f"run {run.id}", str((await service.file_of(run.id, RECORDING)).resolve())

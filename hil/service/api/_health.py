@@ -17,8 +17,15 @@ router = APIRouter(tags=["service"])
 async def health(service: TheService) -> Health:
     """Whether the service and its store work; asks for no token."""
     service.tokens.any()
+    keeper = service.keeper
     version = importlib.metadata.version("eaxle-hil")
-    return Health(status="ok", version=version, up_s=round(time.monotonic() - service.began_s, 1))
+    return Health(
+        status="ok",
+        version=version,
+        up_s=round(time.monotonic() - service.began_s, 1),
+        runs_not_stored=keeper.waiting() if keeper else 0,
+        store_problem=keeper.problem if keeper else "",
+    )
 
 
 @router.get("/metrics", name="metrics", response_class=Response)
@@ -33,6 +40,9 @@ async def metrics(service: TheService, me: Viewer) -> Response:
         lines.append(f'hil_bench_state{{bench="{name}",state="{service.queue.state(name)[0]}"}} 1')
     lines += ["# HELP hil_viewers Pages and programs that watch a bench.", "# TYPE hil_viewers gauge"]
     lines += [f'hil_viewers{{bench="{name}"}} {len(some)}' for name, some in service.viewers.items()]
+    if service.keeper is not None:
+        lines += ["# HELP hil_runs_not_stored Runs whose files the store has not all."]
+        lines += ["# TYPE hil_runs_not_stored gauge", f"hil_runs_not_stored {service.keeper.waiting()}"]
     lines += ["# HELP hil_up_seconds Seconds since the service began.", "# TYPE hil_up_seconds counter"]
     lines.append(f"hil_up_seconds {time.monotonic() - service.began_s:.1f}")
     return Response("\n".join(lines) + "\n", media_type="text/plain; version=0.0.4")

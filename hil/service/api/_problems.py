@@ -22,6 +22,7 @@ _MEANINGS = {
     405: "not with this method",
     409: "not in the state that it is in",
     413: "more than is taken",
+    416: "the file has no such bytes",
     421: "the service is not called by this name",
     422: "what was given cannot be used",
     429: "too many requests; Retry-After says when to go on",

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Header, Query
 from fastapi.responses import FileResponse
 from starlette.responses import Response
 
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
+from hil.service.api._from_store import from_store
 from hil.service.api._problems import RefusedError, missing
 from hil.service.data import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunWanted
 from hil.service.plans import hazard_of
@@ -136,8 +137,14 @@ async def abort_run(run: RunId, service: TheService, me: Operator) -> RunData:
 
 
 @router.get("/{run}/files/{name}", name="get_run_file", response_class=Response)
-async def get_run_file(run: RunId, name: str, service: TheService, me: Viewer) -> FileResponse:
-    """A file of a run that is over."""
+async def get_run_file(
+    run: RunId,
+    name: str,
+    service: TheService,
+    me: Viewer,
+    wanted: Annotated[str | None, Header(alias="range")] = None,
+) -> Response:
+    """A file of a run that is over, or the `range` of it; from the store if it is not here any more."""
     del me
     if name not in service.with_progress(_there(service, run)).files:
         raise missing("file", name)
@@ -146,6 +153,10 @@ async def get_run_file(run: RunId, name: str, service: TheService, me: Viewer) -
     headers = {"content-security-policy": _SANDBOX} if path.suffix == ".html" else {}
     inline = path.suffix != ".mcap"
     kind = "inline" if inline else "attachment"
+    kept = None if path.is_file() or service.keeper is None else service.keeper.kept(run, name)
+    if kept is not None and service.keeper is not None:
+        headers["content-disposition"] = f'{kind}; filename="{run}-{name}"'
+        return await from_store(service.keeper, run, kept, media, headers, wanted)
     return FileResponse(
         path, media_type=media, filename=f"{run}-{name}", content_disposition_type=kind, headers=headers
     )

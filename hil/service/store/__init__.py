@@ -1,6 +1,7 @@
 """What the service keeps, in SQLite or another database by URL: made and migrated when it is opened."""
 
 from hil.service.store._benches import BenchStore
+from hil.service.store._files import FileStore, KeptFile
 from hil.service.store._leases import LeaseStore
 from hil.service.store._opening import open_database
 from hil.service.store._people import LogStore, TokenStore
@@ -12,6 +13,8 @@ __all__ = [
     "Base",
     "BenchStore",
     "DatabaseAwayError",
+    "FileStore",
+    "KeptFile",
     "LeaseStore",
     "LogStore",
     "NewRun",

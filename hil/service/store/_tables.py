@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 
-from sqlalchemy import DateTime, Double, Index, String, Text
+from sqlalchemy import BigInteger, DateTime, Double, Index, String, Text
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 _MOMENT = DateTime(timezone=True)
@@ -15,7 +15,10 @@ class Base(DeclarativeBase):
 
 
 class RunRow(Base):
-    """A run; `plan_text` is the plan with its variables as chosen, `service` the one that has begun it."""
+    """A run; `plan_text` is the plan with its variables as chosen, `service` the one that has begun it.
+
+    `kept_at`: when the archive had all of its files.
+    """
 
     __tablename__ = "runs"
     __table_args__ = (Index("runs_by_bench_and_state", "bench", "state"),)
@@ -40,6 +43,7 @@ class RunRow(Base):
     started_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
     ended_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
     exit_code: Mapped[int | None]
+    kept_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
     verdict: Mapped[str | None] = mapped_column(String(10))
     safe_state: Mapped[str | None] = mapped_column(String(20))
     reason: Mapped[str] = mapped_column(Text)
@@ -69,6 +73,17 @@ class CriterionRow(Base):
     lower: Mapped[float | None] = mapped_column(Double)
     verdict: Mapped[str] = mapped_column(String(20))
     dut: Mapped[str] = mapped_column(String(200))
+
+
+class FileRow(Base):
+    """A file of a run that the archive has, as it was read back; `sha256` hexadecimal."""
+
+    __tablename__ = "files"
+
+    run: Mapped[int] = mapped_column(primary_key=True)
+    name: Mapped[str] = mapped_column(String(255), primary_key=True)
+    size: Mapped[int] = mapped_column(BigInteger)
+    sha256: Mapped[str] = mapped_column(String(64))
 
 
 class TokenRow(Base):

@@ -50,7 +50,7 @@ def test_a_run_goes_on_while_the_database_is_away_and_is_written_down_afterwards
     with served(tmp_path / "data", "--database", server.database(), state=tmp_path / "state") as service:
         service.give("short", SHORT)
         service.give("long", LONG)
-        run, waiting = service.queue("long"), service.queue()
+        run, waiting = service.queue("long"), service.queue(key="once")
         _under_way(service, run)
         server.end()
         for ask in (
@@ -70,6 +70,7 @@ def test_a_run_goes_on_while_the_database_is_away_and_is_written_down_afterwards
         over = service.over(run)
         assert (over["state"], over["exit_code"]) == ("ended", 0)
         assert service.over(waiting)["exit_code"] == 0
+        assert service.queue(key="once") == waiting
         assert [one["id"] for one in service.get("/runs")] == [waiting, run]
 
 
@@ -117,19 +118,6 @@ def test_two_services_of_a_database_never_drive_one_bench(server: Cluster, tmp_p
         _until(lambda: one.get("/benches/sim")["state"] == "in_use")
         assert one.get("/benches/sim")["why"] == "elsewhere"
         assert one.get(f"/runs/{waits}")["state"] == "queued"
-
-
-def test_a_repeated_key_queues_no_second_run_also_when_the_server_was_begun_anew(
-    server: Cluster, tmp_path: Path
-) -> None:
-    with served(tmp_path / "data", "--database", server.database(), state=tmp_path / "state") as service:
-        service.give("short", SHORT)
-        run = service.queue(key="once")
-        service.over(run)
-        server.end()
-        server.begin()
-        _until(lambda: _answers(service))
-        assert service.queue(key="once") == run
 
 
 def _asking(service: Served) -> int:

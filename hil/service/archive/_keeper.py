@@ -1,0 +1,167 @@
+"""Brings files of runs that are over to the archive, and back when they are asked for."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import time
+from collections.abc import AsyncIterator, Callable
+from functools import partial
+from pathlib import Path
+
+from hil.core.errors import HilError
+from hil.core.files import replacing, sha256_of
+from hil.service.apart import apart
+from hil.service.archive._archive import PIECE_BYTES, Archive, ArchiveAwayError, Kept
+from hil.service.run_files import LOCK, files_in, folder_of
+from hil.service.store import DatabaseAwayError, FileStore, KeptFile
+
+_LOOK_S = 5.0
+_LONGEST_S = 60.0  # between two tries while the store is away
+_DAY_S = 86400.0
+_LEAST_S = 600.0  # what was brought back is being read
+
+logger = logging.getLogger(__name__)
+
+
+class Keeper:
+    """Keeps runs' files in an archive; what a run writes never waits for it.
+
+    A file stays here until the archive has given it back as it was. Whatever the moment at which the service
+    is killed: what is not written down as kept is brought there again.
+
+    Args:
+        service: whose runs, by the name it has in the database.
+        folder: where runs have their folders.
+        shown: runs whose files are being looked at here.
+        local_days: how long files stay here that the archive has.
+    """
+
+    def __init__(
+        self,
+        archive: Archive,
+        files: FileStore,
+        service: str,
+        folder: Path,
+        shown: Callable[[], set[int]],
+        local_days: float,
+    ) -> None:
+        self._archive, self._files, self._service = archive, files, service
+        self._folder, self._shown = folder, shown
+        self._local_s = max(local_days * _DAY_S, _LEAST_S)
+        self.problem = ""
+        self.rounds = 0
+
+    def waiting(self) -> int:
+        """How many runs' files the archive has not all."""
+        return self._files.waiting(self._service)
+
+    async def work(self) -> None:
+        """Keep what is to be kept, until it is cancelled."""
+        wait_s = _LOOK_S
+        while True:
+            said = ""
+            try:
+                said = await self._round()
+            except (ArchiveAwayError, DatabaseAwayError) as error:
+                said = str(error)
+            wait_s = min(2.0 * wait_s, _LONGEST_S) if said else _LOOK_S
+            if said and said != self.problem:
+                logger.warning("files of runs wait: %s", said)
+            elif self.problem and not said:
+                logger.warning("files of runs are kept again")
+            self.problem = said
+            self.rounds += 1
+            await asyncio.sleep(wait_s)
+
+    async def bring_back(self, run: int, name: str) -> Path:
+        """A file of a run, here.
+
+        Raises:
+            ArchiveAwayError: the archive does not give it, or not as it was.
+        """
+        path = folder_of(self._folder, run) / name
+        found = None if path.is_file() else self.kept(run, name)
+        if found is not None:
+            await apart(partial(self._bring_back, path, _name(run, name), found))
+        return path
+
+    def kept(self, run: int, name: str) -> KeptFile | None:
+        """A file of a run as the archive has it; None if it has none."""
+        return next((file for file in self._files.of(run) if file.name == name), None)
+
+    def names(self, run: int) -> list[str]:
+        """Names of files of a run that the archive has, as far as is known now."""
+        with contextlib.suppress(DatabaseAwayError):
+            return [file.name for file in self._files.of(run)]
+        return []
+
+    async def pieces(self, run: int, name: str, start: int, end: int) -> AsyncIterator[bytes]:
+        """A file from `start` to before `end`, a piece at a time.
+
+        Raises:
+            ArchiveAwayError: the archive does not give it.
+        """
+        for at in range(start, end, PIECE_BYTES):
+            until = min(end, at + PIECE_BYTES)
+            yield await apart(partial(self._archive.read, _name(run, name), at, until))
+
+    async def _round(self) -> str:
+        """Bring what waits; what keeps one run's files from it, if anything does."""
+        said = ""
+        for run in self._files.to_keep(self._service):
+            try:
+                await self._keep(run)
+            except (ArchiveAwayError, DatabaseAwayError):
+                raise
+            except (HilError, OSError) as error:
+                said = f"run {run}: {error}"
+        self._clear()
+        return said
+
+    async def _keep(self, run: int) -> None:
+        there = {file.name: file for file in self._files.of(run)}
+        for path in files_in(folder_of(self._folder, run)):
+            size, sha256 = path.stat().st_size, await apart(partial(sha256_of, path))
+            if path.name in there and there[path.name] == KeptFile(path.name, size, sha256):
+                continue
+            kept: Kept = await apart(partial(self._archive.put, path, _name(run, path.name)))
+            self._files.add(run, KeptFile(path.name, kept.size, kept.sha256))
+        self._files.all_kept(run)
+        logger.info("files of run %d are kept in %s", run, self._archive.shown)
+
+    def _clear(self) -> None:
+        """Remove files here that the archive has, once they are old."""
+        before_s = time.time() - self._local_s
+        shown = self._shown()
+        folders = {int(one.name): one for one in self._folder.glob("[0-9]*") if one.name.isdecimal()}
+        old = [run for run, folder in folders.items() if run not in shown and _touched_s(folder) <= before_s]
+        for run in self._files.kept(old):
+            sizes = {file.name: file.size for file in self._files.of(run)}
+            for path in files_in(folders[run]):
+                if sizes.get(path.name) == path.stat().st_size:
+                    path.unlink()
+            if not files_in(folders[run]):
+                (folders[run] / LOCK).unlink(missing_ok=True)
+                with contextlib.suppress(OSError):  # something else lies there: it stays
+                    folders[run].rmdir()
+
+    def _bring_back(self, path: Path, name: str, wanted: KeptFile) -> None:
+        with replacing(path) as temporary:
+            with temporary.open("wb") as file:
+                for at in range(0, wanted.size, PIECE_BYTES):
+                    file.write(self._archive.read(name, at, min(wanted.size, at + PIECE_BYTES)))
+            if sha256_of(temporary) != wanted.sha256:
+                raise ArchiveAwayError("the store's file is not what was given to it", where=name)
+
+
+def _name(run: int, name: str) -> str:
+    return f"{run:06d}/{name}"
+
+
+def _touched_s(folder: Path) -> float:
+    """When something of it was written last, also by bringing it back; seconds since 1970."""
+    with contextlib.suppress(OSError):
+        return max((path.stat().st_mtime for path in files_in(folder)), default=0.0)
+    return float("inf")
