@@ -4,7 +4,7 @@ from test_plans.choices import Choices, controller_choices
 from test_plans.conductor import PROMPT_TIMEOUT_S, Array, Conductor, PlannedSegment, Quantity, Work
 from test_plans.criteria import Criterion
 from test_plans.judging import judge
-from test_plans.loading import library_plans, load_plan, plan_from_text
+from test_plans.loading import library_controllers, library_plans, load_plan, plan_from_text
 from test_plans.metrics import METRICS, Metric, NoValueError
 from test_plans.pace import Outlook, Pace
 from test_plans.plan import Plan, estimate_duration_s
@@ -34,6 +34,7 @@ __all__ = [
     "controller_choices",
     "estimate_duration_s",
     "judge",
+    "library_controllers",
     "library_plans",
     "library_sequences",
     "load_plan",

@@ -39,6 +39,11 @@ def library_plans() -> tuple[str, ...]:
     return tuple(sorted(path.stem for path in LIBRARY.glob("*.yaml")))
 
 
+def library_controllers() -> dict[str, Path]:
+    """The built-in controller files by name."""
+    return {path.stem: path for path in sorted((LIBRARY / "controllers").glob("*.toml"))}
+
+
 def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
     """Read a plan from a file, or a built-in one by its name.
 

@@ -40,6 +40,14 @@ from hil.service.data import (
     TokenWanted,
     TrendData,
 )
+from hil.service.design_data import (
+    ControllerData,
+    DesignData,
+    DraftData,
+    DraftWanted,
+    ModelData,
+    PlanCopyWanted,
+)
 
 A = TypeVar("A")
 T = TypeVar("T", bound=BaseModel)
@@ -187,6 +195,34 @@ class Client:
             asked |= {"start_s": within_s[0], "end_s": within_s[1]}
         query = urllib.parse.urlencode(asked)
         return self._one(TracesData, "GET", f"/comparisons/traces?{query}", within_s=_FORECAST_WITHIN_S)
+
+    def models(self) -> list[ModelData]:
+        """All models."""
+        return self._several(ModelData, "/models")
+
+    def give_model(self, name: str, text: str) -> ModelData:
+        """Give a model file."""
+        return self._one(ModelData, "PUT", f"/models/{_part(name)}", text)
+
+    def controllers(self) -> list[ControllerData]:
+        """All controllers."""
+        return self._several(ControllerData, "/controllers")
+
+    def give_controller(self, name: str, text: str) -> ControllerData:
+        """Give a controller file, so that plans can load it."""
+        return self._one(ControllerData, "PUT", f"/controllers/{_part(name)}", text)
+
+    def copy_plan(self, plan: str, wanted: PlanCopyWanted) -> PlanData:
+        """Give a copy of a plan that loads other controllers."""
+        return self._one(PlanData, "POST", f"/plans/{_part(plan)}/copies", wanted)
+
+    def draft(self, wanted: DraftWanted) -> DraftData:
+        """Loops, margins and steps of a controller on a model."""
+        return self._one(DraftData, "POST", "/drafts", wanted, within_s=_FORECAST_WITHIN_S)
+
+    def design(self, wanted: DraftWanted) -> DesignData:
+        """A controller's file, judged on every plant that the model's uncertainty allows."""
+        return self._one(DesignData, "POST", "/designs", wanted, within_s=_FORECAST_WITHIN_S)
 
     def download(self, run: int, name: str, path: Path) -> None:
         """Write a file of a run, whole or not at all.

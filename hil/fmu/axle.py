@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+import numpy.typing as npt
 
 from drivers import parameters_of
 from hil.core.controller import Controller
@@ -32,6 +33,7 @@ _RAMP_RAD_S2 = 40.0
 _SETTLES_S = 1.0
 _LONGEST_RAMP_S = 60.0
 _NEAR_RAD_S = 0.05
+_LOOKED_AT = 250  # of the samples
 
 
 class Axle:
@@ -77,6 +79,16 @@ class Axle:
             )
         self._loop.play(self._mode, np.full(samples, self.torque_nm))
 
+    def play(self, torque_nm: npt.NDArray[np.float64]) -> dict[str, npt.NDArray[np.float64]]:
+        """Ask for one value each millisecond; what was measured in each, by the names of `OUTPUTS`."""
+        before = self._loop.samples
+        self._loop.play(self._mode, torque_nm)
+        rows = self._loop.rows[before:]
+        return {
+            name: share * rows[:, list(columns)].sum(axis=1)
+            for name, (_, _, columns, share) in OUTPUTS.items()
+        }
+
     def outputs(self) -> Mapping[str, float]:
         """The sample of this moment, by name, if `torque_nm` goes on being asked for."""
         row = self._loop.next_row(self._mode, self.torque_nm)
@@ -95,7 +107,7 @@ class Axle:
             loop.drive_mode(side, D.SPEED)
             loop.target_speed(side, speed_rad_s)
         loop.run(round((min(abs(speed_rad_s) / _RAMP_RAD_S2, _LONGEST_RAMP_S) + _SETTLES_S) / TICK_S))
-        reached = float(loop.rows[-1][T.WHEEL_LEFT])
+        reached = float(np.mean(loop.rows[-_LOOKED_AT:, T.WHEEL_LEFT]))  # wheels may be out of round
         if abs(reached - speed_rad_s) > max(_NEAR_RAD_S, 0.01 * abs(speed_rad_s)):
             raise BadInputError(
                 f"initial_speed_m_s: the wheels come to {reached:.3g} rad/s, not {speed_rad_s:.3g}",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -13,13 +14,14 @@ from hil.core.files import make_directory, read_text, write_atomically
 from hil.core.printable import printable
 from hil.service.data import PlanData, VariableData
 from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
+from test_plans.yaml_document import read_yaml
 
 
 class Plans:
-    """Plans by name. A plan that was given may load built-in controllers and no other file.
+    """Plans by name. A plan that was given may load built-in and given controllers and no other file.
 
     Args:
-        folder: where given plans are kept, each in a file of its name; nothing else lies there.
+        folder: where given plans are kept, each in a file of its name, beside the given controllers.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -72,7 +74,7 @@ class Plans:
                 raise BadInputError(
                     f"loads the file {printable(repr(str(file)), 100)}",
                     where=where,
-                    fix="a plan that is given to the service loads built-in controllers, by their names",
+                    fix="a plan that is given to the service loads controllers that it has, by their names",
                 )
         plan = plan_from_text(text, where, self._folder)
         if plan.name != name:
@@ -81,6 +83,33 @@ class Plans:
             )
         write_atomically(self._folder / where, text)
         return _data(plan, built_in=False)
+
+    def copied(self, name: str, copy: str, controllers: Mapping[str, str]) -> PlanData | None:
+        """Keep a copy that loads other controllers, by the files that they replace; None if there is no plan.
+
+        Raises:
+            BadInputError: the plan loads no such file, or the copy's name is that of another plan.
+        """
+        text = self.text(name)
+        if text is None:
+            return None
+        chosen = {old: self._folder.resolve() / file for old, file in controllers.items()}
+        text = Choices(controllers=chosen).applied(text, read_yaml(text, name))
+        for path in chosen.values():  # plans find what lies beside them by its name alone
+            text = text.replace(json.dumps(str(path), ensure_ascii=False), json.dumps(path.name))
+        text = _renamed(text, copy)
+        if self.text(copy) not in (None, text):
+            raise BadInputError("is the name of another plan", where=copy, fix="give the copy another name")
+        return self.give(copy, text)
+
+    def loading(self, file: str) -> list[str]:
+        """Names of given plans that load a controller file."""
+        found = []
+        for path in sorted(self._folder.glob("[!.]*.yaml")):
+            with contextlib.suppress(BadInputError):
+                if any(one.name == file for one in _files_of(load_plan(path))):
+                    found.append(path.stem)
+        return found
 
     def remove(self, name: str) -> bool:
         """Remove a plan that was given; false if there is none."""
@@ -95,6 +124,17 @@ class Plans:
             return self._built_in[name].source
         path = self._folder / f"{name}.yaml"
         return path if path.parent == self._folder and path.is_file() else None
+
+
+def _renamed(text: str, name: str) -> str:
+    """A plan's text with another name, which stands in its title too."""
+    document = read_yaml(text, name)
+    content = document.value if isinstance(document.value, dict) else {}
+    changes = {("name",): name, ("title",): f"{content.get('title', '')}, {name}"}
+    places = {document.spans[path]: value for path, value in changes.items() if path in document.spans}
+    for start, end in sorted(places, reverse=True):
+        text = text[:start] + json.dumps(places[start, end], ensure_ascii=False) + text[end:]
+    return text
 
 
 def _files_of(value: object) -> Iterator[Path]:

@@ -25,6 +25,7 @@ from hil.service.live import LiveRun
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.run_files import files_in
+from hil.service.shelves import controller_shelf, model_shelf
 from hil.service.store import (
     BenchStore,
     DatabaseAwayError,
@@ -105,7 +106,10 @@ class Service:
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         self.plans = Plans(folder / "plans")
         self.forecasts = Forecasts(commands.hil)
-        self.desk = Desk()
+        self.models = model_shelf(folder / "models")
+        self.controllers = controller_shelf(folder / "plans")
+        # Recordings are read at one desk, so that who designs at the other need not wait.
+        self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
         self._held = held
         runs_folder = folder / "runs"
         self.keeper: Keeper | None = None

@@ -154,6 +154,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         service.closing = True
         server.should_exit = True
         service.desk.close()
+        service.drawing.close()
         for bench in service.benches:
             service.changed(bench)
     done, _ = await asyncio.wait([*tasks, *besides], timeout=_LAST_ANSWERS_S + 3.0)

@@ -8,6 +8,7 @@ from hil.analysis.control_design._acceptance import (
 from hil.analysis.control_design._closed_loop import closed_loop_poles
 from hil.analysis.control_design._design import design, measured_loop
 from hil.analysis.control_design._discretise import DiscreteFilter, tustin
+from hil.analysis.control_design._drafts import Draft, Drafts
 from hil.analysis.control_design._laws import (
     Normalisation,
     feed_forward,
@@ -44,6 +45,8 @@ __all__ = [
     "DesignPlant",
     "DesignSpec",
     "DiscreteFilter",
+    "Draft",
+    "Drafts",
     "Loop",
     "MarginLimits",
     "Margins",

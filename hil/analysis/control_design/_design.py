@@ -7,14 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import ValidationError
 
 from hil.analysis.control_design._acceptance import refuse_unstable, warnings_of
+from hil.analysis.control_design._assembly import controller_of, refuse_notch, speed_controls
 from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._laws import (
     feed_forward,
     feedback_functions,
-    lead,
     observer_filter,
     pole_assignment,
     speed_filter,
@@ -27,16 +26,14 @@ from hil.analysis.control_design._loop import (
     sampled_response,
 )
 from hil.analysis.control_design._optimize import Optimum, optimize
-from hil.analysis.control_design._plant import DesignPlant, design_plant
+from hil.analysis.control_design._plant import design_plant
 from hil.analysis.control_design._spec import Design, DesignSpec, Loop, Robustness
 from hil.analysis.control_design._trade_off import trade_off
 from hil.analysis.control_design._uncertainty import possible_plants
 from hil.analysis.frequency_response import FrequencyResponse
-from hil.analysis.identification import fit_chain
 from hil.analysis.plausible import within_floating_point
 from hil.core.channels import OUTPUTS
-from hil.core.controller import Controller, Dfc, Dfo, Lead, Notch, Wsc
-from hil.core.effects import finite_number
+from hil.core.controller import Controller
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction
 
@@ -71,7 +68,7 @@ def design(
 def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], unstable_too: bool) -> Design:
     plant = design_plant(model)
     motor = plant.functions[OUTPUTS[0]]
-    _check_notch(spec, plant.resonance_hz)
+    refuse_notch(spec, plant.resonance_hz)
     notes = list(plant.notes)
     inertia = spec.inertia_kg_m2 or plant.inertia_kg_m2
     origin_poles = 2 if motor.denominator[-1] == 0 else 1
@@ -84,7 +81,7 @@ def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], u
     if optimum is not None:
         spec = _with_optimum(spec, optimum)
     progress("loops and margins")
-    wscs = _speed_controls(spec, pole_assignment(inertia, spec.pole_rad_s), plant.resonance_hz)
+    wscs = speed_controls(spec, pole_assignment(inertia, spec.pole_rad_s), plant.resonance_hz)
     wsc = wscs[spec.stabilisation]
     blocks = feedback_functions(wsc)
     response = motor.response(frequency)
@@ -100,15 +97,7 @@ def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], u
     chart = trade_off(frequency, pi, at, spec.normalisation, step, origin_poles=origin_poles)
     robust = _robustness(coarse, held, blocks, step, origin_poles, plants.source)
     warnings = (*_doubts(model), *warnings_of(chosen.margins, robust))
-    try:
-        controller = _controller(model, spec, plant, wsc, notes, warnings)
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise BadInputError(
-            f"this model gives no controller that the RMCU can use: {key}: {first['msg']}",
-            fix="check the units of the model's numbers",
-        ) from error
+    controller = controller_of(model, spec, plant, wsc, notes, warnings)
     return Design(
         controller,
         plant,
@@ -130,17 +119,6 @@ def _doubts(model: Model) -> tuple[str, ...]:
     """What the model file itself says against its use."""
     doubt = model.meta.get("warning")
     return (f"the model is doubtful: {doubt}",) if isinstance(doubt, str) and doubt else ()
-
-
-def _check_notch(spec: DesignSpec, resonance_hz: float) -> None:
-    """Refuse a notch at a resonance that the RMCU cannot reach."""
-    half_rate = 0.5 / spec.sample_time_s
-    if spec.stabilisation == "gain" and spec.notch_hz is None and not resonance_hz < half_rate:
-        raise BadInputError(
-            f"the model's resonance at {resonance_hz:.4g} Hz lies above {half_rate:g} Hz, half the RMCU's "
-            "sampling rate: no notch can be made there",
-            fix="check the model's units, or give --notch-hz",
-        )
 
 
 def _optimum(
@@ -187,22 +165,9 @@ def measured_loop(design: Design, frf: FrequencyResponse) -> dict[str, ComplexAr
     measured = frf.of(OUTPUTS[0]) * hold_response(frf.frequency_hz, step)
     gains = (design.controller.wsc.proportional_gain, design.controller.wsc.integral_gain)
     found = {"plant": measured}
-    for name, wsc in _speed_controls(design.spec, gains, design.plant.resonance_hz).items():
+    for name, wsc in speed_controls(design.spec, gains, design.plant.resonance_hz).items():
         found[name] = measured * feedback_response(feedback_functions(wsc), frf.frequency_hz, step)
     return found
-
-
-def _speed_controls(spec: DesignSpec, gains: tuple[float, float], resonance_hz: float) -> dict[str, Wsc]:
-    pi = Wsc(
-        proportional_gain=gains[0], integral_gain=gains[1], filter_time_constant_s=spec.speed_filter_time_s
-    )
-    notch = Notch(frequency_hz=spec.notch_hz or resonance_hz, width=spec.notch_width, depth=spec.notch_depth)
-    part: Lead = lead(spec.lead_deg, spec.lead_hz, spec.normalisation)
-    return {
-        "pi": pi,
-        "phase": pi.model_copy(update={"lead": part}),
-        "gain": pi.model_copy(update={"notch": notch}),
-    }
 
 
 def _loop(
@@ -244,64 +209,6 @@ def _robustness(
         min(m.phase_margin_deg for m in every),
         min(m.delay_margin_s for m in every),
     )
-
-
-def _controller(
-    model: Model,
-    spec: DesignSpec,
-    plant: DesignPlant,
-    wsc: Wsc,
-    notes: list[str],
-    warnings: tuple[str, ...],
-) -> Controller:
-    return Controller(
-        name=spec.name or spec.stabilisation,
-        sample_time_s=spec.sample_time_s,
-        torque_limit_nm=spec.torque_limit_nm,
-        dfc=Dfc(
-            integral_gain=spec.dfc_integral_gain,
-            feedforward_time_constant_s=spec.feed_forward_time_s,
-            wheel_radius_m=spec.wheel_radius_m,
-            slip_floor_m_s=spec.slip_floor_m_s,
-            slip_limit=spec.slip_limit,
-        ),
-        wsc=wsc,
-        dfo=Dfo(
-            time_constant_s=spec.observer_time_s,
-            gear_ratio=spec.gear_ratio or plant.gear_ratio,
-            wheel_inertia_kg_m2=_wheel_inertia(model, spec, plant, notes),
-        ),
-        plant=plant.filters,
-        meta={"warnings": list(warnings)} if warnings else {},
-    )
-
-
-def _wheel_inertia(model: Model, spec: DesignSpec, plant: DesignPlant, notes: list[str]) -> float:
-    """J_l of (9): wheels and dyno rotors; given, in the model, or read from a chain fitted to it."""
-    known = spec.wheel_inertia_kg_m2 or model.parameters.get("wheel_inertia")
-    if known is not None:
-        return float(known)
-    chain = model.meta.get("chain")
-    given = finite_number(chain.get("wheel_inertia")) if isinstance(chain, dict) else None
-    if given is not None and given > 0:
-        return given
-    if model.kind != "transfer_function":
-        raise BadInputError(
-            f"a '{model.kind}' model does not tell the wheels' inertia apart from the vehicle's",
-            fix="give --wheel-inertia (wheels and dyno rotors, kg m2)",
-        )
-    frequency = np.geomspace(0.05, 30.0, 200)
-    response = np.array([plant.functions[name].response(frequency) for name in OUTPUTS])
-    nothing = np.zeros(response.shape)
-    exact = FrequencyResponse(
-        frequency, OUTPUTS, response, nothing + 1, nothing, nothing, nothing, 1, "model"
-    )
-    fitted = fit_chain(exact, "three_inertia", torque_delay_s=max(plant.delay_s, 1e-5))
-    value = fitted.model.parameters["wheel_inertia"]
-    notes.append(
-        f"the observer's wheel inertia {value:.4g} kg m2 comes from a three-inertia chain fitted to the model"
-    )
-    return value
 
 
 def _discrete(controller: Controller) -> dict[str, DiscreteFilter]:

@@ -8,13 +8,24 @@ import json
 from fastapi import FastAPI
 from starlette.types import ASGIApp
 
-from hil.service.api import _benches, _comparisons, _health, _live, _page, _people, _plans, _runs, _trends
+from hil.service.api import (
+    _benches,
+    _comparisons,
+    _design,
+    _health,
+    _live,
+    _page,
+    _people,
+    _plans,
+    _runs,
+    _trends,
+)
 from hil.service.api._guard import Guard, Rates
 from hil.service.api._problems import RESPONSES, answer_problems
 from hil.service.service import Service
 
 PREFIX = "/api/v1"
-_PARTS = (_health, _benches, _live, _plans, _runs, _comparisons, _trends, _people)
+_PARTS = (_health, _benches, _live, _plans, _runs, _comparisons, _trends, _design, _people)
 
 
 def application(service: Service, *, hosts: tuple[str, ...], rates: Rates) -> ASGIApp:

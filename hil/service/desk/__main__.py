@@ -11,12 +11,15 @@ from collections.abc import Callable
 from typing import Any
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.desk import _comparing
+from hil.service.desk import _comparing, _designing
+from hil.service.desk._desk import ANSWERED, REFUSED
 
 _IDLE_S = 600.0
 TASKS: dict[str, Callable[..., dict[str, Any]]] = {
     "comparison": _comparing.comparison,
     "traces": _comparing.traces,
+    "draft": _designing.draft,
+    "design": _designing.designed,
 }
 
 
@@ -28,20 +31,28 @@ def main() -> None:
         line = sys.stdin.buffer.readline()
         if not line:
             return
-        answers.write(json.dumps(_answer(json.loads(line)), allow_nan=False).encode() + b"\n")
+        answers.write(_answer(json.loads(line)) + b"\n")
         answers.flush()
 
 
-def _answer(question: dict[str, Any]) -> dict[str, Any]:
+def _answer(question: dict[str, Any]) -> bytes:
     try:
-        return {"answer": TASKS[question["task"]](**question["asked"])}
+        return ANSWERED + _json(TASKS[question["task"]](**question["asked"]))
     except HilError as error:
         bad = isinstance(error, BadInputError)
-        return {"refused": {"what": error.what, "where": error.where, "fix": error.fix, "bad_input": bad}}
+        return _refusal(error.what, error.where, error.fix, bad_input=bad)
     except Exception as error:
         logging.getLogger(__name__).exception("internal error")
         what = f"internal error: {type(error).__name__}: {error}"
-        return {"refused": {"what": what, "where": question["task"], "fix": "", "bad_input": False}}
+        return _refusal(what, question["task"], "please report it", bad_input=False)
+
+
+def _refusal(what: str, where: str, fix: str, *, bad_input: bool) -> bytes:
+    return REFUSED + _json({"what": what, "where": where, "fix": fix, "bad_input": bad_input})
+
+
+def _json(value: dict[str, Any]) -> bytes:
+    return json.dumps(value, allow_nan=False, separators=(",", ":")).encode()
 
 
 if __name__ == "__main__":

@@ -12,19 +12,34 @@ from typing import Any
 from hil.core.errors import BadInputError, BenchError
 
 _WITHIN_S = 60.0
+#: What an answer begins with; JSON follows.
+ANSWERED, REFUSED = b"+", b"-"
 _LONGEST_ANSWER_BYTES = 1 << 26
-_NICENESS = 10  # a run needs its processor first
 
 
 class Desk:
-    """A process that answers one question after the other; begun with the first, ended when nobody asks."""
+    """A process that answers one question after the other; begun with the first, ended when nobody asks.
 
-    def __init__(self) -> None:
+    Args:
+        niceness: added to that of the service.
+    """
+
+    def __init__(self, niceness: int) -> None:
+        self._niceness = niceness
         self._turn = asyncio.Lock()
         self._process: asyncio.subprocess.Process | None = None
 
     async def ask(self, task: str, **asked: object) -> dict[str, Any]:
         """What one of the tasks in `__main__` gives for arguments of JSON.
+
+        Raises:
+            HilError: as of `ask_text`.
+        """
+        found: dict[str, Any] = json.loads(await self.ask_text(task, **asked))
+        return found
+
+    async def ask_text(self, task: str, **asked: object) -> bytes:
+        """The same as the JSON that it is.
 
         Raises:
             BadInputError: what was asked cannot be answered.
@@ -85,15 +100,13 @@ class Desk:
             limit=_LONGEST_ANSWER_BYTES,
         )
         with contextlib.suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, self._process.pid, _NICENESS)
+            os.setpriority(os.PRIO_PROCESS, self._process.pid, self._niceness)
         return self._process
 
 
-def _read(line: bytes) -> dict[str, Any]:
-    found = json.loads(line)
-    refused = found.get("refused")
-    if refused is None:
-        answer: dict[str, Any] = found["answer"]
-        return answer
+def _read(line: bytes) -> bytes:
+    if line.startswith(ANSWERED):
+        return line[len(ANSWERED) :]
+    refused = json.loads(line[len(REFUSED) :])
     kind = BadInputError if refused["bad_input"] else BenchError
     raise kind(refused["what"], where=refused["where"], fix=refused["fix"])

@@ -8,11 +8,13 @@ export class Refused extends Error {
   }
 }
 
-export async function ask(method, path, body) {
+// body: an object is sent as JSON, a text as a file; asText: the answer is a file
+export async function ask(method, path, body, asText = false) {
   const options = { method, headers: {} };
   if (body !== undefined) {
-    options.headers["content-type"] = "application/json";
-    options.body = JSON.stringify(body);
+    const isFile = typeof body === "string";
+    options.headers["content-type"] = isFile ? "text/plain" : "application/json";
+    options.body = isFile ? body : JSON.stringify(body);
   }
   let answer;
   try {
@@ -26,6 +28,7 @@ export async function ask(method, path, body) {
     try { problem = JSON.parse(text); } catch { /* a proxy's answer */ }
     throw new Refused(answer.status, problem);
   }
+  if (asText) return text;
   return text ? JSON.parse(text) : null;
 }
 

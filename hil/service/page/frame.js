@@ -73,9 +73,10 @@ export class Frame {
     pen.stroke();
   }
 
-  line(points, style) {
+  line(points, style, dashes = []) {
     this.pen.lineWidth = 1.6;
     this.pen.save();
+    this.pen.setLineDash(dashes);
     this.pen.beginPath();
     this.pen.rect(LEFT, TOP, this.width, this.height - BOTTOM - TOP);
     this.pen.clip();

@@ -3,9 +3,10 @@
 import { get, post, ask } from "./api.js";
 import { SpectrumChart, TimeChart } from "./chart.js";
 import { beginComparison, list as listCompared } from "./compare.js";
+import { beginDesign } from "./design.js";
 import { at, badge, cell, row } from "./dom.js";
 import { number } from "./frame.js";
-import { begin, predictAgain } from "./start.js";
+import { begin, choosePlan, predictAgain } from "./start.js";
 import { drawTrend, showTrends } from "./trends.js";
 
 const STATES = { free: "Free", running: "Running", ending: "A lost run is being ended", in_use: "In use", emergency_stop: "Emergency stop" };
@@ -50,6 +51,8 @@ async function open() {
   const asked = decodeURIComponent(location.hash.slice(1));
   at("bench").value = benches.some((one) => one.name === asked) ? asked : benches[0].name;
   beginComparison(() => bench, act);
+  at("design").hidden = !may("engineer");
+  if (may("engineer")) beginDesign(act, choosePlan);
   watch();
   if (may("operator")) await act(() => begin(() => bench, () => {}, failed));
   else at("start").closest("section").hidden = true;

@@ -1,15 +1,14 @@
 // The form that starts a plan: what it will do is predicted first.
 
 import { get, post } from "./api.js";
-import { at, said } from "./dom.js";
+import { at, offer, said } from "./dom.js";
 import { number } from "./frame.js";
 
 const WAIT_MS = 400;
 let plans = [], timer = 0, asked = 0;
 
 export async function begin(bench, queued, failed) {
-  plans = await get("/plans");
-  at("plan").replaceChildren(...plans.map((plan) => new Option(plan.title || plan.name, plan.name)));
+  await list();
   at("plan").onchange = () => { choose(); predictSoon(bench); };
   at("variables").oninput = () => predictSoon(bench);
   at("start").onsubmit = async (event) => {
@@ -20,6 +19,18 @@ export async function begin(bench, queued, failed) {
   };
   choose();
   predictSoon(bench);
+}
+
+async function list() {
+  plans = await get("/plans");
+  offer(at("plan"), plans.map((plan) => [plan.name, plan.title || plan.name]));
+}
+
+// A plan that has just come is the one that is to be started.
+export async function choosePlan(name) {
+  await list();
+  at("plan").value = name;
+  at("plan").dispatchEvent(new Event("change"));
 }
 
 export const predictAgain = (bench) => predictSoon(bench);

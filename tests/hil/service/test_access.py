@@ -48,6 +48,17 @@ LEAST = {
     ("GET", "/comparisons"): "viewer",
     ("GET", "/comparisons/traces"): "viewer",
     ("GET", "/trends"): "viewer",
+    ("GET", "/models"): "viewer",
+    ("GET", "/models/{model}/text"): "viewer",
+    ("PUT", "/models/{model}"): "engineer",
+    ("DELETE", "/models/{model}"): "engineer",
+    ("GET", "/controllers"): "viewer",
+    ("GET", "/controllers/{controller}/text"): "viewer",
+    ("PUT", "/controllers/{controller}"): "engineer",
+    ("DELETE", "/controllers/{controller}"): "engineer",
+    ("POST", "/plans/{plan}/copies"): "engineer",
+    ("POST", "/drafts"): "engineer",
+    ("POST", "/designs"): "engineer",
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",
     ("DELETE", "/session"): "",
@@ -58,13 +69,14 @@ LEAST = {
 }
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
+_NONE |= {"model": "none", "controller": "none"}
 
 
 @pytest.fixture(scope="module")
 def tokens(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Served, dict[str, str]]]:
     folder = tmp_path_factory.mktemp("access")
     admin = _token(folder / "data", "root=admin")
-    with served(folder / "data", state=folder / "state", token=admin) as service:
+    with served(folder / "data", "--rate", "1000", state=folder / "state", token=admin) as service:
         secrets = {str(role): _made(service, f"the {role}", role) for role in ROLES}
         yield service, secrets
 

@@ -1,0 +1,171 @@
+"""Models and controllers, and the drafts that become controllers."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from typing import Annotated, Any, TypeVar
+
+from fastapi import APIRouter, Body, Request, Response
+
+from hil.core.errors import BadInputError
+from hil.core.files import read_text
+from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._problems import RefusedError, missing
+from hil.service.data import PlanData, PlanName
+from hil.service.design_data import (
+    ControllerData,
+    DesignData,
+    DraftData,
+    DraftWanted,
+    FileName,
+    ModelData,
+    PlanCopyWanted,
+)
+from hil.service.service import Service
+from hil.service.shelf import Shelf
+from hil.service.shelves import controller_data, model_data
+
+router = APIRouter(tags=["design"])
+T = TypeVar("T")
+_TOML = "application/toml"
+_GIVEN: dict[str, Any] = {
+    "requestBody": {"required": True, "content": {_TOML: {"schema": {"type": "string"}}}}
+}
+
+
+@router.get("/models", name="list_models")
+async def list_models(service: TheService, me: Viewer) -> list[ModelData]:
+    """All models, built-in and given."""
+    del me
+    return list(_readable(service.models, model_data))
+
+
+@router.get("/models/{model}/text", name="get_model_text", response_class=Response)
+async def get_model_text(model: FileName, service: TheService, me: Viewer) -> Response:
+    """A model's file."""
+    del me
+    return _text(service.models, "model", model)
+
+
+@router.put("/models/{model}", name="give_model", openapi_extra=_GIVEN)
+async def give_model(model: FileName, request: Request, service: TheService, me: Engineer) -> ModelData:
+    """Give a model file (TOML); a name stands for one content."""
+    service.models.give(model, await _body(request, model))
+    service.log.add(me.name, me.role, "model given", model)
+    return _there(service.models, model_data, "model", model)
+
+
+@router.delete("/models/{model}", name="remove_model", status_code=204)
+async def remove_model(model: FileName, service: TheService, me: Engineer) -> None:
+    """Remove a model that was given."""
+    if not service.models.remove(model):
+        raise missing("given model", model)
+    service.log.add(me.name, me.role, "model removed", model)
+
+
+@router.get("/controllers", name="list_controllers")
+async def list_controllers(service: TheService, me: Viewer) -> list[ControllerData]:
+    """All controllers, built-in and given."""
+    del me
+    return list(_readable(service.controllers, controller_data))
+
+
+@router.get("/controllers/{controller}/text", name="get_controller_text", response_class=Response)
+async def get_controller_text(controller: FileName, service: TheService, me: Viewer) -> Response:
+    """A controller's file."""
+    del me
+    return _text(service.controllers, "controller", controller)
+
+
+@router.put("/controllers/{controller}", name="give_controller", openapi_extra=_GIVEN)
+async def give_controller(
+    controller: FileName, request: Request, service: TheService, me: Engineer
+) -> ControllerData:
+    """Give a controller file (TOML); plans that are given may load it by its name."""
+    service.controllers.give(controller, await _body(request, controller))
+    service.log.add(me.name, me.role, "controller given", controller)
+    return _there(service.controllers, controller_data, "controller", controller)
+
+
+@router.delete("/controllers/{controller}", name="remove_controller", status_code=204)
+async def remove_controller(controller: FileName, service: TheService, me: Engineer) -> None:
+    """Remove a controller that was given, if no plan loads it."""
+    using = service.plans.loading(f"{controller}.toml")
+    if using:
+        raise RefusedError(
+            409, f"is loaded by the plan '{using[0]}'", where=controller, fix="remove that plan first"
+        )
+    if not service.controllers.remove(controller):
+        raise missing("given controller", controller)
+    service.log.add(me.name, me.role, "controller removed", controller)
+
+
+@router.post("/plans/{plan}/copies", name="copy_plan", status_code=201)
+async def copy_plan(
+    plan: PlanName, wanted: Annotated[PlanCopyWanted, Body()], service: TheService, me: Engineer
+) -> PlanData:
+    """Give a copy of a plan that loads other controllers, and is the same in all else."""
+    for name in wanted.controllers.values():
+        if service.controllers.path(name) is None:
+            raise missing("controller", name)
+    files = {old: f"{name}.toml" for old, name in wanted.controllers.items()}
+    found = service.plans.copied(plan, wanted.name, files)
+    if found is None:
+        raise missing("plan", plan)
+    service.log.add(me.name, me.role, "plan given", wanted.name, f"copy of {plan}")
+    return found
+
+
+@router.post("/drafts", name="draft", response_model=DraftData)
+async def draft(wanted: Annotated[DraftWanted, Body()], service: TheService, me: Engineer) -> Response:
+    """Loops, margins and steps of a controller on a model, in milliseconds once a model has been read."""
+    del me
+    # As the desk wrote it: who moves a slider waits for it.
+    found = await service.drawing.ask_text("draft", **_chosen(service, wanted))
+    return Response(found, media_type="application/json")
+
+
+@router.post("/designs", name="design")
+async def design(wanted: Annotated[DraftWanted, Body()], service: TheService, me: Engineer) -> DesignData:
+    """The whole of `hil design`: the controller's file, and the worst over all possible plants."""
+    del me
+    return DesignData(**await service.drawing.ask("design", **_chosen(service, wanted)))
+
+
+def _chosen(service: Service, wanted: DraftWanted) -> dict[str, Any]:
+    path = service.models.path(wanted.model)
+    if path is None:
+        raise missing("model", wanted.model)
+    return {**wanted.model_dump(), "model": str(path.resolve())}
+
+
+def _readable(shelf: Shelf[Any], told: Callable[[Shelf[Any], str], T | None]) -> Iterator[T]:
+    """What is told of all that can still be read."""
+    for name in shelf:
+        with contextlib.suppress(BadInputError):
+            found = told(shelf, name)
+            if found is not None:
+                yield found
+
+
+def _there(shelf: Shelf[Any], told: Callable[[Shelf[Any], str], T | None], kind: str, name: str) -> T:
+    found = told(shelf, name)
+    if found is None:
+        raise missing(kind, name)
+    return found
+
+
+def _text(shelf: Shelf[Any], kind: str, name: str) -> Response:
+    path = shelf.path(name)
+    if path is None:
+        raise missing(kind, name)
+    headers = {"content-disposition": f'attachment; filename="{name}.toml"'}
+    return Response(read_text(path), media_type=_TOML, headers=headers)
+
+
+async def _body(request: Request, where: str) -> str:
+    try:
+        return (await request.body()).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise RefusedError(422, "is not UTF-8", where=where) from error

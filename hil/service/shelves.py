@@ -1,0 +1,75 @@
+"""Which models and controllers there are, and what is told of them."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+from hil.core.controller import Controller, controller_from_toml
+from hil.core.errors import BadInputError
+from hil.core.model import Model, load_model, model_from_dict
+from hil.core.toml_file import parse_toml
+from hil.engine.bench_file import shipped
+from hil.service.design_data import ControllerData, ModelData
+from hil.service.shelf import Shelf
+from test_plans import library_controllers
+
+
+def model_shelf(folder: Path) -> Shelf[Model]:
+    """Models: the shipped ones are those beside the shipped benches."""
+    return Shelf(folder, _shipped_models(), _model)
+
+
+def controller_shelf(folder: Path) -> Shelf[Controller]:
+    """Controllers; `folder` is the one of the plans, which find them there by their names."""
+    return Shelf(folder, library_controllers(), controller_from_toml)
+
+
+def model_data(shelf: Shelf[Model], name: str) -> ModelData | None:
+    """What is told of a model.
+
+    Raises:
+        BadInputError: it cannot be read any more.
+    """
+    model = shelf.get(name)
+    if model is None:
+        return None
+    warning = model.meta.get("warning")
+    return ModelData(
+        name=name,
+        kind=model.kind,
+        built_in=shelf.is_built_in(name),
+        effects=[use.id for use in model.effects],
+        warning=warning if isinstance(warning, str) else "",
+    )
+
+
+def controller_data(shelf: Shelf[Controller], name: str) -> ControllerData | None:
+    """What is told of a controller.
+
+    Raises:
+        BadInputError: it cannot be read any more.
+    """
+    controller = shelf.get(name)
+    if controller is None:
+        return None
+    warnings = controller.meta.get("warnings")
+    return ControllerData(
+        name=name,
+        built_in=shelf.is_built_in(name),
+        stabilisation=controller.stabilization,
+        warnings=[str(one) for one in warnings] if isinstance(warnings, list) else [],
+    )
+
+
+def _model(text: str, where: str) -> Model:
+    return model_from_dict(parse_toml(text, where), where, text)
+
+
+def _shipped_models() -> dict[str, Path]:
+    found = {}
+    for path in sorted(shipped("sim.toml").parent.glob("*.toml")):
+        with contextlib.suppress(BadInputError):  # a bench file
+            load_model(path)
+            found[path.stem] = path
+    return found
