@@ -53,7 +53,7 @@ class SetController(Step):
             load_controller(found)
         except BadInputError as error:
             raise ValueError(f"the controller file cannot be used: {error}") from error
-        return found
+        return found.absolute()  # a relative one is what a design step makes
 
     def carry_out(self, conductor: Conductor) -> None:
         """Hand the file over."""

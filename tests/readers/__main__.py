@@ -1,4 +1,4 @@
-"""Every check on an acceptance run; with --write it renews docs/reference/readers.md."""
+"""Every check on a run and on reports of other commands; with --write it renews docs/reference/readers.md."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from tests.readers.checks import checks
+from tests.readers.checks import checks, checks_of_reports
 from tests.readers.tools import NotHereError
 
 PAGE = Path(__file__).parents[2] / "docs/reference/readers.md"
@@ -16,7 +16,8 @@ _HEAD = """# Read by other people's tools
 
 What this software writes, and what others' readers and validators said of it. Made by `make readers`, of an
 acceptance run on the simulated bench; the tools are installed by name, outside of the project (the command
-line of MCAP is built from its source). `make test-slow` holds a short run against them where they can be had.
+line of MCAP is built from its source). `make test-slow` holds a short run against them where they can be had;
+reports of other commands are made and held against them here alone.
 
 | output | tool | version | result |
 |---|---|---|---|
@@ -45,7 +46,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as directory:
         folder = Path(directory)
         made(folder, "acceptance")
-        for check in checks():
+        for check in (*checks(), *checks_of_reports()):
             try:
                 version, result = check.read(folder)
             except NotHereError as error:

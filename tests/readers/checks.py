@@ -19,7 +19,7 @@ import numpy as np
 from hil.core.can_logs import read_can_log
 from hil.core.errors import BadInputError
 from hil.core.recording import read_as_written
-from tests.readers import tools
+from tests.readers import reports, tools
 
 HERE = Path(__file__).parent
 
@@ -270,8 +270,29 @@ def _logs_of_python_can(folder: Path) -> tuple[str, str]:
     ) + ": every frame counted"
 
 
+def _validated(command: str) -> Callable[[Path], tuple[str, str]]:
+    def read(folder: Path) -> tuple[str, str]:
+        if not (folder / "mine").exists():
+            reports.inputs(folder)
+        mine = reports.written(folder, command)
+        versions = [check(mine)[0] for check in (_nu, _axe, _verapdf("2a"), _verapdf("ua1"))]
+        return ", ".join(dict.fromkeys(versions)), "all pass, as the run's"
+
+    return read
+
+
+def checks_of_reports() -> Iterator[Check]:
+    """Of the reports that other commands write; they take minutes to make."""
+    for command in reports.REPORTS:
+        yield Check(
+            f"report of `hil {command}`",
+            "Nu HTML checker, axe-core, veraPDF 2a and UA-1",
+            _validated(command),
+        )
+
+
 def checks() -> Iterator[Check]:
-    """All of them, by output."""
+    """All that is written of a run, by output."""
     yield Check("recording.mcap", "mcap (PyPI)", _mcap_library)
     yield Check("recording.mcap", "mcap doctor --strict-message-order", _doctor)
     for kind in ("csv", "parquet"):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.readers.__main__ import PAGE, made
-from tests.readers.checks import Check, checks
+from tests.readers.checks import Check, checks, checks_of_reports
 from tests.readers.tools import NotHereError
 
 PLAN = """
@@ -44,5 +44,5 @@ def test_others_read_what_is_written(check: Check, written: Path) -> None:
 
 def test_the_page_names_every_check_and_no_failure() -> None:
     page = PAGE.read_text(encoding="utf-8")
-    assert all(f"| {check.output} | {check.tool} |" in page for check in checks())
+    assert all(f"| {check.output} | {check.tool} |" in page for check in (*checks(), *checks_of_reports()))
     assert "FAILED" not in page

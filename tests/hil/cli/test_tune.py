@@ -39,6 +39,7 @@ def test_a_controller_with_more_margin_is_written_with_its_reasons(tmp_path, inp
         told["parameters"]["feed_forward_time_s"]["value"]
     )
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF")
+    assert "></h" not in (out / "report.html").read_text("utf-8")  # a heading says something
     assert guarded(["tune", *inputs, *options]) == 2  # results are there
 
 

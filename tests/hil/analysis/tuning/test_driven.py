@@ -7,6 +7,7 @@ import pytest
 from hil.analysis.tuning import driven_by
 from hil.core.errors import BadInputError
 from test_plans import load_plan, plan_from_text
+from test_plans.loading import LIBRARY
 from tests.hil.analysis.tuning.trials import PLAN, STEP
 
 
@@ -24,6 +25,15 @@ def test_another_one_by_name():
     assert "phase_0kmh.peak_shaft_torque.below.gain_0kmh" in [c.id for c in driven.criteria]
     with pytest.raises(BadInputError, match="did you mean 'gain_stabilization'"):
         driven_by(load_plan("acceptance"), "gain_stabilisation")
+
+
+def test_a_plan_and_its_controller_beside_it_may_be_named_from_where_one_stands(tmp_path, monkeypatch):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/mine.toml").write_text((LIBRARY / "controllers/gain_stabilization.toml").read_text())
+    (tmp_path / "mine/plan.yaml").write_text(PLAN.replace("phase_stabilization.toml", "mine.toml"))
+    monkeypatch.chdir(tmp_path)
+    driven = driven_by(load_plan("mine/plan.yaml"))
+    assert driven.file == tmp_path / "mine/mine.toml"
 
 
 LIMITS = "criteria:\n  - {segment: phase, metric: peak_shaft_torque"
