@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import signal
+import sys
 from types import FrameType
 
 _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
@@ -21,6 +22,7 @@ class Interrupts:
     def __init__(self) -> None:
         self.arrived = False
         self._told = False
+        self._unraisable = sys.unraisablehook
 
     def raise_from_now_on(self) -> None:
         """Take the signals; a SIGHUP that is ignored (`nohup`) stays so."""
@@ -36,6 +38,7 @@ class Interrupts:
     def answered(self) -> None:
         """Somebody has taken the signal for what it is, and says so in words of its own."""
         self.arrived = False
+        sys.unraisablehook = self._unraisable
 
     def tell(self) -> None:
         """Say it, once."""
@@ -46,8 +49,16 @@ class Interrupts:
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
         del number, frame
-        self.arrived = True
+        if not self.arrived:
+            self.arrived = True
+            # What was made in part complains as it is thrown away: nobody's news.
+            self._unraisable, sys.unraisablehook = sys.unraisablehook, _say_nothing
         raise KeyboardInterrupt
+
+
+def _say_nothing(unraisable: object) -> None:
+    """In place of a traceback."""
+    del unraisable
 
 
 INTERRUPTS = Interrupts()
