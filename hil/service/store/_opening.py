@@ -23,7 +23,7 @@ _MIGRATIONS = Path(__file__).parent / "migrations"
 _PG8000 = "postgresql+pg8000"
 #: The service's loop waits for the database: for one that does not answer this long, once.
 _WITHIN_S = 2
-_MIGRATED_WITHIN_S = 300
+_MIGRATED_WITHIN_S = 30
 _MIGRATING = 0x68696C  # no two services make the tables at once
 
 
@@ -62,7 +62,7 @@ def open_database(url: str) -> Engine:
         if chosen.drivername == _PG8000:
             options["timeout"] = _MIGRATED_WITHIN_S
         migrating = _engine(chosen, options)
-    except (ArgumentError, NoSuchModuleError, ImportError, ValueError, TypeError) as error:
+    except (ArgumentError, NoSuchModuleError, ImportError, ValueError, TypeError, OSError) as error:
         raise BadInputError(
             f"no database can be opened by this URL: {_cannot(error)}",
             where="--database",
@@ -98,6 +98,8 @@ def _for_driver(url: URL) -> tuple[URL, dict[str, Any]]:
     if url.drivername in ("postgres", "postgresql"):
         url = url.set(drivername=_PG8000)
     options: dict[str, Any] = {}
+    if url.get_backend_name() not in ("sqlite", "postgresql"):
+        raise ValueError("neither SQLite nor PostgreSQL")
     if url.drivername != _PG8000:
         return url, options
     query = {name: str(value) for name, value in url.query.items()}
@@ -119,7 +121,10 @@ def _cannot(error: Exception) -> str:
     """Why, without what may be a password."""
     kinds = {ImportError: "its driver is not installed", ArgumentError: "it is no URL"}
     known = next((said for kind, said in kinds.items() if isinstance(error, kind)), "")
-    return known or (str(error) if "sslmode" in str(error) else type(error).__name__)
+    if isinstance(error, OSError):
+        return f"sslrootcert cannot be read: {error.strerror}"
+    ours = str(error).startswith(("sslmode is", "neither"))
+    return known or (str(error) if ours else type(error).__name__)
 
 
 def _settle(connection: object, record: object) -> None:

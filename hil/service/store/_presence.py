@@ -101,11 +101,12 @@ class Presence:
 
 def in_words(failure: BaseException) -> str:
     """What a database's driver says, on a line: pg8000 gives the server's fields as a dict."""
+    of_system = failure if isinstance(failure, OSError) else failure.__cause__
     first = failure.args[0] if failure.args else ""
-    said = str(first.get("M", "")) if isinstance(first, dict) else str(failure)
-    cause = failure.__cause__
-    if cause is not None and str(cause):
-        said += f" ({cause})"
+    if isinstance(of_system, OSError):
+        said = of_system.strerror or str(of_system)
+    else:
+        said = str(first.get("M", "")) if isinstance(first, dict) else str(failure)
     with contextlib.suppress(IndexError):
         said = said.strip().splitlines()[0]
     return said[:_LONGEST] or type(failure).__name__

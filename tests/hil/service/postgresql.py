@@ -17,19 +17,27 @@ import pytest
 _PLACES = Path("/usr/lib/postgresql")  # where Debian has its programs, by version
 _ACCOUNT = "postgres"  # the server refuses to run as root
 #: Neither the server's zone nor its order of letters may matter.
-_SETTINGS = "-c timezone=Asia/Kolkata -c listen_addresses='' -c fsync=off -c max_connections=40"
+_SETTINGS = "-c timezone=Asia/Kolkata -c fsync=off -c max_connections=40"
 
 
 class Cluster:
-    """A server that listens to a socket in its folder, and to no network."""
+    """A server that listens to a socket in its folder, and to this machine at a port if it is given one.
 
-    def __init__(self, folder: Path, programs: Path) -> None:
-        self._folder, self._programs = folder, programs
+    At its port it speaks TLS with the certificate `certificate`, which is for the name localhost.
+    """
+
+    def __init__(self, folder: Path, programs: Path, port: int = 0) -> None:
+        self._folder, self._programs, self._port = folder, programs, port
         self._run("initdb", "-D", folder / "data", "-A", "trust", "-U", "hil", "-E", "UTF8", "--no-sync")
 
     def begin(self) -> None:
         """Start it; it answers when this returns."""
         options = f"{_SETTINGS} -k {self._folder}"
+        if self._port:
+            files = f"-c ssl_cert_file={self.certificate} -c ssl_key_file={self._make_certificate()}"
+            options += f" -c listen_addresses=127.0.0.1 -p {self._port} -c ssl=on {files}"
+        else:
+            options += " -c listen_addresses=''"
         self._run(
             "pg_ctl", "-D", self._folder / "data", "-w", "-l", self._folder / "log", "-o", options, "start"
         )
@@ -37,6 +45,26 @@ class Cluster:
     def end(self) -> None:
         """Stop it in the middle of whatever it does."""
         self._run("pg_ctl", "-D", self._folder / "data", "-w", "-m", "immediate", "stop")
+
+    @property
+    def certificate(self) -> Path:
+        return self._folder / "certificate.pem"
+
+    def _make_certificate(self) -> Path:
+        key = self._folder / "key.pem"
+        subject = ["-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost"]
+        command = [
+            "req",
+            "-x509",
+            "-newkey",
+            "ec",
+            "-pkeyopt",
+            "ec_paramgen_curve:prime256v1",
+            "-nodes",
+            *subject,
+        ]
+        self._run_at("openssl", *command, "-days", "2", "-keyout", key, "-out", self.certificate)
+        return key
 
     @contextlib.contextmanager
     def frozen(self) -> Iterator[None]:
@@ -65,13 +93,23 @@ class Cluster:
         return self._run("psql", "-h", self._folder, "-U", "hil", "-d", name, "-Atc", statement).strip()
 
     def _run(self, program: str, *arguments: object) -> str:
-        command = [str(self._programs / program), *map(str, arguments)]
+        return self._run_at(str(self._programs / program), *arguments)
+
+    def _run_at(self, program: str, *arguments: object) -> str:
+        command = [program, *map(str, arguments)]
         if os.geteuid() == 0:
             command = ["runuser", "-u", _ACCOUNT, "--", *command]
         # its output goes to a file: the server would keep a pipe open
         with tempfile.TemporaryFile("w+") as said:
             done = subprocess.run(
-                command, stdin=subprocess.DEVNULL, stdout=said, stderr=said, cwd="/", timeout=60, check=False
+                command,
+                stdin=subprocess.DEVNULL,
+                stdout=said,
+                stderr=said,
+                cwd="/",
+                timeout=60,
+                check=False,
+                env={**os.environ, "PGPORT": str(self._port or 5432)},
             )
             said.seek(0)
             text = said.read()
@@ -98,7 +136,7 @@ def install() -> None:
 
 
 @contextlib.contextmanager
-def cluster() -> Iterator[Cluster]:
+def cluster(port: int = 0) -> Iterator[Cluster]:
     """A server that runs; the test is skipped where none can be had."""
     place = programs()
     if place is None:
@@ -109,7 +147,7 @@ def cluster() -> Iterator[Cluster]:
         if os.geteuid() == 0:
             shutil.chown(folder, _ACCOUNT)
         folder.chmod(0o755)
-        server = Cluster(folder, place)
+        server = Cluster(folder, place, port)
         server.begin()
         try:
             yield server

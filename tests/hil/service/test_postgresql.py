@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 import shutil
+import socket
 import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
+from sqlalchemy import text
 
+from hil.core.errors import BenchError
 from hil.service.store import BenchStore, open_database
 from tests.hil.service.postgresql import Cluster, cluster
 from tests.hil.service.served import ASKING, SHORT, RefusedError, Served, served
@@ -118,6 +121,34 @@ def test_two_services_of_a_database_never_drive_one_bench(server: Cluster, tmp_p
         _until(lambda: one.get("/benches/sim")["state"] == "in_use")
         assert one.get("/benches/sim")["why"] == "elsewhere"
         assert one.get(f"/runs/{waits}")["state"] == "queued"
+
+
+def test_a_server_whose_certificate_is_not_right_is_refused_where_that_is_asked_for() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    with cluster(port) as server:
+        name = server.database().partition("@/")[2].partition("?")[0]
+        roots = f"sslrootcert={server.certificate}"
+        for host, asked in (
+            ("localhost", f"verify-full&{roots}"),
+            ("127.0.0.1", "require"),
+            ("127.0.0.1", "prefer"),
+        ):
+            assert _over_tls(f"postgresql://hil@{host}:{port}/{name}?sslmode={asked}")
+        assert not _over_tls(f"postgresql://hil@localhost:{port}/{name}?sslmode=disable")
+        for host, asked in (("localhost", "verify-full"), ("127.0.0.1", f"verify-full&{roots}")):
+            with pytest.raises(BenchError, match="CERTIFICATE_VERIFY_FAILED"):
+                open_database(f"postgresql://hil@{host}:{port}/{name}?sslmode={asked}")
+
+
+def _over_tls(url: str) -> bool:
+    engine = open_database(url)
+    try:
+        with engine.connect() as connection:
+            asked = text("SELECT ssl FROM pg_stat_ssl WHERE pid = pg_backend_pid()")
+            return bool(connection.execute(asked).scalar())
+    finally:
+        engine.dispose()
 
 
 def _asking(service: Served) -> int:

@@ -181,7 +181,13 @@ def test_moments_are_the_same_wherever_the_database_is(engine: Engine) -> None:
 
 
 def test_what_no_database_can_be_is_said_without_its_password() -> None:
-    for url in ("postgresql+none://hil:secret@h/n", "hil:secret", "postgresql://hil:secret@h/n?sslmode=x"):
+    for url in (
+        "postgresql+none://hil:secret@h/n",
+        "mysql://hil:secret@h/n",
+        "hil:secret",
+        "postgresql://hil:secret@h/n?sslmode=x",
+        "postgresql://hil:secret@h/n?sslmode=verify-full&sslrootcert=/none",
+    ):
         with pytest.raises(BadInputError, match="no database can be opened") as refused:
             open_database(url)
         assert "secret" not in str(refused.value)
