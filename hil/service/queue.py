@@ -260,7 +260,7 @@ class Queue:
             reason += f"\n  hil recover {running.folder} makes a whole recording of what was measured"
         state: RunState = "interrupted" if self._closing else "ended"
         dut = place.bench.file.dut.get("serial", place.bench.file.dut.get("name", ""))
-        running.doing = "its end is being written"
+        running.doing = "its end is being written down"
         await self._written(
             lambda: self._runs.end(run.id, state, exit_code=code, result=result, reason=reason, dut=dut)
         )

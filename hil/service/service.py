@@ -169,9 +169,9 @@ class Service:
         """A run with what only this process knows: how far it is, which files it has left."""
         running = self.queue.running_run(run.id)
         if running is not None:
-            return run.model_copy(
-                update={"share": running.share, "doing": running.doing, "told": running.told}
-            )
+            away = f"; {self.database.away}" if self.database.away else ""
+            doing = {"share": running.share, "doing": running.doing + away, "told": running.told}
+            return run.model_copy(update=doing)
         if run.state in OVER:
             return run.model_copy(update={"files": self.files_of(run.id)})
         return run
@@ -221,12 +221,14 @@ class Service:
 
     async def watch_database(self) -> None:
         """Ask a database that is away whether it is back, until the service is closed."""
+        shown = ""
         while not self.closing:
             await asyncio.sleep(_ASK_S)
             if self.database.away:
-                if not await apart(self.database.ask):
-                    continue
+                await apart(self.database.ask)
                 self.queue.wake()
+            if self.database.away != shown:
+                shown = self.database.away
                 for bench in self.benches:
                     self.changed(bench)
             with contextlib.suppress(DatabaseAwayError):
