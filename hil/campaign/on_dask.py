@@ -20,6 +20,7 @@ from hil.core.errors import BadInputError, BenchError, HilError
 from hil.engine.stopping import held_back
 
 try:
+    import dask
     import distributed
 except ImportError as missing:
     raise BadInputError(
@@ -31,6 +32,12 @@ _WAIT_S = 0.2
 _CONNECT_S = 10
 _AHEAD = 3  # batches for each worker that are handed out: none waits for the next
 _LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
+#: Memory that a simulation gives back is asked for again by the next one: it stays with the process. And nobody
+#: looks at a profile of the workers.
+_SETTINGS = {
+    "distributed.nanny.pre-spawn-environ": {"OPENBLAS_NUM_THREADS": 1},
+    "distributed.worker.profile.enabled": False,
+}
 _known: dict[str, Simulations] = {}  # of this process, where it is a worker
 
 
@@ -74,7 +81,7 @@ class Workers:
     def _local(self) -> Any:
         """Processes of this machine: nobody else reaches them, and Ctrl-C is for this process to answer."""
         multiprocessing.resource_tracker.ensure_running()
-        with held_back():
+        with held_back(), dask.config.set(_SETTINGS):
             cluster = self._held.enter_context(
                 distributed.LocalCluster(
                     n_workers=self._processes,
