@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections import deque
 from collections.abc import Callable
@@ -11,6 +12,7 @@ from hil.campaign._batches import Batch, Carriers
 from hil.campaign._parts import Parts
 from hil.campaign._simulations import Row, Simulations
 
+_AWAITED_S = 60.0  # at most, for what is under way when somebody stops it: its worker may be gone
 _KILLED = "the process that simulated it died each time"
 
 
@@ -52,11 +54,11 @@ def carry_out(
     total = len(simulations.setting.cases)
     done = before = total - sum(len(batch) for batch in missing)
     gathered: dict[int, list[Row]] = {}
-    begun_s, ending = time.monotonic(), False
+    begun_s, until_s = time.monotonic(), math.inf
     show(Progress(done, total, 0.0, 0.0))
-    while missing or carriers.under_way:
-        if stopped() and not ending:
-            ending = True
+    while (missing or carriers.under_way) and time.monotonic() < until_s:
+        if stopped() and until_s == math.inf:
+            until_s = time.monotonic() + _AWAITED_S
             missing.clear()
             carriers.keep_running_only()
         for _ in range(carriers.wanted if missing else 0):

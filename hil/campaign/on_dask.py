@@ -9,6 +9,8 @@ import contextlib
 import logging
 import multiprocessing.resource_tracker
 import queue
+import time
+from collections import deque
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -30,13 +32,16 @@ except ImportError as missing:
 
 _WAIT_S = 0.2
 _CONNECT_S = 10
+_LOOK_S = 2.0
 _AHEAD = 3  # batches for each worker that are handed out: none waits for the next
 _LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
-#: Memory that a simulation gives back is asked for again by the next one: it stays with the process. And nobody
+#: Memory that a simulation gives back, the next one asks for again: it stays with the process. And nobody
 #: looks at a profile of the workers.
 _SETTINGS = {
     "distributed.nanny.pre-spawn-environ": {"OPENBLAS_NUM_THREADS": 1},
     "distributed.worker.profile.enabled": False,
+    "distributed.deploy.lost-worker-timeout": "1s",
+    "distributed.scheduler.allowed-failures": 0,  # what was there when a worker died is looked into at once
 }
 _known: dict[str, Simulations] = {}  # of this process, where it is a worker
 
@@ -60,7 +65,12 @@ class Workers:
         self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._held = contextlib.ExitStack()
         self._client: Any = None
+        self._cluster: Any = None
+        self._looked_s = 0.0
         self._out: dict[str, tuple[Any, Batch]] = {}
+        self._suspects: deque[Batch] = deque()
+        self._deadly: set[Batch] = set()
+        self._alone = ""  # key of a suspect that is carried out with nothing beside it
 
     def __enter__(self) -> Workers:
         for name in _LOGGERS:  # what they say is told in our words
@@ -81,19 +91,21 @@ class Workers:
     def _local(self) -> Any:
         """Processes of this machine: nobody else reaches them, and Ctrl-C is for this process to answer."""
         multiprocessing.resource_tracker.ensure_running()
-        with held_back(), dask.config.set(_SETTINGS):
-            cluster = self._held.enter_context(
+        dask.config.set(_SETTINGS)
+        with held_back():
+            self._cluster = self._held.enter_context(
                 distributed.LocalCluster(
                     n_workers=self._processes,
                     threads_per_worker=1,
                     host="127.0.0.1",
                     dashboard_address=None,
+                    scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},  # any port: several may run
                     memory_limit=0,
                     security=distributed.Security.temporary(),
                     silence_logs=logging.CRITICAL,
                 )
             )
-            return distributed.Client(cluster, set_as_default=False)
+            return distributed.Client(self._cluster, set_as_default=False)
 
     def _remote(self) -> Any:
         try:
@@ -112,32 +124,42 @@ class Workers:
         Raises:
             BenchError: the scheduler is gone.
         """
-        if not self._scheduler:
-            return self._processes
         try:
             return len(self._client.scheduler_info(n_workers=-1)["workers"])
         except (OSError, RuntimeError) as error:
             raise self._gone() from error
 
+    def _replace_lost(self) -> None:
+        """Begin processes in place of those that died while they began: their keepers have given up."""
+        if self._cluster is not None and time.monotonic() - self._looked_s > _LOOK_S:
+            self._looked_s = time.monotonic()
+            self._cluster.scale(self._processes)
+
     @property
     def under_way(self) -> int:
-        """Batches that are handed out."""
-        return len(self._out)
+        """Batches that are handed out, or held back."""
+        return len(self._out) + len(self._suspects)
 
     @property
     def wanted(self) -> int:
         """How many more batches keep every worker busy."""
-        return max(0, _AHEAD * max(1, self.count) - self.under_way)
+        least = 1 if self._scheduler else self._processes
+        return max(0, _AHEAD * max(least, self.count) - len(self._out))
 
     def submit(self, batch: Batch) -> None:
         """Hand a batch out."""
+        self._handed_out(batch)
+
+    def _handed_out(self, batch: Batch) -> str:
         future = self._client.submit(_rows, self._source, self._digest, batch.first, batch.last, pure=False)
         self._out[future.key] = future, batch
         future.add_done_callback(self._ended.put)
+        return str(future.key)
 
     def keep_running_only(self) -> None:
         """Take back what no worker has begun: they take the oldest first."""
-        for key in list(self._out)[max(1, self.count) :]:
+        self._suspects.clear()
+        for key in list(self._out)[self.count :]:
             self._out.pop(key)[0].cancel()
 
     def done(self) -> Iterator[Done]:
@@ -146,6 +168,9 @@ class Workers:
         Raises:
             BenchError: the scheduler is gone, or a worker cannot do it.
         """
+        self._replace_lost()
+        if self._suspects and not self._out:
+            self._alone = self._handed_out(self._suspects.popleft())
         with contextlib.suppress(queue.Empty):
             ended = self._ended.get(timeout=_WAIT_S)
             while True:
@@ -156,7 +181,11 @@ class Workers:
             raise self._gone()
 
     def _taken(self, future: Any, batch: Batch) -> Iterator[Done]:
-        """Rows of a batch; one that kills its workers is halved until it is known which simulation does."""
+        """Rows of a batch; one that was there when workers died is a suspect.
+
+        So is whatever waited beside it: suspects are carried out at the end, alone, and those that kill their
+        workers again are halved until it is known which simulation does.
+        """
         if future.status == "finished":
             yield batch, future.result()
             return
@@ -165,12 +194,16 @@ class Workers:
         error = future.exception()
         if not isinstance(error, distributed.KilledWorker):
             raise error if isinstance(error, HilError) else _failed(error)
-        if len(batch) == 1:
+        if future.key != self._alone:
+            self._suspects.append(batch)
+        elif len(batch) == 1 and batch in self._deadly:
             yield batch, None
+        elif len(batch) == 1:
+            self._deadly.add(batch)  # twice is no accident
+            self._suspects.append(batch)
         else:
             middle = (batch.first + batch.last) // 2
-            self.submit(Batch(batch.first, middle))
-            self.submit(Batch(middle + 1, batch.last))
+            self._suspects += (Batch(batch.first, middle), Batch(middle + 1, batch.last))
 
     def _gone(self) -> BenchError:
         where = f"--scheduler {self._scheduler}" if self._scheduler else ""

@@ -130,8 +130,10 @@ def test_a_simulation_that_kills_its_process_is_a_row_and_its_part_is_whole(part
 
 @pytest.fixture(scope="module")
 def cluster():
-    options = {"processes": False, "n_workers": 1, "threads_per_worker": 1, "dashboard_address": None}
-    with LocalCluster(**options) as found:
+    port = {"dashboard_address": "127.0.0.1:0"}
+    with LocalCluster(
+        processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None, scheduler_kwargs=port
+    ) as found:
         yield found
 
 

@@ -112,7 +112,7 @@ def test_without_dask_it_says_what_to_install(tmp_path, capsys, monkeypatch):
 
 
 @contextlib.contextmanager
-def begun(*arguments):
+def begun(*arguments, env=None):
     """The command in a process group of its own, as from a terminal."""
     process = subprocess.Popen(
         [HIL, "campaign", *map(str, arguments)],
@@ -120,6 +120,7 @@ def begun(*arguments):
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        env=env,
     )
     try:
         yield process
@@ -183,6 +184,30 @@ def test_nothing_is_lost_or_done_twice_when_a_worker_and_then_the_command_are_ki
     refuse_loss(out, 1500)
     after = {path.name: path.stat().st_mtime_ns for path in out.glob("simulations/part-*")}
     assert kept.items() <= after.items()
+
+
+DEADLY = """
+import os, sys
+if "spawn_main" in " ".join(sys.orig_argv):
+    from hil.campaign import Simulations
+    row = Simulations.row
+    Simulations.row = lambda self, number: os._exit(1) if number == 5 else row(self, number)
+"""
+
+
+@pytest.mark.slow
+def test_a_simulation_that_kills_its_workers_is_found_and_costs_no_other(tmp_path):
+    text = "name: deadly\nplan: short.yaml\ndraws: 24\ntolerance: {sensor_noise: 1}\n"
+    file, out = written(tmp_path, text), tmp_path / "out"
+    (tmp_path / "sitecustomize.py").write_text(DEADLY)
+    path = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
+    with begun(file, "--workers", 2, "--out", out, env={**os.environ, "PYTHONPATH": path}) as process:
+        said, err = process.communicate(timeout=300)
+    assert (process.returncode, err) == (0, "")
+    assert "1 with: the process that simulated it died each time" in said
+    table = table_of(out)
+    assert list(table["simulation"]) == list(range(24))
+    assert list(table.loc[table["error"].notna(), "simulation"]) == [5]
 
 
 @pytest.mark.slow
