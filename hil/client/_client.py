@@ -48,6 +48,13 @@ from hil.service.design_data import (
     ModelData,
     PlanCopyWanted,
 )
+from hil.service.study_data import (
+    DiagnosisData,
+    DiagnosisWanted,
+    IdentificationData,
+    IdentificationWanted,
+    StudyData,
+)
 
 A = TypeVar("A")
 T = TypeVar("T", bound=BaseModel)
@@ -223,6 +230,35 @@ class Client:
     def design(self, wanted: DraftWanted) -> DesignData:
         """A controller's file, judged on every plant that the model's uncertainty allows."""
         return self._one(DesignData, "POST", "/designs", wanted, within_s=_FORECAST_WITHIN_S)
+
+    def identify(self, wanted: IdentificationWanted) -> StudyData:
+        """Have a model identified from runs; `study` tells how it goes."""
+        return self._one(StudyData, "POST", "/identifications", wanted)
+
+    def diagnose(self, wanted: DiagnosisWanted) -> StudyData:
+        """Have it found out why runs and a model differ; `study` tells how it goes."""
+        return self._one(StudyData, "POST", "/diagnoses", wanted)
+
+    def studies(self) -> list[StudyData]:
+        """Identifications and diagnoses, newest first."""
+        return self._several(StudyData, "/studies")
+
+    def study(self, study: int) -> StudyData:
+        """An identification or a diagnosis."""
+        return self._one(StudyData, "GET", f"/studies/{study}")
+
+    def cancel_study(self, study: int) -> StudyData:
+        """End one; a diagnosis writes what it knows by then."""
+        return self._one(StudyData, "POST", f"/studies/{study}/cancel")
+
+    def identification(self, study: int) -> IdentificationData:
+        """What an identification found."""
+        path = f"/identifications/{study}"
+        return self._one(IdentificationData, "GET", path, within_s=_FORECAST_WITHIN_S)
+
+    def diagnosis(self, study: int) -> DiagnosisData:
+        """What a diagnosis found."""
+        return self._one(DiagnosisData, "GET", f"/diagnoses/{study}")
 
     def download(self, run: int, name: str, path: Path) -> None:
         """Write a file of a run, whole or not at all.

@@ -36,6 +36,7 @@ from hil.service.store import (
     RunStore,
     TokenStore,
 )
+from hil.service.studies import Studies
 from test_plans import plan_from_text
 
 _LOOK_S = 0.1
@@ -108,6 +109,7 @@ class Service:
         self.forecasts = Forecasts(commands.hil)
         self.models = model_shelf(folder / "models")
         self.controllers = controller_shelf(folder / "plans")
+        self.studies = Studies(folder / "studies", commands.hil)
         # Recordings are read at one desk, so that who designs at the other need not wait.
         self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
         self._held = held

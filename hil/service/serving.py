@@ -153,6 +153,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
             task.cancel()  # what is on its way to the store is brought there again
         service.closing = True
         server.should_exit = True
+        await service.studies.close()
         service.desk.close()
         service.drawing.close()
         for bench in service.benches:

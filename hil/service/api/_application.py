@@ -18,6 +18,7 @@ from hil.service.api import (
     _people,
     _plans,
     _runs,
+    _studies,
     _trends,
 )
 from hil.service.api._guard import Guard, Rates
@@ -25,7 +26,7 @@ from hil.service.api._problems import RESPONSES, answer_problems
 from hil.service.service import Service
 
 PREFIX = "/api/v1"
-_PARTS = (_health, _benches, _live, _plans, _runs, _comparisons, _trends, _design, _people)
+_PARTS = (_health, _benches, _live, _plans, _runs, _comparisons, _trends, _design, _studies, _people)
 
 
 def application(service: Service, *, hosts: tuple[str, ...], rates: Rates) -> ASGIApp:

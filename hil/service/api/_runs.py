@@ -21,8 +21,8 @@ from hil.service.store import NewRun
 router = APIRouter(prefix="/runs", tags=["runs"])
 _LAST = 2**31 - 1
 #: Reports bring their own scripts: they may run them, and reach nothing of the service.
-_SANDBOX = "sandbox allow-scripts allow-downloads; default-src 'unsafe-inline' data: blob:"
-_MEDIA = {".html": "text/html", ".json": "application/json", ".pdf": "application/pdf", ".xml": "text/xml"}
+SANDBOX = "sandbox allow-scripts allow-downloads; default-src 'unsafe-inline' data: blob:"
+MEDIA = {".html": "text/html", ".json": "application/json", ".pdf": "application/pdf", ".xml": "text/xml"}
 
 
 @router.get("", name="list_runs")
@@ -149,8 +149,8 @@ async def get_run_file(
     if name not in service.with_progress(_there(service, run)).files:
         raise missing("file", name)
     path = service.queue.folder_of(run) / name
-    media = _MEDIA.get(path.suffix, "application/octet-stream" if path.suffix == ".mcap" else "text/plain")
-    headers = {"content-security-policy": _SANDBOX} if path.suffix == ".html" else {}
+    media = MEDIA.get(path.suffix, "application/octet-stream" if path.suffix == ".mcap" else "text/plain")
+    headers = {"content-security-policy": SANDBOX} if path.suffix == ".html" else {}
     inline = path.suffix != ".mcap"
     kind = "inline" if inline else "attachment"
     kept = None if path.is_file() or service.keeper is None else service.keeper.kept(run, name)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.desk import _comparing, _designing
+from hil.service.desk import _comparing, _designing, _fitting
 from hil.service.desk._desk import ANSWERED, REFUSED
 
 _IDLE_S = 600.0
@@ -20,6 +20,7 @@ TASKS: dict[str, Callable[..., dict[str, Any]]] = {
     "traces": _comparing.traces,
     "draft": _designing.draft,
     "design": _designing.designed,
+    "fitted": _fitting.fitted,
 }
 
 

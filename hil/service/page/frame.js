@@ -92,6 +92,11 @@ export class Frame {
     pen.fill();
   }
 
+  dot(x, y, style) {
+    this.pen.fillStyle = style;
+    this.pen.fillRect(this.x(x) - 1.5, this.y(y) - 1.5, 3, 3);
+  }
+
   limit(value) {
     if (value < this.low || value > this.high) return;
     this.pen.setLineDash([6, 4]);

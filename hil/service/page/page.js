@@ -4,8 +4,10 @@ import { get, post, ask } from "./api.js";
 import { SpectrumChart, TimeChart } from "./chart.js";
 import { beginComparison, list as listCompared } from "./compare.js";
 import { beginDesign } from "./design.js";
+import { beginDiagnosis } from "./diagnose.js";
 import { at, badge, cell, row } from "./dom.js";
 import { number } from "./frame.js";
+import { beginIdentification } from "./identify.js";
 import { begin, choosePlan, predictAgain } from "./start.js";
 import { drawTrend, showTrends } from "./trends.js";
 
@@ -51,6 +53,8 @@ async function open() {
   const asked = decodeURIComponent(location.hash.slice(1));
   at("bench").value = benches.some((one) => one.name === asked) ? asked : benches[0].name;
   beginComparison(() => bench, act);
+  beginIdentification(() => bench, act, may("engineer"));
+  beginDiagnosis(() => bench, act, may("engineer"));
   at("design").hidden = !may("engineer");
   if (may("engineer")) beginDesign(act, choosePlan);
   watch();

@@ -58,6 +58,14 @@ LEAST = {
     ("DELETE", "/controllers/{controller}"): "engineer",
     ("POST", "/plans/{plan}/copies"): "engineer",
     ("POST", "/drafts"): "engineer",
+    ("POST", "/identifications"): "engineer",
+    ("GET", "/identifications/{study}"): "viewer",
+    ("POST", "/diagnoses"): "engineer",
+    ("GET", "/diagnoses/{study}"): "viewer",
+    ("GET", "/studies"): "viewer",
+    ("GET", "/studies/{study}"): "viewer",
+    ("POST", "/studies/{study}/cancel"): "engineer",
+    ("GET", "/studies/{study}/files/{name}"): "viewer",
     ("POST", "/designs"): "engineer",
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",
@@ -69,7 +77,7 @@ LEAST = {
 }
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
-_NONE |= {"model": "none", "controller": "none"}
+_NONE |= {"model": "none", "controller": "none", "study": "2000000000"}
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,9 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap
+from hil.analysis.diagnosis.data._gap import BANDS_HZ, ChannelGap, GapMap
 from hil.analysis.diagnosis.tell._words import Where
+from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.file_format import FORMAT
 from hil.core.model import EffectUse, Model
@@ -151,6 +152,7 @@ class Diagnosis:
             ],
             "gap": _gaps(self.gap_before, self.gap_after),
             "holdout_gap": _gaps(self.holdout_before, self.holdout_after),
+            "map": _map(self.map_before, self.map_after),
             "open_channels": list(self.open_channels),
             "made_worse": list(self.worse),
             "remaining_gap": self.signature,
@@ -173,6 +175,21 @@ class Diagnosis:
             "notes": list(self.notes),
             "model": "model.toml",
         }
+
+
+def _map(before: GapMap, after: GapMap) -> dict[str, Any]:
+    """Error over noise, recordings x channels x bands."""
+    return {
+        "recordings": list(before.recordings),
+        "channels": list(OUTPUTS),
+        "bands_hz": [list(band) for band in BANDS_HZ],
+        "before": _or_none(before.by_band),
+        "after": _or_none(after.by_band),
+    }
+
+
+def _or_none(values: Array) -> Any:
+    return np.where(np.isfinite(values), np.round(values, 3), None).tolist()
 
 
 def _effect(effect: NamedEffect) -> dict[str, Any]:

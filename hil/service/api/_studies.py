@@ -1,0 +1,167 @@
+"""Identifications and diagnoses of runs."""
+
+from __future__ import annotations
+
+import json
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body, Query
+from fastapi.responses import FileResponse
+from starlette.responses import Response
+
+from hil.core.files import read_text
+from hil.engine import RECORDING
+from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._problems import RefusedError, missing
+from hil.service.api._runs import MEDIA, SANDBOX
+from hil.service.data import OVER, Me, RunId
+from hil.service.service import Service
+from hil.service.study_data import (
+    DiagnosisData,
+    DiagnosisWanted,
+    IdentificationData,
+    IdentificationWanted,
+    StudyData,
+    StudyKind,
+)
+
+router = APIRouter(tags=["studies"])
+_IDENTIFIED_WITHIN_S = 600.0
+_WRITTEN_WITHIN_S = 180.0  # a diagnosis, after the time that it may search
+
+
+@router.post("/identifications", name="identify", status_code=201)
+async def identify(
+    wanted: Annotated[IdentificationWanted, Body()], service: TheService, me: Engineer
+) -> StudyData:
+    """Have a model identified from runs, as `hil identify` does; it takes seconds to minutes."""
+    arguments = ["identify", *await _recordings(service, wanted.runs)]
+    found = service.studies.begin("identification", wanted.runs, "", me.name, arguments, _IDENTIFIED_WITHIN_S)
+    return _begun(service, me, found)
+
+
+@router.post("/diagnoses", name="diagnose", status_code=201)
+async def diagnose(
+    wanted: Annotated[DiagnosisWanted, Body()], service: TheService, me: Engineer
+) -> StudyData:
+    """Have it found out why runs and a model differ, as `hil diagnose` does; it takes minutes."""
+    model = service.models.path(wanted.model)
+    if model is None:
+        raise missing("model", wanted.model)
+    arguments = ["diagnose", *await _recordings(service, wanted.runs), "--model", str(model.resolve())]
+    for held in await _recordings(service, wanted.holdout):
+        arguments += ["--holdout", held]
+    arguments += ["--at-most", f"{wanted.at_most_min:g}"]
+    within_s = 60.0 * wanted.at_most_min + _WRITTEN_WITHIN_S
+    runs = [*wanted.runs, *wanted.holdout]
+    found = service.studies.begin("diagnosis", runs, wanted.model, me.name, arguments, within_s)
+    return _begun(service, me, found)
+
+
+@router.get("/studies", name="list_studies")
+async def list_studies(
+    service: TheService, me: Viewer, kind: Annotated[StudyKind | None, Query()] = None
+) -> list[StudyData]:
+    """Identifications and diagnoses, newest first."""
+    del me
+    return service.studies.all(kind)
+
+
+@router.get("/studies/{study}", name="get_study")
+async def get_study(study: RunId, service: TheService, me: Viewer) -> StudyData:
+    """One of them."""
+    del me
+    return _there(service, study)
+
+
+@router.post("/studies/{study}/cancel", name="cancel_study")
+async def cancel_study(study: RunId, service: TheService, me: Engineer) -> StudyData:
+    """End one; a diagnosis writes what it knows by then."""
+    _there(service, study)
+    if not await service.studies.cancel(study):
+        raise RefusedError(409, f"study {study} is over")
+    service.log.add(me.name, me.role, "study cancelled", str(study))
+    return _there(service, study)
+
+
+@router.get("/studies/{study}/files/{name}", name="get_study_file", response_class=Response)
+async def get_study_file(study: RunId, name: str, service: TheService, me: Viewer) -> FileResponse:
+    """A file of one that is over: report, model, plan of a separating test."""
+    del me
+    if name not in _there(service, study).files:
+        raise missing("file", name)
+    path = service.studies.results(study) / name
+    headers = {"content-security-policy": SANDBOX} if path.suffix == ".html" else {}
+    media = MEDIA.get(path.suffix, "text/plain" if path.suffix in (".toml", ".csv", ".yaml") else None)
+    shown = f"study-{study}-{name}"
+    return FileResponse(
+        path, media_type=media, filename=shown, content_disposition_type="inline", headers=headers
+    )
+
+
+@router.get("/identifications/{study}", name="get_identification")
+async def get_identification(study: RunId, service: TheService, me: Viewer) -> IdentificationData:
+    """What an identification found: responses with coherence, the fit, parameters with intervals."""
+    del me
+    of = _with(service, study, "identification", "identification.json")
+    found = await service.desk.ask("fitted", folder=str(service.studies.results(study).resolve()))
+    return IdentificationData(study=of, **found)
+
+
+@router.get("/diagnoses/{study}", name="get_diagnosis")
+async def get_diagnosis(study: RunId, service: TheService, me: Viewer) -> DiagnosisData:
+    """What a diagnosis found: names, alternatives with the tests that tell them apart, the map."""
+    del me
+    of = _with(service, study, "diagnosis", "diagnosis.json")
+    content = json.loads(read_text(service.studies.results(study) / "diagnosis.json"))
+    return DiagnosisData(study=of, **_findings(content))
+
+
+def _findings(content: dict[str, Any]) -> dict[str, Any]:
+    same = ("verdict", "gap", "holdout_gap", "map", "remaining_gap", "parameter_updates", "notes")
+    effects = [
+        {
+            **{name: one[name] for name in ("id", "parameters", "standard_error", "confidence")},
+            **{name: one["where"][name] for name in ("channels", "band_hz", "condition")},
+        }
+        for one in content["effects"]
+    ]
+    alternatives = [
+        {name: one.get(name) for name in ("id", "confidence", "separating_test", "plan")}
+        for one in content["alternatives"]
+    ]
+    told = {"effects": effects, "alternatives": alternatives, "unfinished": content.get("unfinished", "")}
+    return {**{name: content[name] for name in same}, **told}
+
+
+async def _recordings(service: Service, runs: list[int]) -> list[str]:
+    found = []
+    for number in runs:
+        run = service.runs.get(number)
+        if run is None:
+            raise missing("run", number)
+        if run.state not in OVER or RECORDING not in service.with_progress(run).files:
+            raise RefusedError(409, f"run {number} has no recording", fix="take runs that measured")
+        found.append(str((await service.file_of(number, RECORDING)).resolve()))
+    return found
+
+
+def _begun(service: Service, me: Me, study: StudyData) -> StudyData:
+    service.log.add(me.name, me.role, study.kind, f"study {study.id}", f"runs {study.runs} {study.model}")
+    return study
+
+
+def _there(service: Service, study: int) -> StudyData:
+    found = service.studies.get(study)
+    if found is None:
+        raise missing("study", study)
+    return found
+
+
+def _with(service: Service, study: int, kind: StudyKind, file: str) -> StudyData:
+    found = _there(service, study)
+    if found.kind != kind:
+        raise missing(kind, study)
+    if file not in found.files:
+        raise RefusedError(409, f"{kind} {study} has found nothing: {found.reason or found.state}")
+    return found
