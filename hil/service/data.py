@@ -214,6 +214,9 @@ class TrendData(_Data):
         None, description="standard deviation from the moving range; null for less than 5 values"
     )
     cpk: float | None = Field(None, description="distance of the mean to the nearer limit, in 3 deviations")
+    count: int = Field(0, description="values that these are of")
+    cpk_lower: float | None = Field(None, description="lower end of Cpk's 95 % interval")
+    cpk_upper: float | None = Field(None, description="upper end of Cpk's 95 % interval")
 
 
 class Me(_Data):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 import statistics
 from collections.abc import Iterable, Sequence
 
@@ -11,6 +12,10 @@ from hil.service.data import TrendData, TrendPoint
 #: Mean range of two values of a normal distribution, in standard deviations (ISO 7870-2, d2 for n = 2).
 _RANGE_OF_TWO = 1.128
 LEAST_POINTS = 5
+#: Variance of a standard deviation from moving ranges, times the number of ranges, in variances of the values
+#: (Cryer & Ryan, Journal of Quality Technology 22, 1990): 0.5 it would be of the usual one.
+_OF_RANGES = 0.826
+_IN_95 = 1.959964  # standard deviations
 
 
 def trends(points: Iterable[tuple[str, TrendPoint]]) -> list[TrendData]:
@@ -26,6 +31,8 @@ def _trend(criterion: str, points: list[TrendPoint]) -> TrendData:
     values = [point.value for point in points if point.value is not None]
     mean = statistics.fmean(values) if values else None
     deviation = _deviation(values)
+    cpk = _cpk(mean, deviation, newest.upper, newest.lower)
+    reach = _reach(cpk, len(values))
     return TrendData(
         criterion=criterion,
         unit=newest.unit,
@@ -34,7 +41,10 @@ def _trend(criterion: str, points: list[TrendPoint]) -> TrendData:
         points=points,
         mean=mean,
         deviation=deviation,
-        cpk=_cpk(mean, deviation, newest.upper, newest.lower),
+        cpk=cpk,
+        count=len(values),
+        cpk_lower=None if cpk is None or reach is None else cpk - reach,
+        cpk_upper=None if cpk is None or reach is None else cpk + reach,
     )
 
 
@@ -53,3 +63,10 @@ def _cpk(
     rooms = [upper - mean] if upper is not None and mean is not None else []
     rooms += [mean - lower] if lower is not None and mean is not None else []
     return min(rooms) / (3 * deviation) if rooms and deviation else None
+
+
+def _reach(cpk: float | None, count: int) -> float | None:
+    """Half of Cpk's 95 % interval: Bissell's (Applied Statistics 39, 1990), for a deviation from ranges."""
+    if cpk is None:
+        return None
+    return _IN_95 * math.sqrt(1 / (9 * count) + cpk**2 * _OF_RANGES / (count - 1))

@@ -57,7 +57,7 @@ def _parameters(summary: dict[str, Any]) -> list[dict[str, Any]]:
     if summary["chain"] is None or not chosen:
         dead = summary["dead_time_s"]
         return [_parameter("torque_delay", dead["value"], dead["standard_error"])]
-    errors = chosen[0]["standard_errors"] or {}
+    errors = {"torque_delay": summary["dead_time_s"]["standard_error"]} | (chosen[0]["standard_errors"] or {})
     return [_parameter(name, value, errors.get(name)) for name, value in chosen[0]["parameters"].items()]
 
 

@@ -43,6 +43,18 @@ def test_scatter_and_cpk_are_those_of_the_distribution() -> None:
     assert found.cpk == pytest.approx(30.0 / 15.0, rel=0.05)  # the upper limit is nearer
 
 
+@pytest.mark.parametrize("count", [12, 60])
+def test_the_interval_of_cpk_has_the_true_one_as_often_as_it_says(count: int) -> None:
+    draws, true = np.random.default_rng(5), 30.0 / 15.0
+    inside = 0
+    for _ in range(600):
+        values = draws.normal(300.0, 5.0, count).tolist()
+        (found,) = trends(points(values, upper=330.0))
+        inside += found.cpk_lower <= true <= found.cpk_upper  # type: ignore[operator]
+    assert found.count == count
+    assert 0.90 < inside / 600 < 0.99
+
+
 def test_a_drift_is_no_scatter() -> None:
     (found,) = trends(points([300.0 + n for n in range(100)], upper=500.0))
     assert found.deviation == pytest.approx(1 / 1.128)
@@ -51,6 +63,7 @@ def test_a_drift_is_no_scatter() -> None:
 def test_little_is_not_made_into_a_figure() -> None:
     (found,) = trends(points([1.0] * (LEAST_POINTS - 1), upper=2.0))
     assert (found.mean, found.deviation, found.cpk) == (1.0, None, None)
+    assert (found.count, found.cpk_lower, found.cpk_upper) == (LEAST_POINTS - 1, None, None)
     (found,) = trends(points([1.0] * LEAST_POINTS, upper=2.0))
     assert (found.deviation, found.cpk) == (0.0, None)  # no scatter at all: no ratio
     (found,) = trends(points([1.0, 2.0, None, 1.0, 2.0, 1.0]))

@@ -189,7 +189,9 @@ def _map(before: GapMap, after: GapMap) -> dict[str, Any]:
 
 
 def _or_none(values: Array) -> Any:
-    return np.where(np.isfinite(values), np.round(values, 3), None).tolist()
+    shown = np.round(values, 3).astype(object)
+    shown[~np.isfinite(values)] = None
+    return shown.tolist()
 
 
 def _effect(effect: NamedEffect) -> dict[str, Any]:

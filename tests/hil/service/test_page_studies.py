@@ -1,0 +1,109 @@
+"""A model identified from a run on the page, and a diagnosis whose separating test is one click away."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright import sync_api as playwright
+
+from tests.hil.service.looks import refuse_hard_to_use, roles_drawn
+from tests.hil.service.served import SHORT, Served, served
+from tests.hil.service.test_studies import CHIRP
+
+playwright.expect.set_options(timeout=120_000)
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium"),
+]
+_BANDS = [[0.0, 1.0], [1.0, 3.0], [3.0, 6.0], [6.0, 10.0], [10.0, 15.0], [15.0, 30.0], [30.0, 125.0]]
+_CHANNELS = ["motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm"]
+
+
+def _diagnosis() -> dict[str, Any]:
+    """As `hil diagnose` writes it of backlash that may be dry friction too."""
+    where = {"channels": ["shaft_torque_nm"], "band_hz": [1.0, 10.0], "condition": "torque reversals"}
+    effect = {
+        "id": "backlash", "parameters": {"gap_rad": 0.02}, "standard_error": {"gap_rad": 0.001},
+        "derived": {}, "confidence": 0.81, "where": where,
+    }  # fmt: skip
+    other = {
+        "id": "coulomb_friction", "parameters": {}, "confidence": 0.17,
+        "separating_test": "a step without reversal", "plan": "separate_friction.yaml",
+    }  # fmt: skip
+    gap = {name: {"before": 0.12, "after": 0.011, "noise_floor": 0.01} for name in _CHANNELS}
+    before = [[[40.0, 12.5, 9.0, 3.0, 1.2, 1.0, None] for _ in _CHANNELS]]
+    after = [[[1.1, 1.0, 1.0, 1.0, 1.0, 1.0, None] for _ in _CHANNELS]]
+    return {
+        "format": 1, "verdict": "named", "effects": [effect], "alternatives": [other], "gap": gap,
+        "holdout_gap": {}, "remaining_gap": "", "parameter_updates": {}, "notes": [], "model": "model.toml",
+        "map": {
+            "recordings": ["run 1"], "channels": _CHANNELS, "bands_hz": _BANDS,
+            "before": before, "after": after,
+        },
+    }  # fmt: skip
+
+
+def _of_an_earlier_day(data: Path) -> None:
+    """A diagnosis that a service had made before this one began."""
+    results = data / "studies/000001/results"
+    results.mkdir(parents=True)
+    study = {
+        "id": 1, "kind": "diagnosis", "state": "ended", "runs": [1], "model": "three_inertia",
+        "requested_by": "anna", "asked_at": "2026-01-01T12:00:00Z", "ended_at": "2026-01-01T12:05:00Z",
+    }  # fmt: skip
+    (results.parent / "study.json").write_text(json.dumps(study), "utf-8")
+    (results / "diagnosis.json").write_text(json.dumps(_diagnosis()), "utf-8")
+    plan = SHORT.replace("name: short", "name: separate_friction\ntitle: To tell friction from backlash")
+    (results / "separate_friction.yaml").write_text(plan, "utf-8")
+
+
+@pytest.fixture(scope="module")
+def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    folder = tmp_path_factory.mktemp("page-studies")
+    _of_an_earlier_day(folder / "data")
+    with served(folder / "data", state=folder / "state") as service:
+        service.give("chirp", CHIRP)
+        service.over(service.queue("chirp"))
+        yield service
+
+
+def test_map_name_and_shrink_are_shown_and_the_separating_test_is_run(
+    page: playwright.Page, there: Served
+) -> None:
+    page.goto(there.url)
+    expect = playwright.expect
+    expect(page.get_by_role("heading", name="Free")).to_be_visible()
+    page.locator("#diagnose > summary").focus()
+    page.keyboard.press("Enter")
+    expect(page.locator("#diagnose-verdict")).to_have_text("named")
+    expect(page.locator("#diagnose-names")).to_contain_text("backlash (81 %): gap_rad = 0.02 ± 0.001")
+    expect(page.locator("#diagnose-map")).to_contain_text("40.0 → 1.10")
+    expect(page.locator("#diagnose-gaps")).to_contain_text("12 %1.1 %1 %")
+    refuse_hard_to_use(page)
+    page.get_by_role("button", name="Run the separating test for coulomb friction").click()
+    expect(page.locator("#diagnose-told")).to_contain_text("is queued: To tell friction from backlash")
+    expect(page.locator("#results tbody tr").first).to_contain_text("To tell friction from backlash")
+
+
+def test_a_model_is_identified_from_a_run_and_saved(page: playwright.Page, there: Served) -> None:
+    page.goto(there.url)
+    expect = playwright.expect
+    page.locator("#identify > summary").click()
+    page.locator("#identify-runs").get_by_label("chirp").first.check()
+    page.get_by_role("button", name="Identify", exact=True).click()
+    expect(page.locator("#identify-verdict")).to_contain_text("resonance 11")
+    expect(page.locator("#identify-parameters")).to_contain_text("gear ratio")
+    assert roles_drawn(page, "fit-motor", ("gain", "phase")) == {"gain", "phase"}
+    assert "gain" in roles_drawn(page, "fit-coherence", ("gain",))
+    page.locator("#identify-name").fill("found")
+    page.get_by_role("button", name="Save the model").click()
+    expect(page.locator("#identify-told")).to_contain_text("Saved as found")
+    refuse_hard_to_use(page)
+    page.locator("#design > summary").click()
+    page.locator("#design-model").select_option("found")
+    expect(page.locator("#design-figures")).to_contain_text("gain margin")
