@@ -1,4 +1,4 @@
-"""Makes the README's picture of the service's page: `make page-picture`, while `make serve` is running."""
+"""Makes the pictures of the service's page: `make page-picture`, while `make serve` is running."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 import urllib.request
 from pathlib import Path
 
-from playwright.sync_api import expect, sync_playwright
+from playwright.sync_api import Browser, expect, sync_playwright
 
 HERE = Path(__file__).parent
 
@@ -28,7 +28,24 @@ def main(url: str) -> None:
         expect(page.locator("#why")).to_contain_text("phase_0kmh", timeout=600_000)
         page.wait_for_timeout(15_000)
         page.screenshot(path=HERE / "page.png")
+        photograph_parts(browser, url)
         browser.close()
+
+
+def photograph_parts(browser: Browser, url: str) -> None:
+    """The design of a controller, and two runs laid over each other (if there are two of a plan)."""
+    page = browser.new_page(viewport={"width": 1280, "height": 1800})
+    page.goto(url)
+    page.locator("#design > summary").click()
+    page.locator("#design-model").select_option("three_inertia")
+    expect(page.locator("#design-figures")).to_contain_text("1.434", timeout=120_000)
+    page.wait_for_timeout(1000)
+    page.locator("#design").screenshot(path=HERE / "design.png")
+    page.locator("#design > summary").click()
+    page.locator("#compare > summary").click()
+    expect(page.locator("#compare-found")).to_be_visible(timeout=120_000)
+    page.wait_for_timeout(2000)
+    page.locator("#compare").screenshot(path=HERE / "comparison.png")
 
 
 if __name__ == "__main__":

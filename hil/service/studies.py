@@ -24,7 +24,7 @@ _AT_ONCE = 1  # a run needs the other processor
 _NICENESS = 10
 _LAST_WORDS_S = 20.0
 _MOST_WAITING = 20
-_FILE, _RESULTS = "study.json", "results"
+_FILE, _RESULTS, _PROCESS = "study.json", "results", "process"
 
 logger = logging.getLogger(__name__)
 
@@ -47,6 +47,7 @@ class Studies:
         self._known = {study.id: study for study in self._read()}
         for study in list(self._known.values()):
             if study.state not in STUDY_OVER:
+                self._kill_left(study.id)
                 self._end(study.id, "interrupted", "the service ended meanwhile; ask for it again")
 
     def all(self, kind: StudyKind | None = None) -> list[StudyData]:
@@ -150,6 +151,7 @@ class Studies:
         with contextlib.suppress(OSError):
             os.setpriority(os.PRIO_PROCESS, process.pid, _NICENESS)
         self._processes[number] = process
+        write_atomically(self._of(number) / _PROCESS, str(process.pid))
         try:
             _, said = await asyncio.wait_for(process.communicate(), within_s)
             return process.returncode or 0, said.decode("utf-8", "replace")
@@ -158,6 +160,14 @@ class Studies:
         finally:
             await _ended(process)
             del self._processes[number]
+
+    def _kill_left(self, number: int) -> None:
+        """End the process of a service that was killed: the one that writes into this study's folder."""
+        with contextlib.suppress(OSError, ValueError):
+            process = int((self._of(number) / _PROCESS).read_text("utf-8"))
+            called = Path(f"/proc/{process}/cmdline").read_bytes()
+            if os.fsencode(self.results(number).resolve()) in called.split(b"\0"):
+                os.kill(process, signal.SIGKILL)
 
     def _end(self, number: int, state: str, reason: str = "") -> None:
         if self._closing:

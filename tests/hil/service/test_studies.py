@@ -121,6 +121,20 @@ def test_a_service_that_is_killed_leaves_an_interrupted_study(tmp_path: Path) ->
         one.process.wait()
     kept = json.loads((tmp_path / f"data/studies/{study.id:06d}/study.json").read_text("utf-8"))
     assert kept["state"] == "running"
+    left = int((tmp_path / f"data/studies/{study.id:06d}/process").read_text("utf-8"))
+    assert Path(f"/proc/{left}").exists()
     with served(tmp_path / "data", state=tmp_path / "state") as one:
         found = Client(one.url).study(study.id)
         assert (found.state, found.runs) == ("interrupted", [last.id])
+        until_s = time.monotonic() + 20.0
+        while Path(f"/proc/{left}").exists() and "Z" not in _state_of(left):
+            assert time.monotonic() < until_s, "the process of the killed service goes on"
+            time.sleep(0.1)
+
+
+def _state_of(process: int) -> str:
+    """`Z` of one that has ended and that nobody has asked for."""
+    try:
+        return Path(f"/proc/{process}/stat").read_text("utf-8").rpartition(")")[2].split()[0]
+    except OSError:
+        return "Z"
