@@ -25,6 +25,12 @@ schema = schemathesis.openapi.from_dict(json.loads(openapi_text())).exclude(path
 pytestmark = pytest.mark.slow
 
 
+@schemathesis.serializer("application/toml")
+def as_toml(context: Any, value: object) -> bytes:
+    """Models and controllers are given as the text that they are."""
+    return value if isinstance(value, bytes) else str(value).encode("utf-8", "replace")
+
+
 @pytest.fixture(scope="module")
 def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     folder = tmp_path_factory.mktemp("fuzz")
