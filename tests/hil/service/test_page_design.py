@@ -38,7 +38,7 @@ def test_what_is_moved_is_followed_saved_and_run(
     page.locator("#design > summary").click()
     figures = page.locator("#design-figures")
     expect(figures).to_contain_text("peak of T_s at 20 km/h")
-    page.get_by_label("Model").select_option("three_inertia")
+    page.locator("#design-model").select_option("three_inertia")
     expect(figures).to_contain_text("1.434")
     for canvas in ("nyquist", "sensitivity", "step-slow", "step-fast"):
         assert "gain" in roles_drawn(page, canvas, ("gain",)), canvas
@@ -70,7 +70,7 @@ def test_what_is_moved_is_followed_saved_and_run(
 
 
 def _moves_and_is_followed(page: playwright.Page) -> None:
-    """Tells the time from a slider's key to what is drawn; docs/how-to/serve.md has it of a quiet machine."""
+    """Tells the time from a slider's key to what is drawn, which hangs on what else the machine does."""
     slider = page.get_by_label("Lead P h in °, slider")
     slider.focus()
     page.keyboard.press("ArrowRight")
