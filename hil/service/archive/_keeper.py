@@ -17,9 +17,10 @@ from hil.service.archive._archive import PIECE_BYTES, Archive, ArchiveAwayError,
 from hil.service.run_files import LOCK, files_in, folder_of
 from hil.service.store import DatabaseAwayError, FileStore, KeptFile
 
-_LOOK_S = 5.0
+_LOOK_S = 2.0
 _LONGEST_S = 60.0  # between two tries while the store is away
 _DAY_S = 86400.0
+_CLEAR_S = 3600.0  # how often old files are looked for; after each run that was kept, too
 _LEAST_S = 600.0  # what was brought back is being read
 
 logger = logging.getLogger(__name__)
@@ -52,6 +53,7 @@ class Keeper:
         self._local_s = max(local_days * _DAY_S, _LEAST_S)
         self.problem = ""
         self.rounds = 0
+        self._cleared_s = -1e9
 
     def waiting(self) -> int:
         """How many runs' files the archive has not all."""
@@ -109,15 +111,18 @@ class Keeper:
 
     async def _round(self) -> str:
         """Bring what waits; what keeps one run's files from it, if anything does."""
-        said = ""
+        said, kept = "", False
         for run in self._files.to_keep(self._service):
             try:
                 await self._keep(run)
+                kept = True
             except (ArchiveAwayError, DatabaseAwayError):
                 raise
             except (HilError, OSError) as error:
                 said = f"run {run}: {error}"
-        self._clear()
+        if kept or time.monotonic() - self._cleared_s > _CLEAR_S:
+            await self._clear()
+            self._cleared_s = time.monotonic()
         return said
 
     async def _keep(self, run: int) -> None:
@@ -131,21 +136,20 @@ class Keeper:
         self._files.all_kept(run)
         logger.info("files of run %d are kept in %s", run, self._archive.shown)
 
-    def _clear(self) -> None:
+    async def _clear(self) -> None:
         """Remove files here that the archive has, once they are old."""
-        before_s = time.time() - self._local_s
+        old = await apart(partial(_runs_until, self._folder, time.time() - self._local_s))
         shown = self._shown()
-        folders = {int(one.name): one for one in self._folder.glob("[0-9]*") if one.name.isdecimal()}
-        old = [run for run, folder in folders.items() if run not in shown and _touched_s(folder) <= before_s]
-        for run in self._files.kept(old):
+        for run in self._files.kept([run for run in old if run not in shown]):
+            folder = folder_of(self._folder, run)
             sizes = {file.name: file.size for file in self._files.of(run)}
-            for path in files_in(folders[run]):
+            for path in files_in(folder):
                 if sizes.get(path.name) == path.stat().st_size:
                     path.unlink()
-            if not files_in(folders[run]):
-                (folders[run] / LOCK).unlink(missing_ok=True)
+            if not files_in(folder):
+                (folder / LOCK).unlink(missing_ok=True)
                 with contextlib.suppress(OSError):  # something else lies there: it stays
-                    folders[run].rmdir()
+                    folder.rmdir()
 
     def _bring_back(self, path: Path, name: str, wanted: KeptFile) -> None:
         with replacing(path) as temporary:
@@ -158,6 +162,12 @@ class Keeper:
 
 def _name(run: int, name: str) -> str:
     return f"{run:06d}/{name}"
+
+
+def _runs_until(folder: Path, moment_s: float) -> list[int]:
+    """Runs of whose files none was written after a moment; seconds since 1970."""
+    folders = [one for one in folder.glob("[0-9]*") if one.name.isdecimal()]
+    return [int(one.name) for one in folders if _touched_s(one) <= moment_s]
 
 
 def _touched_s(folder: Path) -> float:
