@@ -29,6 +29,7 @@ USUAL: dict[str, tuple[str, ...]] = {
         "acceptance", "--model", "model.toml", "--bench", "bench.toml", "--starts", "1",
         "--at-most", "0.02", "--processes", "1", "--out", "out",
     ),
+    "campaign": ("campaign.yaml", "--workers", "0", "--out", "out"),
     "doctor": ("bench.toml", "--for", "0.3"),
     "sim-bench": ("bench.toml", "--port", "0", "--for", "0.5"),
     "serve": ("--data", "service", "--bench", "bench.toml", "--port", "0", "--for", "0.5"),
@@ -47,6 +48,7 @@ WRITING = (
     "recover",
     "compare",
     "explain",
+    "campaign",
 )
 
 #: What an option needs beside the usual arguments, where it is not among them.
@@ -81,6 +83,7 @@ FILE_ARGUMENTS = (
     ("compare", "DIR", "recording.mcap", "short.csv"),
     ("explain", "--plan", "plan.yaml", "bench.toml"),
     ("explain", "--bench", "bench.toml", "model.toml"),
+    ("campaign", "FILE", "campaign.yaml", "model.toml"),
     ("doctor", "BENCH", "bench.toml", "model.toml"),
     ("sim-bench", "BENCH", "bench.toml", "model.toml"),
     ("serve", "--bench", "bench.toml", "model.toml"),
@@ -116,6 +119,7 @@ NUMBERS = {
         "--largest-sensitivity",
     ),
     "explain": ("--evaluations", "--seed"),
+    "campaign": ("--workers",),
     "doctor": ("--for",),
     "sim-bench": ("--time-scale", "--port", "--seed"),
     "serve": ("--port", "--rate"),

@@ -19,9 +19,17 @@ finally: [{ramp_down: {duration_s: 0.1}}]
 criteria:
   - {segment: c, metric: peak_shaft_torque, upper: 300, unit: N m}
 """
+CAMPAIGN = """\
+name: short
+plan: plan.yaml
+bench: bench.toml
+draws: 2
+tolerance: {sensor_noise: 1}
+"""
 #: Every input by name; `done` is the folder of a run.
 NAMES = (
     "plan.yaml",
+    "campaign.yaml",
     "bench.toml",
     "rmcu.dbc",
     "rcs_dyno.eds",
@@ -55,6 +63,7 @@ def make_inputs(folder: Path) -> None:
     (folder / "bench.toml").write_text(bench, "utf-8")
     (folder / "key.pem").write_text(KEY, "utf-8")
     (folder / "plan.yaml").write_text(PLAN, "utf-8")
+    (folder / "campaign.yaml").write_text(CAMPAIGN, "utf-8")
     _hil(folder, "run", "plan.yaml", "--bench", "bench.toml", "--out", "whole")
     _hil(folder, "export", "whole/recording.mcap", "--out", "short.csv")
     _hil(folder, "export", "whole/recording.mcap", "--out", "frames.log")

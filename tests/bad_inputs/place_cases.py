@@ -19,6 +19,7 @@ _RESULTS = {
     "replay": "recording.mcap",
     "compare": "comparison.json",
     "explain": "targets.json",
+    "campaign": "begun.json",
 }
 
 _ODD_NAMES = (
