@@ -140,9 +140,9 @@ async function save() {
   const name = at("design-name").value;
   const { controller } = await designed();
   await ask("PUT", `/controllers/${name}`, controller);
-  at("design-told").textContent = `Saved as ${name}: plans can load it.`;
   await listControllers();
   at("design-controller").value = name;
+  at("design-told").textContent = `Saved as ${name}: plans can load it.`;
 }
 
 async function download() {
