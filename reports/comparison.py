@@ -131,7 +131,11 @@ def _responses(found: Comparison, names: tuple[str, ...]) -> Table:
 
 def _segment_part(found: Comparison, segment: Segment) -> Part:
     speed = quantities.nominal(segment.initial_speed_km_h, "km/h")
-    name = controller_name(segment.controller) if segment.controller else segment.kind.capitalize()
+    loaded = {
+        other.controller for run in found.runs for other in run.result.segments if other.id == segment.id
+    }
+    same = len(loaded) == 1 and segment.controller
+    name = controller_name(segment.controller) if same else segment.kind.capitalize()
     return Part(segment.id, f"{name}, {speed} ({segment.id})", "", figures=overlay(found.runs, segment))
 
 

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from hil.cli._app import guarded
+from test_plans.loading import LIBRARY
 from tests.hil.cli.test_check import PLAN
 
 pytestmark = pytest.mark.slow
@@ -35,6 +36,16 @@ def test_criteria_side_by_side(runs, capsys):
     options = ["--out", str(out), "--overwrite", "--json"]
     assert guarded(["compare", str(runs / "one"), str(runs / "two"), *options]) == 0
     assert json.loads(capsys.readouterr().out) == told
+
+
+def test_runs_with_other_controllers_share_a_heading_that_names_neither(runs):
+    other = str(LIBRARY / "controllers/gain_stabilization.toml")
+    assert guarded(["run", str(runs / "one.yaml"), "--controller", other, "--out", str(runs / "gain")]) == 0
+    for name, heading in (("two", "Phase stabilization, "), ("gain", "Step, ")):
+        assert (
+            guarded(["compare", str(runs / "one"), str(runs / name), "--out", str(runs / f"to_{name}")]) == 0
+        )
+        assert f"<h2>{heading}" in (runs / f"to_{name}/report.html").read_text("utf-8")
 
 
 @pytest.mark.parametrize(
