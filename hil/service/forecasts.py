@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import json
 import os
+import shutil
 import sys
 import tempfile
 from collections import OrderedDict
@@ -15,6 +16,7 @@ from pathlib import Path
 from hil.core.errors import BadInputError, BenchError
 from hil.engine import BenchFile
 from hil.service.data import ForecastData
+from hil.service.plans import files_of
 from test_plans import Plan
 
 _AT_ONCE = 1  # a run needs the other processor
@@ -52,6 +54,9 @@ class Forecasts:
         with tempfile.TemporaryDirectory(prefix="hil-forecast-") as folder:
             file = Path(folder) / "plan.yaml"
             file.write_text(plan.text, "utf-8")
+            for loaded in files_of(plan):  # the service's controllers lie beside its plans
+                if loaded.parent == plan.source.parent:
+                    shutil.copyfile(loaded, file.parent / loaded.name)
             code, out, said = await self._carried_out("check", str(file), f"--bench={bench.source}", "--json")
         if code in (0, 1):
             found = json.loads(out)

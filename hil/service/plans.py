@@ -69,7 +69,7 @@ class Plans:
         if name in self._built_in:
             raise BadInputError("is the name of a built-in plan", where=name, fix="give it another name")
         where = f"{name}.yaml"
-        for file in _files_of(plan_from_text(text, where, self._folder, files_required=False)):
+        for file in files_of(plan_from_text(text, where, self._folder, files_required=False)):
             if file.name != str(file):
                 raise BadInputError(
                     f"loads the file {printable(repr(str(file)), 100)}",
@@ -107,7 +107,7 @@ class Plans:
         found = []
         for path in sorted(self._folder.glob("[!.]*.yaml")):
             with contextlib.suppress(BadInputError):
-                if any(one.name == file for one in _files_of(load_plan(path))):
+                if any(one.name == file for one in files_of(load_plan(path))):
                     found.append(path.stem)
         return found
 
@@ -137,20 +137,20 @@ def _renamed(text: str, name: str) -> str:
     return text
 
 
-def _files_of(value: object) -> Iterator[Path]:
+def files_of(value: object) -> Iterator[Path]:
     """All files that a plan's steps name, also steps within steps."""
     if isinstance(value, Path):
         yield value
     elif isinstance(value, Plan):
-        yield from _files_of((value.steps, value.finally_))
+        yield from files_of((value.steps, value.finally_))
     elif isinstance(value, BaseModel):
         for name in type(value).model_fields:
-            yield from _files_of(getattr(value, name))
+            yield from files_of(getattr(value, name))
     elif isinstance(value, list | tuple):
         for one in value:
-            yield from _files_of(one)
+            yield from files_of(one)
     elif isinstance(value, dict):
-        yield from _files_of(list(value.values()))
+        yield from files_of(list(value.values()))
 
 
 def _data(plan: Plan, *, built_in: bool) -> PlanData:

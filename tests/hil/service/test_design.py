@@ -77,6 +77,7 @@ def test_a_saved_controller_runs_in_a_copy_of_a_plan(client: Client, service: Se
     client.give_plan("base", SHORT.replace("name: short", "name: base\ntitle: A base"))
     wanted = PlanCopyWanted(name="base-softer", controllers={"phase_stabilization.toml": "softer"})
     assert client.copy_plan("base", wanted).title == "A base, base-softer"
+    assert client.forecast("base-softer", "sim").fits
     run = client.queue(RunWanted(plan="base-softer", bench="sim"))
     *_, last = client.progress(run.id)
     assert last.verdict == "pass"
