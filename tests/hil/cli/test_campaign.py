@@ -195,7 +195,7 @@ if "spawn_main" in " ".join(sys.orig_argv):
 """
 
 
-@pytest.mark.slow
+@pytest.mark.hunt  # a minute of processes that die: the slow set kills a worker and the command
 def test_a_simulation_that_kills_its_workers_is_found_and_costs_no_other(tmp_path):
     text = "name: deadly\nplan: short.yaml\ndraws: 24\ntolerance: {sensor_noise: 1}\n"
     file, out = written(tmp_path, text), tmp_path / "out"
@@ -210,7 +210,7 @@ def test_a_simulation_that_kills_its_workers_is_found_and_costs_no_other(tmp_pat
     assert list(table.loc[table["error"].notna(), "simulation"]) == [5]
 
 
-@pytest.mark.slow
+@pytest.mark.hunt  # a minute of processes that die: the slow set kills a worker and the command
 def test_a_scheduler_that_is_killed_is_exit_code_3_and_gone_on_with(tmp_path):
     file, out = written(tmp_path, LONG), tmp_path / "out"
     folder = Path(sys.executable).parent

@@ -18,7 +18,6 @@ from hil.service.store import BenchStore, open_database
 from tests.hil.service.postgresql import Cluster, cluster
 from tests.hil.service.served import ASKING, SHORT, RefusedError, Served, served
 
-pytestmark = pytest.mark.slow
 BENCHES = Path(__file__).parents[3] / "benches"
 LONG = SHORT.replace("name: short", "name: long").replace(
     "duration_s: 0.2}\n  - step", "duration_s: 40}\n  - step"
@@ -32,6 +31,7 @@ def server() -> Iterator[Cluster]:
         yield one
 
 
+@pytest.mark.hunt  # make service-stores kills it too
 def test_a_killed_service_loses_nothing_and_runs_nothing_twice(server: Cluster, tmp_path: Path) -> None:
     data, state, url = tmp_path / "data", tmp_path / "state", server.database()
     with served(data, "--database", url, state=state) as service:
@@ -47,6 +47,7 @@ def test_a_killed_service_loses_nothing_and_runs_nothing_twice(server: Cluster, 
     assert server.sql(url, "SELECT count(*) FROM benches") == "0", "given back when it ended"
 
 
+@pytest.mark.slow
 def test_a_run_goes_on_while_the_database_is_away_and_is_written_down_afterwards(
     server: Cluster, tmp_path: Path
 ) -> None:
@@ -77,6 +78,7 @@ def test_a_run_goes_on_while_the_database_is_away_and_is_written_down_afterwards
         assert [one["id"] for one in service.get("/runs")] == [waiting, run]
 
 
+@pytest.mark.slow
 def test_an_emergency_stop_does_not_wait_for_a_database_that_hangs(server: Cluster, tmp_path: Path) -> None:
     with served(tmp_path / "data", "--database", server.database(), state=tmp_path / "state") as service:
         run = _asking(service)
@@ -93,6 +95,7 @@ def test_an_emergency_stop_does_not_wait_for_a_database_that_hangs(server: Clust
         _until(lambda: "emergency stop" in {one["action"] for one in service.get("/audit")})
 
 
+@pytest.mark.slow
 def test_two_services_of_a_database_never_drive_one_bench(server: Cluster, tmp_path: Path) -> None:
     url, bench = server.database(), tmp_path / "other.toml"
     shutil.copytree(BENCHES, tmp_path, dirs_exist_ok=True)
@@ -123,6 +126,7 @@ def test_two_services_of_a_database_never_drive_one_bench(server: Cluster, tmp_p
         assert one.get(f"/runs/{waits}")["state"] == "queued"
 
 
+@pytest.mark.slow
 def test_a_server_whose_certificate_is_not_right_is_refused_where_that_is_asked_for() -> None:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = free.getsockname()[1]
