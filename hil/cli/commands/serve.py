@@ -75,6 +75,6 @@ def command(
 
     return carry_out(
         data=data, bench=bench or ["sim"], host=host, port=port, allow_host=allow_host or [],
-        database=database, store=store, local_days=keep_local, rate=rate, for_s=for_s,
+        database=database, store=store, keep_local=keep_local, rate=rate, for_s=for_s,
         add_token=add_token, as_json=as_json,
     )  # fmt: skip
