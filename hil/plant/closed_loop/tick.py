@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 from hil.core.compiled import compiled
-from hil.core.conventions import TICK_S
 from hil.plant import _kernel as K
 from hil.plant import _slots as P
 from hil.plant import _states as X
@@ -93,7 +92,7 @@ def tick(k, x, p, w, torques, fir, drives, sensors, past, noise, mode, request, 
     gains, states).
     """
     b, a, z, gains, states = fir
-    dt = TICK_S  # not what a parameter says, which is rounded on its way
+    dt = gains[M.SAMPLE_TIME]
     coupled = _couple(x, drives, w)
     state, memories = K.as_state(x)
     loads = 0.0

@@ -12,7 +12,6 @@ from hil.core.model import load_model
 from hil.engine._predicted_wire import wire_of
 from hil.plant.closed_loop import SIDES, ClosedLoop
 from hil.plant.closed_loop import drive as D
-from hil.plant.closed_loop.tick import TORQUE
 from hil.plant.controller import memory as M
 from tests.benches_for_tests import SIM
 
@@ -56,18 +55,6 @@ def test_in_pieces_as_at_once(loop):
         pieces.play(M.DRIVING_FORCE, part)
     assert np.ptp(loop.recorded(500, 3500)["motor_speed_rad_s"]) > 1.0
     np.testing.assert_array_equal(loop.rows, pieces.rows)
-
-
-def test_dead_time_is_the_same_whatever_controller_was_written(loop):
-    """Its sample time crosses the wire with 24 bits: the plant's own steps stay a millisecond."""
-    other = ClosedLoop(MODEL, RADIUS_M, WIRE)
-    other.set_ramp(12.0)
-    other.set_controller(PHASE)
-    request = np.repeat([0.0, 20.0, -10.0], 40)
-    for each in (loop, other):
-        each.play(M.TORQUE, request)
-    np.testing.assert_array_equal(loop.rows[:, TORQUE], other.rows[:, TORQUE])
-    assert np.count_nonzero(loop.rows[:, TORQUE])
 
 
 def test_what_was_recorded_stays_when_there_is_more(loop):
