@@ -69,7 +69,7 @@ autotune: setup
 
 # Hundreds of degenerate recordings through every analysis.
 hunt: setup
-	$(BIN)/python -m pytest -n 2 -m hunt
+	$(BIN)/python -m pytest -n 2 -m hunt --timeout 7200
 
 # Bad input, signals and broken streams on every command, as processes: docs/reference/bad-inputs.md.
 bad-inputs: setup
