@@ -106,16 +106,16 @@ coverage: setup
 
 # Thousands of calls that nobody thought of, made from the OpenAPI document.
 api-fuzz: setup
-	HIL_API_CALLS=150 $(BIN)/python -m pytest -q tests/hil/service/test_api_fuzz.py
+	HIL_API_CALLS=150 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/test_api_fuzz.py
 
 # The service killed at fifty random moments of a queue of runs.
 service-kills: setup
-	HIL_SERVICE_KILLS=50 $(BIN)/python -m pytest -q tests/hil/service/test_service_kills.py
+	HIL_SERVICE_KILLS=50 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/test_service_kills.py
 
 # The service's tests on a PostgreSQL server of Debian's, begun and ended by them; as root it is installed.
 service-stores: setup
 	$(BIN)/python -m tests.hil.service.postgresql
-	HIL_SERVICE_DATABASE=postgresql $(BIN)/python -m pytest -q tests/hil/service
+	HIL_SERVICE_DATABASE=postgresql $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service
 
 # The service's OpenAPI document: docs/reference/openapi.json. A test fails when it is not that of the code.
 openapi: setup
