@@ -11,14 +11,15 @@ from typing import Any
 
 from hil.core.errors import BadInputError
 from hil.core.file_kind import refuse_other_kind
-from hil.core.files import is_file, read_text
+from hil.core.files import read_text
 from hil.core.suggestion import closest, did_you_mean
-from test_plans.building import brief, build, list_at, mapping_at
+from test_plans.building import build, list_at, mapping_at
 from test_plans.choices import Choices
 from test_plans.conductor import PlannedSegment
 from test_plans.criteria import EXAMPLE as CRITERION_EXAMPLE
 from test_plans.criteria import Criterion, criterion_at
 from test_plans.mistakes import PlanMistakes
+from test_plans.named_files import named_file, names_in
 from test_plans.plan import Plan, PlanKeys, estimate_duration_s
 from test_plans.steps import STEPS, FileSearch, Step
 from test_plans.variables import KEY as VARIABLES
@@ -36,7 +37,7 @@ _KEYS = (*PlanKeys.model_fields, "steps", "finally", "criteria")
 
 def library_plans() -> tuple[str, ...]:
     """Names of the built-in plans."""
-    return tuple(sorted(path.stem for path in LIBRARY.glob("*.yaml")))
+    return names_in(LIBRARY)
 
 
 def library_controllers() -> dict[str, Path]:
@@ -52,7 +53,7 @@ def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
     Raises:
         BadInputError: no such plan, or all that is wrong with it: file, line, key, and what to do.
     """
-    path = _path_of(name_or_path)
+    path = named_file(name_or_path, LIBRARY, "plan", "plan")
     text = read_text(path)
     if path.suffix == ".toml":
         _refuse_other_file(text, str(path))
@@ -235,16 +236,3 @@ def _ids(steps: tuple[Step, ...]) -> Iterator[tuple[int, str]]:
 def _refuse_other_file(text: str, where: str) -> None:
     with contextlib.suppress(tomllib.TOMLDecodeError):  # then it is looked at as a plan
         refuse_other_kind(tomllib.loads(text), "plan", where)
-
-
-def _path_of(name_or_path: str | Path) -> Path:
-    path = Path(name_or_path)
-    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or is_file(path):
-        return path
-    names = library_plans()
-    if path.name in names:
-        return LIBRARY / f"{path.name}.yaml"
-    raise BadInputError(
-        f"there is no plan {brief(path.name)}, neither a file nor a built-in plan",
-        fix=f"{did_you_mean(path.name, names)}; a file's name ends in .yaml",
-    )

@@ -6,10 +6,9 @@ from pathlib import Path
 
 from pydantic import Field
 
-from hil.core.errors import BadInputError
 from hil.core.files import is_file, read_text
-from hil.core.suggestion import did_you_mean
-from test_plans.building import Strict, brief, build, mapping_at
+from test_plans.building import Strict, build, mapping_at
+from test_plans.named_files import named_file, names_in
 from test_plans.yaml_document import read_yaml
 
 SEQUENCES = Path(__file__).parent / "sequences"
@@ -70,7 +69,7 @@ class Sequence(SequenceKeys):
 
 def library_sequences() -> tuple[str, ...]:
     """Names of the built-in sequences."""
-    return tuple(sorted(path.stem for path in SEQUENCES.glob("*.yaml")))
+    return names_in(SEQUENCES)
 
 
 def load_sequence(name_or_path: str | Path) -> Sequence:
@@ -79,24 +78,11 @@ def load_sequence(name_or_path: str | Path) -> Sequence:
     Raises:
         BadInputError: no such file, or all that is wrong with it: line, key, and what to do.
     """
-    path = _path_of(name_or_path)
+    path = named_file(name_or_path, SEQUENCES, "sequence")
     document = read_yaml(read_text(path), str(path))
     content = mapping_at(document.value, document, (), _EXAMPLE)
     keys = build(SequenceKeys, content, document, ())
     return Sequence(**keys.model_dump(), source=path)
-
-
-def _path_of(name_or_path: str | Path) -> Path:
-    path = Path(name_or_path)
-    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or is_file(path):
-        return path
-    names = library_sequences()
-    if path.name in names:
-        return SEQUENCES / f"{path.name}.yaml"
-    raise BadInputError(
-        f"there is no sequence {brief(path.name)}, neither a file nor a built-in one",
-        fix=f"{did_you_mean(path.name, names)}; a file's name ends in .yaml",
-    )
 
 
 def _beside(source: Path, plan: str) -> str:

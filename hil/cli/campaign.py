@@ -26,6 +26,7 @@ from hil.campaign import (
     write_begun,
 )
 from hil.campaign import carry_out as simulate
+from hil.cli._asked_twice import at_once
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._output import print_json, progress, to_json
 from hil.cli._place import Place, results_in
@@ -107,7 +108,7 @@ def _simulated(
     """Carry out what is missing; False if somebody stopped it, which is told."""
     setting = simulations.setting
     stop = StopRequest()
-    with progress(f"campaign {setting.file.name}") as show, stop.by_signals(), stop.telling(_at_once(stop)):
+    with progress(f"campaign {setting.file.name}") as show, stop.by_signals(), stop.telling(at_once(stop)):
         show("looking at what there is")
         batch = begun_batch(place.folder, setting) if resume else 0
         if not batch:
@@ -149,17 +150,6 @@ def _carriers(simulations: Simulations, processes: int, scheduler: str) -> Itera
     setting = simulations.setting
     with Workers(setting.file.source, setting.digest, processes, scheduler) as workers:
         yield workers
-
-
-def _at_once(stop: StopRequest) -> Any:
-    """Asked once, what is under way is awaited; not asked again."""
-
-    def told() -> None:
-        if stop.times > 1:
-            INTERRUPTS.arrived = True
-            raise KeyboardInterrupt
-
-    return told
 
 
 def _one_s(simulations: Simulations) -> float:

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hil.analysis.tuning import Effort, Patience, Tuning, tune
+from hil.cli._asked_twice import at_once
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._on_bench import FOLDER, Wanted, WireBench, allowed_on
 from hil.cli._one_run import Runs
@@ -59,7 +60,7 @@ def carry_out(
     with results_in(
         out, NAMES, inputs=asked.inputs, overwrite=overwrite, default="tune", summary=SUMMARY
     ) as place:
-        with progress(f"tune {asked.plan.name}") as show, stop.by_signals(), stop.telling(_at_once(stop)):
+        with progress(f"tune {asked.plan.name}") as show, stop.by_signals(), stop.telling(at_once(stop)):
             found = tune(
                 asked.trial,
                 seed=seed,
@@ -114,17 +115,6 @@ def _exit_code(found: Tuning, ran: Ran | None, refinement: Refined | None) -> in
     if ran.exit_code > 1:
         return ran.exit_code
     return int(not (ran.confirmation.agrees and ran.confirmation.passed))
-
-
-def _at_once(stop: StopRequest) -> Callable[[], None]:
-    """Asked once, what is best so far is still compared and written, which takes a while; not asked again."""
-
-    def told() -> None:
-        if stop.times > 1:
-            INTERRUPTS.arrived = True
-            raise KeyboardInterrupt
-
-    return told
 
 
 def _stopped(stop: StopRequest, at_most_min: float | None) -> Callable[[], bool]:

@@ -5,9 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-import os
 import shutil
-import sys
 import tempfile
 from collections import OrderedDict
 from collections.abc import Sequence
@@ -15,6 +13,7 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError, BenchError
 from hil.engine import BenchFile
+from hil.service.background import begun
 from hil.service.data import ForecastData
 from hil.service.plans import files_of
 from test_plans import Plan
@@ -66,17 +65,14 @@ class Forecasts:
         raise kind(what or "the forecast was ended", where="forecast")
 
     async def _carried_out(self, *arguments: str) -> tuple[int, bytes, str]:
-        process = await asyncio.create_subprocess_exec(
+        process = await begun(
             *self._command,
             *arguments,
+            niceness=_NICENESS,
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-            start_new_session=True,
         )
-        with contextlib.suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, process.pid, _NICENESS)
         try:
             out, said = await asyncio.wait_for(process.communicate(), _WITHIN_S)
         except BaseException as error:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import os
-import sys
 from collections.abc import AsyncIterator, Sequence
 from pathlib import Path
 
@@ -14,6 +12,7 @@ from hil.core.locks import HeldError, lock_on
 from hil.core.result import RunResult
 from hil.engine.border_messages import Message, RunAsked, Typed, from_line, to_line
 from hil.engine.operator import EMERGENCY, END, PAUSE, RESUME
+from hil.service.background import begun
 from hil.service.run_files import LOCK
 
 RESULT = "result.json"
@@ -36,15 +35,13 @@ class RunProcess:
         alive = Path(asked.out) / LOCK
         alive.touch()
         with lock_on(alive) as lock:
-            process = await asyncio.create_subprocess_exec(
+            process = await begun(
                 *command,
                 Path(asked.out).name,
                 stdin=asyncio.subprocess.PIPE,
                 stdout=asyncio.subprocess.PIPE,
                 stderr=asyncio.subprocess.DEVNULL,
                 pass_fds=[lock],
-                env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
-                start_new_session=True,  # a terminal's Ctrl-C is for the service
                 limit=_LONGEST_LINE,
             )
         run = cls(process)

@@ -12,12 +12,12 @@ import datetime
 import logging
 import os
 import signal
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, write_atomically
+from hil.service.background import begun
 from hil.service.study_data import STUDY_OVER, StudyData, StudyKind
 
 _AT_ONCE = 1  # a run needs the other processor
@@ -132,24 +132,17 @@ class Studies:
             self._tasks.pop(number, None)
 
     async def _command_ended(self, number: int, arguments: Sequence[str], within_s: float) -> tuple[int, str]:
-        process = await asyncio.create_subprocess_exec(
+        process = await begun(
             *self._command,
             *arguments,
             "--out",
             str(self.results(number).resolve()),
             "--json",
+            niceness=_NICENESS,
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,
-            env={
-                "OPENBLAS_NUM_THREADS": "1",
-                **os.environ,
-                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
-            },
-            start_new_session=True,
         )
-        with contextlib.suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, process.pid, _NICENESS)
         self._processes[number] = process
         write_atomically(self._of(number) / _PROCESS, str(process.pid))
         try:

@@ -19,7 +19,7 @@ _SETTINGS = {
     "EFW2": ("AFW2", 100.0, "f2_ns2_m2", 1.0),
     "ESLP": ("ASLP", 50.0, "slip", 0.01),
 }
-_LATE_TICKS, _LOOK_TICKS, _LOOK_S = 60, 10, 0.02
+_LATE_TICKS, _LOOK_TICKS, _LOOK_S = 60, 10, 0.25
 _READ = {read: write for write, (read, *_) in _SETTINGS.items()}
 
 

@@ -18,6 +18,7 @@ from hil.core.suggestion import did_you_mean
 from test_plans.building import Strict, brief, build, list_at, mapping_at
 from test_plans.loading import LIBRARY
 from test_plans.mistakes import PlanMistakes
+from test_plans.named_files import named_file, names_in
 from test_plans.yaml_document import Document, KeyPath, read_yaml
 
 CAMPAIGNS = Path(__file__).parent / "library"
@@ -97,7 +98,7 @@ class CampaignFile(CampaignKeys):
 
 def library_campaigns() -> tuple[str, ...]:
     """Names of the built-in campaigns."""
-    return tuple(sorted(path.stem for path in CAMPAIGNS.glob("*.yaml")))
+    return names_in(CAMPAIGNS)
 
 
 def load_campaign_file(name_or_path: str | Path) -> CampaignFile:
@@ -106,7 +107,7 @@ def load_campaign_file(name_or_path: str | Path) -> CampaignFile:
     Raises:
         BadInputError: no such file, or all that is wrong with it: line, key, and what to do.
     """
-    path = _path_of(name_or_path)
+    path = named_file(name_or_path, CAMPAIGNS, "campaign")
     return campaign_from_text(read_text(path), path)
 
 
@@ -242,17 +243,4 @@ def controller_file(file: CampaignFile, name: str) -> Path:
     where = file.document.place(path)
     raise BadInputError(
         f"there is no controller file {brief(name)}", where=where, fix=did_you_mean(name, known)
-    )
-
-
-def _path_of(name_or_path: str | Path) -> Path:
-    path = Path(name_or_path)
-    if path.suffix in (".yaml", ".yml") or len(path.parts) > 1 or is_file(path):
-        return path
-    names = library_campaigns()
-    if path.name in names:
-        return CAMPAIGNS / f"{path.name}.yaml"
-    raise BadInputError(
-        f"there is no campaign {brief(path.name)}, neither a file nor a built-in one",
-        fix=f"{did_you_mean(path.name, names)}; a file's name ends in .yaml",
     )

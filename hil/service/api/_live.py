@@ -8,8 +8,6 @@ import time
 from collections.abc import AsyncIterator
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
 from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
 
@@ -17,6 +15,7 @@ from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
 from hil.service.data import BenchName
+from hil.service.drawn_numbers import numbers
 from hil.service.live import BUCKET_S, Stretch
 from hil.service.service import OnShow, Service
 
@@ -35,7 +34,6 @@ _SHORTEST_S = 0.05  # 20 updates a second
 _LONGEST_S = 10.0  # without anything to say
 _SPECTRUM_EVERY_S = 0.5
 _SHOWN_S = 30.0  # of a run that was under way before the viewer came
-_DIGITS = 6
 
 
 @router.get(
@@ -115,7 +113,7 @@ class _Watching:
         found = shown.live.spectrum()
         if found is None:
             return []
-        values = {"step_hz": found.step_hz, "density": _numbers(found.density)}
+        values = {"step_hz": found.step_hz, "density": numbers(found.density)}
         return [_event("spectrum", {"run": shown.run, "band_energy": found.band_energy, **values})]
 
 
@@ -137,16 +135,12 @@ def _samples(stretch: Stretch) -> dict[str, Any]:
         "width_s": round(stretch.width_s, 3),
         "channels": {
             name: {
-                "lowest": _numbers(stretch.lowest[:, column]),
-                "highest": _numbers(stretch.highest[:, column]),
+                "lowest": numbers(stretch.lowest[:, column]),
+                "highest": numbers(stretch.highest[:, column]),
             }
             for name, column in columns.items()
         },
     }
-
-
-def _numbers(values: npt.NDArray[np.float64]) -> list[float | None]:
-    return [float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None for value in values.tolist()]
 
 
 def _event(name: str, data: dict[str, Any]) -> str:

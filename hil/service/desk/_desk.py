@@ -5,11 +5,11 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-import os
 import sys
 from typing import Any
 
 from hil.core.errors import BadInputError, BenchError
+from hil.service.background import begun
 
 _WITHIN_S = 60.0
 #: What an answer begins with; JSON follows.
@@ -85,22 +85,15 @@ class Desk:
         return line
 
     async def _begun(self) -> asyncio.subprocess.Process:
-        self._process = await asyncio.create_subprocess_exec(
+        self._process = await begun(
             sys.executable,
             "-m",
             __package__,
+            niceness=self._niceness,
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
-            env={
-                "OPENBLAS_NUM_THREADS": "1",
-                **os.environ,
-                "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
-            },
-            start_new_session=True,
             limit=_LONGEST_ANSWER_BYTES,
         )
-        with contextlib.suppress(OSError):
-            os.setpriority(os.PRIO_PROCESS, self._process.pid, self._niceness)
         return self._process
 
 

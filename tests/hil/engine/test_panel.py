@@ -64,7 +64,7 @@ def failing_from(monkeypatch: pytest.MonkeyPatch, at_s: float, until_s: float, c
     whole, looks = EmulatedPanel.hear, [0]
 
     def hear(panel: EmulatedPanel, data: bytes) -> bytes:
-        looks[0] += data.count(b"ASTZ") * data.count(b"ASTF")  # both requests of a beat come together
+        looks[0] += data.count(b"ASTF")  # the second request of a beat, which may come without the first
         time_s = 0.5 * looks[0]
         return change(panel, data, whole) if at_s <= time_s < until_s else whole(panel, data)
 
@@ -102,7 +102,7 @@ def local(panel, data, whole) -> bytes:
 )
 def test_a_panel_that_fails_in_a_run(tmp_path, monkeypatch, change, until_s: float, said: str) -> None:
     failing_from(monkeypatch, 2.0, until_s, change)
-    bench = with_panel(f"panel-{change.__name__}", gone_after_s=1.2)
+    bench = with_panel(f"panel-{change.__name__}", gone_after_s=1.45)
     outcome = run_plan(RunRequest(plan("[{wait: {duration_s: 4}}]"), bench, tmp_path))
     assert outcome.result.safe_state == "confirmed"
     if said:

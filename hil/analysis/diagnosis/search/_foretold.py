@@ -52,9 +52,8 @@ def foretold_where(problem: Problem, base: Fit, one: Fit, *, fitted: bool = Fals
     begun = [w > MOST_APART for w in _parted_from_start(problem, one)]
     flags = []
     for trace, pushed, first in zip(problem.traces, apart, begun, strict=True):
-        wide = np.convolve(pushed | first, np.ones(5), "same") > 0.0
         length = len(trace.measured)
-        each = np.repeat(wide, _blocks_of_window(problem))[:length]
+        each = _blocks_near(problem, pushed | first, length)
         flags.append(~np.pad(each, (0, length - len(each)), mode="edge"))
     return flags
 
@@ -94,13 +93,19 @@ def left_out(problem: Problem) -> list[str]:
 
 def _holds_most(problem: Problem, one: Fit, apart: Sequence[Flags]) -> bool:
     """Whether most of what a fit leaves lies in these windows, or beside them."""
-    length, inside, whole = _blocks_of_window(problem), 0.0, 0.0
+    inside, whole = 0.0, 0.0
     for errors, flags in zip(one.errors, apart, strict=True):
         power = np.sum(errors.channels**2, axis=1)
-        near = np.repeat(np.convolve(flags, np.ones(5), "same") > 0.0, length)[: len(power)]
+        near = _blocks_near(problem, flags, len(power))
         inside += float(np.sum(power[: len(near)][near]))
         whole += float(np.sum(power))
     return inside > MOST_OF_ERROR * whole
+
+
+def _blocks_near(problem: Problem, windows: Flags, count: int) -> Flags:
+    """The blocks of these windows and of two on either side; at most `count`, as far as windows reach."""
+    wide = np.convolve(windows, np.ones(5), "same") > 0.0
+    return np.asarray(np.repeat(wide, _blocks_of_window(problem))[:count])
 
 
 def _share(flags: Sequence[Flags]) -> float:
