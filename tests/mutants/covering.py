@@ -48,8 +48,8 @@ class Times:
         self._path.write_text(json.dumps(passed), encoding="utf-8")
 
 
-def covered(root: Path, package: str, tests: Sequence[str]) -> Coverage:
-    """Run the quick ones of `tests` in `root` and read what they cover of `package`.
+def covered(root: Path, sources: Sequence[str], tests: Sequence[str]) -> Coverage:
+    """Run the quick ones of `tests` in `root` and read what they cover of the folders `sources`.
 
     Raises:
         RuntimeError: the tests could not be run.
@@ -66,7 +66,7 @@ def covered(root: Path, package: str, tests: Sequence[str]) -> Coverage:
         "no:cacheprovider",
         "-m",
         QUICK,
-        f"--cov={package.replace('.', '/')}",
+        *(f"--cov={folder}" for folder in sources),
     ]
     arguments += ["--cov-context=test", "--cov-report=", "--cov-config=/dev/null", *tests]
     done = subprocess.run(
@@ -79,7 +79,7 @@ def covered(root: Path, package: str, tests: Sequence[str]) -> Coverage:
     )
     if done.returncode not in (0, 1) or not times_file.is_file():
         raise RuntimeError(
-            f"the tests of {package} cannot be run:\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+            f"the tests of {' '.join(sources)} cannot be run:\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
         )
     seconds: dict[str, float] = json.loads(times_file.read_text("utf-8"))
     return _read(data_file, root, seconds)
