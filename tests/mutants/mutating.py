@@ -44,7 +44,7 @@ def drawn(files: list[Path], root: Path, count: int, seed: int) -> tuple[list[Mu
     rng = random.Random(seed)
     places: dict[tuple[str, int, int], list[Mutant]] = defaultdict(list)
     for file in sorted(files):
-        for one in _mutants(file.read_text("utf-8"), file.relative_to(root).as_posix()):
+        for one in mutants_of(file.read_text("utf-8"), file.relative_to(root).as_posix()):
             places[one.file, one.line, one.column].append(one)
     groups = list(places.values())
     for group in groups:
@@ -68,7 +68,8 @@ class _Compiles:
         return True
 
 
-def _mutants(source: str, file: str) -> Iterator[Mutant]:
+def mutants_of(source: str, file: str) -> Iterator[Mutant]:
+    """Every fault that can be put into a file, whether or not it is Python then."""
     nodes = list(ast_nodes(get_ast(source)))
     idle = {node for node in nodes if _is_idle(node)}
     for name in _operators():
@@ -79,6 +80,14 @@ def _mutants(source: str, file: str) -> Iterator[Mutant]:
                 if not _under(node, idle):
                     yield Mutant(file, name, occurrence, *start)
                 occurrence += 1
+
+
+def difference(before: str, after: str) -> tuple[str, str]:
+    """The first line that differs."""
+    for old, new in zip(before.splitlines(), after.splitlines(), strict=False):
+        if old != new:
+            return old.strip(), new.strip()
+    return before.splitlines()[-1].strip(), "(nothing)"
 
 
 @cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 _HEAD = """# What the tests notice
@@ -37,6 +37,11 @@ class Outcome:
     tests: int
 
     @property
+    def fault(self) -> tuple[str, str, str]:
+        """What it is, wherever its line has moved to."""
+        return self.file, self.before, self.after
+
+    @property
     def survived(self) -> bool:
         return self.noticed in ("", "not run")
 
@@ -68,8 +73,8 @@ def wilson(successes: int, trials: int, z: float = 1.96) -> tuple[float, float]:
     return max(0.0, (middle - half) / scale), min(1.0, (middle + half) / scale)
 
 
-def as_markdown(results: Sequence[Tried]) -> str:
-    """The whole page."""
+def as_markdown(results: Sequence[Tried], why: Mapping[tuple[str, str, str], str]) -> str:
+    """The whole page; `why` a fault that no test notices is none, or harms nobody: by file, code, fault."""
     lines = ["| package | mutants tried | there are | noticed | score, % | 95 % interval | s each | seed |"]
     lines.append("| --- " * 8 + "|")
     for one in results:
@@ -81,21 +86,24 @@ def as_markdown(results: Sequence[Tried]) -> str:
             f"| {100 * low:.1f} to {100 * high:.1f} | {one.seconds:.1f} | {one.seed} |"
         )
     parts = [_HEAD, "\n".join(lines), "## Not noticed"]
-    parts += [_survivors(one) for one in results]
+    parts += [_survivors(one, why) for one in results]
     return "\n\n".join(part.strip() for part in parts) + "\n"
 
 
-def _survivors(tried: Tried) -> str:
+def _survivors(tried: Tried, why: Mapping[tuple[str, str, str], str]) -> str:
     survivors = sorted((o for o in tried.outcomes if o.survived), key=lambda o: (o.file, o.line, o.after))
+    if not survivors:
+        return f"### {tried.package}\n\nNone."
     rows = [
-        f"| {one.file}:{one.line} | {_cell(one.before)} | {_cell(one.after)} | {one.noticed or 'passed'} |"
+        [f"{one.file}:{one.line}", _cell(one.before), _cell(one.after), one.noticed or "passed"]
         for one in survivors
     ]
-    if not rows:
-        return f"### {tried.package}\n\nNone."
-    return "\n".join(
-        [f"### {tried.package}\n", "| where | code | with the fault | tests |", "| --- " * 4 + "|", *rows]
-    )
+    head = ["where", "code", "with the fault", "tests"]
+    if any(one.fault in why for one in survivors):
+        head.append("read")
+        rows = [[*row, why.get(one.fault, "")] for row, one in zip(rows, survivors, strict=True)]
+    lines = [f"### {tried.package}\n", f"| {' | '.join(head)} |", "| --- " * len(head) + "|"]
+    return "\n".join([*lines, *(f"| {' | '.join(row)} |" for row in rows)])
 
 
 def _cell(code: str) -> str:

@@ -10,17 +10,20 @@ import subprocess
 import sys
 import tempfile
 import time
+import tomllib
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
+from tests.mutants.again import not_noticed_before
 from tests.mutants.covering import Coverage, covered
-from tests.mutants.mutating import Mutant, drawn
+from tests.mutants.mutating import Mutant, difference, drawn
 from tests.mutants.page import Outcome, Tried, as_markdown
 from tests.mutants.trying import Trial, import_heavy_libraries
 
 _RESULTS = Path("docs/reference/mutants.md")
+_EXPLAINED = Path(__file__).with_name("explained.toml")
 #: Package: the tests that are to notice its faults.
 TESTS = {
     "test_plans.metrics": (
@@ -80,7 +83,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         found = copy / ".mutants-results.json"
         if not found.is_file():
             return done.returncode or 1
-        results = [_read(one) for one in json.loads(found.read_text("utf-8"))]
+        results = _results(found)
     _write(results, options)
     return done.returncode
 
@@ -88,13 +91,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _write(results: list[Tried], options: argparse.Namespace) -> None:
     data_file = options.out.with_suffix(".json")
     if data_file.is_file():  # packages that were not asked for stay
-        before = [_read(one) for one in json.loads(data_file.read_text("utf-8"))]
+        before = _results(data_file)
         new = {one.package for one in results}
         results = [one for one in before if one.package not in new] + results
     results.sort(key=lambda one: [*TESTS].index(one.package))
-    options.out.write_text(as_markdown(results), encoding="utf-8")
+    page = as_markdown(results, explained())
+    options.out.write_text(page, encoding="utf-8")
     data_file.write_text(json.dumps([asdict(one) for one in results], indent=1) + "\n", encoding="utf-8")
-    print(as_markdown(results))
+    print(page)
+
+
+def explained() -> dict[tuple[str, str, str], str]:
+    """Why a fault that no test notices is none, or harms nobody: by file, code, code with the fault."""
+    table = tomllib.loads(_EXPLAINED.read_text("utf-8"))
+    return {(file, one["code"], one["fault"]): one["why"] for file, ones in table.items() for one in ones}
 
 
 def _copy(source: Path, target: Path) -> None:
@@ -124,7 +134,10 @@ def _tried(root: Path, package: str, options: argparse.Namespace) -> Tried:
     start = time.perf_counter()
     files = _files(root, package)
     coverage = covered(root, _sources(package), options.tests or TESTS[package])
-    mutants, total = drawn(files, root, options.count, options.seed)
+    before = _before(options, package)
+    mutants, total = drawn(files, root, 0 if before else options.count, options.seed)
+    if before:
+        mutants = not_noticed_before(before.outcomes, root)
     trial = Trial(root)
     all_tests = sorted(coverage.seconds, key=lambda test: coverage.seconds[test])
     quick = _within(all_tests, coverage.seconds, _AT_LAST_S)
@@ -140,7 +153,17 @@ def _tried(root: Path, package: str, options: argparse.Namespace) -> Tried:
         outcomes.append(_outcome(trial, root, coverage, mutant))
         _tell(number, len(mutants), outcomes[-1])
     seconds = (time.perf_counter() - prepared) / max(len(outcomes), 1)
+    if before:
+        new = {one.fault: one for one in outcomes}
+        return replace(before, outcomes=[new.get(one.fault, one) for one in before.outcomes])
     return Tried(package, options.seed, total, len(coverage.seconds), round(seconds, 2), outcomes)
+
+
+def _before(options: argparse.Namespace, package: str) -> Tried | None:
+    """What came of it earlier, if only what was not noticed then is to be tried."""
+    if options.again is None:
+        return None
+    return next((one for one in _results(options.again) if one.package == package), None)
 
 
 def _files(root: Path, package: str) -> list[Path]:
@@ -160,7 +183,7 @@ def _outcome(trial: Trial, root: Path, coverage: Coverage, mutant: Mutant) -> Ou
     source = (root / mutant.file).read_text("utf-8")
     mutated = mutant.code(source)
     tests = coverage.tests_for(mutant.file, mutant.line)
-    before, after = _difference(source, mutated)
+    before, after = difference(source, mutated)
     noticed = "" if tests else "not run"
     at = 0
     for limit in (_AT_FIRST_S, _AT_LAST_S):
@@ -186,17 +209,13 @@ def _within(tests: Sequence[str], seconds: dict[str, float], limit: float) -> li
     return chosen
 
 
-def _difference(before: str, after: str) -> tuple[str, str]:
-    """The first line that differs."""
-    for old, new in zip(before.splitlines(), after.splitlines(), strict=False):
-        if old != new:
-            return old.strip(), new.strip()
-    return before.splitlines()[-1].strip(), "(nothing)"
-
-
 def _tell(number: int, total: int, one: Outcome) -> None:
     said = one.noticed or "NOT NOTICED"
     print(f"[{number}/{total}] {said} {one.file}:{one.line} {one.after}", file=sys.stderr, flush=True)
+
+
+def _results(path: Path) -> list[Tried]:
+    return [_read(one) for one in json.loads(path.read_text("utf-8"))]
 
 
 def _read(data: dict[str, Any]) -> Tried:
@@ -211,6 +230,9 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1, help="another seed, other mutants")
     parser.add_argument(
         "--minutes", type=float, default=float("inf"), help="try no more of a package after so long"
+    )
+    parser.add_argument(
+        "--again", type=lambda given: Path(given).resolve(), help="JSON of a run: only what it did not notice"
     )
     parser.add_argument("--tests", action="append", help="run these tests instead; may be repeated")
     parser.add_argument("--out", type=Path, default=_RESULTS, help="Markdown to write; a JSON goes beside it")

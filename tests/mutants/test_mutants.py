@@ -6,9 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from tests.mutants.again import not_noticed_before
 from tests.mutants.covering import Coverage
 from tests.mutants.mutating import drawn
 from tests.mutants.page import Outcome, Tried, as_markdown, wilson
+from tests.mutants.run import explained
 
 SOURCE = '''
 from numba import njit
@@ -84,8 +86,36 @@ def test_the_page_shows_what_was_not_noticed() -> None:
         Outcome("a.py", 9, "NumberReplacer", "x = 1", "x = 2", "not run", 0),
         Outcome("a.py", 5, "NumberReplacer", "y = 1", "y = 2", "failed", 1),
     ]
-    page = as_markdown([Tried("hil.core", 1, 50, 20, 1.5, outcomes)])
+    page = as_markdown([Tried("hil.core", 1, 50, 20, 1.5, outcomes)], {})
     assert "| hil.core | 3 | 50 | 1 | 33.3 |" in page
     assert "| a.py:3 | `if x \\| y:` | `if not x \\| y:` | passed |" in page
     assert "| a.py:9 | `x = 1` | `x = 2` | not run |" in page
     assert "y = 2" not in page
+
+
+def test_the_page_says_why_what_was_read_stays() -> None:
+    outcomes = [
+        Outcome("a.py", 3, "NumberReplacer", "x = 1", "x = 2", "", 4),
+        Outcome("a.py", 9, "NumberReplacer", "z = 1", "z = 2", "", 4),
+    ]
+    page = as_markdown(
+        [Tried("hil.core", 1, 50, 20, 1.5, outcomes)], {("a.py", "x = 1", "x = 2"): "only words"}
+    )
+    assert "| a.py:3 | `x = 1` | `x = 2` | passed | only words |" in page
+    assert "| a.py:9 | `z = 1` | `z = 2` | passed |  |" in page
+
+
+def test_what_was_not_noticed_is_found_again_wherever_it_has_moved_to(root: Path) -> None:
+    survivor = Outcome("code.py", 11, "NumberReplacer", "return value + 0.5", "return value + 1.5", "", 4)
+    noticed = Outcome("code.py", 6, "NumberReplacer", "largest: float | int = 3", "... = 4", "failed", 1)
+    gone = Outcome("code.py", 6, "NumberReplacer", "smallest = 3", "smallest = 4", "", 1)
+    (mutant,) = not_noticed_before([survivor, noticed, gone], root)
+    assert mutant.line == SOURCE.splitlines().index("    return value + 0.5") + 1
+    assert "value + 1.5" in mutant.code(SOURCE)
+
+
+def test_every_explanation_is_of_code_that_stands_there() -> None:
+    for (file, code, fault), why in explained().items():
+        assert code in {line.strip() for line in Path(file).read_text("utf-8").splitlines()}, (file, code)
+        assert fault != code
+        assert why
