@@ -1,8 +1,8 @@
 """Hours of bench time in virtual time: memory, time, file size, and what the recording takes afterwards.
 
 `python -m benchmarks.soak [HOURS]` (10): `hil run` in a process of its own, whose memory is looked at every
-few seconds; then `hil export`, `hil report` and `hil verify` of the recording, each with its largest memory.
-Only what was run is printed.
+few seconds; then `hil export`, `hil report`, `hil verify` and `hil diagnose` of the recording, each with its
+time and its largest memory. Only what was run is printed.
 """
 
 from __future__ import annotations
@@ -83,20 +83,27 @@ def told(hours: float, folder: Path, memory: list[tuple[float, float]]) -> int:
         "recording / memory, MB: "
         + ", ".join(f"{a:.0f} / {b:.0f}" for a, b in growing[:: max(1, len(growing) // 10)])
     )
+    largest = max((mb for _, mb in memory), default=0.0)
+    print(f"the run, judging and reports at its end included: at most {largest:.0f} MB of memory")
     recording = read_recording(path)
+    model = folder / "model.toml"
+    model.write_bytes(recording.attachments[model.name])
     time_s = recording.time_s
     off_s = float(np.max(np.abs(time_s - 1e-3 * np.arange(len(time_s)))))
     lasted_s = result["bench_time_s"]
     print(f"{len(time_s)} samples, off their millisecond by at most {off_s:.2g} s; the run took {lasted_s} s")
     print(f"file {size / 1e6:.0f} MB, predicted with its reports at most {predicted / 1e6:.0f} MB")
-    del recording
+    del recording, time_s
     after: list[list[str | Path]] = [
         ["export", path, "--out", folder / "r.parquet"],
         ["report", path, "--out", folder / "again"],
         ["verify", folder / "out"],
+        ["diagnose", path, "--model", model, "--out", folder / "diagnosis"],
     ]
     for arguments in after:
-        print(f"hil {arguments[0]}: largest memory {largest_mb([HIL, *arguments]):.0f} MB", flush=True)
+        began_s = time.monotonic()
+        most_mb = largest_mb([HIL, *arguments])
+        print(f"hil {arguments[0]}: {most_mb:.0f} MB, {time.monotonic() - began_s:.0f} s", flush=True)
     grown = max(b for _, b in growing) - growing[0][1] if growing else 0.0
     return int(grown > LARGEST_GROWTH_MB or off_s > 1e-6 or size > predicted)
 

@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeAlias
 
 #: Third-party only: the project itself is imported in the fork, with the fault in it.
 _HEAVY = (
@@ -19,6 +20,10 @@ _HEAVY = (
     *("mcap.reader", "mcap.writer", "jsonschema", "typer", "rich", "jinja2", "tomli_w"),
     *("pytest", "hypothesis", "numpy.testing"),
 )
+#: Packages whose constants are in compiled functions of others.
+_BELOW = ("hil/core/", "hil/plant/", "sim_backend/")
+#: A file with a fault, and what it was: nothing of it is compiled.
+Unseen: TypeAlias = tuple[Path, bytes]
 _MEMORY = 8 * 1024**3
 _STARTING_S = 15.0
 
@@ -43,7 +48,8 @@ class Trial:
         try:
             path.write_text(mutated, encoding="utf-8")
             self._renew(path)
-            return self._run(tests, _STARTING_S + 4.0 * expected_s)
+            unseen = None if _feeds_compiled(file, source) else (path, source)
+            return self._run(tests, _STARTING_S + 4.0 * expected_s, unseen)
         finally:
             path.write_bytes(source)
             self._renew(path)
@@ -63,10 +69,10 @@ class Trial:
         self._stamp += 1
         os.utime(path, (self._stamp, self._stamp))
 
-    def _run(self, tests: Sequence[str], patience_s: float) -> str:
+    def _run(self, tests: Sequence[str], patience_s: float, unseen: Unseen | None = None) -> str:
         pid = os.fork()
         if pid == 0:
-            _be_the_tests(self._root, tests)
+            _be_the_tests(self._root, tests, unseen)
         status = _waited(pid, patience_s)
         shutil.rmtree(self._root / ".mutants-tmp", ignore_errors=True)
         if status is None:
@@ -89,7 +95,21 @@ def _waited(pid: int, patience_s: float) -> int | None:
     return None
 
 
-def _be_the_tests(root: Path, tests: Sequence[str]) -> None:
+def _feeds_compiled(file: str, source: bytes) -> bool:
+    """Whether compiled functions may hold something of a file: they take from their own, and from below."""
+    return file.startswith(_BELOW) or b"hil.core.compiled import" in source
+
+
+def _leave_compiled(unseen: Unseen) -> None:
+    """Compiled functions stay good though a file that theirs import has changed: the fault is not in them."""
+    from hil.core import compiled
+
+    path, source = unseen
+    content = compiled._content
+    compiled._content = lambda file: source.decode() if file == path else content(file)  # type: ignore[assignment]
+
+
+def _be_the_tests(root: Path, tests: Sequence[str], unseen: Unseen | None) -> None:
     """In the fork: a process group of its own, no output, and never back."""
     code = 3
     try:
@@ -101,6 +121,8 @@ def _be_the_tests(root: Path, tests: Sequence[str]) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, _MEMORY))
         sys.dont_write_bytecode = True
         os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+        if unseen is not None:
+            _leave_compiled(unseen)
         import pytest
 
         options = ["-x", "-q", "-p", "no:cacheprovider", f"--basetemp={root / '.mutants-tmp'}"]
