@@ -43,8 +43,8 @@ _ACCELERATION_UNIT_RAD_S2 = 1e-4
 class DynoNodes:
     """Node ids on the bus; the host takes part as a node whose heartbeat the dynos watch."""
 
-    rear_left: int = 3
-    rear_right: int = 4
+    rear_left: int
+    rear_right: int
     idle: dict[str, int] = field(default_factory=dict)
     host: int = 127
 

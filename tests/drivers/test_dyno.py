@@ -1,7 +1,10 @@
+import re
+
 import numpy as np
 import pytest
 
 from drivers import BusLoop, DynoDriver, DynoNodes, VehicleParameters, Wire
+from drivers.dyno import read_dyno
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import FRAME
 from sim_backend.bench import Fault
@@ -73,7 +76,25 @@ def test_an_eds_without_the_measured_values_is_refused(tmp_path):
     path = tmp_path / "other.eds"
     path.write_text(SIM.dyno.eds.read_text().replace("0x21010020", "0x2ABC0020"))
     with running("eds") as bench, pytest.raises(BadInputError, match="0x2ABC"):
-        DynoDriver(bench.loop, bench.loop.wires[1], path, DynoNodes(), VehicleParameters())
+        DynoDriver(bench.loop, bench.loop.wires[1], path, DynoNodes(3, 4), VehicleParameters())
+
+
+@pytest.mark.parametrize("place", ["1005", "1006", "1016", "1017", "6060", "6083", "2000"])
+def test_an_eds_without_what_is_written_is_refused(place, tmp_path):
+    path = tmp_path / "other.eds"
+    text = re.sub(rf"(?ms)^\[{place}(sub\d+)?\].*?(?=^\[)", "", SIM.dyno.eds.read_text())
+    path.write_text(re.sub(rf"(?m)^\d+=0x{place}$", "", text))
+    with pytest.raises(BadInputError, match=f"has no object 0x{place}"):
+        read_dyno(path, 3)
+
+
+def test_what_is_measured_is_also_read_by_sdo():
+    with running("measured") as bench:
+        bench.dyno.enable(50.0)
+        bench.dyno.hold_speed(5.0)
+        bench.loop.run_for(1.0)
+        assert bench.dyno.left.measured("Wheel speed") == pytest.approx(5.0, abs=0.05)
+        assert bench.dyno.left.measured("no such object") is None
 
 
 def test_emergencies_are_told():

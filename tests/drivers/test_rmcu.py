@@ -156,3 +156,13 @@ def test_frames_that_cannot_be_believed_say_nothing(change, said):
         bench.loop.run_for(0.05)
         assert bench.rmcu.troubles() == []
         assert bench.rmcu.is_safe()
+
+
+def test_an_rmcu_that_has_not_been_heard_yet_is_in_no_trouble_and_not_safe_either():
+    with running("unheard") as bench:
+        rmcu = RmcuDriver(bench.loop, bench.loop.wires[0], SIM.rmcu.dbc)
+        assert rmcu.troubles() == []
+        assert not rmcu.is_safe()
+        assert not rmcu.is_powerless()
+        with pytest.raises(BenchError, match="sends no status"):
+            rmcu.come_up()

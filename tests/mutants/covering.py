@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,10 +24,32 @@ class Coverage:
     by_file: dict[str, set[str]]
     seconds: dict[str, float]
 
-    def tests_for(self, file: str, line: int) -> list[str]:
-        """Quickest first; for a line that only importing runs, those that run any line of the file."""
-        tests = self.by_line.get(file, {}).get(line) or self.by_file.get(file, set())
-        return sorted(tests, key=lambda test: (self.seconds[test], test))
+    def tests_for(self, file: str, lines: Iterable[int]) -> list[str]:
+        """Those named after the file or its folder first, and the quickest first.
+
+        For lines that only importing runs, those that run any line of the file; of a file that only other
+        processes run, those named after it.
+        """
+        own = self.by_line.get(file, {})
+        tests = set[str]().union(*(own.get(line, set()) for line in lines))
+        named = self._named(file)
+        tests = tests or self.by_file.get(file) or named
+        return sorted(tests, key=lambda test: (test not in named, self.seconds[test], test))
+
+    def _named(self, file: str) -> set[str]:
+        path = Path(file)
+        own = [f"/test_{name}.py::" for name in (path.stem.removeprefix("_"), path.parent.name)]
+        return {test for test in self.seconds if any(name in test for name in own)}
+
+
+def shown_by(source: str, line: int) -> range:
+    """Lines that run if what stands in `line` does: itself, or of a function's head its body."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            head = min(part.lineno for part in (node, *node.decorator_list))
+            if head <= line < node.body[0].lineno:
+                return range(node.body[0].lineno, (node.end_lineno or line) + 1)
+    return range(line, line + 1)
 
 
 class Times:
@@ -86,7 +109,8 @@ def covered(root: Path, sources: Sequence[str], tests: Sequence[str]) -> Coverag
 
 
 def _environment(data_file: Path) -> dict[str, str]:
-    return os.environ | {"COVERAGE_FILE": str(data_file)}
+    kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    return kept | {"COVERAGE_FILE": str(data_file)}  # what it compiles is read for every mutant
 
 
 def _read(data_file: Path, root: Path, seconds: dict[str, float]) -> Coverage:

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.mutants.again import not_noticed_before
-from tests.mutants.covering import Coverage, covered
+from tests.mutants.covering import Coverage, covered, shown_by
 from tests.mutants.mutating import Mutant, difference, drawn
 from tests.mutants.page import Outcome, Tried, as_markdown
 from tests.mutants.trying import Trial, import_heavy_libraries
@@ -182,7 +182,7 @@ def _sources(package: str) -> list[str]:
 def _outcome(trial: Trial, root: Path, coverage: Coverage, mutant: Mutant) -> Outcome:
     source = (root / mutant.file).read_text("utf-8")
     mutated = mutant.code(source)
-    tests = coverage.tests_for(mutant.file, mutant.line)
+    tests = coverage.tests_for(mutant.file, shown_by(source, mutant.line))
     before, after = difference(source, mutated)
     noticed = "" if tests else "not run"
     at = 0

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.mutants.again import not_noticed_before
-from tests.mutants.covering import Coverage
+from tests.mutants.covering import Coverage, shown_by
 from tests.mutants.mutating import drawn
 from tests.mutants.page import Outcome, Tried, as_markdown, wilson
 from tests.mutants.run import explained
@@ -31,6 +31,9 @@ def clipped(value: float | None, *, low: int = 1) -> float | None:
 def fast(value):
     return value * 2
 '''
+
+
+HEAD = "def clipped(value: float | None, *, low: int = 1) -> float | None:"
 
 
 @pytest.fixture
@@ -67,9 +70,22 @@ def test_the_quickest_tests_of_a_line_come_first_and_a_line_of_imports_has_its_f
     coverage = Coverage({"code.py": {5: {"slow", "quick"}}}, {"code.py": {"slow", "quick", "other"}}, {
         "slow": 2.0, "quick": 0.1, "other": 1.0,
     })  # fmt: skip
-    assert coverage.tests_for("code.py", 5) == ["quick", "slow"]
-    assert coverage.tests_for("code.py", 1) == ["quick", "other", "slow"]
-    assert coverage.tests_for("elsewhere.py", 1) == []
+    assert coverage.tests_for("code.py", [5]) == ["quick", "slow"]
+    assert coverage.tests_for("code.py", [1]) == ["quick", "other", "slow"]
+    assert coverage.tests_for("elsewhere.py", [1]) == []
+
+
+def test_a_file_that_only_other_processes_run_has_the_tests_named_after_it() -> None:
+    seconds = {"tests/test_worker.py::test_it": 1.0, "tests/test_workers.py::test_them": 1.0}
+    assert Coverage({}, {}, seconds).tests_for("hil/_worker.py", [3]) == ["tests/test_worker.py::test_it"]
+
+
+def test_a_functions_head_is_shown_by_its_body() -> None:
+    lines = SOURCE.splitlines()
+    head, decorator = (lines.index(text) + 1 for text in (HEAD, "@njit(cache=True)"))
+    assert lines[shown_by(SOURCE, head)[0] - 1].strip() == '"""Docstring 7."""'
+    assert [lines[n - 1].strip() for n in shown_by(SOURCE, decorator)] == ["return value * 2"]
+    assert list(shown_by(SOURCE, 6)) == [6]
 
 
 def test_the_interval_is_wilsons() -> None:

@@ -111,6 +111,16 @@ def test_a_slope_is_limited_in_units_a_second() -> None:
     assert (result.of, result.unit, result.lowest) == ("slope", "K/s", pytest.approx(-51.0))
 
 
+@pytest.mark.parametrize(
+    ("over_s", "taken_s"),
+    [(0.001, 0.01), (0.01, 0.01), (0.03, 0.03), (0.06, 0.06), (0.07, 0.07), (0.29, 0.29)],
+)
+def test_a_slope_is_taken_over_its_time_in_whole_samples_at_least_one(over_s: float, taken_s: float) -> None:
+    range_ = Range("value", -1e6, 1e6, 0.0, "r", "", None, 0.0, "warn", slope_s=over_s)
+    watched, _ = looked(range_, [0.0] * 40 + [1.0] * 40, 7)
+    assert next(watched.results()).highest == pytest.approx(1.0 / taken_s)
+
+
 def test_a_trip_is_told_as_long_as_it_stands() -> None:
     range_ = Range("value", -10.0, 10.0, 0.0, "r", "K", 0)
     assert len(looked(range_, [12.0] * 9, 1)[1]) == 9

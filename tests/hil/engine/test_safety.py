@@ -84,6 +84,24 @@ def test_a_device_that_fails_is_told_of_and_the_others_are_safe(
         assert bench.dyno.is_safe()
 
 
+class Unasked(Valve):
+    """Closes, but a fault in its code keeps it from saying so."""
+
+    def is_safe(self) -> bool:
+        raise ZeroDivisionError("no reading")
+
+
+def test_of_a_device_that_cannot_be_asked_nothing_is_known() -> None:
+    with running("safety-unasked") as bench:
+        bench.further["valve"] = Unasked()
+        seen: list[Exception] = []
+        (complaint,) = reach_safe_state(bench, seen.append)
+        said = "valve did not confirm its safe state within 0.05 s: ZeroDivisionError: no reading"
+        assert complaint == said
+        assert len(seen) == 1
+        assert bench.rmcu.is_safe()
+
+
 def test_a_device_is_told_every_10_ms_until_it_is_there() -> None:
     with running("safety-slow") as bench:
         valve = bench.further["valve"] = Valve(closes_after=4, within_s=1.0)
