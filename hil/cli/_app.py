@@ -49,6 +49,7 @@ _COMMANDS = {
     "replay": "CAN logs of other tools, decoded to a recording with its report.",
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
     "serve": "The bench service: a queue of runs, an API, a page that shows what benches do.",
+    "agent": "Benches of this machine for a bench service elsewhere.",
     "doctor": "What of a bench is there, what is wrong with it, and what to do.",
     "monitor": "Decoded channels and bus load live, touching nothing.",
     "jog": "Turn the axle at low torque and check the sign of every sensor.",

@@ -19,6 +19,7 @@ def carry_out(
     *,
     data: Path,
     bench: list[str],
+    no_bench: bool,
     host: str,
     port: int,
     allow_host: list[str],
@@ -43,6 +44,8 @@ def carry_out(
         ) from error
     if for_s is not None and not for_s > 0:
         raise BadInputError(f"--for is {for_s:g}", fix="give seconds greater than 0, or leave it out")
+    if bench and no_bench:
+        raise BadInputError("--bench does not go with --no-bench", fix="leave one of them out")
     if add_token:
         name, _, role = add_token.rpartition("=")
         made = make_token(data, database, name, role)
@@ -62,7 +65,7 @@ def carry_out(
 
     request = ServeRequest(
         folder=data,
-        benches=bench,
+        benches=[] if no_bench else bench or ["sim"],
         commands=Commands(_HIL, RUNNER),
         host=host,
         port=port,

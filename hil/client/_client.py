@@ -17,6 +17,15 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from hil.core.errors import BenchError
 from hil.core.files import replacing
+from hil.service.agent_data import (
+    AgentData,
+    AgentOrders,
+    AgentReport,
+    Delivered,
+    FileThere,
+    RunEnding,
+    Taken,
+)
 from hil.service.comparison_data import ComparisonData, TracesData
 from hil.service.data import (
     OVER,
@@ -60,7 +69,13 @@ A = TypeVar("A")
 T = TypeVar("T", bound=BaseModel)
 _WITHIN_S = 30.0
 _FORECAST_WITHIN_S = 300.0
+_REPORTED_WITHIN_S = 5.0
 _LOOK_S = 0.5
+#: What a request carries: JSON, a text, or bytes of a file.
+_Body = BaseModel | str | bytes | None
+
+
+_KINDS = {str: "application/yaml", bytes: "application/octet-stream"}
 
 
 class RefusedError(BenchError):
@@ -273,6 +288,33 @@ class Client:
         ):
             shutil.copyfileobj(answer, file)
 
+    def agents(self) -> list[AgentData]:
+        """Agents that have benches there."""
+        return self._several(AgentData, "/agents")
+
+    def let_agent_go(self, bench: str) -> None:
+        """Let another agent have the bench of one that is away."""
+        with self._opened("DELETE", f"/benches/{_part(bench)}/agent", None, _WITHIN_S):
+            pass
+
+    def report(self, agent: str, report: AgentReport) -> AgentOrders:
+        """What an agent tells of itself, and what it has to do."""
+        return self._one(AgentOrders, "PUT", f"/agents/{agent}", report, within_s=_REPORTED_WITHIN_S)
+
+    def take(self, agent: str, bench: str) -> Taken:
+        """The run whose turn it is on a bench of an agent."""
+        return self._one(Taken, "POST", f"/agents/{agent}/benches/{_part(bench)}/take")
+
+    def send(self, agent: str, run: int, name: str, at: int, piece: bytes) -> FileThere:
+        """A piece of a file of an agent's run; how much of it is there then."""
+        return self._one(FileThere, "PUT", f"/agents/{agent}/runs/{run}/files/{_part(name)}?at={at}", piece)
+
+    def deliver(self, agent: str, run: int, ending: RunEnding) -> Delivered:
+        """How an agent's run ended; which of its files are to be sent before it is over there."""
+        return self._one(
+            Delivered, "POST", f"/agents/{agent}/runs/{run}/ending", ending, within_s=_FORECAST_WITHIN_S
+        )
+
     def tokens(self) -> list[TokenData]:
         """All tokens, without their secrets."""
         return self._several(TokenData, "/tokens")
@@ -290,7 +332,7 @@ class Client:
         kind: type[T],
         method: str,
         path: str,
-        body: BaseModel | str | None = None,
+        body: _Body = None,
         within_s: float = _WITHIN_S,
     ) -> T:
         return _checked(TypeAdapter(kind), self._json(method, path, body, within_s))
@@ -298,19 +340,19 @@ class Client:
     def _several(self, kind: type[T], path: str) -> list[T]:
         return _checked(TypeAdapter(list[kind]), self._json("GET", path, None, _WITHIN_S))  # type: ignore[valid-type]
 
-    def _json(self, method: str, path: str, body: BaseModel | str | None, within_s: float) -> Any:
+    def _json(self, method: str, path: str, body: _Body, within_s: float) -> Any:
         try:
             with self._opened(method, path, body, within_s) as answer:
                 return json.load(answer)
         except (ValueError, HTTPException, OSError) as error:
             raise self._unreachable(error) from error
 
-    def _opened(self, method: str, path: str, body: BaseModel | str | None, within_s: float) -> HTTPResponse:
+    def _opened(self, method: str, path: str, body: _Body, within_s: float) -> HTTPResponse:
         headers = {"Authorization": f"Bearer {self._token}"} if self._token else {}
         if body is not None:
-            headers["Content-Type"] = "application/yaml" if isinstance(body, str) else "application/json"
-        text = body.model_dump_json() if isinstance(body, BaseModel) else body
-        data = None if text is None else text.encode()
+            headers["Content-Type"] = _KINDS.get(type(body), "application/json")
+        content = body.model_dump_json() if isinstance(body, BaseModel) else body
+        data = content.encode() if isinstance(content, str) else content
         try:
             request = urllib.request.Request(f"{self._url}/api/v1{path}", data, headers, method=method)
             answer: HTTPResponse = _opener.open(request, timeout=within_s)

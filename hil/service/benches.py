@@ -21,6 +21,16 @@ class Bench:
         self.name = self.file.name
 
     @property
+    def title(self) -> str:
+        """What it is called for people."""
+        return self.file.title
+
+    @property
+    def simulated(self) -> bool:
+        """Whether what moves is computed."""
+        return self.file.simulation is not None
+
+    @property
     def limits(self) -> dict[str, float]:
         """Largest magnitude by channel; of the shaft torque, whose sides are limited, also both together."""
         return limits_of_channels(self.file.limits) | {"shaft_torque_nm": self.file.limits.shaft_torque_nm}

@@ -21,9 +21,13 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 RunState = Literal["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"]
 OVER: tuple[RunState, ...] = ("ended", "interrupted", "cancelled")
 
-BenchState = Literal["free", "running", "ending", "in_use", "emergency_stop"]
-Role = Literal["viewer", "operator", "engineer", "admin"]
-ROLES: tuple[Role, ...] = ("viewer", "operator", "engineer", "admin")
+#: `away`: its agent is not heard of.
+BenchState = Literal["free", "running", "ending", "in_use", "emergency_stop", "away"]
+Role = Literal["viewer", "operator", "engineer", "admin", "agent"]
+#: Of people, each may what those before it may.
+LADDER: tuple[Role, ...] = ("viewer", "operator", "engineer", "admin")
+#: An agent may do an agent's work, and nothing else.
+ROLES: tuple[Role, ...] = (*LADDER, "agent")
 
 
 class _Data(BaseModel):
@@ -123,6 +127,8 @@ class BenchData(_Data):
     limits: dict[str, float] = Field(description="largest magnitude by channel, in the channel's unit")
     units: dict[str, str] = Field(description="unit by channel, of all that is recorded")
     lease: str = Field("", description="who has it for themselves")
+    machine: str = Field("", description="where its agent is; '' for one of the service's own")
+    away_since: datetime.datetime | None = Field(None, description="when its agent was last heard of")
 
 
 class VariableData(_Data):

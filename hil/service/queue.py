@@ -15,35 +15,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from hil.core.errors import BenchError, HilError
-from hil.core.files import make_directory, write_atomically
-from hil.engine import RECORDING
-from hil.engine.border_messages import Progressed, Refused, RunAsked, Told
+from hil.service.agent_data import TakenRun
 from hil.service.benches import Bench
-from hil.service.data import BenchState, RunData, RunState
+from hil.service.carrying_out import CarriedRun, RunEnd, RunningRun, end_of_left
+from hil.service.data import BenchState, RunData
 from hil.service.run_files import folder_of
-from hil.service.run_process import RunProcess, alive_in, result_in
-from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore, TakenRun
+from hil.service.run_process import alive_in
+from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore
 
 _LOOK_S = 0.5  # how often a bench is looked at that cannot be driven now
 _USED_S = 1.0  # how old that look may be for those who ask over the API
 _HELD_AGAIN_S = 20.0  # a third of how long a bench is held
 _LAST_WRITE_S = 5.0  # how long the end of a run waits for a database that is away when the service ends
-_NOTHING = "the service ended before anything was recorded; the run can be queued again"
-_KEPT = "the service ended meanwhile; what was measured until then is kept"
 
 logger = logging.getLogger(__name__)
-
-
-@dataclass
-class RunningRun:
-    """A run under way. `told`: the last text for its operator."""
-
-    data: RunData
-    folder: Path
-    process: RunProcess
-    share: float | None = None
-    doing: str = "beginning"
-    told: str = ""
 
 
 @dataclass
@@ -51,7 +36,7 @@ class _Place:
     """A bench and what goes on on it."""
 
     bench: Bench
-    running: RunningRun | None = None
+    running: CarriedRun | None = None
     left: list[RunData] = field(default_factory=list)  # of an earlier service, perhaps still ending
     used_by: str = ""
     looked_s: float = -1e9
@@ -195,44 +180,32 @@ class Queue:
         return place.used_by
 
     async def _begin(self, place: _Place, taken: TakenRun) -> None:
-        run, folder = taken.data, self.folder_of(taken.data.id)
+        run = taken.data
         try:
-            make_directory(folder)
-            write_atomically(folder / "plan.yaml", taken.plan_text)
-            asked = _asked(taken, place.bench, folder)
-            process = await RunProcess.begin(self._command, asked)
+            place.running = await CarriedRun.begin(self._command, taken, place.bench, self.folder_of(run.id))
         except (HilError, OSError) as error:
             code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
             why = str(error)
             await self._written(lambda: self._runs.end(run.id, "ended", exit_code=code, reason=why))
             self._changed(run.bench)
             return
-        place.running = RunningRun(run, folder, process)
         logger.info("run %d begins on %s", run.id, run.bench)
         self._changed(run.bench)
         task = asyncio.create_task(self._watch(place, place.running))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _watch(self, place: _Place, running: RunningRun) -> None:
+    async def _watch(self, place: _Place, running: CarriedRun) -> None:
         """Listen to a run until it has ended, and write down how."""
-        refused: HilError | None = None
-        async for message in running.process.messages():
-            if isinstance(message, Progressed):
-                running.share = message.share if message.share >= 0 else running.share
-                running.doing = message.text
-            elif isinstance(message, Told):
-                running.told = message.text
-            elif isinstance(message, Refused):
-                refused = message.error.as_error()
-            self._changed(running.data.bench)
-        code = await running.process.exit_code()
+        bench = running.data.bench
+        end = await running.ended(place.bench, lambda: self._changed(bench), lambda: self._closing)
+        running.doing = "its end is being written down"
         try:
-            await self._conclude(place, running, code, refused)
+            await self._written(lambda: self._write(running.data, end))
         finally:
             place.running = None
             self.wake()
-            self._changed(running.data.bench)
+            self._changed(bench)
 
     async def _written(self, write: Callable[[], object]) -> None:
         """Write to the store as soon as it answers; what a service could not write the next one does."""
@@ -246,59 +219,18 @@ class Queue:
             else:
                 return
 
-    async def _conclude(
-        self, place: _Place, running: RunningRun, code: int, refused: HilError | None
-    ) -> None:
-        run, result = running.data, result_in(running.folder)
-        recorded = (running.folder / RECORDING).exists()
-        if refused is not None and not recorded and not self._closing and self._used_by(place, fresh=True):
-            logger.info("run %d waits again: somebody was quicker on %s", run.id, run.bench)
-            await self._written(lambda: self._runs.put_back(run.id))
-            return
-        reason = "" if result is not None else str(refused or f"its process ended with code {code}")
-        if result is None and recorded:
-            reason += f"\n  hil recover {running.folder} makes a whole recording of what was measured"
-        state: RunState = "interrupted" if self._closing else "ended"
-        dut = place.bench.file.dut.get("serial", place.bench.file.dut.get("name", ""))
-        running.doing = "its end is being written down"
-        await self._written(
-            lambda: self._runs.end(run.id, state, exit_code=code, result=result, reason=reason, dut=dut)
-        )
-        logger.info("run %d ended on %s with code %d", run.id, run.bench, code)
-
     def _conclude_left(self, run: RunData) -> None:
         """Mark a run whose service was killed; its process has ended."""
-        folder = self.folder_of(run.id)
-        result = result_in(folder)
-        reason = _KEPT if (folder / RECORDING).exists() else _NOTHING
-        if result is not None and result.reason:
-            reason += f": {result.reason}"
-        logger.warning("run %d: %s", run.id, reason)
-        self._runs.end(run.id, "interrupted", result=result, reason=reason)
+        end = end_of_left(self.folder_of(run.id), "service")
+        logger.warning("run %d: %s", run.id, end.reason)
+        self._write(run, end)
 
-
-def _asked(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:
-    """What the process of a run is told.
-
-    Raises:
-        BadInputError: the bench's file cannot be used any more.
-    """
-    run, file = taken.data, bench.read_again()
-    return RunAsked(
-        plan=taken.plan_text,
-        plan_source=taken.plan_source,
-        bench=file.text,
-        bench_source=str(file.source),
-        out=str(folder),
-        operator=run.requested_by,
-        operator_is_there=True,
-        confirmed_by=taken.confirmed_by,
-        hazard_confirmed_by=_takes_it_upon_them(run),
-        accept_expired=taken.accept_expired,
-    )
-
-
-def _takes_it_upon_them(run: RunData) -> str:
-    if not run.hazard:
-        return ""
-    return f"{run.requested_by}, approved by {run.approved_by}" if run.approved_by else run.requested_by
+    def _write(self, run: RunData, end: RunEnd) -> None:
+        if end.state == "queued":
+            logger.info("run %d waits again: somebody was quicker on %s", run.id, run.bench)
+            self._runs.put_back(run.id)
+            return
+        self._runs.end(
+            run.id, end.state, exit_code=end.exit_code, result=end.result, reason=end.reason, dut=end.dut
+        )
+        logger.info("run %d ended on %s with code %s", run.id, run.bench, end.exit_code)

@@ -6,7 +6,8 @@ import asyncio
 import contextlib
 import logging
 import time
-from collections.abc import Sequence
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,10 +16,13 @@ from sqlalchemy import Engine
 from hil.core.errors import HilError
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
+from hil.service.agents import Agents, RemoteBench
 from hil.service.apart import apart
 from hil.service.archive import Archive, Keeper
+from hil.service.arrivals import Arrivals
 from hil.service.benches import Bench
-from hil.service.data import OVER, BenchData, RunData
+from hil.service.carrying_out import RunningRun
+from hil.service.data import OVER, BenchData, BenchState, Me, RunData
 from hil.service.desk import Desk
 from hil.service.forecasts import Forecasts
 from hil.service.live import LiveRun
@@ -101,7 +105,7 @@ class Service:
         archive: Archive | None = None,
         local_days: float = 30.0,
     ) -> None:
-        self.benches = benches
+        self._own = benches
         self.database = Presence(engine)
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
@@ -121,16 +125,44 @@ class Service:
         self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, commands.run, self.changed)
         self.began_s = time.monotonic()
         self.closing = False
-        self.viewers: dict[str, set[asyncio.Event]] = {name: set() for name in benches}
+        self.viewers: defaultdict[str, set[asyncio.Event]] = defaultdict(set)
         self.on_show: dict[str, OnShow] = {}
-        self._version: dict[str, int] = dict.fromkeys(benches, 0)
-        self._waiting = {name: Waiting() for name in benches}
+        self._version: defaultdict[str, int] = defaultdict(int)
+        self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
+        self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, self.changed)
+        self.arrivals = Arrivals(held.service, self.runs, runs_folder)
+        self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
         self._unwritten: list[tuple[str, str, str, str]] = []
 
+    @property
+    def benches(self) -> Mapping[str, Bench | RemoteBench]:
+        """The service's own, then those of agents."""
+        return {**self._own, **{n: b for n, b in self.agents.benches.items() if n not in self._own}}
+
+    def own(self, bench: str) -> Bench | None:
+        """A bench of the service's own; None if it is an agent's."""
+        return self._own.get(bench)
+
+    def running(self, bench: str) -> RunningRun | None:
+        """The run under way on a bench."""
+        return self.queue.running(bench) if bench in self._own else self.agents.benches[bench].running
+
+    def running_run(self, run: int) -> RunningRun | None:
+        """A run by its number, if it is under way."""
+        return self.queue.running_run(run) or self.agents.running_run(run)
+
+    def state(self, bench: str) -> tuple[BenchState, str]:
+        """What a bench does, and why it may not be driven."""
+        return self.queue.state(bench) if bench in self._own else self.agents.benches[bench].state()
+
+    def wake(self, bench: str) -> None:
+        """Look now what waits for a bench."""
+        if bench in self._own:
+            self.queue.wake()
+        self.agents.wake(bench)
+
     def changed(self, bench: str) -> None:
-        """Something of a bench is to be shown anew; those of other services are shown there."""
-        if bench not in self.benches:
-            return
+        """Something of a bench is to be shown anew."""
         self._version[bench] += 1
         self._tell(bench)
 
@@ -140,13 +172,14 @@ class Service:
 
     def bench_data(self, name: str) -> BenchData:
         """A bench as it is now."""
-        bench, running, waiting = self.benches[name], self.queue.running(name), self.waiting(name)
-        state, why = self.queue.state(name)
+        bench, running, waiting = self.benches[name], self.running(name), self.waiting(name)
+        state, why = self.state(name)
+        agent = bench.agent if isinstance(bench, RemoteBench) else None
         why = f"{why}; {self.database.away}".removeprefix("; ") if self.database.away else why
         return BenchData(
             name=name,
-            title=bench.file.title,
-            simulated=bench.file.simulation is not None,
+            title=bench.title,
+            simulated=bench.simulated,
             state=state,
             why=why,
             running=running.data.id if running else None,
@@ -154,6 +187,8 @@ class Service:
             limits=bench.limits,
             units=bench.units,
             lease=waiting.lease,
+            machine=agent.machine if agent else "",
+            away_since=agent.heard_at if agent and agent.away else None,
         )
 
     def waiting(self, bench: str) -> Waiting:
@@ -169,7 +204,7 @@ class Service:
 
     def with_progress(self, run: RunData) -> RunData:
         """A run with what only this process knows: how far it is, which files it has left."""
-        running = self.queue.running_run(run.id)
+        running = self.running_run(run.id)
         if running is not None:
             away = f"; {self.database.away}" if self.database.away else ""
             doing = {"share": running.share, "doing": running.doing + away, "told": running.told}
@@ -195,7 +230,7 @@ class Service:
 
     def stop_run_in_emergency(self, bench: str) -> None:
         """Tell the run under way, if there is one; asks nobody anything before."""
-        running = self.queue.running(bench)
+        running = self.running(bench)
         if running is not None:
             running.process.stop_in_emergency()
 
@@ -206,12 +241,28 @@ class Service:
             HilError: the stop cannot be latched; a run was told to stop all the same.
         """
         self.stop_run_in_emergency(bench)
+        own = self.own(bench)
         try:
-            running = self.queue.running(bench)
+            running = self.running(bench)
             folder = running.folder if running is not None else Path()
-            self.benches[bench].stop(by, folder)
+            if own is not None:
+                own.stop(by, folder)
+            else:
+                with contextlib.suppress(DatabaseAwayError):  # its agent is told all the same
+                    self.agents.stop_in_emergency(bench, by)
         finally:
             self.changed(bench)
+
+    async def reset(self, bench: str, by: str) -> int | None:
+        """Let a bench be armed again; how many stops there were, None if its agent has not answered.
+
+        Raises:
+            HilError: that cannot be written.
+        """
+        own = self.own(bench)
+        if own is not None:
+            return own.reset(by)
+        return 1 if await self.agents.reset(bench, by) else None
 
     def write_down(self, who: str, role: str, action: str, target: str) -> None:
         """Write what must not fail for the audit log's sake: later, if the database is away."""
@@ -226,6 +277,7 @@ class Service:
         shown = ""
         while not self.closing:
             await asyncio.sleep(_ASK_S)
+            self.agents.look()
             if self.database.away:
                 await apart(self.database.ask)
                 self.queue.wake()
@@ -246,13 +298,13 @@ class Service:
     async def follow(self) -> None:
         """Read what runs measure, until the service is closed."""
         while not self.closing:
-            for name in self.benches:
+            for name in list(self.benches):
                 self._follow(name)
                 await self._judge(name)
             await asyncio.sleep(_LOOK_S)
 
     def _follow(self, bench: str) -> None:
-        running, shown = self.queue.running(bench), self.on_show.get(bench)
+        running, shown = self.running(bench), self.on_show.get(bench)
         if running is not None and (shown is None or shown.run != running.data.id):
             if shown is not None:
                 shown.live.close()

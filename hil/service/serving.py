@@ -156,8 +156,9 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         await service.studies.close()
         service.desk.close()
         service.drawing.close()
-        for bench in service.benches:
+        for bench in list(service.benches):
             service.changed(bench)
+            service.agents.wake(bench)
     done, _ = await asyncio.wait([*tasks, *besides], timeout=_LAST_ANSWERS_S + 3.0)
     for task in done:
         if not task.cancelled():

@@ -33,6 +33,9 @@ USUAL: dict[str, tuple[str, ...]] = {
     "doctor": ("bench.toml", "--for", "0.3"),
     "sim-bench": ("bench.toml", "--port", "0", "--for", "0.5"),
     "serve": ("--data", "service", "--bench", "bench.toml", "--port", "0", "--for", "0.5"),
+    "agent": (
+        "--server", "http://127.0.0.1:9", "--data", "agent", "--bench", "bench.toml", "--for", "0.5",
+    ),
 }  # fmt: skip
 COMMANDS = tuple(USUAL)
 WRITING = (
@@ -87,6 +90,7 @@ FILE_ARGUMENTS = (
     ("doctor", "BENCH", "bench.toml", "model.toml"),
     ("sim-bench", "BENCH", "bench.toml", "model.toml"),
     ("serve", "--bench", "bench.toml", "model.toml"),
+    ("agent", "--bench", "bench.toml", "model.toml"),
 )
 READ_ELSEWHERE = (
     ("run", "--model"),
@@ -101,6 +105,7 @@ READ_ELSEWHERE = (
     ("doctor", "BENCH"),
     ("sim-bench", "BENCH"),
     ("serve", "--bench"),
+    ("agent", "--bench"),
 )
 #: Every numeric option.
 NUMBERS = {

@@ -188,6 +188,8 @@ def test_the_commands_of_a_page_work_one_after_the_other(page, stage, served):
             assert _interrupted(line.arguments) in CODES["monitor",]
         elif name == "serve" and "--add-token" not in arguments:
             assert _interrupted((*line.arguments, "--port", "0")) == 130
+        elif name == "agent":
+            assert _interrupted(line.arguments) == 130
         else:
             _carry_out(name, arguments)
         print(f"{time.monotonic() - began:6.1f} s  {line}")

@@ -17,6 +17,9 @@ def command(
     bench: Annotated[
         list[str] | None, typer.Option(help="bench files, or names of shipped benches; default: sim")
     ] = None,
+    no_bench: Annotated[
+        bool, typer.Option("--no-bench", help="serve no bench of this machine, only those of agents")
+    ] = False,
     host: Annotated[
         str, typer.Option(help="address to listen at; another than this machine's needs tokens")
     ] = ("127.0.0.1"),
@@ -57,7 +60,7 @@ def command(
         str,
         typer.Option(
             metavar="NAME=ROLE",
-            help="make a token, print it, and end; roles: viewer, operator, engineer, admin",
+            help="make a token, print it, and end; roles: viewer, operator, engineer, admin, agent",
         ),
     ] = "",
     as_json: Annotated[
@@ -74,7 +77,7 @@ def command(
     from hil.cli.serve import carry_out
 
     return carry_out(
-        data=data, bench=bench or ["sim"], host=host, port=port, allow_host=allow_host or [],
+        data=data, bench=bench or [], no_bench=no_bench, host=host, port=port, allow_host=allow_host or [],
         database=database, store=store, keep_local=keep_local, rate=rate, for_s=for_s,
         add_token=add_token, as_json=as_json,
     )  # fmt: skip

@@ -9,10 +9,12 @@ from fastapi import Depends, Request
 from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
 
 from hil.service.api._problems import RefusedError
-from hil.service.data import ROLES, Me, Role
+from hil.service.data import LADDER, Me, Role
 from hil.service.service import Service
+from hil.service.store import DatabaseAwayError
 
 COOKIE = "hil_token"
+_MOST = 1000
 _bearer = HTTPBearer(auto_error=False, description="a token of the service")
 _cookie = APIKeyCookie(name=COOKIE, auto_error=False, description="the same, as the page has it")
 
@@ -48,13 +50,40 @@ def who(
 
 def _needs(role: Role) -> Callable[[Me], Me]:
     def check(me: Annotated[Me, Depends(who)]) -> Me:
-        if ROLES.index(me.role) < ROLES.index(role):
+        if me.role not in LADDER or LADDER.index(me.role) < LADDER.index(role):
             raise RefusedError(403, f"{me.name} is {me.role}; {role} is needed", fix="ask who may")
         return me
 
     return check
 
 
+def _agent(
+    service: TheService,
+    header: Annotated[HTTPAuthorizationCredentials | None, Depends(_bearer)],
+    cookie: Annotated[str | None, Depends(_cookie)],
+) -> Me:
+    """An agent, or who may do everything; one that was known stays so while the database is away.
+
+    Otherwise no emergency stop would reach it then.
+
+    Raises:
+        RefusedError: another role.
+    """
+    secret = header.credentials if header is not None else cookie or ""
+    try:
+        me = who(service, header, cookie)
+    except DatabaseAwayError:
+        known = service.known_agents.get(secret)
+        if known is None:
+            raise
+        return known
+    if me.role not in ("agent", "admin"):
+        raise RefusedError(403, f"{me.name} is {me.role}; agent is needed", fix="ask who may")
+    service.known_agents = {**service.known_agents, secret: me} if len(service.known_agents) < _MOST else {}
+    return me
+
+
+AgentItself = Annotated[Me, Depends(_agent)]
 Viewer = Annotated[Me, Depends(_needs("viewer"))]
 Operator = Annotated[Me, Depends(_needs("operator"))]
 Engineer = Annotated[Me, Depends(_needs("engineer"))]

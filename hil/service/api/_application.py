@@ -9,6 +9,7 @@ from fastapi import FastAPI
 from starlette.types import ASGIApp
 
 from hil.service.api import (
+    _agents,
     _benches,
     _comparisons,
     _design,
@@ -26,7 +27,7 @@ from hil.service.api._problems import RESPONSES, answer_problems
 from hil.service.service import Service
 
 PREFIX = "/api/v1"
-_PARTS = (_health, _benches, _live, _plans, _runs, _comparisons, _trends, _design, _studies, _people)
+_PARTS = (_health, _benches, _agents, _live, _plans, _runs, _comparisons, _trends, _design, _studies, _people)
 
 
 def application(service: Service, *, hosts: tuple[str, ...], rates: Rates) -> ASGIApp:

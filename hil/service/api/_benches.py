@@ -53,10 +53,10 @@ async def stop_in_emergency(bench: BenchName, service: TheService, request: Requ
 @router.post("/emergency-stop", name="stop_all_in_emergency")
 async def stop_all_in_emergency(service: TheService, request: Request) -> list[BenchData]:
     """Have all benches safe at once, and keep them so. Everybody may; no token is asked for."""
-    for bench in service.benches:
+    for bench in list(service.benches):
         service.stop_run_in_emergency(bench)
     by, role = _named(service, request)
-    for bench in service.benches:
+    for bench in list(service.benches):
         await service.stop_in_emergency(bench, by)
     service.write_down(by, role, "emergency stop", "all benches")
     return [service.bench_data(name) for name in service.benches]
@@ -79,11 +79,13 @@ def _named(service: Service, request: Request) -> tuple[str, str]:
 async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> BenchData:
     """Let a bench be armed again after an emergency stop."""
     known(service, bench)
-    if service.queue.running(bench) is not None:
+    if service.running(bench) is not None:
         raise RefusedError(409, "a run is still being ended", where=bench, fix="wait until it is over")
-    count = service.benches[bench].reset(me.name)
+    count = await service.reset(bench, me.name)
+    if count is None:
+        raise RefusedError(409, "its agent does not answer", where=bench, fix="look whether it runs")
     service.log.add(me.name, me.role, "reset", bench, f"{count} stops")
-    service.queue.wake()
+    service.wake(bench)
     service.changed(bench)
     return service.bench_data(bench)
 
@@ -107,6 +109,6 @@ async def give_lease_back(bench: BenchName, service: TheService, me: Operator) -
         raise RefusedError(403, f"{lease.holder} has it", where=bench)
     service.leases.give_back(bench)
     service.log.add(me.name, me.role, "lease given back", bench)
-    service.queue.wake()
+    service.wake(bench)
     service.changed(bench)
     return service.bench_data(bench)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from collections import OrderedDict
 from dataclasses import dataclass
@@ -11,7 +12,11 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from hil.service.agent_data import MOST_PIECE_BYTES
+
 MOST_BODY_BYTES = 256_000
+#: What an agent sends of a run's file may be longer: MOST_PIECE_BYTES.
+_PIECE = re.compile(r"/api/v1/agents/[0-9a-f]{32}/runs/[0-9]+/files/[^/]+")
 _EMERGENCY = "/emergency-stop"
 _MOST_ADDRESSES = 10_000
 _SAFE = ("GET", "HEAD", "OPTIONS")
@@ -46,7 +51,7 @@ class Guard:
         if refusal is not None:
             await _refuse(send, *refusal)
             return
-        await self._app(scope, _Limited(receive).receive, _with_headers(send))
+        await self._app(scope, _Limited(receive, _most(scope)).receive, _with_headers(send))
 
     def _refusal(self, scope: Scope, headers: Headers) -> tuple[int, str] | None:
         host = headers.get("host", "")
@@ -55,8 +60,8 @@ class Guard:
         origin = headers.get("origin")
         if origin is not None and scope["method"] not in _SAFE and urlsplit(origin).netloc != host:
             return 403, "the request comes from another site's page"
-        if not _fits(headers.get("content-length", "0")):
-            return 413, f"at most {MOST_BODY_BYTES} bytes are taken"
+        if not _fits(headers.get("content-length", "0"), _most(scope)):
+            return 413, f"at most {_most(scope)} bytes are taken"
         client = scope.get("client")
         if not scope["path"].endswith(_EMERGENCY) and not self._may(client[0] if client else ""):
             return 429, "too many requests; wait a second"
@@ -77,8 +82,8 @@ class Guard:
 class _Limited:
     """A body that ends where it becomes too long: its size may not be known beforehand."""
 
-    def __init__(self, receive: Receive) -> None:
-        self._receive, self._left = receive, MOST_BODY_BYTES
+    def __init__(self, receive: Receive, most: int) -> None:
+        self._receive, self._left = receive, most
 
     async def receive(self) -> Message:
         message = await self._receive()
@@ -94,8 +99,12 @@ def _name(host: str) -> str:
         return ""
 
 
-def _fits(length: str) -> bool:
-    return length.isascii() and length.isdecimal() and int(length[:12]) <= MOST_BODY_BYTES
+def _most(scope: Scope) -> int:
+    return MOST_PIECE_BYTES if _PIECE.fullmatch(scope["path"]) else MOST_BODY_BYTES
+
+
+def _fits(length: str, most: int) -> bool:
+    return length.isascii() and length.isdecimal() and int(length[:12]) <= most
 
 
 async def _refuse(send: Send, status: int, what: str) -> None:

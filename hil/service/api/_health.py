@@ -37,9 +37,11 @@ async def metrics(service: TheService, me: Viewer) -> Response:
         lines.append(f'hil_runs{{bench="{bench}",state="{state}"}} {count}')
     lines += ["# HELP hil_bench_state 1 for the state that a bench is in.", "# TYPE hil_bench_state gauge"]
     for name in service.benches:
-        lines.append(f'hil_bench_state{{bench="{name}",state="{service.queue.state(name)[0]}"}} 1')
+        lines.append(f'hil_bench_state{{bench="{name}",state="{service.state(name)[0]}"}} 1')
     lines += ["# HELP hil_viewers Pages and programs that watch a bench.", "# TYPE hil_viewers gauge"]
-    lines += [f'hil_viewers{{bench="{name}"}} {len(some)}' for name, some in service.viewers.items()]
+    lines += [f'hil_viewers{{bench="{name}"}} {len(service.viewers[name])}' for name in service.benches]
+    lines += ["# HELP hil_agents_connected Agents that are heard of.", "# TYPE hil_agents_connected gauge"]
+    lines.append(f"hil_agents_connected {sum(one.connected for one in service.agents.all())}")
     if service.keeper is not None:
         lines += ["# HELP hil_runs_not_stored Runs whose files the store has not all."]
         lines += ["# TYPE hil_runs_not_stored gauge", f"hil_runs_not_stored {service.keeper.waiting()}"]

@@ -118,7 +118,7 @@ class _Watching:
 
 
 def _state(service: Service, bench: str) -> dict[str, Any]:
-    running = service.queue.running(bench)
+    running = service.running(bench)
     run = service.with_progress(running.data) if running else None
     return {
         "bench": service.bench_data(bench).model_dump(mode="json"),

@@ -12,9 +12,9 @@ from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._from_store import from_store
 from hil.service.api._problems import RefusedError, missing
+from hil.service.carrying_out import RunningRun
 from hil.service.data import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunWanted
 from hil.service.plans import hazard_of
-from hil.service.queue import RunningRun
 from hil.service.service import Service
 from hil.service.store import NewRun
 
@@ -71,7 +71,7 @@ async def queue_run(wanted: RunWanted, service: TheService, me: Operator) -> Run
     run, is_new = service.runs.add(new, approved=not hazard)
     if is_new:
         service.log.add(me.name, me.role, "queue", f"run {run.id}", f"{run.plan} on {run.bench}")
-        service.queue.wake()
+        service.wake(run.bench)
         service.changed(run.bench)
     return service.with_progress(run)
 
@@ -128,7 +128,7 @@ async def answer_run(run: RunId, answer: Answer, service: TheService, me: Operat
 async def abort_run(run: RunId, service: TheService, me: Operator) -> RunData:
     """End a run: one that waits is cancelled, one under way goes to its end steps and keeps what it has."""
     found = _there(service, run)
-    running = service.queue.running_run(run)
+    running = service.running_run(run)
     if running is not None:
         running.process.end()
     elif not service.runs.cancel(run, f"cancelled by {me.name}"):
@@ -170,7 +170,7 @@ def _there(service: Service, run: int) -> RunData:
 
 
 def _running(service: Service, run: int) -> RunningRun:
-    there, found = _there(service, run), service.queue.running_run(run)
+    there, found = _there(service, run), service.running_run(run)
     if found is None and there.bench not in service.benches:
         raise RefusedError(409, f"run {run} is another service's", fix=f"ask the one of {there.bench}")
     if found is None:
@@ -181,6 +181,6 @@ def _running(service: Service, run: int) -> RunningRun:
 def _done(service: Service, me: Me, run: RunData, action: str, detail: str = "") -> RunData:
     """Write it down, have it looked at, and show the run as it is now."""
     service.log.add(me.name, me.role, action, f"run {run.id}", detail)
-    service.queue.wake()
+    service.wake(run.bench)
     service.changed(run.bench)
     return service.with_progress(_there(service, run.id))

@@ -11,10 +11,10 @@ import { beginIdentification } from "./identify.js";
 import { begin, choosePlan, predictAgain } from "./start.js";
 import { drawTrend, showTrends } from "./trends.js";
 
-const STATES = { free: "Free", running: "Running", ending: "A lost run is being ended", in_use: "In use", emergency_stop: "Emergency stop" };
+const STATES = { free: "Free", running: "Running", ending: "A lost run is being ended", in_use: "In use", emergency_stop: "Emergency stop", away: "Its agent is away" };
 const ROLES = ["viewer", "operator", "engineer", "admin"];
 const KINDS = { "report.html": "report", "report.pdf": "PDF", "recording.mcap": "recording", "result.json": "result", "log.txt": "log" };
-const LOST_MS = 15000;
+const LOST_MS = 15000, BENCHES_MS = 5000;
 
 const charts = {
   speed: new TimeChart(at("speed"), [{ channel: "motor_speed_rad_s", role: "gain" }]),
@@ -48,10 +48,13 @@ async function open() {
   at("login").hidden = true;
   at("content").hidden = false;
   at("me").textContent = me.tokens ? `${me.name}, ${me.role}` : "";
-  const benches = await get("/benches");
-  at("bench").replaceChildren(...benches.map((one) => new Option(one.name, one.name)));
-  const asked = decodeURIComponent(location.hash.slice(1));
-  at("bench").value = benches.some((one) => one.name === asked) ? asked : benches[0].name;
+  if (!await showBenches(decodeURIComponent(location.hash.slice(1)))) {
+    at("state").textContent = "No bench yet";
+    at("why").textContent = "Agents bring them: hil agent --server URL";
+    setTimeout(open, 2000);
+    return;
+  }
+  setInterval(() => showBenches(bench).catch(() => {}), BENCHES_MS);
   beginComparison(() => bench, act);
   beginIdentification(() => bench, act, may("engineer"));
   beginDiagnosis(() => bench, act, may("engineer"));
@@ -60,6 +63,14 @@ async function open() {
   watch();
   if (may("operator")) await act(() => begin(() => bench, () => {}, failed));
   else at("start").closest("section").hidden = true;
+}
+
+// Agents may bring more at any time.
+async function showBenches(chosen) {
+  const names = (await get("/benches")).map((one) => one.name), shown = [...at("bench").options].map((one) => one.value);
+  if (names.join() !== shown.join()) at("bench").replaceChildren(...names.map((name) => new Option(name, name)));
+  if (names.length) at("bench").value = names.includes(chosen) ? chosen : names[0];
+  return names.length;
 }
 
 function watch() {
@@ -99,10 +110,10 @@ function clear() {
 function showState({ bench: now, running: run, queue, told }) {
   running = run;
   at("banner").className = `banner ${now.state}`;
-  at("bench-title").textContent = `${now.title || now.name}${now.simulated ? " (simulated)" : ""}${now.lease ? `, for ${now.lease} alone` : ""}`;
+  at("bench-title").textContent = `${now.title || now.name}${now.simulated ? " (simulated)" : ""}${now.machine ? `, at ${now.machine}` : ""}${now.lease ? `, for ${now.lease} alone` : ""}`;
   at("state").textContent = run ? `Running: ${run.title || run.plan}` : STATES[now.state];
-  if (now.state === "emergency_stop") at("state").textContent = STATES.emergency_stop;
-  at("why").textContent = run ? `run ${run.id}, by ${run.requested_by}: ${run.doing}` : now.why;
+  if (["emergency_stop", "away"].includes(now.state)) at("state").textContent = STATES[now.state];
+  at("why").textContent = run && now.state === "running" ? `run ${run.id}, by ${run.requested_by}: ${run.doing}` : now.why;
   at("share").hidden = !run;
   at("share").value = run?.share ?? 0;
   at("told").hidden = !told;

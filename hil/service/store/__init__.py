@@ -1,15 +1,17 @@
 """What the service keeps, in SQLite or another database by URL: made and migrated when it is opened."""
 
+from hil.service.store._agents import AgentStore, RegisteredBench
 from hil.service.store._benches import BenchStore
 from hil.service.store._files import FileStore, KeptFile
 from hil.service.store._leases import LeaseStore
 from hil.service.store._opening import open_database
 from hil.service.store._people import LogStore, TokenStore
 from hil.service.store._presence import DatabaseAwayError, Presence
-from hil.service.store._runs import NewRun, RunStore, TakenRun
+from hil.service.store._runs import NewRun, RunStore
 from hil.service.store._tables import Base
 
 __all__ = [
+    "AgentStore",
     "Base",
     "BenchStore",
     "DatabaseAwayError",
@@ -19,8 +21,8 @@ __all__ = [
     "LogStore",
     "NewRun",
     "Presence",
+    "RegisteredBench",
     "RunStore",
-    "TakenRun",
     "TokenStore",
     "open_database",
 ]

@@ -20,6 +20,8 @@ class BenchStore:
     A bench stays with its service beyond that moment while a run of it is under way, as far as is written:
     the run goes on without the database.
 
+    An agent has its benches in the same way, as if it were a service.
+
     Args:
         service: which one, the same each time that it begins in its folder.
         place: where it is, in words.
@@ -48,7 +50,8 @@ class BenchStore:
             late = "" if end is None or end > moment else f", unheard of since {end:%Y-%m-%d %H:%M:%S} UTC"
             return f"{there.place or there.service}{late}"
 
-    def give_back(self) -> None:
-        """Others may drive them."""
+    def give_back(self, bench: str | None = None) -> None:
+        """Others may drive them, or one of them."""
+        mine = delete(BenchRow).where(BenchRow.service == self.service)
         with self._transaction() as session:
-            session.execute(delete(BenchRow).where(BenchRow.service == self.service))
+            session.execute(mine if bench is None else mine.where(BenchRow.bench == bench))

@@ -12,6 +12,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
 from hil.core.result import CriterionResult, RunResult
+from hil.service.agent_data import TakenRun
 from hil.service.data import RunData, RunState, TrendPoint
 from hil.service.store._benches import HELD_S
 from hil.service.store._opening import aware, now, now_there
@@ -40,17 +41,6 @@ class NewRun:
     confirmed_by: str = ""
     accept_expired: str = ""
     key: str = ""
-
-
-@dataclass(frozen=True)
-class TakenRun:
-    """A run that was taken from the queue, with what its process is told."""
-
-    data: RunData
-    plan_text: str
-    plan_source: str
-    confirmed_by: str
-    accept_expired: str
 
 
 class RunStore:
@@ -142,13 +132,51 @@ class RunStore:
             if not _moved(session, run, ("queued",), **changes):
                 return None
             row = session.get_one(RunRow, run)
-            return TakenRun(_data(row), row.plan_text, row.plan_source, row.confirmed_by, row.accept_expired)
+            return _taken(row)
+
+    def taken(self, run: int) -> TakenRun | None:
+        """A run that is written down as running, once more."""
+        with self._transaction() as session:
+            row = session.get(RunRow, run)
+            return _taken(row) if row is not None and row.state == "running" else None
 
     def running(self, service: str) -> list[RunData]:
         """Runs that a service has begun and that have not ended, as far as is written."""
         mine = RunRow.state == "running", RunRow.service.in_((service, ""))
         with self._transaction() as session:
             return [_data(row) for row in session.scalars(select(RunRow).where(*mine))]
+
+    def of_service(self, run: int, service: str) -> RunData | None:
+        """A run, if that service, or agent, has begun it and nobody else has its files."""
+        with self._transaction() as session:
+            row = session.get(RunRow, run)
+            return _data(row) if row is not None and row.service == service else None
+
+    def delivered(
+        self,
+        run: int,
+        agent: str,
+        service: str,
+        state: RunState,
+        *,
+        exit_code: int | None,
+        result: RunResult | None,
+        reason: str,
+        dut: str,
+        ago_s: float,
+    ) -> bool:
+        """Write how an agent's run ended whose files the service has now; false if it is not the agent's.
+
+        Also of one that was given up meanwhile: what really happened takes the place of that.
+        """
+        ended_at = now() - datetime.timedelta(seconds=ago_s)
+        with self._transaction() as session:
+            row = session.get(RunRow, run)
+            if row is None or row.service != agent or row.state not in ("running", "interrupted"):
+                return False
+            changes = _ending(state, exit_code, result, reason)
+            changes |= {"ended_at": ended_at, "service": service}
+            return _ended(session, run, ("running", "interrupted"), changes, result, dut)
 
     def end(
         self,
@@ -162,15 +190,8 @@ class RunStore:
     ) -> bool:
         """Write how a running run ended, with its criteria; false if that was written before."""
         with self._transaction() as session:
-            changes: dict[str, object] = {"state": state, "ended_at": now(), "exit_code": exit_code}
-            said = reason or (result.reason if result else "")
-            changes["reason"] = said.replace("\0", " ")  # PostgreSQL keeps no text with it
-            if result is not None:
-                changes |= {"verdict": result.verdict, "safe_state": result.safe_state}
-            if not _moved(session, run, ("running",), **changes):
-                return False
-            session.add_all(_criterion(run, one, dut) for one in (result.criteria if result else ()))
-            return True
+            changes = _ending(state, exit_code, result, reason)
+            return _ended(session, run, ("running",), changes, result, dut)
 
     def criteria(self, bench: str, plan: str, dut: str | None, most: int) -> list[tuple[str, TrendPoint]]:
         """Criteria of a plan's newest runs that ended on a bench, by name, oldest first.
@@ -217,6 +238,31 @@ def _moved(session: Session, run: int, out_of: Sequence[RunState], **changes: ob
     return len(changed.all()) == 1
 
 
+def _ending(
+    state: RunState, exit_code: int | None, result: RunResult | None, reason: str
+) -> dict[str, object]:
+    changes: dict[str, object] = {"state": state, "ended_at": now(), "exit_code": exit_code}
+    said = reason or (result.reason if result else "")
+    changes["reason"] = said.replace("\0", " ")  # PostgreSQL keeps no text with it
+    if result is not None:
+        changes |= {"verdict": result.verdict, "safe_state": result.safe_state}
+    return changes
+
+
+def _ended(
+    session: Session,
+    run: int,
+    out_of: Sequence[RunState],
+    changes: dict[str, object],
+    result: RunResult | None,
+    dut: str,
+) -> bool:
+    if not _moved(session, run, out_of, **changes):
+        return False
+    session.add_all(_criterion(run, one, dut) for one in (result.criteria if result else ()))
+    return True
+
+
 def _criterion(run: int, one: CriterionResult, dut: str) -> CriterionRow:
     return CriterionRow(
         run=run,
@@ -242,6 +288,16 @@ def _point(row: CriterionRow, ended_at: datetime.datetime | None) -> TrendPoint:
         upper=row.upper,
         lower=row.lower,
         verdict=row.verdict,
+    )
+
+
+def _taken(row: RunRow) -> TakenRun:
+    return TakenRun(
+        data=_data(row),
+        plan_text=row.plan_text,
+        plan_source=row.plan_source,
+        confirmed_by=row.confirmed_by,
+        accept_expired=row.accept_expired,
     )
 
 

@@ -60,6 +60,25 @@ class BenchRow(Base):
     until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 
+class AgentRow(Base):
+    """A bench of an agent, and the service that hears it. `facts`: an `AgentBench` as JSON.
+
+    `stop_by`: who asked for an emergency stop that the agent has not confirmed.
+    """
+
+    __tablename__ = "agents"
+
+    bench: Mapped[str] = mapped_column(String(64), primary_key=True)
+    agent: Mapped[str] = mapped_column(String(40))
+    service: Mapped[str] = mapped_column(String(40))
+    name: Mapped[str] = mapped_column(String(100))
+    machine: Mapped[str] = mapped_column(String(100))
+    version: Mapped[str] = mapped_column(String(40))
+    facts: Mapped[str] = mapped_column(Text)
+    heard_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+    stop_by: Mapped[str] = mapped_column(String(100))
+
+
 class CriterionRow(Base):
     """A criterion of a run that is over: what trends are made of."""
 

@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from hil.service.api import openapi_text
-from hil.service.data import ROLES
+from hil.service.data import LADDER, ROLES
 from tests.hil.service.served import HIL, SHORT, RefusedError, Served, environment_of, served
 
 ROOT = Path(__file__).parents[3]
@@ -29,6 +29,12 @@ LEAST = {
     ("PUT", "/benches/{bench}/lease"): "operator",
     ("DELETE", "/benches/{bench}/lease"): "operator",
     ("GET", "/benches/{bench}/live"): "viewer",
+    ("DELETE", "/benches/{bench}/agent"): "engineer",
+    ("GET", "/agents"): "viewer",
+    ("PUT", "/agents/{agent}"): "agent",
+    ("POST", "/agents/{agent}/benches/{bench}/take"): "agent",
+    ("PUT", "/agents/{agent}/runs/{run}/files/{name}"): "agent",
+    ("POST", "/agents/{agent}/runs/{run}/ending"): "agent",
     ("GET", "/plans"): "viewer",
     ("GET", "/plans/{plan}"): "viewer",
     ("GET", "/plans/{plan}/text"): "viewer",
@@ -77,7 +83,7 @@ LEAST = {
 }
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
-_NONE |= {"model": "none", "controller": "none", "study": "2000000000"}
+_NONE |= {"agent": "0" * 32, "model": "none", "controller": "none", "study": "2000000000"}
 
 
 @pytest.fixture(scope="module")
@@ -108,12 +114,7 @@ def test_each_role_may_what_the_table_says(
     least = LEAST[method, path]
     for role in ("", *ROLES):
         status = _status(service, method, path.format(**_NONE), secrets.get(role, ""))
-        expected = (
-            role != ""
-            if least == "viewer"
-            else ROLES.index(role or "viewer") >= ROLES.index(least or "viewer")
-        )
-        if least == "" or (expected and role):
+        if least == "" or _may(role, least):
             assert status not in (401, 403), role or "nobody"
         else:
             assert status == (403 if role else 401), role or "nobody"
@@ -162,6 +163,14 @@ def test_an_emergency_stop_is_answered_when_nothing_else_is(service: Served) -> 
     statuses = {_raw(service, "GET", "/api/v1/health", here) for _ in range(600)}
     assert 429 in statuses
     assert _raw(service, "POST", "/api/v1/benches/none/emergency-stop", here) == 404
+
+
+def _may(role: str, least: str) -> bool:
+    """An agent does an agent's work and nothing else; an administrator does everything."""
+    if "agent" in (role, least):
+        return role == least or role == "admin"
+    people = list(map(str, LADDER))
+    return role != "" and people.index(role) >= people.index(least)
 
 
 def _status(service: Served, method: str, path: str, token: str) -> int:

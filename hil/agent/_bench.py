@@ -1,0 +1,99 @@
+"""A bench of the agent: what it does now, and what is asked of it."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from pathlib import Path
+
+from hil.agent._kept_runs import KeptRun
+from hil.core.errors import HilError
+from hil.service.agent_data import AgentBench, Order
+from hil.service.benches import Bench
+from hil.service.carrying_out import CarriedRun
+
+_LONGEST = 2000
+
+logger = logging.getLogger(__name__)
+
+
+class DrivenBench:
+    """A bench and its run, from when that is taken until the service has it.
+
+    Attributes:
+        kept: the run that the service has not yet.
+        running: the same while its process is ours.
+        left: whether it is one of an agent that was killed, perhaps still ending.
+    """
+
+    def __init__(self, bench: Bench) -> None:
+        self.bench = bench
+        self.kept: KeptRun | None = None
+        self.running: CarriedRun | None = None
+        self.left = False
+        self.refused = ""
+
+    @property
+    def name(self) -> str:
+        """As it is called in its file."""
+        return self.bench.name
+
+    def told(self) -> AgentBench:
+        """What is told of it."""
+        bench, running = self.bench, self.running
+        facts = AgentBench(
+            name=bench.name,
+            title=bench.title[:200],
+            simulated=bench.simulated,
+            limits=bench.limits,
+            units=bench.units,
+            state="free",
+            running=self.kept.id if self.kept else None,
+        )
+        stopped = bench.stopped()
+        if running is not None:
+            facts.share, facts.doing, facts.told = running.share, _short(running.doing), _short(running.told)
+        elif self.left:
+            facts.doing = "it is being ended; its agent was killed"
+        elif self.kept is not None:
+            facts.doing, facts.share = "its files are being delivered", 1.0
+        if stopped:
+            facts.state, facts.why = "emergency_stop", _short(stopped)
+        elif self.kept is not None:
+            facts.state, facts.why = "ending" if self.left else "running", facts.doing
+        elif used := bench.used_by():
+            facts.state, facts.why = "in_use", _short(used)
+        return facts
+
+    def obey(self, order: Order) -> bool:
+        """Do what somebody asks; false if it has to be tried again. What is too late is done."""
+        try:
+            if order.kind == "emergency_stop":
+                self._stop_in_emergency(order.by)
+            elif order.kind == "reset":
+                self.bench.reset(order.by)
+            elif self.running is not None and order.run == self.running.data.id:
+                self._steer(self.running, order)
+        except HilError as error:
+            logger.error("%s: %s", self.name, error)
+            return False
+        return True
+
+    def _stop_in_emergency(self, by: str) -> None:
+        if self.running is not None:
+            self.running.process.stop_in_emergency()
+        self.bench.stop(by, self.kept.folder if self.kept is not None else Path())
+
+    def _steer(self, running: CarriedRun, order: Order) -> None:
+        process = running.process
+        known: dict[str, Callable[[], None]] = {
+            "pause": process.pause,
+            "resume": process.resume,
+            "end": process.end,
+            "answer": lambda: process.answer(order.text),
+        }
+        known[order.kind]()
+
+
+def _short(text: str) -> str:
+    return text[:_LONGEST]

@@ -1,0 +1,113 @@
+"""Runs on the agent's disk: written down before they are begun, kept until the service has them."""
+
+from __future__ import annotations
+
+import contextlib
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from hil.core.files import make_directory, sha256_of, write_atomically
+from hil.service.agent_data import FileMade, RunEnding, TakenRun
+from hil.service.run_files import files_in, folder_of
+
+_TAKEN, _ENDING, _INPUTS = ".taken.json", ".ending.json", ".inputs"
+_DELIVERED, _REFUSED = ".delivered", ".refused"
+_DAY_S = 86400.0
+
+
+class KeptRun:
+    """A run in its folder; `ending` is None until it has ended, `ended_s` then in seconds since 1970."""
+
+    def __init__(self, folder: Path, taken: TakenRun, ending: RunEnding | None = None) -> None:
+        self.folder, self.ending = folder, ending
+        source = folder / _INPUTS / Path(taken.plan_source).name
+        self.taken = taken.model_copy(update={"plan_source": str(source)})
+        self.id, self.bench = taken.data.id, taken.data.bench
+
+    def end(self, ending: RunEnding) -> None:
+        """Keep how it ended.
+
+        Raises:
+            HilError: it cannot be written.
+        """
+        write_atomically(self.folder / _ENDING, ending.model_dump_json())
+        self.ending = ending
+
+    def ending_now(self) -> RunEnding:
+        """How it ended, with its files as they are on the disk; reads all of them.
+
+        Raises:
+            BadInputError: one of them cannot be read.
+        """
+        assert self.ending is not None
+        made = []
+        for path in files_in(self.folder):
+            with contextlib.suppress(ValidationError):  # a name that is no name for others
+                made.append(FileMade(name=path.name, size=path.stat().st_size, sha256=sha256_of(path)))
+        if self.ending.state == "queued":
+            made = []
+        ago_s = max(0.0, time.time() - (self.folder / _ENDING).stat().st_mtime)
+        return self.ending.model_copy(update={"files": made, "ago_s": ago_s})
+
+    def over(self, refused: str = "") -> None:
+        """The service has it, or will not have it, for a reason; its files stay.
+
+        Raises:
+            HilError: it cannot be written.
+        """
+        write_atomically(self.folder / (_REFUSED if refused else _DELIVERED), refused)
+
+
+class KeptRuns:
+    """Runs that the agent has taken, each in a folder by its number.
+
+    Args:
+        folder: made if it is not there.
+        local_days: how long files stay here that the service has.
+    """
+
+    def __init__(self, folder: Path, local_days: float) -> None:
+        self._folder, self._local_s = folder, local_days * _DAY_S
+        make_directory(folder, option="--data")
+
+    def pending(self) -> Iterator[KeptRun]:
+        """Those that the service has not, oldest first."""
+        for path in sorted(self._folder.glob(f"[0-9]*/{_TAKEN}")):
+            folder = path.parent
+            if (folder / _DELIVERED).exists() or (folder / _REFUSED).exists():
+                continue
+            with contextlib.suppress(OSError, ValueError):
+                taken = TakenRun.model_validate_json(path.read_bytes())
+                ending = None
+                if (folder / _ENDING).exists():
+                    ending = RunEnding.model_validate_json((folder / _ENDING).read_bytes())
+                yield KeptRun(folder, taken, ending)
+
+    def begin(self, taken: TakenRun) -> KeptRun:
+        """Keep that a run was taken, before anything of it is begun, and what its plan loads.
+
+        Raises:
+            HilError: it cannot be written.
+        """
+        folder = folder_of(self._folder, taken.data.id)
+        if folder.exists():  # of another service, or one whose database was put back
+            folder.rename(f"{folder}.before-{time.time_ns()}")
+        inputs = folder / _INPUTS
+        make_directory(inputs)
+        for name, text in taken.files.items():
+            write_atomically(inputs / Path(name).name, text)
+        run = KeptRun(folder, taken)
+        write_atomically(Path(run.taken.plan_source), taken.plan_text)
+        write_atomically(folder / _TAKEN, taken.model_dump_json())
+        return run
+
+    def clear(self) -> None:
+        """Remove runs that the service has had for long enough."""
+        for mark in list(self._folder.glob(f"[0-9]*/{_DELIVERED}")):
+            with contextlib.suppress(OSError):
+                if time.time() - mark.stat().st_mtime > self._local_s:
+                    shutil.rmtree(mark.parent)

@@ -1,0 +1,64 @@
+"""`hil agent`: benches of this machine for a bench service elsewhere, until somebody ends it."""
+
+from __future__ import annotations
+
+import math
+import os
+import socket
+import sys
+from pathlib import Path
+
+from hil.agent import AgentRequest, work
+from hil.cli._interrupts import EXIT_CODE
+from hil.cli._output import print_json
+from hil.cli._remote_run import TOKEN
+from hil.cli._served_run import RUNNER
+from hil.core.errors import BadInputError
+from hil.core.printable import printable
+from hil.engine import StopRequest
+
+
+def carry_out(
+    *,
+    server: list[str],
+    data: Path,
+    bench: list[str],
+    name: str,
+    keep_local: float,
+    for_s: float | None,
+    as_json: bool,
+) -> int:
+    """Carry the command out; its exit code."""
+    if for_s is not None and not for_s > 0:
+        raise BadInputError(f"--for is {for_s:g}", fix="give seconds greater than 0, or leave it out")
+    name = name or socket.gethostname()
+    if not name.strip() or not name.isprintable() or len(name) > 100:
+        raise BadInputError(
+            f"'{printable(name)}' names nobody", where="--name", fix="write up to 100 letters"
+        )
+    stop = StopRequest()
+
+    def ready(away: str) -> None:
+        if as_json:
+            print_json({"agent": name, "servers": server, "data": str(data.resolve()), "away": away})
+        elif away:
+            print(f"Agent {name} is ready; the service is away, and asked again: {away}")
+        else:
+            print(f"Agent {name} works for {server[0]} (Ctrl-C ends it); its data are in {data}")
+        sys.stdout.flush()
+
+    request = AgentRequest(
+        servers=server,
+        folder=data,
+        benches=bench,
+        command=RUNNER,
+        token=os.environ.get(TOKEN, ""),
+        name=name,
+        local_days=keep_local,
+        for_s=math.inf if for_s is None else for_s,
+        ready=ready,
+        stop=stop,
+    )
+    with stop.by_signals():
+        work(request)
+    return EXIT_CODE if stop.times else 0

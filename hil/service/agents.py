@@ -1,0 +1,440 @@
+"""Benches of agents on other machines, as the service knows them (docs/decisions/0024).
+
+An agent asks, the service answers: it tells what its benches do twice a second and hears what to do. What is
+known here of a run under way is what its agent told last; a run stays its agent's however long that is away.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import datetime
+import logging
+import secrets
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from sqlalchemy import Engine
+
+from hil.core.errors import HilError
+from hil.core.files import make_directory, read_text, write_atomically
+from hil.service.agent_data import (
+    AgentBench,
+    AgentData,
+    AgentOrders,
+    AgentReport,
+    Order,
+    OrderKind,
+    TakenRun,
+)
+from hil.service.carrying_out import PLAN, RunningRun
+from hil.service.data import BenchState
+from hil.service.plans import files_of
+from hil.service.run_files import folder_of
+from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
+from test_plans import plan_from_text
+
+AWAY_S = 10.0
+_KEPT_AGAIN_S = 20.0  # a third of how long a bench is an agent's without being heard of
+_SETTLED_S = 5.0
+
+logger = logging.getLogger(__name__)
+
+
+@dataclass
+class Agent:
+    """An agent. `held`: benches in the database, as a service of its own has them."""
+
+    id: str
+    name: str
+    machine: str
+    version: str
+    heard_at: datetime.datetime
+    held: BenchStore
+    heard_s: float = -1e9
+    orders: dict[str, Order] = field(default_factory=dict)
+    told: asyncio.Event = field(default_factory=asyncio.Event)
+
+    @property
+    def away(self) -> bool:
+        """Whether it has not been heard of for so long that nothing is known of it now."""
+        return time.monotonic() - self.heard_s > AWAY_S
+
+
+class RemoteBench:
+    """A bench of an agent: what it is, and what its agent told last."""
+
+    def __init__(self, agent: Agent, told: AgentBench) -> None:
+        self.agent, self.told = agent, told
+        self.running: RunningRun | None = None
+        self.stop_by = ""  # of an emergency stop that the agent has not confirmed
+        self.kept_s = -1e9
+        self.was_away = True
+
+    @property
+    def name(self) -> str:
+        """As it is called in its file."""
+        return self.told.name
+
+    @property
+    def title(self) -> str:
+        """What it is called for people."""
+        return self.told.title
+
+    @property
+    def simulated(self) -> bool:
+        """Whether what moves is computed."""
+        return self.told.simulated
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """Largest magnitude by channel."""
+        return self.told.limits
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the limited channels."""
+        return self.told.units
+
+    def order(self, kind: OrderKind, by: str = "", text: str = "") -> Order:
+        """Have the agent told."""
+        run = self.running.data.id if self.running is not None and kind != "reset" else None
+        order = Order(id=secrets.token_hex(8), bench=self.name, kind=kind, run=run, by=by, text=text)
+        self.agent.orders[order.id] = order
+        self.agent.told.set()
+        return order
+
+    def waits_for(self, kind: OrderKind) -> bool:
+        """Whether the agent has still to obey an order of that kind."""
+        return any(one.kind == kind and one.bench == self.name for one in self.agent.orders.values())
+
+    def state(self) -> tuple[BenchState, str]:
+        """What it does, as far as is known."""
+        agent = self.agent
+        since = f"{agent.heard_at:%Y-%m-%d %H:%M:%S} UTC"
+        away = f"its agent {agent.name} on {agent.machine} is away since {since}" if agent.away else ""
+        if self.stop_by:
+            unconfirmed = f"{self.stop_by} asked for it; its agent has not confirmed it"
+            return "emergency_stop", f"{unconfirmed}; {away}" if away else unconfirmed
+        if away:
+            if self.running is not None:
+                away += f"; run {self.running.data.id} ends there by itself, and comes with its agent"
+            return "away", away
+        if self.told.state == "free" and self.running is not None:
+            return "running", self.running.doing
+        return self.told.state, self.told.why
+
+
+class _AgentsRun:
+    """Steers a run by orders to its agent."""
+
+    def __init__(self, bench: RemoteBench) -> None:
+        self._bench = bench
+
+    def pause(self) -> None:
+        self._bench.order("pause")
+
+    def resume(self) -> None:
+        self._bench.order("resume")
+
+    def end(self) -> None:
+        self._bench.order("end")
+
+    def stop_in_emergency(self) -> None:
+        """Nothing: the bench's order says it, whether there is a run or not."""
+
+    def answer(self, text: str) -> None:
+        self._bench.order("answer", text=text)
+
+
+class Agents:
+    """All benches of agents.
+
+    Args:
+        service: the name of this one in the database.
+        folder: where runs have their folders.
+        benches: names of the service's own.
+        changed: called whenever something of a bench is to be shown anew.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        service: str,
+        runs: RunStore,
+        leases: LeaseStore,
+        folder: Path,
+        changed: Callable[[str], None],
+    ) -> None:
+        self._engine, self._runs, self._leases, self._folder = engine, runs, leases, folder
+        self._store = AgentStore(engine, service)
+        self._changed = changed
+        self.benches: dict[str, RemoteBench] = {}
+        self._agents: dict[str, Agent] = {}
+        for row in self._store.all():
+            agent = self._agent(row.agent, row.name, row.machine, row.version, row.heard_at)
+            bench = self.benches[row.bench.name] = RemoteBench(agent, row.bench)
+            self._restore(bench)
+            if row.stop_by:
+                self._stop(bench, row.stop_by)
+
+    def all(self) -> list[AgentData]:
+        """Those that have benches here."""
+        found = []
+        for agent in self._agents.values():
+            names = [name for name, bench in self.benches.items() if bench.agent is agent]
+            if names:
+                found.append(
+                    AgentData(
+                        name=agent.name,
+                        machine=agent.machine,
+                        version=agent.version,
+                        benches=names,
+                        connected=not agent.away,
+                        heard_at=agent.heard_at,
+                    )
+                )
+        return found
+
+    def running_run(self, run: int) -> RunningRun | None:
+        """A run by its number, if one of theirs is under way."""
+        found = (bench.running for bench in self.benches.values())
+        return next((one for one in found if one is not None and one.data.id == run), None)
+
+    def look(self) -> None:
+        """Have it shown which agents are away, and whose runs have come to another service meanwhile."""
+        for bench in self.benches.values():
+            if bench.agent.away and bench.running is not None:
+                with contextlib.suppress(DatabaseAwayError):
+                    run = self._runs.get(bench.running.data.id)
+                    if run is None or run.state != "running":
+                        self.over(bench.running.data.id, bench.name)
+            if bench.agent.away != bench.was_away:
+                bench.was_away = bench.agent.away
+                (logger.warning if bench.was_away else logger.info)(
+                    "%s: its agent is %s", bench.name, "away" if bench.was_away else "there"
+                )
+                self._changed(bench.name)
+
+    def heard(self, agent_id: str, report: AgentReport) -> tuple[list[str], dict[str, str]]:
+        """Take what an agent tells.
+
+        Returns:
+            its benches that were registered just now, and those that are not its own, with the reason.
+
+        Raises:
+            DatabaseAwayError: nobody can tell whose the benches are.
+        """
+        agent = self._agent(agent_id, report.name, report.machine, report.version)
+        agent.name, agent.machine, agent.version = report.name, report.machine, report.version
+        agent.heard_s, agent.heard_at = time.monotonic(), _now()
+        new, refused = [], {}
+        for told in report.benches:
+            known = self.benches.get(told.name)
+            if known is None or known.agent is not agent:
+                why = self._register(agent, told)
+                if why:
+                    refused[told.name] = why
+                else:
+                    new.append(told.name)
+            if told.name not in refused:
+                why = self._take_in(self.benches[told.name], told, report.obeyed)
+                if why:
+                    refused[told.name] = why
+        for order in report.obeyed:
+            agent.orders.pop(order, None)
+        if report.leaving:
+            self._leave(agent)
+        self.look()
+        return new, refused
+
+    def orders(self, agent_id: str, refused: dict[str, str]) -> AgentOrders:
+        """What an agent has to do."""
+        agent = self._agents[agent_id]
+        mine = [one for one in self.benches.values() if one.agent is agent]
+        waiting: list[str] = []
+        with contextlib.suppress(DatabaseAwayError):  # nothing is begun until it answers
+            waiting = [one.name for one in mine if self._may_take(one) and self._next(one) is not None]
+        return AgentOrders(orders=list(agent.orders.values()), waiting=waiting, refused=refused)
+
+    async def told(self, agent_id: str, within_s: float) -> None:
+        """Wait until there is something new for an agent to do."""
+        agent = self._agents[agent_id]
+        agent.told.clear()
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(agent.told.wait(), within_s)
+
+    def wake(self, bench: str) -> None:
+        """Have a bench's agent told what waits for it."""
+        if bench in self.benches:
+            self.benches[bench].agent.told.set()
+
+    def take(self, agent_id: str, name: str) -> TakenRun | None:
+        """Give an agent the run whose turn it is; one that it was given, and has nothing of, once more.
+
+        Raises:
+            HilError: what the run needs cannot be read; it has ended by that.
+            DatabaseAwayError: nothing is begun now.
+        """
+        bench = self.benches[name]
+        given = [one.id for one in self._runs.running(agent_id) if one.bench == name]
+        run = given[0] if given else self._next(bench) if self._may_take(bench) else None
+        taken = None
+        if given:
+            taken = self._runs.taken(given[0])
+        elif run is not None:
+            taken = self._runs.take(run, agent_id)
+        if taken is None:
+            bench.kept_s = -1e9  # it is looked at once more whose the bench is
+            return None
+        folder = folder_of(self._folder, taken.data.id)
+        try:
+            files = _loaded_by(taken)
+            make_directory(folder)
+            write_atomically(folder / PLAN, taken.plan_text)
+        except HilError as error:
+            self._runs.end(taken.data.id, "ended", exit_code=error.exit_code, reason=str(error))
+            self._changed(name)
+            raise
+        bench.running = RunningRun(taken.data, folder, _AgentsRun(bench))
+        self._changed(name)
+        return taken.model_copy(update={"files": files, "plan_source": Path(taken.plan_source).name})
+
+    def over(self, run: int, bench: str) -> None:
+        """A run has been written down as over."""
+        place = self.benches.get(bench)
+        if place is not None and place.running is not None and place.running.data.id == run:
+            place.running = None
+        self._changed(bench)
+
+    def stop_in_emergency(self, bench: str, by: str) -> None:
+        """Have a bench safe and latched as soon as its agent hears it, also after this service has ended.
+
+        Raises:
+            DatabaseAwayError: only as long as this service lives.
+        """
+        place = self.benches[bench]
+        self._stop(place, by)
+        self._changed(bench)
+        self._store.stop(bench, by)
+
+    async def reset(self, bench: str, by: str) -> bool:
+        """Let a bench be armed again; whether its agent has done so within a few seconds."""
+        place = self.benches[bench]
+        place.order("reset", by)
+        until_s = time.monotonic() + _SETTLED_S
+        while place.waits_for("reset") and time.monotonic() < until_s:
+            await asyncio.sleep(0.05)
+        return not place.waits_for("reset")
+
+    def let_go(self, bench: str, by: str) -> None:
+        """Let another agent have the bench of one that is away; a run that it has is interrupted."""
+        place = self.benches[bench]
+        why = f"{by} has let the bench of an agent go that was away; what it has comes when it is back"
+        for run in self._runs.running(place.agent.id):
+            if run.bench == bench:
+                self._runs.end(run.id, "interrupted", reason=why)
+        place.agent.held.give_back(bench)
+        place.running, place.stop_by = None, ""
+        self._store.forget(bench)
+        self._changed(bench)
+
+    def _agent(
+        self, agent: str, name: str, machine: str, version: str, heard_at: datetime.datetime | None = None
+    ) -> Agent:
+        if agent not in self._agents:
+            held = BenchStore(self._engine, agent, f"agent {name} on {machine}")
+            self._agents[agent] = Agent(agent, name, machine, version, heard_at or _now(), held)
+        return self._agents[agent]
+
+    def _register(self, agent: Agent, told: AgentBench) -> str:
+        """Have a bench as an agent's; why not, if it is somebody else's."""
+        there = agent.held.hold(told.name)
+        if there:
+            return _of_another(told.name, there)
+        before = self.benches.get(told.name)
+        bench = self.benches[told.name] = RemoteBench(agent, told)
+        if before is not None and before.stop_by:
+            self._stop(bench, before.stop_by)
+        self._restore(bench)
+        return ""
+
+    def _restore(self, bench: RemoteBench) -> None:
+        """A run that the agent has begun, as is written."""
+        for run in self._runs.running(bench.agent.id):
+            if run.bench == bench.name:
+                folder = folder_of(self._folder, run.id)
+                bench.running = RunningRun(run, folder, _AgentsRun(bench), doing="its agent is away")
+
+    def _take_in(self, bench: RemoteBench, told: AgentBench, obeyed: list[str]) -> str:
+        """Take what an agent tells of a bench; why it is not the agent's any more, if that is so."""
+        before, there = (bench.told, bench.stop_by), ""
+        bench.told = told
+        with contextlib.suppress(DatabaseAwayError):
+            there = self._keep(bench)
+            if told.running is not None and (bench.running is None or bench.running.data.id != told.running):
+                self._restore(bench)
+        if bench.running is not None and bench.running.data.id == told.running:
+            bench.running.share, bench.running.doing = told.share, told.doing
+            bench.running.told = told.told
+        stops = [one.id for one in bench.agent.orders.values() if one.kind == "emergency_stop"]
+        stops = [one for one in stops if bench.agent.orders[one].bench == bench.name]
+        if bench.stop_by and set(stops) <= set(obeyed):
+            bench.stop_by = ""
+            with contextlib.suppress(DatabaseAwayError):
+                self._store.stop(bench.name, "")
+        if before != (bench.told, bench.stop_by):
+            self._changed(bench.name)
+        return _of_another(bench.name, there) if there else ""
+
+    def _keep(self, bench: RemoteBench) -> str:
+        """Go on having the bench as its agent's, in the database; whose it is, if that is somebody else."""
+        agent, there = bench.agent, ""
+        if time.monotonic() - bench.kept_s > _KEPT_AGAIN_S:
+            there = agent.held.hold(bench.name)
+            if not there:
+                self._store.heard(agent.id, agent.name, agent.machine, agent.version, bench.told)
+                bench.kept_s = time.monotonic()
+        return there
+
+    def _stop(self, bench: RemoteBench, by: str) -> None:
+        bench.stop_by = by
+        bench.order("emergency_stop", by)
+
+    def _leave(self, agent: Agent) -> None:
+        agent.heard_s = -1e9
+        for bench in self.benches.values():
+            if bench.agent is agent and bench.running is None:
+                agent.held.give_back(bench.name)
+
+    def _may_take(self, bench: RemoteBench) -> bool:
+        return bench.told.state == "free" and not bench.stop_by and bench.told.running is None
+
+    def _next(self, bench: RemoteBench) -> int | None:
+        """The run whose turn it is; None while there is one that the agent has not delivered."""
+        if bench.running is not None:
+            return bench.running.data.id if bench.told.running is None else None
+        lease = self._leases.of(bench.name)
+        run = self._runs.next_of(bench.name, lease.holder if lease else None)
+        return None if run is None else run.id
+
+
+def _loaded_by(taken: TakenRun) -> dict[str, str]:
+    """Content of the files that lie beside a plan and are loaded by it, by name.
+
+    Raises:
+        BadInputError: one of them cannot be used any more.
+    """
+    source = Path(taken.plan_source)
+    plan = plan_from_text(taken.plan_text, taken.plan_source, source.parent)
+    return {file.name: read_text(file) for file in files_of(plan) if file.parent == source.parent}
+
+
+def _of_another(bench: str, place: str) -> str:
+    return f"the name '{bench}' is that of a bench of {place}"
+
+
+def _now() -> datetime.datetime:
+    return datetime.datetime.now(datetime.UTC)

@@ -1,0 +1,131 @@
+"""What agents ask: what there is to do for their benches, and that files of runs are taken."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Body, Query, Request
+
+from hil.core.errors import HilError
+from hil.service.agent_data import (
+    MOST_FILE_BYTES,
+    AgentData,
+    AgentId,
+    AgentOrders,
+    AgentReport,
+    Delivered,
+    FileThere,
+    RunEnding,
+    RunFileName,
+    Taken,
+)
+from hil.service.agents import RemoteBench
+from hil.service.api._access import AgentItself, Engineer, TheService, Viewer
+from hil.service.api._problems import RefusedError, missing
+from hil.service.data import BenchName, RunData, RunId
+from hil.service.run_files import LOCK
+from hil.service.service import Service
+
+router = APIRouter(tags=["agents"])
+_WAITS_S = 0.5  # for something to do, so that an agent hears it at once
+_PIECE: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
+
+
+@router.get("/agents", name="list_agents")
+async def list_agents(service: TheService, me: Viewer) -> list[AgentData]:
+    """Agents that have benches here, and when they were last heard of."""
+    del me
+    return service.agents.all()
+
+
+@router.put("/agents/{agent}", name="report_of_agent")
+async def report_of_agent(
+    agent: AgentId, report: Annotated[AgentReport, Body()], service: TheService, me: AgentItself
+) -> AgentOrders:
+    """Register an agent's benches, tell what they do, and hear within half a second what there is to do."""
+    new, refused = service.agents.heard(agent, report)
+    for bench in new:
+        service.log.add(
+            me.name, me.role, "bench registered", bench, f"agent {report.name} on {report.machine}"
+        )
+    orders = service.agents.orders(agent, refused)
+    if not (orders.orders or orders.waiting or refused or report.leaving or service.closing):
+        await service.agents.told(agent, _WAITS_S)
+        orders = service.agents.orders(agent, refused)
+    return orders
+
+
+@router.post("/agents/{agent}/benches/{bench}/take", name="take_run")
+async def take_run(agent: AgentId, bench: BenchName, service: TheService, me: AgentItself) -> Taken:
+    """The run whose turn it is on a bench; it is the agent's from then on, whatever becomes of either."""
+    place = service.agents.benches.get(bench)
+    if place is None or place.agent.id != agent:
+        raise RefusedError(409, f"'{bench}' is no bench of this agent")
+    try:
+        taken = service.agents.take(agent, bench)
+    except HilError as error:
+        service.write_down(me.name, me.role, "run not taken", f"{bench}: {error}")
+        raise
+    if taken is not None:
+        service.log.add(
+            me.name, me.role, "take", f"run {taken.data.id}", f"{bench}, agent {place.agent.name}"
+        )
+    return Taken(run=taken)
+
+
+@router.put("/agents/{agent}/runs/{run}/files/{name}", name="send_run_file", openapi_extra=_PIECE)
+async def send_run_file(
+    agent: AgentId,
+    run: RunId,
+    name: RunFileName,
+    request: Request,
+    service: TheService,
+    me: AgentItself,
+    at: Annotated[int, Query(ge=0, le=MOST_FILE_BYTES)] = 0,
+) -> FileThere:
+    """A piece of a run's file, taken if it begins where the file ends here; how much of it is here."""
+    del me
+    _of_agent(service, run, agent)
+    if name == LOCK:
+        raise RefusedError(422, "is no file that a run leaves", where=name)
+    return FileThere(size=service.arrivals.add(run, name, at, await request.body()))
+
+
+@router.post("/agents/{agent}/runs/{run}/ending", name="deliver_run")
+async def deliver_run(
+    agent: AgentId, run: RunId, ending: Annotated[RunEnding, Body()], service: TheService, me: AgentItself
+) -> Delivered:
+    """How a run ended; once all of its files are here as they were made, it is over here too."""
+    if service.arrivals.run_of(run, agent) is None and service.arrivals.are_those(run, ending.files):
+        return Delivered(missing=[])  # the answer to the first time went astray
+    found = _of_agent(service, run, agent)
+    wanting = await service.arrivals.missing(run, ending.files)
+    if not wanting and service.arrivals.finish(found, agent, ending):
+        service.log.add(me.name, me.role, "run delivered", f"run {run}", ending.state)
+        service.agents.over(run, found.bench)
+        service.wake(found.bench)
+    return Delivered(missing=wanting)
+
+
+@router.delete("/benches/{bench}/agent", name="let_agent_go", status_code=204)
+async def let_agent_go(bench: BenchName, service: TheService, me: Engineer) -> None:
+    """Let another agent have the bench of one that is away; its run is interrupted, nothing of it is lost."""
+    place = service.benches.get(bench)
+    if not isinstance(place, RemoteBench):
+        raise missing("bench of an agent", bench)
+    if not place.agent.away:
+        raise RefusedError(409, "its agent is there", where=bench, fix="end that one (Ctrl-C) first")
+    service.agents.let_go(bench, me.name)
+    service.log.add(me.name, me.role, "agent let go", bench, place.agent.name)
+
+
+def _of_agent(service: Service, run: int, agent: str) -> RunData:
+    found = service.arrivals.run_of(run, agent)
+    if found is None:
+        raise RefusedError(409, f"run {run} is none of this agent, or is over")
+    return found

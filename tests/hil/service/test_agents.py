@@ -1,0 +1,256 @@
+"""What the service knows of agents: whose a bench and a run are, and that files come as they were made."""
+
+from __future__ import annotations
+
+import asyncio
+import datetime
+import hashlib
+import secrets
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from sqlalchemy import Engine, text
+
+from hil.core.errors import BadInputError, BenchError
+from hil.service.agent_data import AgentBench, AgentReport, FileMade, RunEnding
+from hil.service.agents import AWAY_S, Agents
+from hil.service.arrivals import Arrivals
+from hil.service.store import LeaseStore, NewRun, RunStore, open_database
+from test_plans import library_controllers
+from tests.hil.service import served as served_by
+from tests.hil.service.served import SHORT
+
+ONE, OTHER = "1" * 32, "2" * 32
+
+
+class _There:
+    """A service's knowledge of agents, begun anew as often as wanted."""
+
+    def __init__(self, folder: Path, engine: Engine) -> None:
+        self.folder, self.engine = folder, engine
+        self.runs, self.leases = RunStore(engine), LeaseStore(engine)
+        self.agents = self.begun()
+        self.arrivals = Arrivals("service", self.runs, folder)
+
+    def begun(self, service: str = "service") -> Agents:
+        return Agents(self.engine, service, self.runs, self.leases, self.folder, lambda bench: None)
+
+    def queue(self, plan: str = SHORT) -> int:
+        source = self.folder / "short.yaml"
+        new = NewRun("short", "", plan, str(source), "far", {}, "me")
+        return self.runs.add(new, approved=True)[0].id
+
+    def lapse(self) -> None:
+        """Have it a minute later."""
+        with self.engine.begin() as connection:
+            long_ago = datetime.datetime(2020, 1, 1, tzinfo=datetime.UTC)
+            connection.execute(text("UPDATE benches SET until = :then"), {"then": long_ago})
+        for bench in self.agents.benches.values():
+            bench.agent.heard_s -= 2 * AWAY_S
+            bench.kept_s = -1e9
+
+
+@pytest.fixture
+def there(tmp_path: Path) -> Iterator[_There]:
+    database = served_by.new_database() or f"sqlite:///{tmp_path / 'service.sqlite'}"
+    engine = open_database(database)
+    yield _There(tmp_path, engine)
+    engine.dispose()
+
+
+def _report(
+    *,
+    obeyed: list[str] | None = None,
+    leaving: bool = False,
+    running: int | None = None,
+    bench: str = "far",
+) -> AgentReport:
+    told = AgentBench(name=bench, title="Far", simulated=True, limits={}, units={}, state="free")
+    told.running = running
+    if running is not None:
+        told.state = "running"
+    return AgentReport(
+        name="cell 3", machine="box", version="1", benches=[told], obeyed=obeyed or [], leaving=leaving
+    )
+
+
+def test_a_run_is_given_to_its_agent_until_that_has_it_and_to_nobody_else(there: _There) -> None:
+    assert there.agents.heard(ONE, _report()) == (["far"], {})
+    run = there.queue()
+    assert there.agents.orders(ONE, {}).waiting == ["far"]
+    first, again = there.agents.take(ONE, "far"), there.agents.take(ONE, "far")
+    assert first is not None
+    assert first == again, "the answer may have gone astray"
+    assert (first.data.id, first.plan_source) == (run, "short.yaml")
+    there.agents.heard(ONE, _report(running=run))
+    there.queue()
+    assert there.agents.orders(ONE, {}).waiting == [], "one run per bench"
+    assert there.agents.benches["far"].state() == ("running", "")
+
+
+def test_what_a_plan_loads_goes_with_it_and_a_run_that_lacks_it_ends(there: _There) -> None:
+    there.agents.heard(ONE, _report())
+    plan = SHORT.replace("phase_stabilization", "mine")
+    lacking = there.queue(plan)
+    with pytest.raises(BadInputError, match=r"mine\.toml"):
+        there.agents.take(ONE, "far")
+    found = there.runs.get(lacking)
+    assert found is not None
+    assert (found.state, found.exit_code) == ("ended", 2)
+    controller = library_controllers()["phase_stabilization"].read_text()
+    (there.folder / "mine.toml").write_text(controller)
+    there.queue(plan)
+    taken = there.agents.take(ONE, "far")
+    assert taken is not None
+    assert taken.files == {"mine.toml": controller}
+
+
+def test_a_name_is_one_agents_until_it_is_unheard_of_and_has_no_run(there: _There) -> None:
+    there.agents.heard(ONE, _report())
+    new, refused = there.agents.heard(OTHER, _report())
+    assert (new, list(refused)) == ([], ["far"])
+    assert "agent cell 3 on box" in refused["far"]
+    run = there.queue()
+    there.agents.take(ONE, "far")
+    there.lapse()
+    assert "unheard of since" in there.agents.heard(OTHER, _report())[1]["far"], "its run may be under way"
+    there.runs.end(run, "ended")
+    assert there.agents.heard(OTHER, _report()) == (["far"], {})
+    assert list(there.agents.heard(ONE, _report())[1]) == ["far"], "now it is the other's"
+
+
+def test_an_agent_that_is_away_keeps_its_run_also_for_the_next_service(there: _There) -> None:
+    there.agents.heard(ONE, _report())
+    run = there.queue()
+    there.agents.take(ONE, "far")
+    there.lapse()
+    there.agents = there.begun()
+    bench = there.agents.benches["far"]
+    state, why = bench.state()
+    assert state == "away"
+    assert f"run {run} ends there by itself" in why
+    there.agents.heard(ONE, _report(running=run))
+    assert bench.state()[0] == "running"
+
+
+def test_another_service_of_the_database_takes_an_agents_bench_and_run_over(there: _There) -> None:
+    there.agents.heard(ONE, _report())
+    run = there.queue()
+    there.agents.take(ONE, "far")
+    second = there.begun("another service")
+    assert second.heard(ONE, _report(running=run)) == (["far"], {})
+    running = second.benches["far"].running
+    assert running is not None
+    assert running.data.id == run
+    assert [row.benches for row in there.begun().all()] == []
+    arrivals = Arrivals("another service", there.runs, there.folder / "second")
+    found = arrivals.run_of(run, ONE)
+    assert found is not None
+    assert arrivals.finish(found, ONE, RunEnding(state="ended", exit_code=0))
+    there.lapse()
+    there.agents.look()
+    assert there.agents.benches["far"].running is None, "the first one sees that it is over"
+
+
+def test_a_bench_that_was_let_go_is_anothers_and_its_run_comes_all_the_same(there: _There) -> None:
+    there.agents.heard(ONE, _report())
+    run = there.queue()
+    there.agents.take(ONE, "far")
+    there.lapse()
+    there.agents.let_go("far", "anna")
+    found = there.runs.get(run)
+    assert found is not None
+    assert found.state == "interrupted"
+    assert "anna has let the bench" in found.reason
+    assert there.agents.heard(OTHER, _report()) == (["far"], {})
+    late = there.arrivals.run_of(run, ONE)
+    assert late is not None
+    assert there.arrivals.finish(late, ONE, RunEnding(state="ended", exit_code=1, ago_s=100.0))
+    assert there.arrivals.run_of(run, ONE) is None
+    over = there.runs.get(run)
+    assert over is not None
+    assert (over.state, over.exit_code, over.reason) == ("ended", 1, "")
+    assert over.ended_at is not None
+    assert datetime.datetime.now(datetime.UTC) - over.ended_at > datetime.timedelta(seconds=99)
+
+
+def test_an_emergency_stop_is_told_until_the_agent_has_obeyed_also_by_the_next_service(
+    there: _There,
+) -> None:
+    there.agents.heard(ONE, _report())
+    there.agents.stop_in_emergency("far", "anna")
+    there.queue()
+    assert there.agents.orders(ONE, {}).waiting == []
+    there.lapse()
+    there.agents = there.begun()
+    state, why = there.agents.benches["far"].state()
+    assert state == "emergency_stop"
+    assert "anna asked for it; its agent has not confirmed it" in why
+    there.agents.heard(ONE, _report())
+    orders = there.agents.orders(ONE, {}).orders
+    assert [(one.kind, one.by) for one in orders] == [("emergency_stop", "anna")]
+    there.agents.heard(ONE, _report(obeyed=[one.id for one in orders]))
+    assert there.agents.orders(ONE, {}).orders == []
+    assert there.agents.benches["far"].state()[0] == "free", "what the agent says of its own latch counts"
+    assert there.begun().benches["far"].stop_by == ""
+
+
+def test_an_agent_that_leaves_is_away_at_once_and_its_name_is_free(there: _There) -> None:
+    there.agents.heard(ONE, _report())
+    there.agents.heard(ONE, _report(leaving=True))
+    assert there.agents.benches["far"].state()[0] == "away"
+    assert there.agents.heard(OTHER, _report()) == (["far"], {})
+
+
+def _made(name: str, content: bytes) -> FileMade:
+    return FileMade(name=name, size=len(content), sha256=hashlib.sha256(content).hexdigest())
+
+
+def test_pieces_are_taken_where_the_file_ends_and_files_are_shown_when_they_are_whole(
+    there: _There,
+) -> None:
+    there.agents.heard(ONE, _report())
+    run = there.queue()
+    there.agents.take(ONE, "far")
+    content = secrets.token_bytes(1000)
+    made = [_made("report.pdf", content), _made("empty.txt", b""), _made("plan.yaml", SHORT.encode())]
+    arrivals, folder = there.arrivals, there.folder / f"{run:06d}"
+    assert arrivals.add(run, "report.pdf", 5, b"late") == 0
+    assert arrivals.add(run, "report.pdf", 0, content[:400]) == 400
+    assert arrivals.add(run, "report.pdf", 0, content[:400]) == 400, "sent twice"
+    assert asyncio.run(arrivals.missing(run, made)) == ["report.pdf"]
+    assert not (folder / "report.pdf").exists()
+    assert arrivals.add(run, "report.pdf", 400, content[400:]) == 1000
+    assert asyncio.run(arrivals.missing(run, made)) == []
+    found = arrivals.run_of(run, ONE)
+    assert found is not None
+    assert arrivals.run_of(run, OTHER) is None
+    assert arrivals.finish(found, ONE, RunEnding(state="ended", files=made))
+    assert (folder / "report.pdf").read_bytes() == content
+    assert arrivals.are_those(run, made), "told a second time"
+    assert not arrivals.are_those(run, [_made("report.pdf", b"other")])
+
+
+@pytest.mark.parametrize("name", ["recording.mcap", "report.pdf"])
+@pytest.mark.parametrize("damage", ["flipped", "too long"])
+def test_a_file_that_came_damaged_is_thrown_away_and_comes_again(
+    there: _There, name: str, damage: str
+) -> None:
+    there.agents.heard(ONE, _report())
+    run = there.queue()
+    there.agents.take(ONE, "far")
+    content = secrets.token_bytes(1000)
+    wrong = bytes([content[0] ^ 1]) + content[1:] if damage == "flipped" else content + b"x"
+    made = [_made(name, content)]
+    assert there.arrivals.add(run, name, 0, wrong) == len(wrong)
+    assert asyncio.run(there.arrivals.missing(run, made)) == [name]
+    assert there.arrivals.add(run, name, 0, content) == 1000
+    assert asyncio.run(there.arrivals.missing(run, made)) == []
+
+
+def test_a_file_that_is_too_large_is_not_taken(there: _There, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hil.service.arrivals.MOST_FILE_BYTES", 10)
+    assert there.arrivals.add(1, "log.txt", 0, b"0123456789") == 10
+    with pytest.raises(BenchError, match="more than 10 bytes"):
+        there.arrivals.add(1, "log.txt", 10, b"0")
