@@ -21,6 +21,7 @@ from drivers.listening_wire import ListeningWire
 from drivers.log_wire import LogWire
 from drivers.loop import BusLoop
 from drivers.measurement import SampleAssembler
+from drivers.newest_frames import NewestFrames
 from drivers.panel import Panel, PanelTable
 from drivers.ram import RamMonitor, RamTable
 from drivers.rmcu import RmcuDriver, RmcuTable, parameters_of, read_rmcu
@@ -65,6 +66,7 @@ __all__ = [
     "LogWire",
     "MotorControl",
     "Name",
+    "NewestFrames",
     "Panel",
     "PanelTable",
     "RamMonitor",

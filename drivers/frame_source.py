@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from drivers.newest_frames import least_bytes
 from drivers.samples import Counting, Samples, Stream
 from hil.core.compiled import compiled, compiled_exactly
 from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.signals import Signal, bits_at, number_at
 
 _NONE_YET = -1
-_STANDARD_IDS = 2048
 _OTHER_KINDS = EXTENDED | ERROR_FRAME  # an extended frame of the same number is another message
 _SETTLED_S = 0.003  # frames older than this, before the newest of the slowest bus, have all arrived
 
@@ -43,39 +43,6 @@ class CountedBy:
     opens: bool = False
 
 
-class WholeFrames:
-    """Leaves out what is shorter than the signals that are read of it: half a frame says nothing.
-
-    Args:
-        signals: those read of a frame, by its identifier.
-    """
-
-    def __init__(self, signals: Mapping[int, Iterable[Signal]]) -> None:
-        self._least = np.zeros(_STANDARD_IDS, np.uint8)
-        for number, several in signals.items():
-            self._least[number] = max((_bytes_of(signal) for signal in several), default=0)
-
-    def of(self, block: FrameBlock) -> FrameBlock:
-        """The block without them."""
-        if _short(block["id"], block["length"], self._least):
-            block = block[block["length"] >= self._least[block["id"] % _STANDARD_IDS]]
-        return block
-
-
-@compiled
-def _short(ids, lengths, least):  # type: ignore[no-untyped-def]
-    """How many are shorter."""
-    count = 0
-    for frame in range(ids.shape[0]):
-        count += lengths[frame] < least[ids[frame] % _STANDARD_IDS]
-    return count
-
-
-def _bytes_of(signal: Signal) -> int:
-    """How many bytes a frame must have for the signal to be in it."""
-    return 8 - signal.shift // 8 if signal.big_endian else -(-(signal.shift + signal.length) // 8)
-
-
 class FrameSource:
     """Decodes the bound signals of every frame, in blocks, and counts.
 
@@ -102,22 +69,12 @@ class FrameSource:
             )
             for bus, _ in frames
         }
-        self._whole = {
-            bus: WholeFrames(
-                {
-                    b.frame_id: [o.signal for o in bindings if o.frame_id == b.frame_id and o.bus == bus]
-                    for b in bindings
-                    if b.bus == bus
-                }
-            )
-            for bus in self._decoders
-        }
         self._waiting: list[Samples] = []
 
     def take(self, bus: str, block: FrameBlock) -> None:
         """Take the frames of one bus."""
         if bus in self._decoders:
-            self._waiting += self._decoders[bus].decode(self._whole[bus].of(block))
+            self._waiting += self._decoders[bus].decode(block)
 
     def samples(self) -> list[Samples]:
         """What has come since the last call."""
@@ -175,6 +132,7 @@ class _Decoder:
         self._columns = [slice(first, end) for first, end in zip([0, *ends], ends, strict=False)]
         self._ends = np.array(ends, np.int64)
         self._ids = np.array([frame_id for _, frame_id, _ in bound], np.int64)
+        read = [[b.signal for b in bindings] for _, _, bindings in bound]
         self._places = np.array([s.place for s in signals], np.int64).reshape(-1, 5)
         self._scales = np.array([(s.scale, s.offset) for s in signals]).reshape(-1, 2)
         self._counter = np.full(6, -1, np.int64)  # which stream counts, -1: none; and where its counter lies
@@ -182,6 +140,8 @@ class _Decoder:
             self._counter[0] = self._ids.tolist().index(counted_by.frame_id)
             if counted_by.counter:
                 self._counter[1:] = counted_by.counter.place
+                read[self._counter[0]].append(counted_by.counter)
+        self._least = np.array([least_bytes(several) for several in read], np.int64)
         self._state = np.array([_NONE_YET, 0, 0], np.int64)
 
     def decode(self, block: FrameBlock) -> list[Samples]:
@@ -192,8 +152,9 @@ class _Decoder:
         numbers = np.empty((len(self._places), frames))
         marks = np.empty((streams if self._counted else 0, frames), np.int64)
         _read(
-            block["id"], block["flags"], block["time_s"], block["data"], self._ids, self._ends, self._places,
-            self._scales, self._counter, self._state, counts, times, numbers, marks,
+            block["id"], block["flags"], block["length"], block["time_s"], block["data"],
+            self._ids, self._least, self._ends, self._places, self._scales, self._counter, self._state,
+            counts, times, numbers, marks,
         )  # fmt: skip
         values = numbers.T
         found = []
@@ -234,14 +195,29 @@ def _count(payload, counter, state):  # type: ignore[no-untyped-def]
 
 @compiled_exactly
 def _read(  # type: ignore[no-untyped-def]
-    ids, flags, stamps, payloads, wanted, ends, places, scales, counter, state, counts, times, values, marks
+    ids,
+    flags,
+    lengths,
+    stamps,
+    payloads,
+    wanted,
+    least,
+    ends,
+    places,
+    scales,
+    counter,
+    state,
+    counts,
+    times,
+    values,
+    marks,
 ):
     """Sort frames by identifier, count, and read their signals, rounded as `Signal.decode` does."""
     for frame in range(ids.shape[0]):
         if flags[frame] & _OTHER_KINDS:
             continue
         for stream in range(wanted.shape[0]):
-            if ids[frame] != wanted[stream]:
+            if ids[frame] != wanted[stream] or lengths[frame] < least[stream]:
                 continue
             at = counts[stream]
             if counter[0] == stream:

@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.dyno._canopen import LoopNetwork, LoopNode
-from drivers.frame_source import Binding, WholeFrames
+from drivers.frame_source import Binding
+from drivers.newest_frames import NewestFrames
 from hil.core.errors import BenchError
-from hil.core.frames import newest_of
 from hil.core.pdo import layout_of_pdo, read_eds
 from hil.core.signals import FrameLayout
 
@@ -74,7 +74,7 @@ class DynoNode:
         dictionary, (self._command, self._values, self._status) = read_dyno(eds, node_id)
         self._node: Any = LoopNode(node_id, dictionary)
         network.add_node(self._node)
-        self._whole = WholeFrames({f.id: f.signals.values() for f in (self._status, self._values)})
+        self._newest = NewestFrames({f.id: f.signals.values() for f in (self._status, self._values)})
         self._target_speed = 0.0
         self.emergencies: list[str] = []
         self.emergency_codes: list[int] = []
@@ -195,7 +195,7 @@ class DynoNode:
 
     def take_block(self, block: npt.NDArray[np.void]) -> None:
         """Follow the newest PDOs of a block of this bus."""
-        status, values = newest_of(self._whole.of(block), (self._status.id, self._values.id))
+        status, values = self._newest.of(block)
         if status is not None:
             self.last_seen_s = status[0]
             self.status = self._status.signals["Statusword"].raw(status[1])

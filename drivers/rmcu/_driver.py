@@ -9,8 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.examination import Examined, Finding
-from drivers.frame_source import Binding, CountedBy, FrameSource, WholeFrames
+from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
+from drivers.newest_frames import NewestFrames
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
 from hil.core.checksum import crc8, crc8_many
@@ -18,7 +19,6 @@ from hil.core.controller import Controller
 from hil.core.conventions import TICK_S
 from hil.core.dbc import Dbc, Names, Needed, read_dbc
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import newest_of
 from hil.core.printable import printable
 from hil.core.signals import Payloads
 
@@ -107,7 +107,8 @@ class RmcuDriver:
         self._count: int | None = None
         control = self._layouts["RMCU_Control"]
         self._checked = "Crc" in control.signals and control.signals["Crc"].place[:2] == _LAST_BYTE
-        self._whole = WholeFrames({f.id: f.signals.values() for f in (self._layouts["RMCU_Status"], control)})
+        shown = (control, self._layouts["RMCU_Status"])
+        self._newest = NewestFrames({frame.id: frame.signals.values() for frame in shown})
         self._identification: int | None = None
         if "RMCU_Identification" in self._layouts:
             loop.on_frame(wire, self._layouts["RMCU_Identification"].id, self._take_identification)
@@ -304,7 +305,7 @@ class RmcuDriver:
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus != self._wire.name:
             return
-        control, status = newest_of(self._whole.of(block), self._shown)
+        control, status = self._newest.of(block)
         if control is None or status is None or not self._is_believed(*control):
             return
         signals = self._layouts["RMCU_Control"].signals

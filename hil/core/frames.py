@@ -91,28 +91,3 @@ def standard(block: FrameBlock) -> FrameBlock:
     """The data frames with an 11-bit identifier: an extended one of the same number is another message."""
     other = block["flags"] & (EXTENDED | ERROR_FRAME)
     return block[other == 0] if np.count_nonzero(other) else block
-
-
-def newest(block: FrameBlock, frame_id: int) -> tuple[float, int] | None:
-    """Time and payload of the last received frame with this identifier; None if the block has none."""
-    return newest_of(block, (frame_id,))[0]
-
-
-def newest_of(block: FrameBlock, frame_ids: tuple[int, ...]) -> list[tuple[float, int] | None]:
-    """Time and payload of the last received frame with each of these identifiers; else None."""
-    places = _last(block["id"], block["flags"], frame_ids)
-    return [
-        (float(block["time_s"][place]), int(block["data"][place])) if place >= 0 else None for place in places
-    ]
-
-
-@compiled
-def _last(ids, flags, wanted):  # type: ignore[no-untyped-def]
-    """Where the last received frame with each identifier stands, -1: nowhere."""
-    found = [-1 for _ in wanted]
-    for entry in range(len(wanted)):
-        for place in range(len(ids) - 1, -1, -1):
-            if ids[place] == wanted[entry] and not flags[place] & (SENT_BY_HOST | EXTENDED | ERROR_FRAME):
-                found[entry] = place
-                break
-    return found

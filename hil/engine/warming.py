@@ -6,9 +6,9 @@ import contextlib
 
 import numpy as np
 
-from drivers import TICK_S, FrameSource, SampleAssembler, Samples, Stream
+from drivers import TICK_S, FrameSource, NewestFrames, SampleAssembler, Samples, Stream
 from hil.core.errors import BenchError
-from hil.core.frames import EXTENDED, FRAME, inserted, newest_of
+from hil.core.frames import EXTENDED, FRAME, inserted
 from hil.engine.bench import Bench
 from hil.engine.limits import LimitWatch
 
@@ -39,7 +39,7 @@ def _warm_up_frames(bench: Bench) -> None:
     blocks = [np.zeros(count, FRAME) for count in (1, 2)]
     for block in blocks:
         block["flags"] = EXTENDED  # nobody listens to those
-        newest_of(block, (0, 0))
+        NewestFrames({0: ()}).of(block)
         for other in blocks:
             inserted(block, other)
         for wire in bench.loop.wires:

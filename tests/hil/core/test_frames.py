@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from drivers import Binding, FrameSource, SampleAssembler
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, newest, standard
+from drivers import Binding, FrameSource, NewestFrames, SampleAssembler
+from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, standard
 from hil.core.signals import Signal
 from hil.engine.limit_tables import Limits
 from hil.engine.limits import LimitWatch
@@ -29,7 +29,7 @@ def test_another_kind_of_frame_with_the_same_number_is_not_decoded(flags: int) -
         (0.000, 0, 8, 100), (0.0005, flags, 8, 60_000), (0.001, 0, 8, 101), (0.0015, flags, 8, 60_000)
     )
     assert list(standard(mixed)["data"]) == [100, 101]
-    assert newest(mixed, 0x110) == (0.001, 101)
+    assert NewestFrames({0x110: ()}).of(mixed) == [(0.001, 101)]
     source = FrameSource([SPEED], 1e-3)
     source.take("rmcu", mixed)
     assembler = SampleAssembler(source.streams, 1e-3)
@@ -47,15 +47,6 @@ def test_another_kind_of_frame_with_the_same_number_is_not_decoded(flags: int) -
     assert watch.largest["motor_speed_rad_s"] == pytest.approx(10.1)
 
 
-def test_what_the_host_sent_is_not_the_newest_answer() -> None:
-    assert newest(block((0.0, 0, 8, 1), (0.001, SENT_BY_HOST, 8, 2)), 0x110) == (0.0, 1)
+def test_what_the_host_sent_stays_among_standard_frames() -> None:
     whole = block((0.0, SENT_BY_HOST, 8, 1))
     assert standard(whole) is whole
-
-
-def test_the_newest_frame_is_the_last_that_was_received() -> None:
-    frames = block((0.1, 0, 8, 1), (0.2, 0, 8, 2), (0.3, SENT_BY_HOST, 8, 3), (0.4, EXTENDED, 8, 4))
-    assert newest(frames, 0x110) == (0.2, 2)
-    assert newest(frames[:1], 0x110) == (0.1, 1)
-    assert newest(frames, 0x111) is None
-    assert newest(frames[2:], 0x110) is None

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, frames, inserted, joined, newest_of
+from hil.core.frames import SENT_BY_HOST, frames, inserted
 
 TIMES = st.lists(st.integers(0, 20).map(float), max_size=12)
 
@@ -25,17 +25,3 @@ def test_what_came_keeps_its_order_whatever_its_stamps_say(sent_s: list[float], 
         assert np.all(before < both["time_s"][place])
         after = both[place:][both[place:]["id"] == 2]["time_s"]
         assert not len(after) or after[0] >= both["time_s"][place]
-
-
-def test_the_newest_frame_of_each_identifier_is_one_that_was_received() -> None:
-    block = joined(
-        [
-            frames(5, 1, 8, 0.1),
-            frames(5, 2, 8, 0.2),
-            frames(5, 3, 8, 0.3, flags=SENT_BY_HOST),
-            frames(5, 4, 8, 0.4, flags=EXTENDED),
-            frames(5, 5, 8, 0.5, flags=ERROR_FRAME),
-            frames(6, 6, 8, 0.6),
-        ]
-    )
-    assert newest_of(block, (7, 6, 5)) == [None, (0.6, 6), (0.2, 2)]
