@@ -7,6 +7,7 @@ share what is read here; one that is slow gets wider buckets, which still have e
 from __future__ import annotations
 
 import contextlib
+import itertools
 from collections import deque
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,7 @@ from test_plans.metrics import energy_within, periodogram
 
 BUCKET_S = 0.02
 _KEPT_S = 60.0
+_BEHIND_S = 0.2  # a run writes what it measured every 0.15 s
 #: Buckets that are sent at once; what is more is joined.
 MOST_BUCKETS = 300
 SPECTRUM_CHANNEL = "motor_speed_rad_s"
@@ -54,11 +56,16 @@ class Stretch:
 
 
 class Buckets:
-    """The last minute of a run, as the lowest and the highest value of each channel in every bucket."""
+    """The last minute of a run, as the lowest and the highest value of each channel in every bucket.
+
+    What was written at once is shown bucket by bucket, as fast as it was measured: `show` lets time pass.
+    """
 
     def __init__(self) -> None:
         self.names: tuple[str, ...] = ()
         self.next = 0  # number of the bucket that is being filled
+        self.shown = 0  # number of the first that is not shown yet
+        self._shown = 0.0
         self._done: deque[tuple[Array, Array]] = deque(maxlen=round(_KEPT_S / BUCKET_S))
         self._open: tuple[Array, Array] | None = None
 
@@ -75,13 +82,21 @@ class Buckets:
         for number, low, high in zip(numbers[starts].tolist(), lowest, highest, strict=True):
             self._add(number, low, high)
 
+    def show(self, passed_s: float) -> bool:
+        """Show what was measured in so much time, and whatever is late; says whether there was anything."""
+        before, late = self.shown, self.next - round(_BEHIND_S / BUCKET_S)
+        self._shown = min(max(self._shown + passed_s / BUCKET_S, late), self.next)
+        self.shown = int(self._shown)
+        return self.shown > before
+
     def since(self, number: int) -> Stretch | None:
-        """Buckets from a number on that are full, joined to `MOST_BUCKETS` at most; None if there is none."""
-        first = max(number, self.next - len(self._done))
-        count = self.next - first
+        """Buckets shown from a number on, joined to `MOST_BUCKETS` at most; None if there is none."""
+        kept = self.next - len(self._done)  # the first that still is
+        first = max(number, kept)
+        count = self.shown - first
         if count <= 0:
             return None
-        done = list(self._done)[-count:]
+        done = list(itertools.islice(self._done, first - kept, self.shown - kept))
         low, high = np.array([one[0] for one in done]), np.array([one[1] for one in done])
         joined = -(-count // MOST_BUCKETS)
         starts = np.arange(0, count, joined)
@@ -95,7 +110,8 @@ class Buckets:
 
     def _add(self, number: int, low: Array, high: Array) -> None:
         if self._open is None:
-            self.next = number
+            self.next = self.shown = number
+            self._shown = float(number)
         while self._open is not None and number > self.next:
             self._done.append(self._open)
             self.next += 1
@@ -127,23 +143,26 @@ class LiveRun:
         self.buckets = Buckets()
         self.time_s = 0.0
 
-    def look(self) -> bool:
-        """Read what has come; whether anything has."""
+    def look(self, passed_s: float) -> bool:
+        """Read what has come, `passed_s` after the last look; whether there is more to show."""
+        self._read()
+        return self.buckets.show(passed_s)
+
+    def _read(self) -> None:
         if self._file is None:
             with contextlib.suppress(BadInputError):
                 self._file = FollowedRecording(self._path)
         if self._file is None:
-            return False
+            return
         try:
             rows = self._file.fetch()
         except (BadInputError, OSError, ValueError):  # a damaged file is the run's to report
             self.close()
-            return False
+            return
         if len(rows):
             self.time_s = float(rows[-1, 0])
             self.buckets.add(self._file.names, rows)
             self._remember(rows)
-        return bool(len(rows))
 
     def spectrum(self) -> Spectrum | None:
         """Of the last seconds; None while there are none."""

@@ -29,6 +29,7 @@ from hil.service.live import LiveRun
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.run_files import files_in
+from hil.service.said import Said
 from hil.service.shelves import controller_shelf, model_shelf
 from hil.service.store import (
     BenchStore,
@@ -43,7 +44,7 @@ from hil.service.store import (
 from hil.service.studies import Studies
 from test_plans import plan_from_text
 
-_LOOK_S = 0.1
+_LOOK_S = 0.05  # a viewer is sent as many updates
 _JUDGE_S = 1.0
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
@@ -71,6 +72,7 @@ class OnShow:
     live: LiveRun
     criteria: tuple[CriterionResult, ...] = ()
     judged_s: float = 0.0
+    looked_s: float = field(default_factory=time.monotonic)
 
 
 @dataclass
@@ -127,6 +129,7 @@ class Service:
         self.closing = False
         self.viewers: defaultdict[str, set[asyncio.Event]] = defaultdict(set)
         self.on_show: dict[str, OnShow] = {}
+        self.said: defaultdict[str, Said] = defaultdict(Said)  # of each bench
         self._version: defaultdict[str, int] = defaultdict(int)
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
         self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, self.changed)
@@ -317,7 +320,10 @@ class Service:
                 return
             shown = OnShow(running.data.id, LiveRun(running.folder / RECORDING, plan))
             self.on_show[bench] = shown
-        if shown is not None and shown.live.look():
+        if shown is None:
+            return
+        passed_s, shown.looked_s = time.monotonic() - shown.looked_s, time.monotonic()
+        if shown.live.look(passed_s):
             self._tell(bench)
 
     async def _judge(self, bench: str) -> None:

@@ -16,7 +16,7 @@ from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
 from hil.service.data import BenchName
 from hil.service.drawn_numbers import numbers
-from hil.service.live import BUCKET_S, Stretch
+from hil.service.live import BUCKET_S, Spectrum, Stretch
 from hil.service.service import OnShow, Service
 
 router = APIRouter(tags=["live"])
@@ -55,7 +55,7 @@ class _Watching:
     """One viewer of one bench."""
 
     def __init__(self, service: Service, bench: str) -> None:
-        self._service, self._bench = service, bench
+        self._service, self._bench, self._said = service, bench, service.said[bench]
         self._run = -1
         self._next_bucket = 0
         self._version = -1
@@ -84,37 +84,36 @@ class _Watching:
         news = []
         if service.version(bench) != self._version:
             self._version = service.version(bench)
-            news.append(_event("state", _state(service, bench)))
+            news.append(
+                self._said.text("state", self._version, lambda: _event("state", _state(service, bench)))
+            )
         shown = service.on_show.get(bench)
         if shown is not None:
             news += self._of_run(shown)
         return news
 
     def _of_run(self, shown: OnShow) -> list[str]:
-        news, buckets = [], shown.live.buckets
-        if shown.run != self._run:
-            self._run, self._criteria = shown.run, None
-            self._next_bucket = max(0, buckets.next - round(_SHOWN_S / BUCKET_S))
-        stretch = buckets.since(self._next_bucket)
-        if stretch is not None:
-            self._next_bucket = buckets.next
-            news.append(_event("samples", {"run": shown.run, **_samples(stretch)}))
+        news, buckets, run = [], shown.live.buckets, shown.run
+        if run != self._run:
+            self._run, self._criteria = run, None
+            self._next_bucket = max(0, buckets.shown - round(_SHOWN_S / BUCKET_S))
+        first, self._next_bucket = self._next_bucket, max(self._next_bucket, buckets.shown)
+        if self._next_bucket > first:
+            span = (run, first, self._next_bucket)
+            news.append(self._said.text("samples", span, lambda: _samples(run, buckets.since(first))))
         if shown.criteria is not self._criteria:
             self._criteria = shown.criteria
             decided = [one.model_dump(mode="json", exclude={"definition"}) for one in shown.criteria]
-            news.append(_event("criteria", {"run": shown.run, "criteria": decided}))
-        return news + self._spectrum(shown)
+            news.append(_event("criteria", {"run": run, "criteria": decided}))
+        return [*news, self._spectrum(shown)]
 
-    def _spectrum(self, shown: OnShow) -> list[str]:
+    def _spectrum(self, shown: OnShow) -> str:
         now_s = time.monotonic()
         if now_s - self._spectrum_at_s < _SPECTRUM_EVERY_S or shown.live.time_s == self._spectrum_s:
-            return []
+            return ""
         self._spectrum_at_s, self._spectrum_s = now_s, shown.live.time_s
-        found = shown.live.spectrum()
-        if found is None:
-            return []
-        values = {"step_hz": found.step_hz, "density": numbers(found.density)}
-        return [_event("spectrum", {"run": shown.run, "band_energy": found.band_energy, **values})]
+        of = (shown.run, shown.live.time_s)
+        return self._said.text("spectrum", of, lambda: _spectrum(shown.run, shown.live.spectrum()))
 
 
 def _state(service: Service, bench: str) -> dict[str, Any]:
@@ -128,19 +127,23 @@ def _state(service: Service, bench: str) -> dict[str, Any]:
     }
 
 
-def _samples(stretch: Stretch) -> dict[str, Any]:
+def _samples(run: int, stretch: Stretch | None) -> str:
+    if stretch is None:
+        return ""
     columns = {name: stretch.names.index(name) for name in CHANNELS if name in stretch.names}
-    return {
-        "start_s": round(stretch.start_s, 3),
-        "width_s": round(stretch.width_s, 3),
-        "channels": {
-            name: {
-                "lowest": numbers(stretch.lowest[:, column]),
-                "highest": numbers(stretch.highest[:, column]),
-            }
-            for name, column in columns.items()
-        },
+    channels = {
+        name: {"lowest": numbers(stretch.lowest[:, column]), "highest": numbers(stretch.highest[:, column])}
+        for name, column in columns.items()
     }
+    start_s, width_s = round(stretch.start_s, 3), round(stretch.width_s, 3)
+    return _event("samples", {"run": run, "start_s": start_s, "width_s": width_s, "channels": channels})
+
+
+def _spectrum(run: int, found: Spectrum | None) -> str:
+    if found is None:
+        return ""
+    values = {"step_hz": found.step_hz, "density": numbers(found.density)}
+    return _event("spectrum", {"run": run, "band_energy": found.band_energy, **values})
 
 
 def _event(name: str, data: dict[str, Any]) -> str:

@@ -30,12 +30,14 @@ def test_every_peak_is_in_some_bucket(parts: list[int], data: st.DataObject) -> 
     for part in parts:
         buckets.add(NAMES, rows[start : start + part])
         start += part
+        buckets.show(1e3)
         if data.draw(st.booleans()) and (stretch := buckets.since(next_)) is not None:
             assert stretch.start_s == next_ * BUCKET_S
-            next_ = buckets.next
+            next_ = buckets.shown
             low.append(stretch.lowest)
             high.append(stretch.highest)
     buckets.add(NAMES, np.array([[rows[-1, 0] + BUCKET_S, 0.0, 0.0]]))
+    buckets.show(1e3)
     low.append(buckets.since(next_).lowest)
     high.append(buckets.since(next_).highest)
     full = rows[:, 0] < buckets.next * BUCKET_S - 1e-9
@@ -48,6 +50,7 @@ def test_a_late_viewer_gets_wider_buckets_and_still_every_peak() -> None:
     rows[12_345, 2] = -500.0
     buckets = Buckets()
     buckets.add(NAMES, rows)
+    buckets.show(1e3)
     stretch = buckets.since(0)
     assert len(stretch.lowest) <= MOST_BUCKETS
     assert stretch.lowest[:, 1].min() == -500.0
@@ -60,9 +63,24 @@ def test_time_in_which_nothing_came_is_empty() -> None:
     buckets = Buckets()
     buckets.add(NAMES, np.array([[0.0, 1.0, 2.0]]))
     buckets.add(NAMES, np.array([[5 * BUCKET_S, 3.0, 4.0]]))
+    buckets.show(1e3)
     stretch = buckets.since(0)
     assert stretch.lowest[:, 0].tolist()[0] == 1.0
     assert np.isnan(stretch.lowest[1:, 0]).all()
+
+
+def test_what_is_written_at_once_is_shown_as_it_was_measured() -> None:
+    """150 ms at a time, looked at every 50 ms: an update at every look, none of it older than 0.2 s."""
+    buckets, rows, updates = Buckets(), samples(6000), []
+    for look in range(100):
+        if look % 3 == 0:
+            buckets.add(NAMES, rows[50 * look : 50 * look + 150])
+        before = buckets.shown
+        updates.append(buckets.show(0.05))
+        assert buckets.next - buckets.shown <= 10
+        assert 0 <= buckets.shown - before <= 10
+        assert updates[-1] == (buckets.shown > before)
+    assert sum(updates[10:]) >= 88
 
 
 def test_a_recording_is_read_while_it_grows(tmp_path: Path) -> None:
@@ -114,6 +132,7 @@ def test_the_spectrum_says_what_lies_in_the_band(tmp_path: Path) -> None:
     writer.close()
     live = LiveRun(path, plan_from_text(SHORT, "p", tmp_path))
     assert live.spectrum() is None
-    assert live.look()
+    assert live.look(0.0)
+    assert live.buckets.shown > live.buckets.next - 20  # it came at once, and is old
     assert abs(live.spectrum().band_energy - 4.5) < 0.2  # 3²/2, and some noise
     live.close()
