@@ -21,6 +21,30 @@ def test_the_vehicle_model_is_told_and_read_back():
         assert left.number(0x2000, 4) == pytest.approx(0.05)
 
 
+def test_the_dynos_watch_their_host_and_send_when_told():
+    with running("configured"):
+        left, right, *_ = attached("configured").dynos
+        for node in (left, right):
+            assert node.number(0x1016, 1) == 127 << 16 | 200  # off when the host is silent for 200 ms
+            assert node.number(0x1017, 0) == 100
+        assert left.number(0x1006, 0) == 1000
+        assert left.number(0x1005, 0) == 1 << 30 | 0x80
+
+
+def test_a_speed_is_held_until_the_vehicle_is_released():
+    with running("modes") as bench:
+        dynos = attached("modes").dynos[:2]
+        bench.dyno.enable(50.0)
+        assert [node.number(0x6060, 0) for node in dynos] == [3, 3]
+        bench.dyno.release_vehicle(2.5)
+        assert [node.number(0x6060, 0) for node in dynos] == [-1, -1]
+        assert dynos[0].number(0x2000, 6) == 2.5
+        bench.dyno.hold_speed(4.0)
+        assert [node.number(0x6060, 0) for node in dynos] == [3, 3]
+        bench.loop.run_for(1.0)
+        assert bench.dyno.wheel_speed_rad_s == pytest.approx(4.0, abs=0.1)
+
+
 def test_states_are_reached_and_left():
     with running("states") as bench:
         bench.dyno.enable(10.0)

@@ -130,3 +130,13 @@ def test_beats_ask_and_silence_local_and_alarms_are_troubles() -> None:
     device._loop.run_for(0.1)
     assert device.troubles() == ["alarm 3", "alarm 4", "somebody took the panel to local"]
     line.close()
+
+
+def test_it_is_examined_by_asking_alone() -> None:
+    device, line = panel(STATE, (b"\x02 ASTF K0\x03", b"\x02 ASTF 0 17\x03"))
+    assert [f.severity for f in device.examine(ask=False).findings] == ["hint"]
+    found = device.examine(ask=True)
+    assert found.answers
+    assert found.facts == {"state": "remote"}
+    assert [f.what for f in found.findings] == ["alarm 17"]
+    line.close()

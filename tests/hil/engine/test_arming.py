@@ -17,6 +17,7 @@ from hil.core.recording import read_recording
 from hil.engine.arming import Arming
 from hil.engine.bench import open_bench
 from hil.engine.bench_tables import ZeroLimit
+from hil.engine.border import Terminal
 from hil.engine.operator import Operator
 from hil.engine.recorder import Recorder
 from hil.engine.watchkeeping import Watchkeeping
@@ -36,7 +37,7 @@ class Stage:
 
 
 @contextlib.contextmanager
-def stage(out: Path, name: str, **changes: Any) -> Iterator[Stage]:
+def stage(out: Path, name: str, terminal: Terminal | None = None, **changes: Any) -> Iterator[Stage]:
     """An open bench of which nothing has been asked yet."""
     with open_bench(sim_bench(name, **changes)) as bench:
         recorder = Recorder(out / "r.mcap", bench.streams, list(bench.file.buses), 0.001)
@@ -44,7 +45,7 @@ def stage(out: Path, name: str, **changes: Any) -> Iterator[Stage]:
         def event(kind: str, text: str) -> None:
             recorder.event(bench.loop.clock.now_s(), kind, text)
 
-        watch = Watchkeeping(bench, recorder, Operator(bench.loop, None, ""), event)
+        watch = Watchkeeping(bench, recorder, Operator(bench.loop, terminal, ""), event)
         try:
             arming = Arming(bench, recorder, watch.limits, watch.zero, None)
             yield Stage(bench, recorder, watch, arming, out / "r.mcap")

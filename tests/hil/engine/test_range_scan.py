@@ -121,6 +121,27 @@ def test_a_slope_is_taken_over_its_time_in_whole_samples_at_least_one(over_s: fl
     assert next(watched.results()).highest == pytest.approx(1.0 / taken_s)
 
 
+@pytest.mark.parametrize(
+    ("below", "reading", "said"),
+    [
+        (-10.0, -12.0, "value reached 12 K, the limit is 10 K"),  # a magnitude
+        (-10.0, 12.0, "value reached 12 K, the limit is 10 K"),
+        (-5.0, -12.0, "value reached -12 K, the limit is -5 K"),
+        (-5.0, 12.0, "value reached 12 K, the limit is 10 K"),
+    ],
+)
+def test_the_words_name_the_end_that_was_reached(below: float, reading: float, said: str) -> None:
+    watched, _ = looked(Range("value", below, 10.0, 0.0, "r", "K", 0), [reading], 1)
+    assert [text for _, text in watched.stands()] == [said]
+
+
+def test_an_open_end_and_what_was_not_seen_are_told_as_such() -> None:
+    watched = StreamRanges(STREAM, [Range("value", -math.inf, 10.0, 0.5, "r", "K")])
+    result = next(watched.results())
+    assert (result.below, result.above, result.persistence_s) == (None, 10.0, 0.5)
+    assert (result.of, result.lowest, result.highest) == ("value", None, None)
+
+
 def test_a_trip_is_told_as_long_as_it_stands() -> None:
     range_ = Range("value", -10.0, 10.0, 0.0, "r", "K", 0)
     assert len(looked(range_, [12.0] * 9, 1)[1]) == 9

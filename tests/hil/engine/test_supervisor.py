@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from hil.core.errors import BadInputError, BenchError, EmergencyStopError, HilError, InterruptError
-from hil.engine import RunRequest
+from hil.engine import RunRequest, supervisor
 from hil.engine.bench_tables import BenchFile
 from hil.engine.supervisor import carry_out
 from tests.benches_for_tests import plan, sim_bench
@@ -89,6 +89,15 @@ def test_one_that_ends_or_hangs_is_given_up_in_words(then: str, said: str, tmp_p
         os.kill(int((tmp_path / "pid").read_text()), 0)
 
 
+def test_one_that_does_not_leave_when_all_is_said_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(supervisor, "_LEAVING_S", 1.0)
+    number = tmp_path / "pid"
+    stays = process(ENDED, then=f"open({str(number)!r}, 'w').write(str(os.getpid()))\ntime.sleep(60)")
+    assert carry_out(request(tmp_path), stays).result.verdict == "pass"
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(number.read_text()), 0)
+
+
 def test_one_that_is_stopped_before_its_loop_turns_is_not_waited_for(tmp_path: Path):
     error = lost(tmp_path, process(TOLD, then="os.kill(os.getpid(), signal.SIGSTOP)"))
     assert "was stopped, and stood still for 0.5 s; nothing was commanded" in str(error)
@@ -145,6 +154,17 @@ def test_lines_stops_and_signs_of_life_reach_it(tmp_path: Path):
     carry_out(asked, process(TURNED, then=read))
     kinds = [line.partition('"kind": "')[2].partition('"')[0] for line in log.read_text().splitlines()]
     assert kinds == ["run", "typed", "typed", "stop", "here"]
+
+
+def test_its_log_is_told_as_that_of_this_process(tmp_path: Path, caplog: pytest.LogCaptureFixture):
+    line = '{"kind": "logged", "logger": "hil.engine.run", "level": 40, "text": "TEXT", "traceback": "TRACE"}'
+    plain = line.replace("TEXT", "plain").replace("TRACE", "")
+    traced = line.replace("TEXT", "traced").replace("TRACE", "Traceback: line 7")
+    carry_out(request(tmp_path), process(TURNED, plain, traced, ENDED))
+    records = {record.getMessage(): record for record in caplog.records if record.name == "hil.engine.run"}
+    assert records["plain"].levelname == "ERROR"
+    assert (records["plain"].exc_info, records["plain"].exc_text) == (None, None)
+    assert records["traced"].exc_text == "Traceback: line 7"
 
 
 def test_a_simulated_bench_stays_in_this_process_unless_its_file_says_otherwise(tmp_path: Path):

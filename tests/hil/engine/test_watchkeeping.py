@@ -15,6 +15,7 @@ from sim_backend.can_interface import attached
 from tests.benches_for_tests import SIM
 from tests.hil.engine.cages import CHANNEL, cage, shut
 from tests.hil.engine.test_arming import Stage, stage
+from tests.operators import Silent
 
 OPENS_S = 1.5  # the bench is armed before
 
@@ -109,6 +110,15 @@ def test_a_device_says_emergency(tmp_path: Path) -> None:
         raised = watched(at)
         assert isinstance(raised, EmergencyStopError)
         assert (raised.by, raised.what) == ("cage", "the button was pressed")
+
+
+def test_the_operator_says_emergency(tmp_path: Path) -> None:
+    operator = Silent()
+    operator.waiting = ["e"]
+    with stage(tmp_path, "typed", operator) as at:
+        raised = watched(at, 0.1)
+        assert isinstance(raised, EmergencyStopError)
+        assert raised.by == "the operator"
 
 
 def test_every_sample_is_recorded_until_the_rows_are_finished(tmp_path: Path) -> None:
