@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from drivers import BusLoop, DynoDriver, DynoNodes, VehicleParameters, Wire
-from drivers.dyno import read_dyno
+from drivers.dyno import identifiers_of, read_dyno
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import FRAME
 from sim_backend.bench import Fault
@@ -71,6 +71,15 @@ def test_a_deaf_dyno_is_named():
             bench.dyno.enable(10.0)
 
 
+def test_a_drive_that_does_not_follow_is_told_within_half_a_second():
+    with running("unled") as bench:
+        attached("unled").tamper = Lossy(0x204)
+        began_s = bench.loop.clock.now_s()
+        with pytest.raises(BenchError, match="rear right is in 'switch on disabled'"):
+            bench.dyno.enable(10.0)
+        assert bench.loop.clock.now_s() - began_s < 0.7
+
+
 def test_missing_nodes_are_named():
     with running("missing"):
         world = attached("missing")
@@ -119,6 +128,59 @@ def test_what_is_measured_is_also_read_by_sdo():
         bench.loop.run_for(1.0)
         assert bench.dyno.left.measured("Wheel speed") == pytest.approx(5.0, abs=0.05)
         assert bench.dyno.left.measured("no such object") is None
+
+
+def test_what_a_dyno_said_long_ago_is_no_news():
+    with running("old-news") as bench:
+        assert bench.dyno.is_safe()
+        attached("old-news").fail(Fault.DYNO_SILENT)
+        bench.loop.run_for(0.1)
+        assert not bench.dyno.is_safe()
+
+
+class Lossy:
+    """Frames that never arrive."""
+
+    def __init__(self, *lost):
+        self._lost = lost
+
+    def time_passes(self, now_s): ...
+
+    def look(self, first, rows): ...
+
+    def to_nodes(self, bus, frame_id, data):
+        return [] if frame_id in self._lost else [(frame_id, data)]
+
+    def to_hosts(self, bus, block):
+        return block[~np.isin(block["id"], self._lost)]
+
+
+def test_one_that_beats_but_measures_nothing_does_not_come_up():
+    with running("mute") as bench:
+        world = attached("mute")
+        world.tamper = Lossy(0x183, 0x184, 0x283, 0x284)
+        wire = Wire("dyno", SimulatedBus("mute/dyno"), world)
+        loop = BusLoop(world, [bench.loop.wires[0], wire])
+        driver = DynoDriver(loop, wire, SIM.dyno.eds, DynoNodes(3, 4), VehicleParameters())
+        loop.every(0.05, driver.beat)
+        with pytest.raises(BenchError, match="the rear dynos send no measured values"):
+            driver.come_up()
+        assert not driver.is_safe()
+        wire.close()
+
+
+def test_each_identifier_of_a_node_is_named():
+    assert identifiers_of(3, "rear left") == {
+        0x000: "NMT",
+        0x080: "SYNC",
+        0x083: "EMCY of rear left",
+        0x183: "values of rear left",
+        0x203: "command of rear left",
+        0x283: "status of rear left",
+        0x583: "SDO answer of rear left",
+        0x603: "SDO request of rear left",
+        0x703: "heartbeat of rear left",
+    }
 
 
 def test_emergencies_are_told():

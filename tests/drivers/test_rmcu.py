@@ -166,3 +166,27 @@ def test_an_rmcu_that_has_not_been_heard_yet_is_in_no_trouble_and_not_safe_eithe
         assert not rmcu.is_powerless()
         with pytest.raises(BenchError, match="sends no status"):
             rmcu.come_up()
+
+
+@pytest.mark.parametrize(("bits", "counted_by"), [(8, 8), (3, 3), (2, None), (1, None)])
+def test_a_counter_counts_from_three_bits_on(bits, counted_by, tmp_path):
+    path = tmp_path / "short.dbc"
+    text = SIM.rmcu.dbc.read_text()
+    path.write_text(
+        text.replace("SG_ Counter : 48|8@1+ (1,0) [0|255]", f"SG_ Counter : 48|{bits}@1+ (1,0) [0|1]")
+    )
+    with running("short-counter") as bench:
+        counts = RmcuDriver(bench.loop, bench.loop.wires[0], path)._counted_by()
+    assert (counts.counter.length if counts.counter else None) == counted_by
+    assert (counts.name, counts.opens) == (("RMCU_Control", False) if counted_by else ("RMCU_Status", True))
+
+
+def test_a_silent_rmcu_is_found_when_it_is_looked_at():
+    with running("looked-at") as bench:
+        assert bench.rmcu.examine(ask=False).answers
+        attached("looked-at").fail(Fault.RMCU_SILENT)
+        bench.loop.run_for(0.25)
+        found = bench.rmcu.examine(ask=True)
+        assert not found.answers
+        assert "has stopped sending its status" in found.findings[0].what
+        assert bench.rmcu.identify() == {}

@@ -117,6 +117,13 @@ def test_what_ends_the_run(
     assert (held.ended_by, held.cause) == ("end of the run", f"{cause.channel} is wrong")
 
 
+def test_who_stops_a_run_ends_its_hold_though_one_cause_was_over_before() -> None:
+    floor = Floor(until(1e9, CAGE), {0.5: "r", 1.0: "q"})
+    with pytest.raises(InterruptError):
+        floor.held_s(HEAT, CAGE)
+    assert [hold.ended_by for hold in floor.hold.holds] == ["end of the run"]
+
+
 def test_a_pause_that_nobody_ends_is_ended_after_ten_minutes() -> None:
     floor = Floor(until(1e9, HEAT), oversleeps_s=0.5)
     with pytest.raises(OrderlyEndError, match="held for 600 s"):

@@ -131,7 +131,7 @@ def test_a_slope_is_taken_over_its_time_in_whole_samples_at_least_one(over_s: fl
     ],
 )
 def test_the_words_name_the_end_that_was_reached(below: float, reading: float, said: str) -> None:
-    watched, _ = looked(Range("value", below, 10.0, 0.0, "r", "K", 0), [reading], 1)
+    watched, _ = looked(Range("value", below, 10.0, 0.0, "r", "K", 2), [reading] * 3, 1)
     assert [text for _, text in watched.stands()] == [said]
 
 
@@ -140,6 +140,9 @@ def test_an_open_end_and_what_was_not_seen_are_told_as_such() -> None:
     result = next(watched.results())
     assert (result.below, result.above, result.persistence_s) == (None, 10.0, 0.5)
     assert (result.of, result.lowest, result.highest) == ("value", None, None)
+    counted = next(StreamRanges(STREAM, [Range("value", -5.0, math.inf, 0.5, "r", "K", 3)]).results())
+    assert (counted.below, counted.above) == (-5.0, None)
+    assert (counted.persistence_s, counted.persistence_samples) == (None, 3)
 
 
 def test_a_trip_is_told_as_long_as_it_stands() -> None:

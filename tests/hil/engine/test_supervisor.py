@@ -98,6 +98,19 @@ def test_one_that_does_not_leave_when_all_is_said_is_ended(tmp_path: Path, monke
         os.kill(int(number.read_text()), 0)
 
 
+def test_one_that_stands_still_for_a_moment_is_not_given_up(tmp_path: Path):
+    stands = (
+        "number = os.getpid()\n"
+        "if os.fork() == 0:\n"
+        "    time.sleep(0.2)\n"
+        "    os.kill(number, signal.SIGCONT)\n"
+        "    os._exit(0)\n"
+        "os.kill(number, signal.SIGSTOP)\n"
+        f"print({ENDED!r}, flush=True)\n"
+    )
+    assert carry_out(request(tmp_path), process(TOLD, then=stands)).result.verdict == "pass"
+
+
 def test_one_that_is_stopped_before_its_loop_turns_is_not_waited_for(tmp_path: Path):
     error = lost(tmp_path, process(TOLD, then="os.kill(os.getpid(), signal.SIGSTOP)"))
     assert "was stopped, and stood still for 0.5 s; nothing was commanded" in str(error)
@@ -122,6 +135,7 @@ def test_what_it_read_back_before_it_was_lost_counts(tmp_path: Path):
     assert "safe: confirmed" in str(said)
     said = lost(tmp_path, process(TURNED, CONCLUDED.replace("UNSAFE", '["RMCU: no"]'), then="sys.exit(1)"))
     assert "safe: not confirmed (RMCU: no)" in str(said)
+    assert "hil recover" not in str(said)  # nothing was recorded
     assert "cut the drives' power" in str(said)
 
 
@@ -160,7 +174,9 @@ def test_its_log_is_told_as_that_of_this_process(tmp_path: Path, caplog: pytest.
     line = '{"kind": "logged", "logger": "hil.engine.run", "level": 40, "text": "TEXT", "traceback": "TRACE"}'
     plain = line.replace("TEXT", "plain").replace("TRACE", "")
     traced = line.replace("TEXT", "traced").replace("TRACE", "Traceback: line 7")
-    carry_out(request(tmp_path), process(TURNED, plain, traced, ENDED))
+    shown = Silent()
+    carry_out(request(tmp_path, terminal=shown), process(TURNED, plain, traced, ENDED))
+    assert shown.told == []
     records = {record.getMessage(): record for record in caplog.records if record.name == "hil.engine.run"}
     assert records["plain"].levelname == "ERROR"
     assert (records["plain"].exc_info, records["plain"].exc_text) == (None, None)

@@ -91,6 +91,26 @@ def test_an_axle_that_turns_is_not_read():
         check.before()
 
 
+class Slowing(Loop):
+    """Each time that it runs the axle turns by half as fast."""
+
+    def run_for(self, duration_s):
+        super().run_for(duration_s)
+        torque, speed = self._values
+        self._values = torque, 0.5 * speed
+
+
+def test_an_axle_that_comes_to_rest_within_a_second_is_read():
+    check = ZeroCheck([VALUES], {LEFT: ZeroLimit(drift=3.0)})
+    check.begin()
+    Loop(check, 1.0).run_for(0.2)
+    check.before()
+    check.after(Slowing(check, 2.0, 4.0), ended_well=True)
+    assert check.zeros[0].drift == 1.0
+    check.after(Slowing(check, 2.0, 100.0), ended_well=True)
+    assert check.zeros[0].after is None
+
+
 def test_after_a_failure_nothing_is_read():
     zero = checked(1.0, 30.0, ended_well=False)
     assert zero.after is None
@@ -102,3 +122,7 @@ def test_what_is_not_limited_always_fits():
     assert zero.offset_fits
     assert zero.drift_fits
     assert turning({"oil_pressure_pa": 1e5, "wheel_speed_left_rad_s": 0.1}) == ""
+    assert (
+        turning({"wheel_speed_left_rad_s": -0.6}) == "the axle turns: wheel_speed_left_rad_s reads -0.6 rad/s"
+    )
+    assert turning({"shaft_torque_left_nm": 0.6}) == ""
