@@ -50,11 +50,21 @@ def test_what_was_written_is_what_reads_back() -> None:
         MASS_READ,
         (b"\x02 EFW0 K0 120\x03", b"\x02 EFW0 0\x03"),
         (b"\x02 AFW0 K0\x03", b"\x02 AFW0 0 120.0\x03"),
+        (b"\x02 EFW1 K0 1.5\x03", b"\x02 EFW1 0\x03"),
+        (b"\x02 AFW1 K0\x03", b"\x02 AFW1 0 1.5\x03"),
+        (b"\x02 EFW2 K0 0.4\x03", b"\x02 EFW2 0\x03"),
+        (b"\x02 AFW2 K0\x03", b"\x02 AFW2 0 0.4\x03"),
         (b"\x02 ESLP K0 2.5\x03", b"\x02 ESLP 0\x03"),
         (b"\x02 ASLP K0\x03", b"\x02 ASLP 0 2.5\x03"),
     )
-    told = device.set_vehicle(VehicleAndRoad(mass_kg=1500, f0_n=120, slip=0.025))
-    assert told == {"vehicle mass": "1500 kg", "road load f0": "120 N", "slip": "2.5 %"}
+    told = device.set_vehicle(VehicleAndRoad(mass_kg=1500, f0_n=120, f1_ns_m=1.5, f2_ns2_m2=0.4, slip=0.025))
+    assert told == {
+        "vehicle mass": "1500 kg",
+        "road load f0": "120 N",
+        "road load f1": "1.5 N s/m",
+        "road load f2": "0.4 N s²/m²",
+        "slip": "2.5 %",
+    }
     line.close()
 
 
