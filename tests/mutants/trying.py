@@ -25,7 +25,7 @@ _BELOW = ("hil/core/", "hil/plant/", "sim_backend/")
 #: A file with a fault, and what it was: nothing of it is compiled.
 Unseen: TypeAlias = tuple[Path, bytes]
 _MEMORY = 8 * 1024**3
-_STARTING_S = 15.0
+_STARTING_S = 60.0  # a process that a test starts may have to compile what the fault is imported by
 
 
 def import_heavy_libraries() -> None:
