@@ -6,6 +6,7 @@ import contextlib
 from collections.abc import Iterable, Iterator
 
 from hil.core.errors import BadInputError
+from hil.core.listed import listed
 
 
 class PlanError(BadInputError):
@@ -22,7 +23,7 @@ def plan_error(mistakes: Iterable[BadInputError]) -> BadInputError:
     if len(found) == 1:
         return found[0]
     file = found[0].where.partition(": line ")[0]
-    lines = "".join(f"\n  {_on_a_line(one, file)}" for one in found)
+    lines = listed([_on_a_line(one, file) for one in found])
     return PlanError(f"{len(found)} mistakes{lines}", where=file, found=found)
 
 
@@ -56,4 +57,4 @@ class PlanMistakes:
 def _on_a_line(mistake: BadInputError, file: str) -> str:
     place = mistake.where.removeprefix(f"{file}: ")
     said = f"{mistake.what}; {mistake.fix}" if mistake.fix else mistake.what
-    return f"{place}: {said}".replace("\n", "\n  ")
+    return f"{place}: {said}"

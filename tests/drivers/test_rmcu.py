@@ -190,3 +190,21 @@ def test_a_silent_rmcu_is_found_when_it_is_looked_at():
         assert not found.answers
         assert "has stopped sending its status" in found.findings[0].what
         assert bench.rmcu.identify() == {}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda control: control.replace(' SG_ Crc : 56|8@1+ (1,0) [0|255] "" HOST\n', ""),
+        lambda control: control.replace("Counter : 48|8", "Moved : 56|8").replace("Crc : 56|8", "Crc : 48|8"),
+    ],
+)
+def test_a_checksum_that_is_not_the_last_byte_is_not_looked_at(change, tmp_path):
+    before, at, rest = SIM.rmcu.dbc.read_text().partition("BO_ 273 ")
+    control, end, after = rest.partition("BO_ 274 ")
+    path = tmp_path / "other.dbc"
+    path.write_text("".join((before, at, change(control), end, after)))
+    with running("unchecked") as bench:
+        rmcu = RmcuDriver(bench.loop, bench.loop.wires[0], path)
+        bench.loop.run_for(0.1)
+        assert (rmcu.is_safe(), rmcu.troubles()) == (True, [])

@@ -5,6 +5,7 @@ By atheris (libFuzzer for Python). What is compiled by numba is not instrumented
 
 from __future__ import annotations
 
+import hashlib
 import logging
 import random
 import sys
@@ -54,8 +55,19 @@ def main() -> None:
         try:
             target.parse(path)
         except HilError as error:
-            assert error.what, "a message without words"
-            assert len(str(error)) < 5000, "a message that nobody reads"
+            try:
+                assert error.what, "a message without words"
+                assert len(str(error)) < 5000, "a message that nobody reads"
+            except AssertionError:
+                keep(data)
+                raise
+        except Exception:
+            keep(data)
+            raise
+
+    def keep(data: bytes) -> None:
+        """Here and not by libFuzzer alone, which an alarm may end before it has."""
+        (folder / f"broken-{hashlib.sha256(data).hexdigest()[:16]}").write_bytes(data)
 
     def another(data: bytes, most: int, chance: int) -> bytes:
         rng = random.Random(chance)

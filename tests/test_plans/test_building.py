@@ -26,6 +26,19 @@ def test_an_unknown_key_is_told_before_a_wrong_value() -> None:
     ]
 
 
+def test_of_very_many_mistakes_as_many_are_told_as_somebody_reads() -> None:
+    keys = [f"unknown_{number}" for number in range(200)]
+    text = "horn:\n  duration_s: 1\n" + "".join(f"  {key}: 1\n" for key in keys)
+    document = read_yaml(text, "p.yaml")
+    with pytest.raises(BadInputError) as caught:
+        build(Horn, {"duration_s": 1, **dict.fromkeys(keys, 1)}, document, ("horn",))
+    head, first, *_, last = str(caught.value).splitlines()
+    assert head == "p.yaml: 200 mistakes"
+    assert first.startswith("  line 3, key 'horn.unknown_0'")
+    assert last.endswith(" more, when these are corrected")
+    assert len(str(caught.value)) < 5000
+
+
 def test_a_wrong_value_is_shown_with_the_keys_meaning() -> None:
     with pytest.raises(BadInputError) as caught:
         build(Horn, {"duration_s": 0}, DOCUMENT, ("horn",))

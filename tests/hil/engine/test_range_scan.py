@@ -145,6 +145,12 @@ def test_an_open_end_and_what_was_not_seen_are_told_as_such() -> None:
     assert (counted.persistence_s, counted.persistence_samples) == (None, 3)
 
 
+def test_before_the_first_sample_a_value_is_taken_for_steady() -> None:
+    range_ = Range("value", -1e6, 1e6, 0.0, "r", "", None, 0.0, "warn", slope_s=0.05)
+    result = next(looked(range_, ramp(10.0), 40)[0].results())
+    assert (result.lowest, result.highest) == (0.0, pytest.approx(10.0))
+
+
 def test_a_trip_is_told_as_long_as_it_stands() -> None:
     range_ = Range("value", -10.0, 10.0, 0.0, "r", "K", 0)
     assert len(looked(range_, [12.0] * 9, 1)[1]) == 9

@@ -105,9 +105,9 @@ def test_an_axle_that_comes_to_rest_within_a_second_is_read():
     check.begin()
     Loop(check, 1.0).run_for(0.2)
     check.before()
-    check.after(Slowing(check, 2.0, 4.0), ended_well=True)
+    check.after(Slowing(check, 2.0, 4.0), ended_well=True)  # type: ignore[arg-type]
     assert check.zeros[0].drift == 1.0
-    check.after(Slowing(check, 2.0, 100.0), ended_well=True)
+    check.after(Slowing(check, 2.0, 100.0), ended_well=True)  # type: ignore[arg-type]
     assert check.zeros[0].after is None
 
 
