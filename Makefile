@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run autotune serve page-picture api-fuzz service-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run autotune serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -111,6 +111,10 @@ api-fuzz: setup
 # The service killed at fifty random moments of a queue of runs.
 service-kills: setup
 	HIL_SERVICE_KILLS=50 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/test_service_kills.py
+
+# An agent, or its service, killed at fifty random moments of a queue.
+agent-kills: setup
+	HIL_AGENT_KILLS=50 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/test_agent_kills.py
 
 # The service's tests on a PostgreSQL server of Debian's, begun and ended by them; as root it is installed.
 service-stores: setup

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from hil.agent._bench import DrivenBench
 from hil.agent._deliveries import Deliveries
+from hil.agent._forecasting import Forecasting
 from hil.agent._kept_runs import KeptRun, KeptRuns
 from hil.agent._service import AwayError, TheService
 from hil.client import RefusedError
@@ -45,7 +46,7 @@ class AgentRequest:
         servers: URLs of the service, or of several with one database.
         folder: where runs and the agent's name for the service are kept; made if it is not there.
         benches: bench files, or names of shipped ones.
-        command: starts a process that carries a run out (`hil.cli._served_run`).
+        run, hil: start a process that carries a run out (`hil.cli._served_run`), and the command line.
         local_days: how long files stay that the service has.
         for_s: ends by itself after this many seconds.
         ready: called when the service has answered, with '', or has not, with why.
@@ -54,7 +55,8 @@ class AgentRequest:
     servers: Sequence[str]
     folder: Path
     benches: Sequence[str]
-    command: Sequence[str]
+    run: Sequence[str]
+    hil: Sequence[str]
     token: str = ""
     name: str = field(default_factory=socket.gethostname)
     local_days: float = 30.0
@@ -82,7 +84,9 @@ class _Agent:
         self._runs = KeptRuns(request.folder / "runs", request.local_days)
         self._service = TheService(request.servers, request.token)
         self._deliveries = Deliveries(self._service, self._id)
+        self._forecasting = Forecasting(request.hil, self._service, self._id)
         self._obeyed: list[str] = []
+        self._answers: set[asyncio.Task[None]] = set()
         self._tasks: set[asyncio.Task[None]] = set()
         self._closing = self._over = False
         self._heard = False  # whether a service has ever answered
@@ -162,6 +166,10 @@ class _Agent:
             bench = self._benches.get(order.bench)
             if order.id in told or bench is None or bench.obey(order):
                 self._obeyed.append(order.id)
+            if order.id not in told and bench is not None and order.kind == "forecast":
+                answer = asyncio.create_task(self._forecasting.answer(order, bench.bench))
+                self._answers.add(answer)
+                answer.add_done_callback(self._answers.discard)
         return orders
 
     def _refuse(self, orders: AgentOrders) -> None:
@@ -199,7 +207,7 @@ class _Agent:
             return
         bench.kept = run
         try:
-            bench.running = await CarriedRun.begin(self._request.command, run.taken, bench.bench, run.folder)
+            bench.running = await CarriedRun.begin(self._request.run, run.taken, bench.bench, run.folder)
         except (HilError, OSError) as error:
             code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
             run.end(_ending(RunEnd("ended", code, reason=str(error))))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from hil.agent._kept_runs import KeptRun
 from hil.core.errors import HilError
+from hil.core.printable import printable
 from hil.service.agent_data import AgentBench, Order
 from hil.service.benches import Bench
 from hil.service.carrying_out import CarriedRun
@@ -43,7 +44,7 @@ class DrivenBench:
         bench, running = self.bench, self.running
         facts = AgentBench(
             name=bench.name,
-            title=bench.title[:200],
+            title=printable(bench.title, 200),
             simulated=bench.simulated,
             limits=bench.limits,
             units=bench.units,
@@ -52,7 +53,8 @@ class DrivenBench:
         )
         stopped = bench.stopped()
         if running is not None:
-            facts.share, facts.doing, facts.told = running.share, _short(running.doing), _short(running.told)
+            facts.share = None if running.share is None else min(max(running.share, 0.0), 1.0)
+            facts.doing, facts.told = _short(running.doing), _short(running.told)
         elif self.left:
             facts.doing = "it is being ended; its agent was killed"
         elif self.kept is not None:

@@ -49,7 +49,6 @@ class TheService:
             answer = await apart(lambda: question(self._clients[asked]))
         except RefusedError as error:
             if error.status in _LATER:
-                self._lost(asked, error)
                 raise AwayError(error.what, where=error.where) from error
             raise
         except BenchError as error:

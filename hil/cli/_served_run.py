@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 _ASKED_WITHIN_S = 60.0
 _LAST_WORDS_S = 10.0
 LOG_FILE = "log.txt"
+#: Start the command line, and a run for a service or an agent, as processes of their own.
+HIL = (sys.executable, "-c", "from hil.cli import main; main()")
 RUNNER = (sys.executable, "-m", "hil.cli._served_run")
 
 

@@ -12,7 +12,7 @@ from hil.agent import AgentRequest, work
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._output import print_json
 from hil.cli._remote_run import TOKEN
-from hil.cli._served_run import RUNNER
+from hil.cli._served_run import HIL, RUNNER
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from hil.engine import StopRequest
@@ -51,7 +51,8 @@ def carry_out(
         servers=server,
         folder=data,
         benches=bench,
-        command=RUNNER,
+        run=RUNNER,
+        hil=HIL,
         token=os.environ.get(TOKEN, ""),
         name=name,
         local_days=keep_local,

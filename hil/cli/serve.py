@@ -8,11 +8,9 @@ from pathlib import Path
 
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._output import print_json
-from hil.cli._served_run import RUNNER
+from hil.cli._served_run import HIL, RUNNER
 from hil.core.errors import BadInputError
 from hil.engine import StopRequest
-
-_HIL = (sys.executable, "-c", "from hil.cli import main; main()")
 
 
 def carry_out(
@@ -66,7 +64,7 @@ def carry_out(
     request = ServeRequest(
         folder=data,
         benches=[] if no_bench else bench or ["sim"],
-        commands=Commands(_HIL, RUNNER),
+        commands=Commands(HIL, RUNNER),
         host=host,
         port=port,
         database=database,

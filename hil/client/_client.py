@@ -21,6 +21,7 @@ from hil.service.agent_data import (
     AgentData,
     AgentOrders,
     AgentReport,
+    AgentsForecast,
     Delivered,
     FileThere,
     RunEnding,
@@ -308,6 +309,11 @@ class Client:
     def send(self, agent: str, run: int, name: str, at: int, piece: bytes) -> FileThere:
         """A piece of a file of an agent's run; how much of it is there then."""
         return self._one(FileThere, "PUT", f"/agents/{agent}/runs/{run}/files/{_part(name)}?at={at}", piece)
+
+    def answer_forecast(self, agent: str, order: str, answer: AgentsForecast) -> None:
+        """What an agent predicts of a plan that it was asked about."""
+        with self._opened("PUT", f"/agents/{agent}/forecasts/{order}", answer, _WITHIN_S):
+            pass
 
     def deliver(self, agent: str, run: int, ending: RunEnding) -> Delivered:
         """How an agent's run ended; which of its files are to be sent before it is over there."""

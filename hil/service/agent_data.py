@@ -7,20 +7,22 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from hil.service.data import BenchName, PersonName, RunData, RunId
+from hil.service.data import BenchName, ForecastData, Number, PersonName, Problem, RunData, RunId
 
 AgentId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 #: A file that a run has left; what is hidden is not for others.
 RunFileName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,99}$")]
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
-Line = Annotated[str, Field(max_length=2000)]
+Text = Annotated[str, Field(max_length=2000)]
+#: Of one line, printable.
+Line = Annotated[str, Field(max_length=200, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$")]
 #: Of a file's content in one request.
 MOST_PIECE_BYTES = 1_000_000
 #: Of one file of a run.
 MOST_FILE_BYTES = 16_000_000_000
 MOST_FILES = 100
 
-OrderKind = Literal["pause", "resume", "end", "answer", "emergency_stop", "reset"]
+OrderKind = Literal["pause", "resume", "end", "answer", "emergency_stop", "reset", "forecast"]
 
 
 class _Data(BaseModel):
@@ -47,6 +49,14 @@ class Taken(_Data):
     run: TakenRun | None = Field(description="null if nothing waits for the bench")
 
 
+class PlanSent(_Data):
+    """A plan with its variables as chosen; `files`: content of what lies beside it and is loaded, by name."""
+
+    text: str
+    source: str
+    files: dict[str, str] = {}
+
+
 class Order(_Data):
     """What somebody asks of an agent's bench; told again and again until the agent has obeyed."""
 
@@ -56,22 +66,23 @@ class Order(_Data):
     run: RunId | None = Field(None, description="of which run; null where it is about the bench")
     by: str = ""
     text: str = ""
+    plan: PlanSent | None = Field(None, description="what is to be predicted")
 
 
 class AgentBench(_Data):
     """A bench of an agent: what it is, and what it does now."""
 
     name: BenchName
-    title: str = Field(max_length=200)
+    title: Line
     simulated: bool
-    limits: dict[str, float] = Field(max_length=200)
-    units: dict[str, str] = Field(max_length=200)
+    limits: dict[Line, Number] = Field(max_length=200)
+    units: dict[Line, Line] = Field(max_length=200)
     state: Literal["free", "running", "ending", "in_use", "emergency_stop"]
-    why: Line = ""
+    why: Text = ""
     running: RunId | None = Field(None, description="also while its files are being delivered")
-    share: float | None = Field(None, ge=0, le=1)
-    doing: Line = ""
-    told: Line = ""
+    share: Annotated[Number, Field(ge=0, le=1)] | None = None
+    doing: Text = ""
+    told: Text = ""
 
 
 class AgentReport(_Data):
@@ -79,7 +90,7 @@ class AgentReport(_Data):
 
     name: PersonName
     machine: PersonName
-    version: str = Field(max_length=40)
+    version: Annotated[Line, Field(max_length=40)]
     benches: list[AgentBench] = Field(min_length=1, max_length=50)
     obeyed: list[Annotated[str, Field(max_length=40)]] = Field([], max_length=1000)
     leaving: bool = Field(False, description="it ends: its benches are away from now on")
@@ -113,7 +124,7 @@ class RunEnding(_Data):
     state: Literal["ended", "interrupted", "queued"]
     exit_code: int | None = Field(None, ge=0, le=255)
     reason: Annotated[str, Field(max_length=20_000)] = ""
-    dut: Annotated[str, Field(max_length=200)] = ""
+    dut: Line = ""
     ago_s: float = Field(0.0, ge=0, le=1e9, allow_inf_nan=False, description="when, before this is sent")
     files: list[FileMade] = Field([], max_length=MOST_FILES)
 
@@ -122,6 +133,14 @@ class Delivered(_Data):
     """Files that the service has not, or has otherwise; without any, the run is over."""
 
     missing: list[str]
+
+
+class AgentsForecast(_Data):
+    """What an agent predicts of a plan, or why it cannot."""
+
+    forecast: ForecastData | None = None
+    problem: Problem | None = None
+    refused: bool = Field(False, description="whether the plan is at fault, and not the agent")
 
 
 class AgentData(_Data):

@@ -10,143 +10,26 @@ import asyncio
 import contextlib
 import datetime
 import logging
-import secrets
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from sqlalchemy import Engine
 
 from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
-from hil.service.agent_data import (
-    AgentBench,
-    AgentData,
-    AgentOrders,
-    AgentReport,
-    Order,
-    OrderKind,
-    TakenRun,
-)
+from hil.service.agent_data import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
 from hil.service.carrying_out import PLAN, RunningRun
-from hil.service.data import BenchState
 from hil.service.plans import files_of
+from hil.service.remote_bench import Agent, AgentsRun, RemoteBench
 from hil.service.run_files import folder_of
 from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
-from test_plans import plan_from_text
+from test_plans import Plan, plan_from_text
 
-AWAY_S = 10.0
 _KEPT_AGAIN_S = 20.0  # a third of how long a bench is an agent's without being heard of
 _SETTLED_S = 5.0
 
 logger = logging.getLogger(__name__)
-
-
-@dataclass
-class Agent:
-    """An agent. `held`: benches in the database, as a service of its own has them."""
-
-    id: str
-    name: str
-    machine: str
-    version: str
-    heard_at: datetime.datetime
-    held: BenchStore
-    heard_s: float = -1e9
-    orders: dict[str, Order] = field(default_factory=dict)
-    told: asyncio.Event = field(default_factory=asyncio.Event)
-
-    @property
-    def away(self) -> bool:
-        """Whether it has not been heard of for so long that nothing is known of it now."""
-        return time.monotonic() - self.heard_s > AWAY_S
-
-
-class RemoteBench:
-    """A bench of an agent: what it is, and what its agent told last."""
-
-    def __init__(self, agent: Agent, told: AgentBench) -> None:
-        self.agent, self.told = agent, told
-        self.running: RunningRun | None = None
-        self.stop_by = ""  # of an emergency stop that the agent has not confirmed
-        self.kept_s = -1e9
-        self.was_away = True
-
-    @property
-    def name(self) -> str:
-        """As it is called in its file."""
-        return self.told.name
-
-    @property
-    def title(self) -> str:
-        """What it is called for people."""
-        return self.told.title
-
-    @property
-    def simulated(self) -> bool:
-        """Whether what moves is computed."""
-        return self.told.simulated
-
-    @property
-    def limits(self) -> dict[str, float]:
-        """Largest magnitude by channel."""
-        return self.told.limits
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Units of the limited channels."""
-        return self.told.units
-
-    def order(self, kind: OrderKind, by: str = "", text: str = "") -> Order:
-        """Have the agent told."""
-        run = self.running.data.id if self.running is not None and kind != "reset" else None
-        order = Order(id=secrets.token_hex(8), bench=self.name, kind=kind, run=run, by=by, text=text)
-        self.agent.orders[order.id] = order
-        self.agent.told.set()
-        return order
-
-    def waits_for(self, kind: OrderKind) -> bool:
-        """Whether the agent has still to obey an order of that kind."""
-        return any(one.kind == kind and one.bench == self.name for one in self.agent.orders.values())
-
-    def state(self) -> tuple[BenchState, str]:
-        """What it does, as far as is known."""
-        agent = self.agent
-        since = f"{agent.heard_at:%Y-%m-%d %H:%M:%S} UTC"
-        away = f"its agent {agent.name} on {agent.machine} is away since {since}" if agent.away else ""
-        if self.stop_by:
-            unconfirmed = f"{self.stop_by} asked for it; its agent has not confirmed it"
-            return "emergency_stop", f"{unconfirmed}; {away}" if away else unconfirmed
-        if away:
-            if self.running is not None:
-                away += f"; run {self.running.data.id} ends there by itself, and comes with its agent"
-            return "away", away
-        if self.told.state == "free" and self.running is not None:
-            return "running", self.running.doing
-        return self.told.state, self.told.why
-
-
-class _AgentsRun:
-    """Steers a run by orders to its agent."""
-
-    def __init__(self, bench: RemoteBench) -> None:
-        self._bench = bench
-
-    def pause(self) -> None:
-        self._bench.order("pause")
-
-    def resume(self) -> None:
-        self._bench.order("resume")
-
-    def end(self) -> None:
-        self._bench.order("end")
-
-    def stop_in_emergency(self) -> None:
-        """Nothing: the bench's order says it, whether there is a run or not."""
-
-    def answer(self, text: str) -> None:
-        self._bench.order("answer", text=text)
 
 
 class Agents:
@@ -291,16 +174,16 @@ class Agents:
             return None
         folder = folder_of(self._folder, taken.data.id)
         try:
-            files = _loaded_by(taken)
+            plan = sent(plan_from_text(taken.plan_text, taken.plan_source, Path(taken.plan_source).parent))
             make_directory(folder)
             write_atomically(folder / PLAN, taken.plan_text)
         except HilError as error:
             self._runs.end(taken.data.id, "ended", exit_code=error.exit_code, reason=str(error))
             self._changed(name)
             raise
-        bench.running = RunningRun(taken.data, folder, _AgentsRun(bench))
+        bench.running = RunningRun(taken.data, folder, AgentsRun(bench))
         self._changed(name)
-        return taken.model_copy(update={"files": files, "plan_source": Path(taken.plan_source).name})
+        return taken.model_copy(update={"files": plan.files, "plan_source": plan.source})
 
     def over(self, run: int, bench: str) -> None:
         """A run has been written down as over."""
@@ -366,7 +249,7 @@ class Agents:
         for run in self._runs.running(bench.agent.id):
             if run.bench == bench.name:
                 folder = folder_of(self._folder, run.id)
-                bench.running = RunningRun(run, folder, _AgentsRun(bench), doing="its agent is away")
+                bench.running = RunningRun(run, folder, AgentsRun(bench), doing="its agent is away")
 
     def _take_in(self, bench: RemoteBench, told: AgentBench, obeyed: list[str]) -> str:
         """Take what an agent tells of a bench; why it is not the agent's any more, if that is so."""
@@ -421,15 +304,15 @@ class Agents:
         return None if run is None else run.id
 
 
-def _loaded_by(taken: TakenRun) -> dict[str, str]:
-    """Content of the files that lie beside a plan and are loaded by it, by name.
+def sent(plan: Plan) -> PlanSent:
+    """A plan with the files that lie beside it and are loaded by it; built-in ones are there.
 
     Raises:
-        BadInputError: one of them cannot be used any more.
+        BadInputError: one of them cannot be read.
     """
-    source = Path(taken.plan_source)
-    plan = plan_from_text(taken.plan_text, taken.plan_source, source.parent)
-    return {file.name: read_text(file) for file in files_of(plan) if file.parent == source.parent}
+    folder = plan.source.parent
+    files = {file.name: read_text(file) for file in files_of(plan) if file.parent == folder}
+    return PlanSent(text=plan.text, source=plan.source.name, files=files)
 
 
 def _of_another(bench: str, place: str) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 from hil.core.errors import BenchError
 from hil.core.files import make_directory, sha256_of
 from hil.engine import RECORDING
-from hil.service.agent_data import MOST_FILE_BYTES, FileMade, RunEnding
+from hil.service.agent_data import MOST_FILE_BYTES, MOST_FILES, FileMade, RunEnding
 from hil.service.apart import apart
 from hil.service.data import RunData
 from hil.service.run_files import folder_of
@@ -51,6 +51,8 @@ class Arrivals:
                 return size
             if size + len(piece) > MOST_FILE_BYTES:
                 raise BenchError(f"a file of more than {MOST_FILE_BYTES} bytes is not taken", where=name)
+            if not size and len(list(path.parent.iterdir())) > MOST_FILES:
+                raise BenchError(f"more than {MOST_FILES} files of a run are not taken", where=name)
             with path.open("ab") as file:
                 file.write(piece)
             return size + len(piece)

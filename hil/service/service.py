@@ -16,18 +16,20 @@ from sqlalchemy import Engine
 from hil.core.errors import HilError
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
-from hil.service.agents import Agents, RemoteBench
+from hil.service.agents import Agents
+from hil.service.agents_forecasts import AgentsForecasts
 from hil.service.apart import apart
 from hil.service.archive import Archive, Keeper
 from hil.service.arrivals import Arrivals
 from hil.service.benches import Bench
 from hil.service.carrying_out import RunningRun
-from hil.service.data import OVER, BenchData, BenchState, Me, RunData
+from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
 from hil.service.desk import Desk
 from hil.service.forecasts import Forecasts
 from hil.service.live import LiveRun
 from hil.service.plans import Plans
 from hil.service.queue import Queue
+from hil.service.remote_bench import RemoteBench
 from hil.service.run_files import files_in
 from hil.service.said import Said
 from hil.service.shelves import controller_shelf, model_shelf
@@ -42,7 +44,7 @@ from hil.service.store import (
     TokenStore,
 )
 from hil.service.studies import Studies
-from test_plans import plan_from_text
+from test_plans import Plan, plan_from_text
 
 _LOOK_S = 0.05  # a viewer is sent as many updates
 _JUDGE_S = 1.0
@@ -133,6 +135,7 @@ class Service:
         self._version: defaultdict[str, int] = defaultdict(int)
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
         self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, self.changed)
+        self.agents_forecasts = AgentsForecasts()
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
         self._unwritten: list[tuple[str, str, str, str]] = []
@@ -255,6 +258,18 @@ class Service:
                     self.agents.stop_in_emergency(bench, by)
         finally:
             self.changed(bench)
+
+    async def forecast(self, plan: Plan, bench: str) -> ForecastData:
+        """Duration, peaks and criteria as predicted where the bench is.
+
+        Raises:
+            BadInputError: the plan asks for more than the bench allows.
+            BenchError: it cannot be predicted.
+        """
+        own = self.own(bench)
+        if own is not None:
+            return await self.forecasts.of(plan, own.file)
+        return await self.agents_forecasts.of(plan, self.agents.benches[bench])
 
     async def reset(self, bench: str, by: str) -> int | None:
         """Let a bench be armed again; how many stops there were, None if its agent has not answered.

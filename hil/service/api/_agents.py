@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Body, Query, Request
+from fastapi import APIRouter, Body, Path, Query, Request
 
 from hil.core.errors import HilError
 from hil.service.agent_data import (
@@ -13,16 +13,17 @@ from hil.service.agent_data import (
     AgentId,
     AgentOrders,
     AgentReport,
+    AgentsForecast,
     Delivered,
     FileThere,
     RunEnding,
     RunFileName,
     Taken,
 )
-from hil.service.agents import RemoteBench
 from hil.service.api._access import AgentItself, Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.data import BenchName, RunData, RunId
+from hil.service.remote_bench import RemoteBench
 from hil.service.run_files import LOCK
 from hil.service.service import Service
 
@@ -110,6 +111,20 @@ async def deliver_run(
         service.agents.over(run, found.bench)
         service.wake(found.bench)
     return Delivered(missing=wanting)
+
+
+@router.put("/agents/{agent}/forecasts/{order}", name="answer_forecast", status_code=204)
+async def answer_forecast(
+    agent: AgentId,
+    order: Annotated[str, Path(pattern=r"^[0-9a-f]{16}$")],
+    answer: Annotated[AgentsForecast, Body()],
+    service: TheService,
+    me: AgentItself,
+) -> None:
+    """What an agent predicts of a plan that it was asked about."""
+    del agent, me
+    if not service.agents_forecasts.answer(order, answer):
+        raise missing("forecast that is waited for", order)
 
 
 @router.delete("/benches/{bench}/agent", name="let_agent_go", status_code=204)

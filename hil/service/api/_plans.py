@@ -6,7 +6,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Request, Response
 
-from hil.core.errors import BenchError
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError, missing
@@ -73,10 +72,8 @@ async def forecast(
 ) -> ForecastData:
     """Duration, peaks and criteria as predicted; takes seconds, moves nothing."""
     del me
-    bench = service.own(known(service, wanted.bench))
+    bench = known(service, wanted.bench)
     plan = service.plans.chosen(wanted.plan, wanted.values)
     if plan is None:
         raise missing("plan", wanted.plan)
-    if bench is None:
-        raise BenchError("the bench is an agent's: what it will do is not predicted beforehand")
-    return await service.forecasts.of(plan, bench.file)
+    return await service.forecast(plan, bench)

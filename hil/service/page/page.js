@@ -122,6 +122,7 @@ function showState({ bench: now, running: run, queue, told }) {
   const held = run?.doing.startsWith("held") ?? false;
   for (const id of ["pause", "resume", "end"]) at(id).hidden = !run || !may("operator") || (id === "pause" ? held : id === "resume" && !held);
   at("reset").hidden = now.state !== "emergency_stop" || run !== null || !may("engineer");
+  at("let-go").hidden = now.state !== "away" || !may("engineer");
   charts.torque.limit = now.limits.motor_torque_nm ?? null;
   charts.shaft.limit = now.limits.shaft_torque_nm ?? null;
   charts.speed.limit = now.limits.motor_speed_rad_s ?? null;
@@ -206,6 +207,10 @@ at("pause").onclick = () => act(() => post(`/runs/${running.id}/pause`));
 at("resume").onclick = () => act(() => post(`/runs/${running.id}/resume`));
 at("end").onclick = () => act(() => post(`/runs/${running.id}/abort`));
 at("reset").onclick = () => act(() => post(`/benches/${encodeURIComponent(bench)}/reset`));
+at("let-go").onclick = () => {
+  if (confirm(`Does nothing drive ${bench} any more? Then another agent may have it; a run that its agent has is interrupted.`))
+    act(() => ask("DELETE", `/benches/${encodeURIComponent(bench)}/agent`));
+};
 at("answer").onsubmit = (event) => {
   event.preventDefault();
   act(() => post(`/runs/${running.id}/answer`, { text: at("answer-text").value }));

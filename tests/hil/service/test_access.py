@@ -35,6 +35,7 @@ LEAST = {
     ("POST", "/agents/{agent}/benches/{bench}/take"): "agent",
     ("PUT", "/agents/{agent}/runs/{run}/files/{name}"): "agent",
     ("POST", "/agents/{agent}/runs/{run}/ending"): "agent",
+    ("PUT", "/agents/{agent}/forecasts/{order}"): "agent",
     ("GET", "/plans"): "viewer",
     ("GET", "/plans/{plan}"): "viewer",
     ("GET", "/plans/{plan}/text"): "viewer",
@@ -83,7 +84,7 @@ LEAST = {
 }
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
-_NONE |= {"agent": "0" * 32, "model": "none", "controller": "none", "study": "2000000000"}
+_NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none", "study": "2000000000"}
 
 
 @pytest.fixture(scope="module")

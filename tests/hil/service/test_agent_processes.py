@@ -6,9 +6,13 @@ import subprocess
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from hil.cli.agent import carry_out
+from hil.core.errors import BadInputError
+from hil.core.locks import lock_on
 from tests.hil.service.served import ASKING, HIL, SHORT, RefusedError, Served, environment_of, served
 from tests.hil.service.working import Working, begun, bench_called, working
 
@@ -63,6 +67,16 @@ def test_a_run_of_an_agent_is_shown_live_answered_held_and_ended(service: Served
     service.post(f"/runs/{second}/abort")
     over = service.over(second)
     assert (over["exit_code"], over["safe_state"]) == (130, "confirmed")
+
+
+@pytest.mark.slow
+def test_what_a_plan_will_do_is_predicted_where_the_bench_is(service: Served, agent: Working) -> None:
+    del agent
+    wanted = {"plan": "short", "bench": "far", "values": {"torque_nm": 150}}
+    found, own = service.post("/forecasts", wanted), service.post("/forecasts", {**wanted, "bench": "sim"})
+    assert found == own
+    with pytest.raises(RefusedError, match="422"):
+        service.post("/forecasts", {**wanted, "values": {"torque_nm": 900}})
 
 
 @pytest.mark.slow
@@ -193,15 +207,17 @@ def test_two_agents_work_at_once_with_tokens_of_their_role(tmp_path: Path, far: 
 
 
 def test_what_an_agent_cannot_use_is_said(tmp_path: Path) -> None:
-    for arguments, said in (
-        (["--bench", "none"], "none"),
-        (["--name", "a\nb"], "names nobody"),
-        (["--bench", "sim", "--bench", "sim"], "given to two benches"),
+    usual: dict[str, Any] = {"server": ["http://127.0.0.1:9"], "keep_local": 30.0, "as_json": True}
+    for bench, name, for_s, said in (
+        (["none"], "", None, "none"),
+        (["sim"], "a\nb", None, "names nobody"),
+        (["sim", "sim"], "", None, "given to two benches"),
+        (["sim"], "", 0.0, "--for is 0"),
     ):
-        command = [*HIL, "agent", "--server", "http://127.0.0.1:9", "--data", str(tmp_path / "a"), *arguments]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-        assert (done.returncode, done.stdout) == (2, "")
-        assert said in done.stderr
+        with pytest.raises(BadInputError, match=said):
+            carry_out(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual)
+    with lock_on(tmp_path), pytest.raises(BadInputError, match="another agent keeps its data here"):
+        carry_out(data=tmp_path, bench=["sim"], name="", for_s=None, **usual)
 
 
 def _said(process: subprocess.Popen[str]) -> int:

@@ -14,8 +14,9 @@ from sqlalchemy import Engine, text
 
 from hil.core.errors import BadInputError, BenchError
 from hil.service.agent_data import AgentBench, AgentReport, FileMade, RunEnding
-from hil.service.agents import AWAY_S, Agents
+from hil.service.agents import Agents
 from hil.service.arrivals import Arrivals
+from hil.service.remote_bench import AWAY_S
 from hil.service.store import LeaseStore, NewRun, RunStore, open_database
 from test_plans import library_controllers
 from tests.hil.service import served as served_by

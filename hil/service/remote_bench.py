@@ -1,0 +1,134 @@
+"""A bench of an agent on another machine: what it is, what its agent told last, what that has to do."""
+
+from __future__ import annotations
+
+import asyncio
+import datetime
+import secrets
+import time
+from dataclasses import dataclass, field
+
+from hil.service.agent_data import AgentBench, Order, OrderKind, PlanSent
+from hil.service.carrying_out import RunningRun
+from hil.service.data import BenchState
+from hil.service.store import BenchStore
+
+AWAY_S = 10.0
+
+
+@dataclass
+class Agent:
+    """An agent. `held`: benches in the database, as a service of its own has them."""
+
+    id: str
+    name: str
+    machine: str
+    version: str
+    heard_at: datetime.datetime
+    held: BenchStore
+    heard_s: float = -1e9
+    orders: dict[str, Order] = field(default_factory=dict)
+    told: asyncio.Event = field(default_factory=asyncio.Event)
+
+    @property
+    def away(self) -> bool:
+        """Whether it has not been heard of for so long that nothing is known of it now."""
+        return time.monotonic() - self.heard_s > AWAY_S
+
+
+class RemoteBench:
+    """A bench of an agent: what it is, and what its agent told last."""
+
+    def __init__(self, agent: Agent, told: AgentBench) -> None:
+        self.agent, self.told = agent, told
+        self.running: RunningRun | None = None
+        self.stop_by = ""  # of an emergency stop that the agent has not confirmed
+        self.kept_s = -1e9
+        self.was_away = True
+
+    @property
+    def name(self) -> str:
+        """As it is called in its file."""
+        return self.told.name
+
+    @property
+    def title(self) -> str:
+        """What it is called for people."""
+        return self.told.title
+
+    @property
+    def simulated(self) -> bool:
+        """Whether what moves is computed."""
+        return self.told.simulated
+
+    @property
+    def limits(self) -> dict[str, float]:
+        """Largest magnitude by channel."""
+        return self.told.limits
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Units of the limited channels."""
+        return self.told.units
+
+    def order(self, kind: OrderKind, by: str = "", text: str = "", plan: PlanSent | None = None) -> Order:
+        """Have the agent told."""
+        of_run = self.running is not None and kind not in ("reset", "forecast")
+        order = Order(
+            id=secrets.token_hex(8),
+            bench=self.name,
+            kind=kind,
+            run=self.running.data.id if self.running is not None and of_run else None,
+            by=by,
+            text=text,
+            plan=plan,
+        )
+        self.agent.orders[order.id] = order
+        self.agent.told.set()
+        return order
+
+    def waits_for(self, kind: OrderKind) -> bool:
+        """Whether the agent has still to obey an order of that kind."""
+        return any(one.kind == kind and one.bench == self.name for one in self.agent.orders.values())
+
+    def state(self) -> tuple[BenchState, str]:
+        """What it does, as far as is known."""
+        agent = self.agent
+        since = f"{agent.heard_at:%Y-%m-%d %H:%M:%S} UTC"
+        away = f"its agent {agent.name} on {agent.machine} is away since {since}" if agent.away else ""
+        if self.stop_by:
+            unconfirmed = f"{self.stop_by} asked for it; its agent has not confirmed it"
+            return "emergency_stop", f"{unconfirmed}; {away}" if away else unconfirmed
+        if away:
+            if self.running is not None:
+                away += f"; run {self.running.data.id} ends there by itself, and comes with its agent"
+            return "away", away
+        if self.told.state == "free" and self.running is not None:
+            return "running", self.running.doing
+        return self.told.state, self.told.why
+
+
+class AgentsRun:
+    """Steers a run by orders to its agent."""
+
+    def __init__(self, bench: RemoteBench) -> None:
+        self._bench = bench
+
+    def pause(self) -> None:
+        """Hold it at its next safe point."""
+        self._bench.order("pause")
+
+    def resume(self) -> None:
+        """Let it go on."""
+        self._bench.order("resume")
+
+    def end(self) -> None:
+        """End it, with its end steps."""
+        self._bench.order("end")
+
+    def stop_in_emergency(self) -> None:
+        """Nothing: the bench's order says it, whether there is a run or not."""
+
+    def answer(self, text: str) -> None:
+        """A line for the operator's prompt."""
+        self._bench.order("answer", text=text)
