@@ -112,6 +112,7 @@ class Agents:
         """
         agent = self._agent(agent_id, report.name, report.machine, report.version)
         agent.name, agent.machine, agent.version = report.name, report.machine, report.version
+        agent.drop_what_came_late()
         agent.heard_s, agent.heard_at = time.monotonic(), _now()
         new, refused = [], {}
         for told in report.benches:
@@ -206,11 +207,13 @@ class Agents:
     async def reset(self, bench: str, by: str) -> bool:
         """Let a bench be armed again; whether its agent has done so within a few seconds."""
         place = self.benches[bench]
-        place.order("reset", by)
+        if place.agent.away:
+            return False
+        order = place.order("reset", by)
         until_s = time.monotonic() + _SETTLED_S
-        while place.waits_for("reset") and time.monotonic() < until_s:
+        while order.id in place.agent.orders and time.monotonic() < until_s:
             await asyncio.sleep(0.05)
-        return not place.waits_for("reset")
+        return place.agent.orders.pop(order.id, None) is None  # nobody expects it any more, later
 
     def let_go(self, bench: str, by: str) -> None:
         """Let another agent have the bench of one that is away; a run that it has is interrupted."""

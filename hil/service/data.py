@@ -128,6 +128,7 @@ class BenchData(_Data):
     units: dict[str, str] = Field(description="unit by channel, of all that is recorded")
     lease: str = Field("", description="who has it for themselves")
     machine: str = Field("", description="where its agent is; '' for one of the service's own")
+    stop_confirmed: bool = Field(True, description="false while an agent has not confirmed an emergency stop")
     away_since: datetime.datetime | None = Field(None, description="when its agent was last heard of")
 
 

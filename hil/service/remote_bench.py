@@ -14,6 +14,8 @@ from hil.service.data import BenchState
 from hil.service.store import BenchStore
 
 AWAY_S = 10.0
+_LATE_S = 3.0
+_SAFER: tuple[OrderKind, ...] = ("pause", "end", "emergency_stop", "forecast")
 
 
 @dataclass
@@ -34,6 +36,11 @@ class Agent:
     def away(self) -> bool:
         """Whether it has not been heard of for so long that nothing is known of it now."""
         return time.monotonic() - self.heard_s > AWAY_S
+
+    def drop_what_came_late(self) -> None:
+        """Before it is heard: what would let something move is not meant any more once it was silent."""
+        if time.monotonic() - self.heard_s > _LATE_S:
+            self.orders = {name: one for name, one in self.orders.items() if one.kind in _SAFER}
 
 
 class RemoteBench:
@@ -86,10 +93,6 @@ class RemoteBench:
         self.agent.orders[order.id] = order
         self.agent.told.set()
         return order
-
-    def waits_for(self, kind: OrderKind) -> bool:
-        """Whether the agent has still to obey an order of that kind."""
-        return any(one.kind == kind and one.bench == self.name for one in self.agent.orders.values())
 
     def state(self) -> tuple[BenchState, str]:
         """What it does, as far as is known."""

@@ -194,6 +194,7 @@ class Service:
             units=bench.units,
             lease=waiting.lease,
             machine=agent.machine if agent else "",
+            stop_confirmed=not (isinstance(bench, RemoteBench) and bench.stop_by),
             away_since=agent.heard_at if agent and agent.away else None,
         )
 

@@ -15,6 +15,7 @@ from hil.service.api._problems import RefusedError, missing
 from hil.service.carrying_out import RunningRun
 from hil.service.data import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunWanted
 from hil.service.plans import hazard_of
+from hil.service.remote_bench import RemoteBench
 from hil.service.service import Service
 from hil.service.store import NewRun
 
@@ -175,6 +176,11 @@ def _running(service: Service, run: int) -> RunningRun:
         raise RefusedError(409, f"run {run} is another service's", fix=f"ask the one of {there.bench}")
     if found is None:
         raise RefusedError(409, f"run {run} is not under way")
+    bench = service.benches[there.bench]
+    if isinstance(bench, RemoteBench) and bench.agent.away:
+        raise RefusedError(
+            409, bench.state()[1], fix="it can be ended, and is told so when its agent is back"
+        )
     return found
 
 

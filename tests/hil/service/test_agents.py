@@ -197,6 +197,24 @@ def test_an_emergency_stop_is_told_until_the_agent_has_obeyed_also_by_the_next_s
     assert there.begun().benches["far"].stop_by == ""
 
 
+def test_what_makes_safer_is_told_late_and_what_lets_something_move_is_not(there: _There) -> None:
+    there.agents.heard(ONE, _report())
+    there.queue()
+    there.agents.take(ONE, "far")
+    running = there.agents.benches["far"].running
+    assert running is not None
+    process = running.process
+    for ask in (process.pause, process.resume, process.end, lambda: process.answer("shut")):
+        ask()
+    assert len(there.agents.orders(ONE, {}).orders) == 4
+    there.lapse()
+    there.agents.heard(ONE, _report(running=running.data.id))
+    assert [one.kind for one in there.agents.orders(ONE, {}).orders] == ["pause", "end"]
+    there.lapse()
+    assert not asyncio.run(there.agents.reset("far", "anna"))
+    assert [one.kind for one in there.agents.orders(ONE, {}).orders] == ["pause", "end"]
+
+
 def test_an_agent_that_leaves_is_away_at_once_and_its_name_is_free(there: _There) -> None:
     there.agents.heard(ONE, _report())
     there.agents.heard(ONE, _report(leaving=True))
