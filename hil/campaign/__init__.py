@@ -5,6 +5,7 @@ from hil.campaign._carry_out import Progress, carry_out
 from hil.campaign._parts import BEGUN, FOLDER, Parts, begun_batch, write_begun
 from hil.campaign._setting import Setting, Source, load_setting
 from hil.campaign._simulations import Row, Simulations
+from hil.campaign._table import Tally, write_table
 
 __all__ = [
     "BATCH_S",
@@ -19,9 +20,11 @@ __all__ = [
     "Setting",
     "Simulations",
     "Source",
+    "Tally",
     "batch_size",
     "begun_batch",
     "carry_out",
     "load_setting",
     "write_begun",
+    "write_table",
 ]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
+import os
 import sys
 from pathlib import Path
 
@@ -24,6 +26,8 @@ def carry_out(
     database: str,
     store: str,
     keep_local: float,
+    workers: int | None,
+    scheduler: str,
     rate: float,
     for_s: float | None,
     add_token: str,
@@ -52,6 +56,7 @@ def carry_out(
         else:
             print(f"# token of {made.token.name}, {made.token.role}; it is told this once\n{made.secret}")
         return 0
+    simulating = _simulating(workers, scheduler)
     stop = StopRequest()
 
     def ready(url: str) -> None:
@@ -64,7 +69,7 @@ def carry_out(
     request = ServeRequest(
         folder=data,
         benches=[] if no_bench else bench or ["sim"],
-        commands=Commands(HIL, RUNNER),
+        commands=Commands(HIL, RUNNER, simulating),
         host=host,
         port=port,
         database=database,
@@ -79,3 +84,19 @@ def carry_out(
     with stop.by_signals():
         serve(request)
     return EXIT_CODE if stop.times else 0
+
+
+def _simulating(workers: int | None, scheduler: str) -> tuple[str, ...]:
+    """Options of `hil campaign`; without a word, all processors but one, which is left to runs.
+
+    Raises:
+        BadInputError: both are named.
+    """
+    if scheduler and workers is not None:
+        raise BadInputError("--workers does not go with --scheduler", where="--workers", fix="leave one out")
+    if scheduler:
+        return ("--scheduler", scheduler)
+    if workers is None:
+        dask = importlib.util.find_spec("distributed") is not None
+        workers = max(1, len(os.sched_getaffinity(0)) - 1) if dask else 0
+    return ("--workers", str(workers))

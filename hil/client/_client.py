@@ -27,6 +27,7 @@ from hil.service.agent_data import (
     RunEnding,
     Taken,
 )
+from hil.service.campaign_data import CampaignData, CampaignExample, CampaignWanted
 from hil.service.comparison_data import ComparisonData, TracesData
 from hil.service.data import (
     OVER,
@@ -276,18 +277,45 @@ class Client:
         """What a diagnosis found."""
         return self._one(DiagnosisData, "GET", f"/diagnoses/{study}")
 
+    def campaign_examples(self) -> list[CampaignExample]:
+        """The built-in campaigns."""
+        return self._several(CampaignExample, "/campaign-examples")
+
+    def add_campaign(self, wanted: CampaignWanted) -> CampaignData:
+        """Have a campaign carried out; `campaign` tells how it goes."""
+        return self._one(CampaignData, "POST", "/campaigns", wanted, within_s=_FORECAST_WITHIN_S)
+
+    def campaigns(self) -> list[CampaignData]:
+        """Campaigns, newest first."""
+        return self._several(CampaignData, "/campaigns")
+
+    def campaign(self, campaign: int) -> CampaignData:
+        """A campaign, with its progress and the shares that pass so far."""
+        return self._one(CampaignData, "GET", f"/campaigns/{campaign}")
+
+    def cancel_campaign(self, campaign: int) -> CampaignData:
+        """End one; what is under way is awaited and kept, unless this is asked twice."""
+        return self._one(CampaignData, "POST", f"/campaigns/{campaign}/cancel")
+
+    def resume_campaign(self, campaign: int) -> CampaignData:
+        """Go on with one that was cancelled or has failed."""
+        return self._one(CampaignData, "POST", f"/campaigns/{campaign}/resume")
+
+    def download_of_campaign(self, campaign: int, name: str, path: Path) -> None:
+        """Write a file of a campaign, whole or not at all.
+
+        Raises:
+            BadInputError: the place cannot be written.
+        """
+        self._download(f"/campaigns/{campaign}/files/{_part(name)}", path)
+
     def download(self, run: int, name: str, path: Path) -> None:
         """Write a file of a run, whole or not at all.
 
         Raises:
             BadInputError: the place cannot be written.
         """
-        with (
-            self._opened("GET", f"/runs/{run}/files/{_part(name)}", None, _WITHIN_S) as answer,
-            replacing(path) as temporary,
-            temporary.open("wb") as file,
-        ):
-            shutil.copyfileobj(answer, file)
+        self._download(f"/runs/{run}/files/{_part(name)}", path)
 
     def agents(self) -> list[AgentData]:
         """Agents that have benches there."""
@@ -332,6 +360,14 @@ class Client:
     def audit(self, most: int = 100) -> list[AuditEntry]:
         """What was done by whom, newest first."""
         return self._several(AuditEntry, f"/audit?most={most}")
+
+    def _download(self, what: str, path: Path) -> None:
+        with (
+            self._opened("GET", what, None, _WITHIN_S) as answer,
+            replacing(path) as temporary,
+            temporary.open("wb") as file,
+        ):
+            shutil.copyfileobj(answer, file)
 
     def _one(
         self,

@@ -34,6 +34,12 @@ class _Data(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
+class Record(_Data):
+    """What is known of something by its number."""
+
+    id: RunId
+
+
 class Problem(_Data):
     """Why something was refused: what, where, and what to do."""
 

@@ -25,14 +25,14 @@ class Plans:
     """
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder
+        self.folder = folder
         make_directory(folder)
         self._built_in = {name: load_plan(name) for name in library_plans()}
 
     def all(self) -> list[PlanData]:
         """What there is; a plan that cannot be read any more is left out."""
         given = []
-        for path in sorted(self._folder.glob("[!.]*.yaml")):
+        for path in sorted(self.folder.glob("[!.]*.yaml")):
             with contextlib.suppress(BadInputError):
                 given.append(_data(load_plan(path), built_in=False))
         return [*(_data(plan, built_in=True) for plan in self._built_in.values()), *given]
@@ -69,19 +69,19 @@ class Plans:
         if name in self._built_in:
             raise BadInputError("is the name of a built-in plan", where=name, fix="give it another name")
         where = f"{name}.yaml"
-        for file in files_of(plan_from_text(text, where, self._folder, files_required=False)):
+        for file in files_of(plan_from_text(text, where, self.folder, files_required=False)):
             if file.name != str(file):
                 raise BadInputError(
                     f"loads the file {printable(repr(str(file)), 100)}",
                     where=where,
                     fix="a plan that is given to the service loads controllers that it has, by their names",
                 )
-        plan = plan_from_text(text, where, self._folder)
+        plan = plan_from_text(text, where, self.folder)
         if plan.name != name:
             raise BadInputError(
                 f"the plan calls itself '{plan.name}'", where=where, fix="give it under that name"
             )
-        write_atomically(self._folder / where, text)
+        write_atomically(self.folder / where, text)
         return _data(plan, built_in=False)
 
     def copied(self, name: str, copy: str, controllers: Mapping[str, str]) -> PlanData | None:
@@ -93,7 +93,7 @@ class Plans:
         text = self.text(name)
         if text is None:
             return None
-        chosen = {old: self._folder.resolve() / file for old, file in controllers.items()}
+        chosen = {old: self.folder.resolve() / file for old, file in controllers.items()}
         text = Choices(controllers=chosen).applied(text, read_yaml(text, name))
         for path in chosen.values():  # plans find what lies beside them by its name alone
             text = text.replace(json.dumps(str(path), ensure_ascii=False), json.dumps(path.name))
@@ -105,7 +105,7 @@ class Plans:
     def loading(self, file: str) -> list[str]:
         """Names of given plans that load a controller file."""
         found = []
-        for path in sorted(self._folder.glob("[!.]*.yaml")):
+        for path in sorted(self.folder.glob("[!.]*.yaml")):
             with contextlib.suppress(BadInputError):
                 if any(one.name == file for one in files_of(load_plan(path))):
                     found.append(path.stem)
@@ -122,8 +122,8 @@ class Plans:
     def _path(self, name: str) -> Path | None:
         if name in self._built_in:
             return self._built_in[name].source
-        path = self._folder / f"{name}.yaml"
-        return path if path.parent == self._folder and path.is_file() else None
+        path = self.folder / f"{name}.yaml"
+        return path if path.parent == self.folder and path.is_file() else None
 
 
 def _renamed(text: str, name: str) -> str:

@@ -22,6 +22,7 @@ from hil.service.apart import apart
 from hil.service.archive import Archive, Keeper
 from hil.service.arrivals import Arrivals
 from hil.service.benches import Bench
+from hil.service.campaigns import Campaigns, Places
 from hil.service.carrying_out import RunningRun
 from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
 from hil.service.desk import Desk
@@ -60,10 +61,12 @@ class Commands:
     """How the service starts what it does not do itself.
 
     `hil`: the command line. `run`: a process that carries out one run (`hil.cli._served_run`).
+    `simulating`: options of `hil campaign` that say who simulates.
     """
 
     hil: Sequence[str]
     run: Sequence[str]
+    simulating: Sequence[str] = ()
 
 
 @dataclass
@@ -120,6 +123,8 @@ class Service:
         self.studies = Studies(folder / "studies", commands.hil)
         # Recordings are read at one desk, so that who designs at the other need not wait.
         self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
+        campaign = (*commands.hil, "campaign", *commands.simulating)
+        self.campaigns = Campaigns(folder / "campaigns", campaign, self.desk)
         self._held = held
         runs_folder = folder / "runs"
         self.keeper: Keeper | None = None
@@ -234,6 +239,12 @@ class Service:
         if self.keeper is not None:
             return await self.keeper.bring_back(run, name)
         return self.queue.folder_of(run) / name
+
+    def places(self) -> Places:
+        """What a campaign may name."""
+        models = {name: path for name in self.models if (path := self.models.path(name)) is not None}
+        here = {name: one.file.source for name, one in self.benches.items() if isinstance(one, Bench)}
+        return Places(self.plans.folder, models, here)
 
     def stop_run_in_emergency(self, bench: str) -> None:
         """Tell the run under way, if there is one; asks nobody anything before."""

@@ -135,6 +135,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         asyncio.create_task(server.serve(sockets=[listening])),
     ]
     besides = [asyncio.create_task(service.watch_database())]
+    service.campaigns.go_on()
     if service.keeper is not None:
         besides.append(asyncio.create_task(service.keeper.work()))
     try:
@@ -154,6 +155,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         service.closing = True
         server.should_exit = True
         await service.studies.close()
+        await service.campaigns.close()
         service.desk.close()
         service.drawing.close()
         for bench in list(service.benches):

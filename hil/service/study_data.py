@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from hil.service.data import RunId
+from hil.service.data import Record, RunId
 from hil.service.design_data import FileName, Numbers
 
 StudyKind = Literal["identification", "diagnosis"]
@@ -35,10 +35,9 @@ class DiagnosisWanted(_Data):
     at_most_min: float = Field(10.0, gt=0, le=60, allow_inf_nan=False)
 
 
-class StudyData(_Data):
+class StudyData(Record):
     """An identification or a diagnosis: wanted, under way, or over."""
 
-    id: RunId
     kind: StudyKind
     state: StudyState
     runs: list[int]

@@ -47,6 +47,16 @@ def command(
         float,
         typer.Option(min=0, metavar="DAYS", help="how long files stay in DIR that the store has"),
     ] = 30.0,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            min=0, max=1024, help="processes that simulate campaigns; default: all processors but one"
+        ),
+    ] = None,
+    scheduler: Annotated[
+        str,
+        typer.Option(metavar="ADDRESS", help="of dask.distributed, whose workers simulate in their place"),
+    ] = "",
     rate: Annotated[
         float,
         typer.Option(
@@ -78,6 +88,6 @@ def command(
 
     return carry_out(
         data=data, bench=bench or [], no_bench=no_bench, host=host, port=port, allow_host=allow_host or [],
-        database=database, store=store, keep_local=keep_local, rate=rate, for_s=for_s,
-        add_token=add_token, as_json=as_json,
+        database=database, store=store, keep_local=keep_local, workers=workers, scheduler=scheduler,
+        rate=rate, for_s=for_s, add_token=add_token, as_json=as_json,
     )  # fmt: skip

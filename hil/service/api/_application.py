@@ -11,6 +11,7 @@ from starlette.types import ASGIApp
 from hil.service.api import (
     _agents,
     _benches,
+    _campaigns,
     _comparisons,
     _design,
     _health,
@@ -27,7 +28,20 @@ from hil.service.api._problems import RESPONSES, answer_problems
 from hil.service.service import Service
 
 PREFIX = "/api/v1"
-_PARTS = (_health, _benches, _agents, _live, _plans, _runs, _comparisons, _trends, _design, _studies, _people)
+_PARTS = (
+    _health,
+    _benches,
+    _agents,
+    _live,
+    _plans,
+    _runs,
+    _comparisons,
+    _trends,
+    _design,
+    _studies,
+    _campaigns,
+    _people,
+)
 
 
 def application(service: Service, *, hosts: tuple[str, ...], rates: Rates) -> ASGIApp:

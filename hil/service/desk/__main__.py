@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.desk import _comparing, _designing, _fitting
+from hil.service.desk import _campaigning, _comparing, _designing, _fitting
 from hil.service.desk._desk import ANSWERED, REFUSED
 
 _IDLE_S = 600.0
@@ -21,6 +21,10 @@ TASKS: dict[str, Callable[..., dict[str, Any]]] = {
     "draft": _designing.draft,
     "design": _designing.designed,
     "fitted": _fitting.fitted,
+    "campaign": _campaigning.given,
+    "campaign_so_far": _campaigning.so_far,
+    "campaign_table": _campaigning.table,
+    "campaign_examples": _campaigning.examples,
 }
 
 

@@ -74,6 +74,13 @@ LEAST = {
     ("POST", "/studies/{study}/cancel"): "engineer",
     ("GET", "/studies/{study}/files/{name}"): "viewer",
     ("POST", "/designs"): "engineer",
+    ("GET", "/campaign-examples"): "viewer",
+    ("GET", "/campaigns"): "viewer",
+    ("POST", "/campaigns"): "engineer",
+    ("GET", "/campaigns/{campaign}"): "viewer",
+    ("POST", "/campaigns/{campaign}/cancel"): "engineer",
+    ("POST", "/campaigns/{campaign}/resume"): "engineer",
+    ("GET", "/campaigns/{campaign}/files/{name}"): "viewer",
     ("GET", "/me"): "viewer",
     ("POST", "/session"): "",
     ("DELETE", "/session"): "",
@@ -84,7 +91,8 @@ LEAST = {
 }
 #: Names of things that there are not: who may ask hears 404 or 422, nothing is changed.
 _NONE = {"bench": "none", "plan": "none", "run": "2000000000", "token": "2000000000", "name": "x"}
-_NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none", "study": "2000000000"}
+_NONE |= {"agent": "0" * 32, "order": "0" * 16, "model": "none", "controller": "none"}
+_NONE |= {"study": "2000000000", "campaign": "2000000000"}
 
 
 @pytest.fixture(scope="module")

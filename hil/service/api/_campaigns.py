@@ -1,0 +1,96 @@
+"""Campaigns: many simulations of a plan."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Body
+from fastapi.responses import FileResponse
+from starlette.responses import Response
+
+from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._problems import RefusedError, missing
+from hil.service.api._runs import MEDIA, SANDBOX
+from hil.service.campaign_data import CampaignData, CampaignExample, CampaignWanted
+from hil.service.data import RunId
+from hil.service.service import Service
+
+router = APIRouter(tags=["campaigns"])
+_TABLES = "application/vnd.apache.parquet"
+
+
+@router.post("/campaigns", name="add_campaign", status_code=201)
+async def add_campaign(
+    wanted: Annotated[CampaignWanted, Body()], service: TheService, me: Engineer
+) -> CampaignData:
+    """Have a campaign carried out in its turn, as `hil campaign` does; it needs no bench."""
+    found = await service.campaigns.add(wanted, service.places(), me.name)
+    told = f"{found.name}: {found.simulations} simulations"
+    service.log.add(me.name, me.role, "campaign", f"campaign {found.id}", told)
+    return found
+
+
+@router.get("/campaigns", name="list_campaigns")
+async def list_campaigns(service: TheService, me: Viewer) -> list[CampaignData]:
+    """Campaigns with their progress and the shares that pass so far, newest first."""
+    del me
+    return service.campaigns.all()
+
+
+@router.get("/campaign-examples", name="list_campaign_examples")
+async def list_campaign_examples(service: TheService, me: Viewer) -> list[CampaignExample]:
+    """The built-in campaigns, with their text."""
+    del me
+    return await service.campaigns.examples()
+
+
+@router.get("/campaigns/{campaign}", name="get_campaign")
+async def get_campaign(campaign: RunId, service: TheService, me: Viewer) -> CampaignData:
+    """One of them."""
+    del me
+    return _there(service, campaign)
+
+
+@router.post("/campaigns/{campaign}/cancel", name="cancel_campaign")
+async def cancel_campaign(campaign: RunId, service: TheService, me: Engineer) -> CampaignData:
+    """End one: what is under way is awaited, a few seconds, and kept; asked twice, it is not awaited."""
+    _there(service, campaign)
+    if not await service.campaigns.cancel(campaign):
+        raise RefusedError(409, f"campaign {campaign} is over")
+    service.log.add(me.name, me.role, "campaign cancelled", str(campaign))
+    return _there(service, campaign)
+
+
+@router.post("/campaigns/{campaign}/resume", name="resume_campaign")
+async def resume_campaign(campaign: RunId, service: TheService, me: Engineer) -> CampaignData:
+    """Go on with one that was cancelled or has failed: only what is missing is simulated."""
+    found = _there(service, campaign)
+    if not service.campaigns.resume(campaign):
+        raise RefusedError(409, f"campaign {campaign} is {found.state}")
+    service.log.add(me.name, me.role, "campaign resumed", str(campaign))
+    return _there(service, campaign)
+
+
+@router.get("/campaigns/{campaign}/files/{name}", name="get_campaign_file", response_class=Response)
+async def get_campaign_file(campaign: RunId, name: str, service: TheService, me: Viewer) -> FileResponse:
+    """A file of one that is over: report, `campaign.json`, the table as `simulations.parquet`."""
+    del me
+    if name not in _there(service, campaign).files:
+        raise missing("file", name)
+    path = service.campaigns.file(campaign, name)
+    headers = {"content-security-policy": SANDBOX} if path.suffix == ".html" else {}
+    shown, way = f"campaign-{campaign}-{name}", "attachment" if path.suffix == ".parquet" else "inline"
+    return FileResponse(
+        path,
+        media_type=MEDIA.get(path.suffix, _TABLES),
+        filename=shown,
+        content_disposition_type=way,
+        headers=headers,
+    )
+
+
+def _there(service: Service, campaign: int) -> CampaignData:
+    found = service.campaigns.get(campaign)
+    if found is None:
+        raise missing("campaign", campaign)
+    return found

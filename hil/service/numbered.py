@@ -1,0 +1,74 @@
+"""What people have had begun, by number: each has a folder with a file that says what it is."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from hil.core.files import make_directory, write_atomically
+from hil.service.data import Record
+
+logger = logging.getLogger(__name__)
+
+
+R = TypeVar("R", bound=Record)
+
+
+class Numbered(Generic[R]):
+    """All of them. What is changed is on disk before it counts.
+
+    Args:
+        folder: where each has a folder of its own.
+        file: name of the file that says what one is.
+        kind: what the file is read as; one that cannot be read is left out, and its number is taken.
+    """
+
+    def __init__(self, folder: Path, file: str, kind: type[R]) -> None:
+        self._folder, self._file, self._kind = folder, file, kind
+        make_directory(folder)
+        self._known = {record.id: record for record in self._read()}
+        self._last = max((int(path.name) for path in folder.glob("[0-9]" * 6)), default=0)
+
+    def __iter__(self) -> Iterator[R]:
+        """Newest first."""
+        yield from sorted(self._known.values(), key=lambda record: -record.id)
+
+    def get(self, number: int) -> R | None:
+        """One of them; None if there is none of this number."""
+        return self._known.get(number)
+
+    def folder_of(self, number: int) -> Path:
+        """Where everything of one is."""
+        return self._folder / f"{number:06d}"
+
+    def take_number(self) -> int:
+        """A number for a new one."""
+        self._last += 1
+        return self._last
+
+    def keep(self, record: R) -> R:
+        """Write one down, new or changed."""
+        make_directory(self.folder_of(record.id))
+        write_atomically(self.folder_of(record.id) / self._file, record.model_dump_json(indent=1))
+        self._known[record.id] = record
+        return record
+
+    def change(self, number: int, **changes: object) -> R:
+        """Write down what has changed of one."""
+        return self.keep(self._known[number].model_copy(update=changes))
+
+    def _read(self) -> Iterator[R]:
+        for path in sorted(self._folder.glob(f"[0-9]*/{self._file}")):
+            try:
+                yield self._kind.model_validate_json(path.read_bytes())
+            except (OSError, ValueError) as error:
+                logger.warning("%s cannot be read: %s", path, error)
+
+
+def files_in_results(results: Path) -> list[str]:
+    """Names of the files that a command has left there."""
+    if not results.is_dir():
+        return []
+    return sorted(path.name for path in results.iterdir() if path.is_file() and path.name[0] != ".")
