@@ -1,10 +1,10 @@
 """Campaigns: many simulations of a plan, in this process or on dask.distributed, resumed where they were."""
 
-from hil.campaign._batches import BATCH_S, Batch, Carriers, Here, batch_size
+from hil.campaign._batches import BATCH_S, Batch, Carriers, Here, Kept, MakeRows, Row, batch_size
 from hil.campaign._carry_out import Progress, carry_out
 from hil.campaign._parts import BEGUN, FOLDER, Parts, begun_batch, write_begun
 from hil.campaign._setting import Setting, Source, load_setting
-from hil.campaign._simulations import Row, Simulations
+from hil.campaign._simulations import Simulations
 from hil.campaign._table import Tally, write_table
 
 __all__ = [
@@ -14,6 +14,8 @@ __all__ = [
     "Batch",
     "Carriers",
     "Here",
+    "Kept",
+    "MakeRows",
     "Parts",
     "Progress",
     "Row",

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
-from hil.campaign._simulations import Row, Simulations
+#: What is known of one simulation; `simulation` is its number.
+Row = dict[str, Any]
+#: Makes the rows of simulations `first` to `last`.
+MakeRows = Callable[[int, int], list[Row]]
 
 #: What a batch takes: long beside handing it out and writing its file, short beside what a kill may cost.
 BATCH_S = 3.0
@@ -28,6 +31,22 @@ class Batch:
 
 #: A batch with its rows; without rows, a single simulation that ends its process.
 Done = tuple[Batch, list[Row] | None]
+
+
+class Kept(Protocol):
+    """Where rows are put in batches that are there whole or not at all: what is there is the state."""
+
+    def __iter__(self) -> Iterator[Batch]:
+        """All batches, there or not."""
+
+    def missing(self) -> list[Batch]:
+        """Those that are not there."""
+
+    def holding(self, batch: Batch) -> Batch:
+        """The one that a batch or a part of one belongs to."""
+
+    def write(self, batch: Batch, rows: list[Row]) -> None:
+        """Put all of one's rows there."""
 
 
 class Carriers(Protocol):
@@ -56,8 +75,8 @@ class Here:
 
     wanted = 1
 
-    def __init__(self, simulations: Simulations) -> None:
-        self._simulations = simulations
+    def __init__(self, make: MakeRows) -> None:
+        self._make = make
         self._out: deque[Batch] = deque()
 
     @property
@@ -79,7 +98,7 @@ class Here:
         if self._out:
             batch = self._out.popleft()
             self.wanted = 1
-            yield batch, [self._simulations.row(number) for number in range(batch.first, batch.last + 1)]
+            yield batch, self._make(batch.first, batch.last)
 
 
 def batch_size(count: int, one_s: float, workers: int) -> int:

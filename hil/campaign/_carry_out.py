@@ -8,9 +8,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from hil.campaign._batches import Batch, Carriers
-from hil.campaign._parts import Parts
-from hil.campaign._simulations import Row, Simulations
+from hil.campaign._batches import Batch, Carriers, Kept, Row
 
 _AWAITED_S = 60.0  # at most, for what is under way when somebody stops it: its worker may be gone
 _KILLED = "the process that simulated it died each time"
@@ -35,14 +33,17 @@ class Progress:
 
 
 def carry_out(
-    simulations: Simulations,
-    parts: Parts,
+    parts: Kept,
     carriers: Carriers,
+    failed: Callable[[int, str], Row],
     *,
     show: Callable[[Progress], None] = lambda progress: None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> bool:
     """Carry out what is missing; once `stopped`, only what is under way is awaited.
+
+    Args:
+        failed: makes the row of one that ends whatever process carries it out.
 
     Returns:
         whether every simulation is on disk.
@@ -51,7 +52,7 @@ def carry_out(
         HilError: nobody can carry them out, or the disk is full; what was done is on disk.
     """
     missing = deque(parts.missing())
-    total = len(simulations.setting.cases)
+    total = sum(len(batch) for batch in parts)
     done = before = total - sum(len(batch) for batch in missing)
     gathered: dict[int, list[Row]] = {}
     begun_s, until_s = time.monotonic(), math.inf
@@ -66,14 +67,14 @@ def carry_out(
                 carriers.submit(missing.popleft())
         for batch, rows in carriers.done():
             if rows is None:
-                rows = [simulations.failed(batch.first, _KILLED)]
+                rows = [failed(batch.first, _KILLED)]
             done += _kept(parts, batch, rows, gathered)
             rate = (done - before) / (time.monotonic() - begun_s)
             show(Progress(done, total, rate, (total - done) / rate if rate else 0.0))
     return done == total
 
 
-def _kept(parts: Parts, batch: Batch, rows: list[Row], gathered: dict[int, list[Row]]) -> int:
+def _kept(parts: Kept, batch: Batch, rows: list[Row], gathered: dict[int, list[Row]]) -> int:
     """Put rows on disk once their part file has all of them; how many were put there."""
     whole = parts.holding(batch)
     there = gathered.setdefault(whole.first, [])

@@ -13,9 +13,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from hil.analysis.campaigns import column_units
-from hil.campaign._batches import Batch
+from hil.campaign._batches import Batch, Row
 from hil.campaign._setting import Setting
-from hil.campaign._simulations import Row
 from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT
 from hil.core.files import replacing, write_atomically

@@ -7,10 +7,11 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from hil.analysis.campaigns import Case, inputs_of, varied
 from hil.analysis.tuning import Draw, draws_of, with_values
+from hil.campaign._batches import Row
 from hil.campaign._setting import Setting
 from hil.core.channels import CHANNELS
 from hil.core.controller import Controller, load_controller
@@ -25,7 +26,6 @@ from test_plans.yaml_document import read_yaml
 _KEPT = 4
 _LONGEST_ERROR = 300
 
-Row = dict[str, Any]
 T = TypeVar("T")
 
 
@@ -45,6 +45,10 @@ class Simulations:
             return ()
         differs = draws_of(self.setting.model, file.tolerance, 1, file.seed)[-1].differs
         return tuple(f"effect.{name}" if "." in name else f"model.{name}" for name in differs)
+
+    def rows(self, first: int, last: int) -> list[Row]:
+        """Those from `first` to `last`, both included."""
+        return [self.row(number) for number in range(first, last + 1)]
 
     def row(self, number: int) -> Row:
         """One simulation; what goes wrong in it is its row's error, and ends nothing else."""

@@ -6,18 +6,19 @@ The only module that imports it: `pip install 'eaxle-hil[campaign]'`.
 from __future__ import annotations
 
 import contextlib
+import functools
 import logging
+import math
 import multiprocessing.resource_tracker
 import queue
 import time
 from collections import deque
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
-from hil.campaign._batches import Batch, Done
-from hil.campaign._setting import load_setting
-from hil.campaign._simulations import Row, Simulations
+from hil.campaign._batches import Batch, Done, MakeRows, Row
+from hil.campaign._setting import Setting, load_setting
+from hil.campaign._simulations import Simulations
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.engine.stopping import held_back
 
@@ -33,6 +34,7 @@ except ImportError as missing:
 _WAIT_S = 0.2
 _CONNECT_S = 10
 _LOOK_S = 2.0
+_COUNT_S = 0.5
 _AHEAD = 3  # batches for each worker that are handed out: none waits for the next
 _LOGGERS = ("distributed", "distributed.client", "tornado", "tornado.application")
 #: Memory that a simulation gives back, the next one asks for again: it stays with the process. And nobody
@@ -50,8 +52,7 @@ class Workers:
     """Carries batches out elsewhere; use it as a context.
 
     Args:
-        source: the campaign's file; every worker reads it, and must see the same.
-        digest: of the campaign as it is here.
+        make: makes rows in a worker; what it is made of must be importable there.
         processes: of this machine.
         scheduler: address of one whose workers are used in place of those.
 
@@ -59,14 +60,15 @@ class Workers:
         BenchError: nobody answers there.
     """
 
-    def __init__(self, source: Path, digest: str, processes: int, scheduler: str = "") -> None:
-        self._source, self._digest = str(source.resolve()), digest
+    def __init__(self, make: MakeRows, processes: int, scheduler: str = "") -> None:
+        self._make = make
         self._processes, self._scheduler = processes, scheduler
         self._ended: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._held = contextlib.ExitStack()
         self._client: Any = None
         self._cluster: Any = None
-        self._looked_s = 0.0
+        self._looked_s = self._counted_s = -math.inf
+        self._count = 0
         self._out: dict[str, tuple[Any, Batch]] = {}
         self._suspects: deque[Batch] = deque()
         self._deadly: set[Batch] = set()
@@ -119,15 +121,18 @@ class Workers:
 
     @property
     def count(self) -> int:
-        """Workers that are there now.
+        """Workers that are there, or were a moment ago: asking the scheduler takes milliseconds.
 
         Raises:
             BenchError: the scheduler is gone.
         """
-        try:
-            return len(self._client.scheduler_info(n_workers=-1)["workers"])
-        except (OSError, RuntimeError) as error:
-            raise self._gone() from error
+        if time.monotonic() - self._counted_s > _COUNT_S:
+            try:
+                self._count = len(self._client.scheduler_info(n_workers=-1)["workers"])
+            except (OSError, RuntimeError) as error:
+                raise self._gone() from error
+            self._counted_s = time.monotonic()
+        return self._count
 
     def _replace_lost(self) -> None:
         """Begin processes in place of those that died while they began: their keepers have given up."""
@@ -151,7 +156,7 @@ class Workers:
         self._handed_out(batch)
 
     def _handed_out(self, batch: Batch) -> str:
-        future = self._client.submit(_rows, self._source, self._digest, batch.first, batch.last, pure=False)
+        future = self._client.submit(self._make, batch.first, batch.last, pure=False)
         self._out[future.key] = future, batch
         future.add_done_callback(self._ended.put)
         return str(future.key)
@@ -219,6 +224,11 @@ def _failed(error: object) -> BenchError:
     )
 
 
+def rows_of(setting: Setting) -> MakeRows:
+    """What makes a campaign's rows in a worker, which reads its files and must see the same."""
+    return functools.partial(_rows, str(setting.file.source.resolve()), setting.digest)
+
+
 def _rows(source: str, digest: str, first: int, last: int) -> list[Row]:
     """In a worker."""
     if digest not in _known:
@@ -231,4 +241,4 @@ def _rows(source: str, digest: str, first: int, last: int) -> list[Row]:
             )
         _known.clear()
         _known[digest] = Simulations(setting)
-    return [_known[digest].row(number) for number in range(first, last + 1)]
+    return _known[digest].rows(first, last)

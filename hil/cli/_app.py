@@ -108,20 +108,20 @@ def _of_a_server(arguments: list[str]) -> list[str]:
     """`hil --server URL run …` as `hil run --server URL …`.
 
     Raises:
-        BadInputError: another command than run, or none.
+        BadInputError: another command than run or campaign, or none.
     """
     option, _, url = arguments[0].partition("=")
     if option != "--server":
         return arguments
     rest = arguments[1:] if url else arguments[2:]
     url = url or (arguments[1] if len(arguments) > 1 else "")
-    if not url or rest[:1] != ["run"]:
+    if not url or rest[:1] not in (["run"], ["campaign"]):
         raise BadInputError(
-            "a service carries out 'run', and no other command",
+            "a service carries out 'run' and 'campaign', and no other command",
             where="--server",
-            fix="write: hil --server URL run PLAN --bench NAME",
+            fix="write: hil --server URL run PLAN --bench NAME; or campaign FILE",
         )
-    return ["run", "--server", url, *rest[1:]]
+    return [rest[0], "--server", url, *rest[1:]]
 
 
 def _module(name: str) -> ModuleType:

@@ -25,7 +25,7 @@ from test_plans import load_plan
 
 _LOOK_S = 0.3
 _GONE_S = 60.0  # for a service that is begun again, or a network that comes back
-_OURS = (400, 401, 403, 404, 413, 421, 422)
+OURS = (400, 401, 403, 404, 413, 421, 422)
 TOKEN = "HIL_TOKEN"
 
 Tell = Callable[[RunResult, Path], None]
@@ -79,7 +79,7 @@ class RemoteRun:
             )
             return client.queue(wanted)
         except RefusedError as error:
-            if error.status in _OURS:
+            if error.status in OURS:
                 raise BadInputError(error.what, where=error.where, fix=error.fix) from error
             raise
         except ValueError as error:
@@ -113,7 +113,7 @@ class _Watching:
                     self.run = self.client.run(self.run.id)
                     heard_s = time.monotonic()
                 except RefusedError as error:
-                    if error.status in _OURS:
+                    if error.status in OURS:
                         raise
                 except BenchError:
                     if time.monotonic() - heard_s > _GONE_S:

@@ -48,12 +48,18 @@ def carry_out(
     out: Path | None,
     workers: int | None,
     scheduler: str,
+    server: str,
     resume: bool,
     dry_run: bool,
     overwrite: bool,
     json_: bool,
 ) -> int:
     """Carry the command out; its exit code."""
+    if server:
+        _refuse_here_only(workers=workers, scheduler=scheduler, dry_run=dry_run)
+        from hil.cli._remote_campaign import RemoteCampaign  # costs a campaign here nothing
+
+        return RemoteCampaign(server, campaign, resume, overwrite).carry_out(out, as_json=json_)
     _refuse_together(out, workers, scheduler, resume=resume, overwrite=overwrite)
     setting = load_setting(campaign)
     simulations = Simulations(setting)
@@ -86,6 +92,18 @@ def carry_out(
         else:
             print(text_of(found, random=random, wanted=wanted, out=str(place.folder)))
     return int(passed(found, wanted) is False)
+
+
+def _refuse_here_only(**options: object) -> None:
+    """Who simulates is the service's to say.
+
+    Raises:
+        BadInputError: names the option.
+    """
+    for name, value in options.items():
+        if value is not None and value is not False and value != "":
+            option = f"--{name.replace('_', '-')}"
+            raise BadInputError(f"{option} does not go with --server", where=option, fix="leave it out")
 
 
 def _refuse_together(
@@ -123,7 +141,8 @@ def _simulated(
         whole = not parts.missing()
         if not whole:
             with _carriers(simulations, processes, scheduler) as carriers:
-                whole = simulate(simulations, parts, carriers, show=tell, stopped=lambda: stop.times > 0)
+                asked = (parts, carriers, simulations.failed)
+                whole = simulate(*asked, show=tell, stopped=lambda: stop.times > 0)
     if not whole:
         done = len(setting.cases) - sum(len(batch) for batch in parts.missing())
         INTERRUPTS.tell()
@@ -143,12 +162,11 @@ def _begin(place: Place, setting: Setting, batch: int) -> None:
 @contextlib.contextmanager
 def _carriers(simulations: Simulations, processes: int, scheduler: str) -> Iterator[Carriers]:
     if not scheduler and processes == 0:
-        yield Here(simulations)
+        yield Here(simulations.rows)
         return
-    from hil.campaign.on_dask import Workers  # half a second
+    from hil.campaign.on_dask import Workers, rows_of  # half a second
 
-    setting = simulations.setting
-    with Workers(setting.file.source, setting.digest, processes, scheduler) as workers:
+    with Workers(rows_of(simulations.setting), processes, scheduler) as workers:
         yield workers
 
 

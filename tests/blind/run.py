@@ -4,71 +4,22 @@ from __future__ import annotations
 
 import argparse
 import json
-import multiprocessing
 import os
 import shutil
 import sys
-import tempfile
 import time
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
 
-from tests.blind.casefiles import OpenFiles, drawn_case, open_answer, seal_answer, write_case
 from tests.blind.diagnosing import Diagnose, by_command_line, says_nothing
-from tests.blind.draws import draw
-from tests.blind.scoring import Score, score
+from tests.blind.scoring import Score
 from tests.blind.specs import GROUPS, Spec, full_set, subset
+from tests.blind.spread import Asked, spread
 from tests.blind.tables import as_markdown
 
 _RESULTS = Path("docs/reference/blind-results.md")
-
-
-def run_case(
-    seed: int, spec: Spec, diagnose: Diagnose, keep: Path | None = None, length: float = 1.0
-) -> Score:
-    """Draw, measure, ask, open the answer, judge. With `keep`, what was drawn stays and is used again."""
-    with tempfile.TemporaryDirectory(prefix="blind-") as place:
-        drawn = Path(place) / "drawn"
-        if keep is not None:
-            name = spec.key.replace("/", "-").replace(":", "-")
-            drawn = keep / f"seed-{seed}-length-{length:g}" / name
-        files = drawn_case(drawn) or _draw(seed, spec, length, drawn)
-        reply = diagnose(files, Path(place) / "out")
-        kind, answer = open_answer(drawn)
-        return score(spec, kind, answer, reply)
-
-
-def _draw(seed: int, spec: Spec, length: float, directory: Path) -> OpenFiles:
-    shutil.rmtree(directory, ignore_errors=True)
-    directory.mkdir(parents=True)
-    case = draw(seed, spec, length)
-    files, answer = write_case(case, directory)
-    seal_answer(directory, case.truth.kind, answer)
-    return files
-
-
-def run_all(
-    seed: int,
-    specs: Sequence[Spec],
-    diagnose: Diagnose,
-    jobs: int,
-    keep: Path | None = None,
-    length: float = 1.0,
-) -> list[Score]:
-    """Scores in the order of `specs`, from `jobs` processes; after Ctrl-C those that are there."""
-    results: dict[Spec, Score] = {}
-    with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
-        waiting = {pool.submit(run_case, seed, spec, diagnose, keep, length): spec for spec in specs}
-        try:
-            for done in as_completed(waiting):
-                spec = waiting[done]
-                results[spec] = done.result()
-                _tell(results[spec], len(results), len(specs))
-        except KeyboardInterrupt:
-            pool.shutdown(wait=False, cancel_futures=True)
-    return [results[spec] for spec in specs if spec in results]
+_WORK = Path("out/blind")
 
 
 def _tell(one: Score, number: int, total: int) -> None:
@@ -98,8 +49,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         says_nothing if options.stand_in else partial(by_command_line, threads=options.threads)
     )
     start = time.perf_counter()
-    scores = run_all(options.seed, specs, diagnose, options.jobs, options.keep, options.length)
+    who = "says nothing" if options.stand_in else f"hil diagnose, threads: {options.threads}"
+    asked = Asked(options.seed, tuple(specs), diagnose, who, options.keep, options.length)
+    if not options.resume:
+        shutil.rmtree(options.work, ignore_errors=True)
+
+    def tell(score: Score, number: int) -> None:
+        _tell(score, number, len(specs))
+
+    scores = spread(asked, options.work, options.jobs, options.scheduler, tell)
     wall = time.perf_counter() - start
+    if len(scores) < len(specs):
+        print(
+            f"{len(scores)} of {len(specs)} cases are in {options.work}; go on with --resume", file=sys.stderr
+        )
+        return 130
     command = "python -m tests.blind " + " ".join(arguments if arguments is not None else sys.argv[1:])
     how = (
         f"Made by `{command.strip()}`: {len(scores)} cases, seed {options.seed}, {options.jobs} at a time "
@@ -137,7 +101,10 @@ def _options(arguments: Sequence[str] | None) -> argparse.Namespace:
         help="only this effect in all its forms, or one form (backlash:damped); may be repeated",
     )
     parser.add_argument("--size", action="append", help="only large, clear, middle or edge; may be repeated")
-    parser.add_argument("--jobs", type=int, default=2, help="cases at a time")
+    parser.add_argument("--jobs", type=int, default=2, help="cases at a time; 0: in this process")
+    parser.add_argument("--scheduler", default="", help="of dask.distributed, whose workers take the cases")
+    parser.add_argument("--work", type=Path, default=_WORK, help="directory of the scores as they come")
+    parser.add_argument("--resume", action="store_true", help="only cases that have no score in --work yet")
     parser.add_argument("--threads", type=int, default=1, help="threads of each diagnosis")
     parser.add_argument(
         "--length", type=float, default=1.0, help="of the recordings; below 1 for a quick look"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tests.blind.diagnosing import by_command_line
-from tests.blind.run import run_case
+from tests.blind.run_case import run_case
 from tests.blind.specs import Spec
 
 #: Right answers of the subset, at least; raise it with the diagnosis, never lower it.

@@ -15,9 +15,11 @@ from tests.blind.diagnosing import Reply, says_nothing
 from tests.blind.families import FAMILIES
 from tests.blind.later_families import LATER_FAMILIES
 from tests.blind.outsiders import LATER_OUTSIDERS, OUTSIDERS
-from tests.blind.run import main, run_case
+from tests.blind.run import main
+from tests.blind.run_case import run_case
 from tests.blind.scoring import KNOWN, errors_of, score
 from tests.blind.specs import GROUPS, SIZES, Spec, full_set, subset
+from tests.blind.spread import Asked, spread
 
 NOISE = {"motor_speed_rad_s": 0.01, "wheel_speed_rad_s": 0.02, "shaft_torque_nm": 0.02}
 
@@ -182,6 +184,61 @@ def test_a_run_with_a_stand_in_writes_both_files(tmp_path):
     assert run_case(2, spec, says_nothing, tmp_path / "kept", 0.1) == result  # drawn once, asked again
     assert model.stat().st_mtime_ns == drawn_at
     out = tmp_path / "results.md"
-    assert main(["--stand-in", "--group", "none", "--cases", "1", "--length", "0.1", "--out", str(out)]) == 0
+    assert (
+        main(
+            [
+                "--stand-in",
+                "--group",
+                "none",
+                "--cases",
+                "1",
+                "--length",
+                "0.1",
+                "--out",
+                str(out),
+                "--jobs",
+                "0",
+                "--work",
+                str(tmp_path / "work"),
+            ]
+        )
+        == 0
+    )
     assert "| none | 1 | 100 |" in out.read_text()
     assert json.loads(out.with_suffix(".json").read_text())["cases"][0]["verdict"] == "none"
+
+
+def test_a_case_is_done_once_and_done_again_if_anything_has_changed(tmp_path):
+    specs = tuple(Spec("none", "none", "none", turn) for turn in range(2))
+    shown: list[tuple[int, int]] = []
+
+    def made(specs, seed=1):
+        asked = Asked(seed, specs, says_nothing, "nobody", length=0.1)
+        shown.clear()
+        found = spread(asked, tmp_path, 0, "", lambda score, number: shown.append((score.turn, number)))
+        return found, list(shown)
+
+    (first,), told = made(specs[:1])
+    assert told == [(0, 1)]
+    (again, other), told = made(specs)
+    assert (again, other.turn, told) == (first, 1, [(1, 2)])
+    assert made(specs)[1] == []
+    (tmp_path / "none-none-none-0.json").write_text("{")
+    assert made(specs)[1] == [(0, 2)]
+    assert len(made(specs, seed=2)[1]) == 2
+
+
+@pytest.mark.slow
+def test_cases_on_workers_are_those_of_one_process(tmp_path):
+    specs = tuple(Spec("none", "none", "none", turn) for turn in range(3))
+    asked = Asked(1, specs, says_nothing, "nobody", length=0.1)
+    here = spread(asked, tmp_path / "here", 0, "", lambda score, number: None)
+    there = spread(asked, tmp_path / "there", 2, "", lambda score, number: None)
+    assert here == there
+
+
+def test_a_case_that_ends_its_process_has_failed():
+    asked = Asked(1, (Spec("none", "none", "none", 0),), says_nothing, "nobody")
+    row = asked.failed(0, "the process died")
+    assert row["simulation"] == 0
+    assert (row["score"]["failure"], row["score"]["right"]) == ("the process died", False)

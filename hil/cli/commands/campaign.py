@@ -33,6 +33,12 @@ def command(
         str,
         typer.Option(metavar="ADDRESS", help="of dask.distributed, whose workers are used in their place"),
     ] = "",
+    server: Annotated[
+        str,
+        typer.Option(
+            metavar="URL", help="have a bench service carry it out (hil serve); the token is in HIL_TOKEN"
+        ),
+    ] = "",
     resume: Annotated[
         bool, typer.Option("--resume", help="go on in --out: only what is missing is simulated")
     ] = False,
@@ -63,6 +69,7 @@ def command(
         out=out,
         workers=workers,
         scheduler=scheduler,
+        server=server,
         resume=resume,
         dry_run=dry_run,
         overwrite=overwrite,

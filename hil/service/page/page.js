@@ -1,6 +1,7 @@
 // The page: one bench at a time, its state, its run, its queue and its results. The service says what is new.
 
 import { get, post, ask } from "./api.js";
+import { beginCampaigns } from "./campaigns.js";
 import { SpectrumChart, TimeChart } from "./chart.js";
 import { beginComparison, list as listCompared } from "./compare.js";
 import { beginDesign } from "./design.js";
@@ -58,6 +59,7 @@ async function open() {
   beginComparison(() => bench, act);
   beginIdentification(() => bench, act, may("engineer"));
   beginDiagnosis(() => bench, act, may("engineer"));
+  beginCampaigns(act, may("engineer"));
   at("design").hidden = !may("engineer");
   if (may("engineer")) beginDesign(act, choosePlan);
   watch();

@@ -1,6 +1,7 @@
 """What is handed out, kept and gone on with: in this process, and on a scheduler's workers."""
 
 import json
+from functools import partial
 
 import pandas as pd
 import pyarrow.parquet as pq
@@ -21,7 +22,7 @@ from hil.campaign import (
     load_setting,
     write_begun,
 )
-from hil.campaign.on_dask import Workers
+from hil.campaign.on_dask import Workers, _rows, rows_of
 from hil.core.errors import BadInputError, BenchError
 from tests.hil.campaign.short import written
 
@@ -39,7 +40,7 @@ def parts(tmp_path, simulations):
 
 def test_every_simulation_stands_once_with_units(parts, simulations):
     shown: list[Progress] = []
-    assert carry_out(simulations, parts, Here(simulations), show=shown.append)
+    assert carry_out(parts, Here(simulations.rows), simulations.failed, show=shown.append)
     table = parts.table()
     assert list(table["simulation"]) == list(range(16))
     assert [path.name for path in sorted(parts.folder.iterdir())][-1] == "part-0000015-0000015.parquet"
@@ -61,13 +62,15 @@ def test_only_what_is_missing_or_damaged_is_done_again(parts, simulations, tmp_p
             super().submit(batch)
 
     stops = iter([False, False, False, True])
-    assert not carry_out(simulations, parts, Counted(simulations), stopped=lambda: next(stops, True))
+    assert not carry_out(
+        parts, Counted(simulations.rows), simulations.failed, stopped=lambda: next(stops, True)
+    )
     assert asked == [0, 3, 6]
     assert len(parts.table()) == 9
     parts.path(Batch(3, 5)).write_bytes(b"PAR1 torn")
     asked.clear()
     assert begun_batch(tmp_path, simulations.setting) == 3
-    assert carry_out(simulations, parts, Counted(simulations))
+    assert carry_out(parts, Counted(simulations.rows), simulations.failed)
     assert asked == [3, 9, 12, 15]
     assert list(parts.table()["simulation"]) == list(range(16))
 
@@ -100,7 +103,7 @@ class Deadly:
     """Carriers of which a simulation kills its process."""
 
     def __init__(self, simulations, deadly):
-        self._here, self._deadly = Here(simulations), deadly
+        self._here, self._deadly = Here(simulations.rows), deadly
         self.wanted = 1
 
     @property
@@ -121,7 +124,7 @@ class Deadly:
 
 
 def test_a_simulation_that_kills_its_process_is_a_row_and_its_part_is_whole(parts, simulations):
-    assert carry_out(simulations, parts, Deadly(simulations, 4))
+    assert carry_out(parts, Deadly(simulations, 4), simulations.failed)
     table = parts.table()
     assert list(table["simulation"]) == list(range(16))
     assert list(table.loc[table["verdict"] == "error", "simulation"]) == [4]
@@ -139,29 +142,30 @@ def cluster():
 
 def test_a_schedulers_workers_make_the_same_rows(parts, simulations, cluster, tmp_path):
     setting = simulations.setting
-    with Workers(setting.file.source, setting.digest, 0, cluster.scheduler_address) as workers:
+    with Workers(rows_of(setting), 0, cluster.scheduler_address) as workers:
         assert workers.count == 1
-        assert carry_out(simulations, parts, workers)
+        assert carry_out(parts, workers, simulations.failed)
     there = parts.table().drop(columns="processor_s")
     other = Parts(tmp_path / "other", setting, simulations.drawn, 5)
-    carry_out(simulations, other, Here(simulations))
+    carry_out(other, Here(simulations.rows), simulations.failed)
     pd.testing.assert_frame_equal(there, other.table().drop(columns="processor_s"))
 
 
 def test_a_worker_with_other_files_is_refused(parts, simulations, cluster):
+    source = str(simulations.setting.file.source)
     with (
-        Workers(simulations.setting.file.source, "0" * 64, 0, cluster.scheduler_address) as workers,
+        Workers(partial(_rows, source, "0" * 64), 0, cluster.scheduler_address) as workers,
         pytest.raises(BadInputError, match="other files"),
     ):
-        carry_out(simulations, parts, workers)
+        carry_out(parts, workers, simulations.failed)
     assert not (parts.folder).exists() or not list(parts.folder.iterdir())
 
 
 def test_stopped_only_what_is_under_way_is_awaited(parts, simulations, cluster):
     setting = simulations.setting
-    with Workers(setting.file.source, setting.digest, 0, cluster.scheduler_address) as workers:
+    with Workers(rows_of(setting), 0, cluster.scheduler_address) as workers:
         begun = iter([False])
-        assert not carry_out(simulations, parts, workers, stopped=lambda: next(begun, True))
+        assert not carry_out(parts, workers, simulations.failed, stopped=lambda: next(begun, True))
         assert workers.under_way == 0
     assert 3 <= len(parts.table()) < 16
     assert parts.folder.name == FOLDER
@@ -170,4 +174,4 @@ def test_stopped_only_what_is_under_way_is_awaited(parts, simulations, cluster):
 def test_no_scheduler_is_told(simulations, monkeypatch):
     monkeypatch.setattr("hil.campaign.on_dask._CONNECT_S", 0.5)
     with pytest.raises(BenchError, match="no scheduler answers"):
-        Workers(simulations.setting.file.source, "", 0, "tcp://127.0.0.1:9").__enter__()
+        Workers(rows_of(simulations.setting), 0, "tcp://127.0.0.1:9").__enter__()

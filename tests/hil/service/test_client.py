@@ -68,7 +68,7 @@ def test_a_run_of_a_service_has_the_exit_code_and_the_files_of_one_here(
         (("run", "none"), "there is no plan 'none'"),
         (("run", "acceptance", "--bench", "none"), "there is no bench 'none'"),
         (("run", "acceptance", "--repeat", "2"), "does not go with --server"),
-        (("check", "acceptance"), "a service carries out 'run'"),
+        (("check", "acceptance"), "a service carries out 'run' and 'campaign'"),
         (("run", "acceptance", "--bench", "../x"), "the service cannot take it"),
     ],
 )
