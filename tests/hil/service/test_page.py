@@ -126,3 +126,4 @@ def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwri
         playwright.expect(page.get_by_role("heading", name="Emergency stop")).to_be_visible()
         assert page.get_by_role("button", name="It is safe: reset the emergency stop").is_hidden()
         assert page.get_by_role("heading", name="Start a plan").is_hidden()
+        page.goto("about:blank")  # it would tell that the service has gone

@@ -1,0 +1,68 @@
+"""Trends on the page: limits, Cpk with its interval and count, by device under test."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright import sync_api as playwright
+
+from hil.core.result import CriterionResult, RunResult
+from hil.service.store import BenchStore, NewRun, RunStore, open_database
+from tests.hil.service.looks import refuse_hard_to_use, roles_drawn
+from tests.hil.service.served import Served, environment_of, served
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(shutil.which("chromium") is None, reason="there is no chromium"),
+]
+#: Value and device under test: eight of A, whose neighbours differ by 5 N m, and three of B between them.
+_RUNS = [(value, "A") for value in (300.0, 305.0) * 4] + [(310.0, "B")] * 3
+
+
+def _ran(data: Path) -> None:
+    """Runs of an earlier day."""
+    data.mkdir(parents=True)
+    engine = open_database(environment_of(data)["HIL_DATABASE"] or f"sqlite:///{data / 'service.sqlite'}")
+    runs, bench = RunStore(engine), BenchStore(engine, "earlier")
+    bench.hold("sim")
+    for value, dut in _RUNS:
+        run, _ = runs.add(NewRun("p", "P", "name: p", "p.yaml", "sim", {}, "anna"), approved=True)
+        runs.take(run.id, "earlier")
+        one = CriterionResult(id="s.peak", value=value, unit="N m", upper=330.0, verdict="pass")
+        result = RunResult(
+            verdict="pass", plan="p", bench="sim", real_time_factor=1.0, bench_time_s=1.0,
+            safe_state="confirmed", criteria=(one,),
+        )  # fmt: skip
+        runs.end(run.id, "ended", exit_code=0, result=result, dut=dut)
+    bench.give_back()
+    engine.dispose()
+
+
+@pytest.fixture(scope="module")
+def there(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    folder = tmp_path_factory.mktemp("page-trends")
+    _ran(folder / "data")
+    with served(folder / "data", state=folder / "state") as service:
+        yield service
+
+
+def test_cpk_stands_with_its_interval_and_count_for_all_and_for_one_device(
+    page: playwright.Page, there: Served
+) -> None:
+    page.goto(there.url)
+    expect = playwright.expect
+    figures = page.locator("#trend-figures")
+    expect(figures).to_contain_text("N m, limit ≤ 330, Cpk ")
+    expect(figures).to_contain_text(", 11 runs)")
+    assert roles_drawn(page, "trend", ("gain",)) == {"gain"}
+    page.get_by_label("of", exact=True).select_option("A")
+    expect(figures).to_have_text("mean 303 N m, limit ≤ 330, Cpk 2.07 (95 %: 0.99 to 3.14, 8 runs)")
+    page.get_by_label("of", exact=True).select_option("B")
+    expect(figures).to_have_text("mean 310 N m, limit ≤ 330, Cpk: too few runs (3 of 5)")
+    expect(page.locator("#trend")).to_have_attribute(
+        "aria-label", "s.peak over 3 runs: " + figures.inner_text()
+    )
+    refuse_hard_to_use(page)
