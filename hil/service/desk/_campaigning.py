@@ -125,6 +125,12 @@ def _bring(file: CampaignFile, place: Path, plans: Path, models: Mapping[str, st
         _copy(Path(model), place / file.model)
     if (place / file.plan).is_file():
         _bring_controllers(place / file.plan, plans)
+    elif file.plan.endswith((".yaml", ".yml")):
+        raise BadInputError(
+            f"there is no plan '{file.plan}'",
+            where=file.document.place(("plan",)),
+            fix="send it with the campaign, or give it to the service before",
+        )
 
 
 def _bring_controllers(plan: Path, plans: Path) -> None:

@@ -54,7 +54,7 @@ export function beginCampaigns(act, may) {
 
 async function offerExamples() {
   examples = await get("/campaign-examples");
-  offer(at("campaign-example"), [...examples.map((one) => [one.name, one.title || one.name]), ["", "of my own"]]);
+  offer(at("campaign-example"), [...examples.map((one) => [one.name, one.title || one.name]), ["own file", "of my own"]]);
   showExample();
 }
 
@@ -74,7 +74,7 @@ function progress({ id, state, done, simulations, rate_hz: rate }) {
   return made;
 }
 
-const percent = (share) => `${(100 * share).toFixed(1)} %`;
+const percent = (share) => `${(100 * share).toFixed(1)}\u00a0%`;
 
 // The band is the interval, the line in it the share that passed.
 function shares({ controllers }) {
@@ -84,9 +84,7 @@ function shares({ controllers }) {
     const text = `${controller ? `${controller.replaceAll("_", " ")}: ` : ""}${percent(share)} (${passed} of ${of}${interval ? `; ${percent(interval[0])} to ${percent(interval[1])}` : ""})`;
     const [low, high] = interval ?? [share, share];
     band.className = "share";
-    band.style.setProperty("--low", percent(low));
-    band.style.setProperty("--wide", percent(high - low));
-    band.style.setProperty("--share", percent(share));
+    for (const [name, value] of [["low", low], ["wide", high - low], ["share", share]]) band.style.setProperty(`--${name}`, `${100 * value}%`);
     one.append(text, band);
     return one;
   }));
