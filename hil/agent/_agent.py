@@ -134,7 +134,8 @@ class _Agent:
                 continue
             except RefusedError as error:
                 if not self._heard:
-                    raise BadInputError(error.what, where=self._service.url, fix=_TOKEN_FIX) from error
+                    fix = _TOKEN_FIX if error.status in (401, 403) else _URL_FIX
+                    raise BadInputError(error.what, where=self._service.url, fix=fix) from error
                 logger.warning("the service refuses what is told: %s", error.what)
                 await asyncio.sleep(_AGAIN_S)
                 continue
@@ -245,6 +246,7 @@ class _Agent:
         return end_of_left(run.folder, "agent")
 
 
+_URL_FIX = "is this the URL of a bench service, of the same version?"
 _TOKEN_FIX = "set HIL_TOKEN to a token with the role agent: hil serve --data DIR --add-token NAME=agent"
 
 

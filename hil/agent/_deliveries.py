@@ -50,28 +50,33 @@ class Deliveries:
         Raises:
             HilError: its files cannot be read.
         """
-        wait_s = _AGAIN_S
+        wait_s, files = _AGAIN_S, await apart(run.files)
         while True:
-            ending = await apart(run.ending_now)
+            answers = self._service.answers
+            ending = run.ending_with(files)
             try:
-                return await self._brought(run, ending)
+                if await self._brought(run, ending):
+                    return ""
+                files = await apart(run.files)
             except AwayError:
                 pass
             except RefusedError as error:
                 if error.status not in _NOT_MINE:
                     return "" if ending.state == "queued" else str(error)
                 logger.warning("run %d is not taken: %s", run.id, error.what)
+            answered = self._service.answers > answers  # only some of it was lost
+            wait_s = _AGAIN_S if answered else min(2.0 * wait_s, _LONGEST_S)
             await asyncio.sleep(wait_s)
-            wait_s = min(2.0 * wait_s, _LONGEST_S)
 
-    async def _brought(self, run: KeptRun, ending: RunEnding) -> str:
+    async def _brought(self, run: KeptRun, ending: RunEnding) -> bool:
+        """Send what is missing; false if it does not become what was made."""
         for _ in range(_ROUNDS):
             answer = await self._service.ask(lambda client: client.deliver(self._agent, run.id, ending))
             if not answer.missing:
-                return ""
+                return True
             for name in answer.missing:
                 await self._send_all(run, name)
-        raise AwayError(f"{', '.join(answer.missing)} did not come as sent", where=f"run {run.id}")
+        return False
 
     async def _send_all(self, run: KeptRun, name: str) -> None:
         at, more = 0, True

@@ -37,19 +37,22 @@ class KeptRun:
         write_atomically(self.folder / _ENDING, ending.model_dump_json())
         self.ending = ending
 
-    def ending_now(self) -> RunEnding:
-        """How it ended, with its files as they are on the disk; reads all of them.
+    def files(self) -> list[FileMade]:
+        """What it left, as it is on the disk; reads all of it.
 
         Raises:
-            BadInputError: one of them cannot be read.
+            BadInputError: a file cannot be read.
         """
-        assert self.ending is not None
         made = []
         for path in files_in(self.folder):
             with contextlib.suppress(ValidationError):  # a name that is no name for others
                 made.append(FileMade(name=path.name, size=path.stat().st_size, sha256=sha256_of(path)))
-        if self.ending.state == "queued":
-            made = []
+        return made
+
+    def ending_with(self, files: list[FileMade]) -> RunEnding:
+        """How it ended, as it is told now."""
+        assert self.ending is not None
+        made = files if self.ending.state != "queued" else []
         ago_s = max(0.0, time.time() - (self.folder / _ENDING).stat().st_mtime)
         return self.ending.model_copy(update={"files": made, "ago_s": ago_s})
 

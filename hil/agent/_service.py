@@ -25,12 +25,17 @@ class TheService:
 
     Args:
         urls: services of one database; the next is asked when one does not answer.
+
+    Attributes:
+        away: why there was no answer the last time; '' if there was.
+        answers: how often there was one.
     """
 
     def __init__(self, urls: Sequence[str], token: str) -> None:
         self._clients = [Client(url, token) for url in urls]
         self._urls, self._at = list(urls), 0
         self.away = ""
+        self.answers = 0
 
     @property
     def url(self) -> str:
@@ -59,6 +64,7 @@ class TheService:
         if self.away:
             logger.warning("the service answers again: %s", self.url)
         self.away = ""
+        self.answers += 1
         return answer
 
     def _lost(self, asked: int, error: BenchError) -> None:

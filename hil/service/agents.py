@@ -38,7 +38,6 @@ class Agents:
     Args:
         service: the name of this one in the database.
         folder: where runs have their folders.
-        benches: names of the service's own.
         changed: called whenever something of a bench is to be shown anew.
     """
 
@@ -265,9 +264,7 @@ class Agents:
         if bench.running is not None and bench.running.data.id == told.running:
             bench.running.share, bench.running.doing = told.share, told.doing
             bench.running.told = told.told
-        stops = [one.id for one in bench.agent.orders.values() if one.kind == "emergency_stop"]
-        stops = [one for one in stops if bench.agent.orders[one].bench == bench.name]
-        if bench.stop_by and set(stops) <= set(obeyed):
+        if bench.stop_by and bench.stops() <= set(obeyed):
             bench.stop_by = ""
             with contextlib.suppress(DatabaseAwayError):
                 self._store.stop(bench.name, "")

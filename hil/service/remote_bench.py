@@ -94,6 +94,14 @@ class RemoteBench:
         self.agent.told.set()
         return order
 
+    def stops(self) -> set[str]:
+        """Orders of an emergency stop that its agent has not obeyed."""
+        return {
+            one.id
+            for one in self.agent.orders.values()
+            if one.kind == "emergency_stop" and one.bench == self.name
+        }
+
     def state(self) -> tuple[BenchState, str]:
         """What it does, as far as is known."""
         agent = self.agent

@@ -162,7 +162,7 @@ def test_a_killed_agents_run_ends_safely_and_comes_when_the_agent_is_back(tmp_pa
             assert service.over(waiting)["exit_code"] == 0
 
 
-@pytest.mark.slow
+@pytest.mark.hunt
 def test_ending_an_agent_ends_its_run_safely_and_delivers_it(tmp_path: Path, far: Path) -> None:
     with served(tmp_path / "data", state=tmp_path / "state") as service:
         service.give("asking", ASKING)
@@ -178,7 +178,7 @@ def test_ending_an_agent_ends_its_run_safely_and_delivers_it(tmp_path: Path, far
             service.post("/benches/far/reset")
 
 
-@pytest.mark.slow
+@pytest.mark.hunt  # many processes; make service-stores carries it out, too
 def test_two_agents_work_at_once_with_tokens_of_their_role(tmp_path: Path, far: Path) -> None:
     data = tmp_path / "data"
     root, cell = _token(data, "root=admin"), _token(data, "cell=agent")

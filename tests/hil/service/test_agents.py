@@ -6,11 +6,14 @@ import asyncio
 import datetime
 import hashlib
 import secrets
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from sqlalchemy import Engine, text
+from hypothesis import given
+from hypothesis import strategies as st
+from sqlalchemy import Engine, create_engine, text
 
 from hil.core.errors import BadInputError, BenchError
 from hil.service.agent_data import AgentBench, AgentReport, FileMade, RunEnding
@@ -249,6 +252,21 @@ def test_pieces_are_taken_where_the_file_ends_and_files_are_shown_when_they_are_
     assert (folder / "report.pdf").read_bytes() == content
     assert arrivals.are_those(run, made), "told a second time"
     assert not arrivals.are_those(run, [_made("report.pdf", b"other")])
+
+
+@given(st.lists(st.tuples(st.integers(0, 60), st.integers(0, 40)), max_size=30))
+def test_whatever_pieces_come_in_whatever_order_the_file_is_what_it_begins_with(
+    pieces: list[tuple[int, int]],
+) -> None:
+    content = bytes(range(60))
+    with tempfile.TemporaryDirectory() as folder:
+        arrivals = Arrivals("service", RunStore(create_engine("sqlite://")), Path(folder))
+        there = 0
+        for at, size in pieces:
+            before, there = there, arrivals.add(1, "recording.mcap", at, content[at : at + size])
+            assert there == (min(at + size, 60) if at == before else before)
+        path = Path(folder) / "000001/recording.mcap"
+        assert (path.read_bytes() if path.exists() else b"") == content[:there]
 
 
 @pytest.mark.parametrize("name", ["recording.mcap", "report.pdf"])
