@@ -164,6 +164,14 @@ def test_it_waits_for_the_slowest_of_the_three_and_gives_each_sample_once() -> N
     assert np.array_equal(twisted([motor, first], [rest]), twisted([motor, wheels]))
 
 
+def test_wheels_that_come_seldom_are_taken_between_their_samples() -> None:
+    times_s = 0.001 * np.arange(101)
+    seldom = times_s[::50]
+    wheels = Samples(WHEELS, seldom, np.column_stack([20.0 * seldom, 20.0 * seldom]))
+    motor = [Samples(MOTOR, t, 160.0 * t[:, None]) for t in np.split(times_s, [1, 20, 35, 60])]
+    assert np.allclose(twisted([wheels, motor[0]], *([piece] for piece in motor[1:])), 0.0, atol=1e-12)
+
+
 def test_what_is_not_known_is_not_known_and_a_gap_adds_nothing() -> None:
     motor = 8.8 * ONES
     motor[500] = np.nan
