@@ -20,7 +20,11 @@ constants are left out and numba does not compile what is wrapped. `tests/mutant
 that has imported the heavy libraries, and runs only the tests that cover the line (pytest-cov's contexts),
 the quickest first, until one fails: up to 2 s of tests, then 30 s for what these did not notice. Functions
 that numba compiles are left out: closed forms and other integrators hold them. Annotations, which nothing
-evaluates, are not changed.
+evaluates, are not changed. Tests named after the changed file go first, and those of a function's body count
+as those of its head.
+
+`safety` are the files of limits, interlocks and holds, of the emergency stop, of the way to the safe state, of
+the process that holds the hardware and the one that watches it, and the drivers of RMCU, dynos and panel.
 """
 
 
