@@ -23,8 +23,8 @@ that numba compiles are left out: closed forms and other integrators hold them. 
 evaluates, are not changed. Tests named after the changed file go first, and those of a function's body count
 as those of its head.
 
-`safety` are the files of limits, interlocks and holds, of the emergency stop, of the way to the safe state, of
-the process that holds the hardware and the one that watches it, and the drivers of RMCU, dynos and panel.
+`safety` are the files of limits, interlocks and holds, of the emergency stop, of the way to the safe state,
+of the process that holds the hardware and the one that watches it, and the drivers of RMCU, dynos and panel.
 """
 
 
