@@ -15,31 +15,17 @@ from pathlib import Path
 import atheris
 
 from tests.fuzz.damaging import MOST_BYTES, damaged
+from tests.fuzz.watched import ON_A_BENCH, PACKAGES, left_alone
 
-_ROOT = Path(__file__).parents[2]
-_PACKAGES = ("test_plans", "hil.core", "hil.engine", "drivers")
-_ON_A_BENCH = ("drivers",)  # there the plant is compiled, with constants of all the others
-_COMPILED = ("hil.core.effects", "hil.core.compiled", "hil.core.chain")  # beside those that say so
 HANGS_S, MOST_MB = 20, 3000
-
-
-def _compiled() -> list[str]:
-    """Modules whose functions numba compiles."""
-    files = (file for package in _PACKAGES for file in (_ROOT / package.replace(".", "/")).rglob("*.py"))
-    names = {
-        ".".join(file.relative_to(_ROOT).with_suffix("").parts)
-        for file in files
-        if "hil.core.compiled import" in file.read_text(encoding="utf-8")
-    }
-    return [*_COMPILED, *sorted(names)]
 
 
 def main() -> None:
     """Runs until the time is over or something broke; libFuzzer ends the process."""
     name, seconds, seed, folder = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), Path(sys.argv[4])
     logging.disable(logging.CRITICAL)
-    watched = _ON_A_BENCH if name == "frames" else _PACKAGES
-    with atheris.instrument_imports(include=list(watched), exclude=_compiled()):
+    watched = ON_A_BENCH if name == "frames" else PACKAGES
+    with atheris.instrument_imports(include=list(watched), exclude=left_alone()):
         from hil.core.errors import HilError
         from tests.fuzz.targets import TARGETS
     target = TARGETS[name]

@@ -8,6 +8,7 @@ import pytest
 
 from tests.fuzz.targets import TARGETS
 from tests.fuzz.trying import try_many
+from tests.fuzz.watched import left_alone
 
 MANY = {"frames": 60, "bench": 100, "dbc": 100, "eds": 60}
 
@@ -15,6 +16,18 @@ MANY = {"frames": 60, "bench": 100, "dbc": 100, "eds": 60}
 @pytest.mark.parametrize("name", TARGETS)
 def test_damaged_input_is_refused_or_read(name: str, tmp_path: Path) -> None:
     assert try_many(name, 1, tmp_path, most=4) == []
+
+
+def test_parsers_are_watched_and_what_is_compiled_is_not() -> None:
+    left = set(left_alone())
+    assert left >= {"hil.plant", "hil.plant.closed_loop.advance", "hil.core.effects.backlash", "drivers.loop"}
+    watched = {
+        "hil.core.recording._mcap_reader",
+        "test_plans.loading",
+        "hil.engine.bench_file",
+        "hil.core.pdo",
+    }
+    assert not left & watched
 
 
 @pytest.mark.slow
