@@ -75,7 +75,8 @@ def checked(torque_before, torque_after, speed_after=0.0, *, ended_well=True):
 
 
 def test_drift_is_the_change():
-    assert checked(1.0, 3.5).drift == 2.5
+    zero = checked(1.0, 3.5)
+    assert (zero.before, zero.after, zero.drift) == (1.0, 3.5, 2.5)
     with pytest.raises(BenchError, match="has drifted by 4 N m during the run, the bench file allows 3 N m"):
         checked(-1.0, 3.0)
 
