@@ -27,13 +27,13 @@ class Coverage:
     def tests_for(self, file: str, lines: Iterable[int]) -> list[str]:
         """Those named after the file or its folder first, and the quickest first.
 
-        For lines that only importing runs, those that run any line of the file; of a file that only other
-        processes run, those named after it.
+        For lines that only importing runs, those that run any line of the file and those named after it: what
+        a library or another process makes of the file is seen as no line that runs.
         """
         own = self.by_line.get(file, {})
         tests = set[str]().union(*(own.get(line, set()) for line in lines))
         named = self._named(file)
-        tests = tests or self.by_file.get(file) or named
+        tests = tests or self.by_file.get(file, set()) | named
         return sorted(tests, key=lambda test: (test not in named, self.seconds[test], test))
 
     def _named(self, file: str) -> set[str]:
