@@ -165,7 +165,7 @@ def test_it_waits_for_the_slowest_of_the_three_and_gives_each_sample_once() -> N
 
 
 def test_wheels_that_come_seldom_are_taken_between_their_samples() -> None:
-    times_s = 0.001 * np.arange(101)
+    times_s: Array = 0.001 * np.arange(101, dtype=np.float64)
     seldom = times_s[::50]
     wheels = Samples(WHEELS, seldom, np.column_stack([20.0 * seldom, 20.0 * seldom]))
     motor = [Samples(MOTOR, t, 160.0 * t[:, None]) for t in np.split(times_s, [1, 20, 35, 60])]
