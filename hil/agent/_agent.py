@@ -211,7 +211,8 @@ class _Agent:
             bench.running = await CarriedRun.begin(self._request.run, run.taken, bench.bench, run.folder)
         except (HilError, OSError) as error:
             code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
-            run.end(_ending(RunEnd("ended", code, reason=str(error))))
+            end = _ending(RunEnd("ended", code, reason=str(error)))
+            await _written(lambda: run.end(end))
         logger.info("run %d begins on %s", run.id, bench.name)
         self._see_through(run, bench)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from hil.service.benches import Bench
 from hil.service.carrying_out import CarriedRun
 
 _LONGEST = 2000
+_USED_S = 1.0
 
 logger = logging.getLogger(__name__)
 
@@ -33,6 +35,7 @@ class DrivenBench:
         self.running: CarriedRun | None = None
         self.left = False
         self.refused = ""
+        self._used_by, self._looked_s = "", -1e9
 
     @property
     def name(self) -> str:
@@ -63,7 +66,7 @@ class DrivenBench:
             facts.state, facts.why = "emergency_stop", _short(stopped)
         elif self.kept is not None:
             facts.state, facts.why = "ending" if self.left else "running", facts.doing
-        elif used := bench.used_by():
+        elif used := self._used():
             facts.state, facts.why = "in_use", _short(used)
         return facts
 
@@ -80,6 +83,12 @@ class DrivenBench:
             logger.error("%s: %s", self.name, error)
             return False
         return True
+
+    def _used(self) -> str:
+        """Who else drives it, as of a second ago: a look takes the bench's lock for a moment."""
+        if time.monotonic() - self._looked_s > _USED_S:
+            self._used_by, self._looked_s = self.bench.used_by(), time.monotonic()
+        return self._used_by
 
     def _stop_in_emergency(self, by: str) -> None:
         if self.running is not None:

@@ -81,6 +81,8 @@ class KeptRuns:
         """Those that the service has not, oldest first."""
         for path in sorted(self._folder.glob(f"[0-9]*/{_TAKEN}")):
             folder = path.parent
+            if not folder.name.isdecimal():  # put aside by `begin`
+                continue
             if (folder / _DELIVERED).exists() or (folder / _REFUSED).exists():
                 continue
             with contextlib.suppress(OSError, ValueError):
@@ -97,8 +99,10 @@ class KeptRuns:
             HilError: it cannot be written.
         """
         folder = folder_of(self._folder, taken.data.id)
-        if folder.exists():  # of another service, or one whose database was put back
+        if (folder / _TAKEN).exists():  # of another service, or one whose database was put back
             folder.rename(f"{folder}.before-{time.time_ns()}")
+        elif folder.exists():  # nothing of it was begun
+            shutil.rmtree(folder)
         inputs = folder / _INPUTS
         make_directory(inputs)
         for name, text in taken.files.items():

@@ -149,6 +149,8 @@ def test_a_run_that_the_service_will_not_have_stays_and_one_of_its_number_takes_
     (kept,) = tmp_path.glob("000003.before-*")
     assert (kept / "recording.mcap").read_bytes() == b"measured"
     assert [run.id for run in runs.pending()] == [3]
+    third = runs.begin(_taken(3))
+    assert [run.folder for run in runs.pending()] == [third.folder], "what was put aside is nobody's work"
 
 
 def test_the_next_service_is_asked_when_one_does_not_answer(service: Served) -> None:
