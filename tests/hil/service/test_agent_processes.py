@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from hil.cli._app import guarded
 from hil.cli.agent import carry_out
 from hil.core.errors import BadInputError
 from hil.core.locks import lock_on
@@ -218,6 +219,14 @@ def test_what_an_agent_cannot_use_is_said(tmp_path: Path) -> None:
             carry_out(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual)
     with lock_on(tmp_path), pytest.raises(BadInputError, match="another agent keeps its data here"):
         carry_out(data=tmp_path, bench=["sim"], name="", for_s=None, **usual)
+
+
+def test_a_service_has_benches_of_its_own_or_says_that_it_has_none(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert guarded(["serve", "--data", str(tmp_path / "data"), "--bench", "sim", "--no-bench"]) == 2
+    assert "does not go with --no-bench" in capsys.readouterr().err
+    assert not (tmp_path / "data").exists()
 
 
 def _said(process: subprocess.Popen[str]) -> int:
