@@ -69,6 +69,19 @@ def test_what_the_bench_hides_is_named_from_the_identification_plan(effect, numb
         assert after.gap < 0.02 * found.gap_before[channel].gap + 1.1 * after.noise_floor
 
 
+@pytest.mark.hunt  # three minutes of searching
+def test_play_and_dead_time_together_are_named_from_the_identification_plan(tmp_path):
+    """Where the play makes motion chaotic it is not judged; the delay is not taken for a lag."""
+    play = EffectUse("backlash", EFFECTS["backlash"].completed({"half_gap_rad": 0.01}))
+    hidden = MODEL.with_effects(*MODEL.effects, play).with_parameters(torque_delay=0.011)
+    outcome = run_plan(RunRequest(load_plan("identification"), sim_bench("both"), tmp_path, hidden))
+    found = diagnose(MODEL, driven_by_torque(read_recording(outcome.recording)))
+    named = {one.use.id: one.use.values for one in found.effects}
+    assert (found.verdict, named.keys()) == ("named", {"backlash", "dead_time"})
+    assert float(named["backlash"]["half_gap_rad"]) == pytest.approx(0.01, rel=3e-3)
+    assert float(named["dead_time"]["extra_delay_s"]) == pytest.approx(0.003, rel=0.1)
+
+
 @pytest.mark.slow
 def test_simulation_and_bench_agree_once_the_hidden_effect_is_named_and_added(tmp_path):
     base = load_model(SIM.simulation.model).with_effects()
