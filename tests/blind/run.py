@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import shutil
 import sys
 import time
 from collections.abc import Sequence
@@ -15,7 +14,7 @@ from pathlib import Path
 from tests.blind.diagnosing import Diagnose, by_command_line, says_nothing
 from tests.blind.scoring import Score
 from tests.blind.specs import GROUPS, Spec, full_set, subset
-from tests.blind.spread import Asked, spread
+from tests.blind.spread import Asked, CaseFiles, spread
 from tests.blind.tables import as_markdown
 
 _RESULTS = Path("docs/reference/blind-results.md")
@@ -52,12 +51,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     who = "says nothing" if options.stand_in else f"hil diagnose, threads: {options.threads}"
     asked = Asked(options.seed, tuple(specs), diagnose, who, options.keep, options.length)
     if not options.resume:
-        shutil.rmtree(options.work, ignore_errors=True)
+        CaseFiles(options.work, asked).clear()
 
     def tell(score: Score, number: int) -> None:
         _tell(score, number, len(specs))
 
-    scores = spread(asked, options.work, options.jobs, options.scheduler, tell)
+    try:
+        scores = spread(asked, options.work, options.jobs, options.scheduler, tell)
+    except KeyboardInterrupt:
+        print(f"interrupted; scores are in {options.work}; go on with --resume", file=sys.stderr)
+        return 130
     wall = time.perf_counter() - start
     if len(scores) < len(specs):
         print(
@@ -65,11 +68,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         )
         return 130
     command = "python -m tests.blind " + " ".join(arguments if arguments is not None else sys.argv[1:])
+    last = "the last part " if options.resume else ""
     how = (
         f"Made by `{command.strip()}`: {len(scores)} cases, seed {options.seed}, {options.jobs} at a time "
-        f"with {options.threads} threads each, {wall / 60:.0f} minutes. Sizes: gap before / noise floor on "
-        "the channel that shows the effect best, after what a refit of the base parameters would take away: "
-        f"large 10, clear 3, middle 1.8, edge 1.3. Recordings last {196.0 * options.length:g} s together."
+        f"with {options.threads} threads each, {last}{wall / 60:.0f} minutes. "
+        "Sizes: gap before / noise floor on the channel that shows the effect best, after what a refit of "
+        "the base parameters would take away: large 10, clear 3, middle 1.8, edge 1.3. "
+        f"Recordings last {196.0 * options.length:g} s together."
     )
     page = as_markdown(scores, how)
     options.out.parent.mkdir(parents=True, exist_ok=True)

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import psutil
+
 import hil
 from hil.campaign import Batch, Carriers, Here, Progress, carry_out
 from hil.core.files import make_directory, write_atomically
@@ -85,6 +87,11 @@ class CaseFiles:
         content = {"digest": self._digest, **rows[0]}
         write_atomically(self._path(batch.first), json.dumps(content, indent=1) + "\n")
 
+    def clear(self) -> None:
+        """Let go of the scores of these cases, and of nothing else that lies there."""
+        for number in range(len(self._specs)):
+            self._path(number).unlink(missing_ok=True)
+
     def score(self, number: int) -> Score | None:
         """Of a case; None if it is not there."""
         with contextlib.suppress(OSError, ValueError, KeyError, TypeError):
@@ -121,7 +128,13 @@ def spread(
                 shown.add(number)
                 show(score, progress.done)
 
-    with _carriers(asked, jobs, scheduler) as carriers, stop.by_signals(), stop.telling(_at_once(stop)):
+    begun: list[psutil.Process] = []
+    with contextlib.ExitStack() as held:
+        held.callback(_end, begun)  # a diagnosis would outlive the worker that began it
+        held.enter_context(stop.by_signals())
+        carriers = held.enter_context(_carriers(asked, jobs, scheduler))
+        held.callback(lambda: begun.extend(psutil.Process().children(recursive=True)))
+        held.enter_context(stop.telling(_at_once(stop)))
         carry_out(files, carriers, asked.failed, show=tell, stopped=lambda: stop.times > 0)
     return [score for number in range(len(asked.specs)) if (score := files.score(number)) is not None]
 
@@ -135,6 +148,12 @@ def _carriers(asked: Asked, jobs: int, scheduler: str) -> Iterator[Carriers]:
 
     with Workers(asked.rows, jobs, scheduler) as workers:
         yield workers
+
+
+def _end(begun: list[psutil.Process]) -> None:
+    for process in begun:
+        with contextlib.suppress(psutil.NoSuchProcess):
+            process.kill()
 
 
 def _at_once(stop: StopRequest) -> Callable[[], None]:
