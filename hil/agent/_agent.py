@@ -7,10 +7,9 @@ import contextlib
 import importlib.metadata
 import logging
 import math
-import secrets
 import socket
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -21,12 +20,11 @@ from hil.agent._kept_runs import KeptRun, KeptRuns
 from hil.agent._service import AwayError, TheService
 from hil.client import RefusedError
 from hil.core.errors import BadInputError, BenchError, HilError
-from hil.core.files import make_directory, read_text, write_atomically
-from hil.core.locks import HeldError, lock_on
 from hil.engine import StopRequest
 from hil.service.agent_data import AgentOrders, AgentReport, RunEnding, TakenRun
 from hil.service.benches import benches_of
 from hil.service.carrying_out import CarriedRun, RunEnd, end_of_left
+from hil.service.data_folder import alone_in, name_in
 from hil.service.run_process import alive_in
 
 _LOOK_S = 0.1
@@ -34,6 +32,8 @@ _REPORT_S = 0.2  # at least; the service holds a report for up to half a second
 _AGAIN_S = 1.0
 _LAST_S = 10.0  # for the files of a run that was ended with the agent
 _LONGEST_REASON, _LONGEST_DUT = 20_000, 200
+
+_OTHER_FOLDER = "give another folder with --data; one agent may have several benches"
 
 logger = logging.getLogger(__name__)
 
@@ -73,14 +73,14 @@ def work(request: AgentRequest) -> None:
         BenchError: the service has given one of the benches' names to another.
     """
     benches = [DrivenBench(bench) for bench in benches_of(list(request.benches)).values()]
-    with _alone_in(request.folder):
+    with alone_in(request.folder, who="agent", fix=_OTHER_FOLDER):
         asyncio.run(_Agent(request, benches).work())
 
 
 class _Agent:
     def __init__(self, request: AgentRequest, benches: list[DrivenBench]) -> None:
         self._request, self._benches = request, {bench.name: bench for bench in benches}
-        self._id = _id_in(request.folder)
+        self._id = name_in(request.folder, "agent.id")
         self._runs = KeptRuns(request.folder / "runs", request.local_days)
         self._service = TheService(request.servers, request.token)
         self._deliveries = Deliveries(self._service, self._id)
@@ -268,25 +268,3 @@ def _ending(end: RunEnd) -> RunEnding:
     return RunEnding(
         state=end.state, exit_code=code, reason=end.reason[:_LONGEST_REASON], dut=end.dut[:_LONGEST_DUT]
     )
-
-
-@contextlib.contextmanager
-def _alone_in(folder: Path) -> Iterator[None]:
-    make_directory(folder, option="--data")
-    try:
-        with lock_on(folder):
-            yield
-    except HeldError as error:
-        raise BadInputError(
-            f"another agent keeps its data here: {error}",
-            where=str(folder),
-            fix="give another folder with --data; one agent may have several benches",
-        ) from None
-
-
-def _id_in(folder: Path) -> str:
-    """What this agent is for services: made once, kept in its folder, and told to nobody else."""
-    path = folder / "agent.id"
-    if not path.is_file():
-        write_atomically(path, secrets.token_hex(16))
-    return read_text(path).strip()

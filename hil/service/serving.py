@@ -7,7 +7,6 @@ import contextlib
 import ipaddress
 import logging
 import math
-import secrets
 import socket
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -18,14 +17,14 @@ import uvicorn
 from sqlalchemy import Engine
 
 from hil.core.errors import BadInputError, BenchError
-from hil.core.files import make_directory, read_text, write_atomically
-from hil.core.locks import HeldError, lock_on
+from hil.core.files import make_directory
 from hil.core.printable import printable
 from hil.engine import StopRequest
 from hil.service.api import Rates, application
 from hil.service.archive import Archive
 from hil.service.benches import benches_of
 from hil.service.data import ROLES, Role, TokenMade
+from hil.service.data_folder import alone_in, name_in
 from hil.service.service import Commands, Service
 from hil.service.store import BenchStore, LogStore, TokenStore, open_database
 
@@ -33,6 +32,7 @@ _LOOK_S = 0.1
 _LAST_ANSWERS_S = 2
 _AT_ONCE_S = 5.0  # of the rate: a page that is opened asks for many things at once
 _THIS_MACHINE = ("127.0.0.1", "localhost", "::1")
+_OTHER_FOLDER = "give another folder with --data, or use that service"
 
 logger = logging.getLogger(__name__)
 
@@ -79,12 +79,12 @@ def serve(request: ServeRequest) -> None:
     """
     benches = benches_of(list(request.benches))
     archive = Archive(request.store) if request.store else None
-    with _alone_in(request.folder):
+    with alone_in(request.folder, who="service", fix=_OTHER_FOLDER):
         engine = _database(request.folder, request.database)
         try:
             _refuse_open_to_all(request.host, TokenStore(engine))
             with _listening(request.host, request.port) as listening:
-                held = BenchStore(engine, _name_of(request.folder), _place_of(request.folder))
+                held = BenchStore(engine, name_in(request.folder, "service.id"), _place_of(request.folder))
                 service = Service(
                     request.folder, engine, held, benches, request.commands, archive, request.local_days
                 )
@@ -175,28 +175,6 @@ class _Server(uvicorn.Server):
     def capture_signals(self) -> Iterator[None]:
         """Leave them alone."""
         yield
-
-
-@contextlib.contextmanager
-def _alone_in(folder: Path) -> Iterator[None]:
-    make_directory(folder, option="--data")
-    try:
-        with lock_on(folder):
-            yield
-    except HeldError as error:
-        raise BadInputError(
-            f"another service keeps its data here: {error}",
-            where=str(folder),
-            fix="give another folder with --data, or use that service",
-        ) from None
-
-
-def _name_of(folder: Path) -> str:
-    """What this service is called among those of a database: made once, and kept in its folder."""
-    path = folder / "service.id"
-    if not path.is_file():
-        write_atomically(path, secrets.token_hex(16))
-    return read_text(path).strip()[:40]
 
 
 def _place_of(folder: Path) -> str:
