@@ -37,6 +37,7 @@ _LARGEST_ID = 0x1FFF_FFFF
 _LONGEST_LINE = 4096
 _STAMP = re.compile(r"\s*(\d+\.\d+)(?=\s)")
 
+_BLF_HEADER = 16  # bytes that every object of a BLF has: signature, sizes, type
 # What the readers find odd they also log; what matters of it is told here.
 logging.getLogger("can").addHandler(logging.NullHandler())
 
@@ -93,7 +94,7 @@ def _messages(path: Path, ending: str, remarks: list[str]) -> Iterator[can.Messa
     if ending == ".asc":
         yield from _of_asc(path, remarks)
     elif ending == ".blf":
-        with path.open("rb") as file, can.BLFReader(file) as reader:
+        with path.open("rb") as file, _BLFReader(file) as reader:
             yield from reader
             size = path.stat().st_size
             if size < reader.file_size:
@@ -102,6 +103,19 @@ def _messages(path: Path, ending: str, remarks: list[str]) -> Iterator[can.Messa
         kind = can.TRCReader if ending == ".trc" else can.CanutilsLogReader
         with _whole_lines(path, remarks) as text, kind(text) as reader:
             yield from reader
+
+
+class _BLFReader(can.BLFReader):
+    """python-can's, which would read an object of no length again and again, for ever."""
+
+    def _parse_data(self, data: bytes) -> Iterator[can.Message]:
+        at = data.find(b"LOBJ", 0, 8)
+        while at >= 0 and at + _BLF_HEADER <= len(data):
+            size = int.from_bytes(data[at + 8 : at + 12], "little")
+            if size < _BLF_HEADER:
+                raise ValueError(f"an object of {size} bytes")
+            at = data.find(b"LOBJ", at + size, at + size + 8)
+        yield from super()._parse_data(data)
 
 
 def _whole_lines(path: Path, remarks: list[str]) -> TextIO:

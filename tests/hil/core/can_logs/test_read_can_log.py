@@ -216,3 +216,15 @@ def test_bytes_of_any_kind_give_frames_or_a_message(tmp_path_factory, ending: st
         assert read_can_log(path).channels
     except BadInputError as error:
         assert error.where == str(path)
+
+
+def test_an_object_of_a_blf_without_length_is_not_read_for_ever(tmp_path: Path) -> None:
+    path = tmp_path / "stands.blf"
+    with can.BLFWriter(path, compression_level=0) as writer:
+        writer.on_message_received(can.Message(timestamp=1.0, arbitration_id=0x111, data=b"12345678"))
+    content = bytearray(path.read_bytes())
+    at = content.rindex(b"LOBJ") + 8
+    content[at : at + 4] = bytes(4)
+    path.write_bytes(content)
+    with pytest.raises(BadInputError, match="an object of 0 bytes"):
+        read_can_log(path)
