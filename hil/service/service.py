@@ -1,4 +1,4 @@
-"""The service as a whole: benches, plans, queue, what is live, and who is to be told of a change."""
+"""The service as a whole: benches, plans, queue, runs and who asks for them."""
 
 from __future__ import annotations
 
@@ -13,9 +13,6 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
-from hil.core.errors import HilError
-from hil.core.result import CriterionResult
-from hil.engine import RECORDING
 from hil.service.agents import Agents
 from hil.service.agents_forecasts import AgentsForecasts
 from hil.service.apart import apart
@@ -27,13 +24,12 @@ from hil.service.carrying_out import RunningRun
 from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
 from hil.service.desk import Desk
 from hil.service.forecasts import Forecasts
-from hil.service.live import LiveRun
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
 from hil.service.run_files import files_in
-from hil.service.said import Said
 from hil.service.shelves import controller_shelf, model_shelf
+from hil.service.showing import Showing
 from hil.service.store import (
     BenchStore,
     DatabaseAwayError,
@@ -45,10 +41,8 @@ from hil.service.store import (
     TokenStore,
 )
 from hil.service.studies import Studies
-from test_plans import Plan, plan_from_text
+from test_plans import Plan
 
-_LOOK_S = 0.05  # a viewer is sent as many updates
-_JUDGE_S = 1.0
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
 _LAST = 2**31 - 1
@@ -67,17 +61,6 @@ class Commands:
     hil: Sequence[str]
     run: Sequence[str]
     simulating: Sequence[str] = ()
-
-
-@dataclass
-class OnShow:
-    """The newest run of a bench, under way or over, as it is shown."""
-
-    run: int
-    live: LiveRun
-    criteria: tuple[CriterionResult, ...] = ()
-    judged_s: float = 0.0
-    looked_s: float = field(default_factory=time.monotonic)
 
 
 @dataclass
@@ -126,20 +109,19 @@ class Service:
         campaign = (*commands.hil, "campaign", *commands.simulating)
         self.campaigns = Campaigns(folder / "campaigns", campaign, self.desk)
         self._held = held
+        self.showing = Showing(lambda: self.benches, self.running)
         runs_folder = folder / "runs"
         self.keeper: Keeper | None = None
         if archive is not None:
             files = FileStore(engine)
-            self.keeper = Keeper(archive, files, held.service, runs_folder, self._shown, local_days)
-        self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, commands.run, self.changed)
+            self.keeper = Keeper(archive, files, held.service, runs_folder, self.showing.runs, local_days)
+        self.queue = Queue(
+            benches, self.runs, self.leases, held, runs_folder, commands.run, self.showing.changed
+        )
         self.began_s = time.monotonic()
         self.closing = False
-        self.viewers: defaultdict[str, set[asyncio.Event]] = defaultdict(set)
-        self.on_show: dict[str, OnShow] = {}
-        self.said: defaultdict[str, Said] = defaultdict(Said)  # of each bench
-        self._version: defaultdict[str, int] = defaultdict(int)
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
-        self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, self.changed)
+        self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, self.showing.changed)
         self.agents_forecasts = AgentsForecasts()
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
@@ -174,12 +156,7 @@ class Service:
 
     def changed(self, bench: str) -> None:
         """Something of a bench is to be shown anew."""
-        self._version[bench] += 1
-        self._tell(bench)
-
-    def version(self, bench: str) -> int:
-        """Counts what `changed` was called for."""
-        return self._version[bench]
+        self.showing.changed(bench)
 
     def bench_data(self, name: str) -> BenchData:
         """A bench as it is now."""
@@ -324,48 +301,3 @@ class Service:
         """Let other services drive them; while the database is away they are free by themselves later."""
         with contextlib.suppress(DatabaseAwayError):
             self._held.give_back()
-
-    async def follow(self) -> None:
-        """Read what runs measure, until the service is closed."""
-        while not self.closing:
-            for name in list(self.benches):
-                self._follow(name)
-                await self._judge(name)
-            await asyncio.sleep(_LOOK_S)
-
-    def _follow(self, bench: str) -> None:
-        running, shown = self.running(bench), self.on_show.get(bench)
-        if running is not None and (shown is None or shown.run != running.data.id):
-            if shown is not None:
-                shown.live.close()
-            try:
-                plan_file = running.folder / "plan.yaml"
-                plan = plan_from_text(
-                    plan_file.read_text("utf-8"), str(plan_file), running.folder, files_required=False
-                )
-            except (HilError, OSError):
-                return
-            shown = OnShow(running.data.id, LiveRun(running.folder / RECORDING, plan))
-            self.on_show[bench] = shown
-        if shown is None:
-            return
-        passed_s, shown.looked_s = time.monotonic() - shown.looked_s, time.monotonic()
-        if shown.live.look(passed_s):
-            self._tell(bench)
-
-    async def _judge(self, bench: str) -> None:
-        shown = self.on_show.get(bench)
-        if shown is None or time.monotonic() - shown.judged_s < _JUDGE_S:
-            return
-        shown.judged_s = time.monotonic()
-        found = await asyncio.to_thread(shown.live.decided)
-        if found is not None:
-            shown.criteria = found
-            self.changed(bench)
-
-    def _shown(self) -> set[int]:
-        return {shown.run for shown in self.on_show.values()}
-
-    def _tell(self, bench: str) -> None:
-        for event in self.viewers[bench]:
-            event.set()

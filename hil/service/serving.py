@@ -131,7 +131,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
     server = _Server(config)
     tasks = [
         asyncio.create_task(service.queue.work()),
-        asyncio.create_task(service.follow()),
+        asyncio.create_task(service.showing.follow(lambda: service.closing)),
         asyncio.create_task(server.serve(sockets=[listening])),
     ]
     besides = [asyncio.create_task(service.watch_database())]

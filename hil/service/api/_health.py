@@ -39,7 +39,9 @@ async def metrics(service: TheService, me: Viewer) -> Response:
     for name in service.benches:
         lines.append(f'hil_bench_state{{bench="{name}",state="{service.state(name)[0]}"}} 1')
     lines += ["# HELP hil_viewers Pages and programs that watch a bench.", "# TYPE hil_viewers gauge"]
-    lines += [f'hil_viewers{{bench="{name}"}} {len(service.viewers[name])}' for name in service.benches]
+    lines += [
+        f'hil_viewers{{bench="{name}"}} {len(service.showing.viewers[name])}' for name in service.benches
+    ]
     lines += ["# HELP hil_agents_connected Agents that are heard of.", "# TYPE hil_agents_connected gauge"]
     lines.append(f"hil_agents_connected {sum(one.connected for one in service.agents.all())}")
     if service.keeper is not None:

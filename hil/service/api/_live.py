@@ -17,7 +17,8 @@ from hil.service.api._problems import RefusedError
 from hil.service.data import BenchName
 from hil.service.drawn_numbers import numbers
 from hil.service.live import BUCKET_S, Spectrum, Stretch
-from hil.service.service import OnShow, Service
+from hil.service.service import Service
+from hil.service.showing import OnShow
 
 router = APIRouter(tags=["live"])
 #: What the page draws.
@@ -46,7 +47,7 @@ async def live(bench: BenchName, service: TheService, me: Viewer) -> StreamingRe
     """A bench as it changes: events `state`, `samples`, `spectrum`, `criteria` (docs/reference/api.md)."""
     del me
     known(service, bench)
-    if len(service.viewers[bench]) >= _MOST_VIEWERS:
+    if len(service.showing.viewers[bench]) >= _MOST_VIEWERS:
         raise RefusedError(429, f"{_MOST_VIEWERS} watch already")
     return StreamingResponse(_Watching(service, bench).events(), media_type="text/event-stream")
 
@@ -55,7 +56,7 @@ class _Watching:
     """One viewer of one bench."""
 
     def __init__(self, service: Service, bench: str) -> None:
-        self._service, self._bench, self._said = service, bench, service.said[bench]
+        self._service, self._bench, self._said = service, bench, service.showing.said[bench]
         self._run = -1
         self._next_bucket = 0
         self._version = -1
@@ -64,7 +65,7 @@ class _Watching:
 
     async def events(self) -> AsyncIterator[str]:
         """Whatever is new, as long as somebody takes it; a sender that has to wait skips nothing but time."""
-        told, viewers = asyncio.Event(), self._service.viewers[self._bench]
+        told, viewers = asyncio.Event(), self._service.showing.viewers[self._bench]
         viewers.add(told)
         try:
             while not self._service.closing:
@@ -82,12 +83,12 @@ class _Watching:
     def _news(self) -> list[str]:
         service, bench = self._service, self._bench
         news = []
-        if service.version(bench) != self._version:
-            self._version = service.version(bench)
+        if service.showing.version(bench) != self._version:
+            self._version = service.showing.version(bench)
             news.append(
                 self._said.text("state", self._version, lambda: _event("state", _state(service, bench)))
             )
-        shown = service.on_show.get(bench)
+        shown = service.showing.run_of(bench)
         if shown is not None:
             news += self._of_run(shown)
         return news
