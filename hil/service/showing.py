@@ -67,11 +67,13 @@ class Showing:
 
     async def follow(self, closing: Callable[[], bool]) -> None:
         """Read what runs measure, until the service is closed."""
+        next_s = time.monotonic()
         while not closing():
             for name in list(self._benches()):
                 self._follow(name)
                 await self._judge(name)
-            await asyncio.sleep(_LOOK_S)
+            next_s = max(next_s + _LOOK_S, time.monotonic())
+            await asyncio.sleep(next_s - time.monotonic())
 
     def _follow(self, bench: str) -> None:
         running, shown = self._running(bench), self._runs.get(bench)

@@ -31,7 +31,7 @@ CHANNELS = (
     "vehicle_speed_m_s",
 )
 _MOST_VIEWERS = 200
-_SHORTEST_S = 0.05  # 20 updates a second
+_SHORTEST_S = 0.04  # 20 updates a second, which need not be even to a millisecond
 _LONGEST_S = 10.0  # without anything to say
 _SPECTRUM_EVERY_S = 0.5
 _SHOWN_S = 30.0  # of a run that was under way before the viewer came
