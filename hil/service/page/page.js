@@ -55,6 +55,7 @@ async function open() {
     setTimeout(open, 2000);
     return;
   }
+  bench = at("bench").value;  // what is open already asks for its runs
   setInterval(() => showBenches(bench).catch(() => {}), BENCHES_MS);
   beginComparison(() => bench, act);
   beginIdentification(() => bench, act, may("engineer"));

@@ -21,7 +21,7 @@ from tests.hil.service.served import Served, served
 LONG = """
 name: long
 plan: short.yaml
-draws: 600
+draws: 1000
 seed: 3
 tolerance: {tyre_stiffness: 0.2, sensor_noise: 1}
 """
@@ -135,7 +135,7 @@ def test_a_cancelled_campaign_keeps_what_was_done_and_goes_on(there: Served) -> 
     assert rows == kept.done
     client.resume_campaign(first.id)
     found = over(client, first.id)
-    assert (found.state, found.done) == ("ended", 600)
+    assert (found.state, found.done) == ("ended", 1000)
 
 
 @pytest.mark.slow

@@ -70,10 +70,10 @@ def test_ctrl_c_here_ends_it_there_and_it_is_gone_on_with(there: Served, tmp_pat
         time.sleep(0.2)
     process.send_signal(signal.SIGINT)
     said = process.communicate(timeout=90)[1]
-    assert (process.returncode, "of 600 simulations are kept" in said) == (130, True), said
+    assert (process.returncode, "of 1000 simulations are kept" in said) == (130, True), said
     kept = client.campaigns()[0]
-    assert (kept.state, 0 < kept.done < 600) == ("cancelled", True)
+    assert (kept.state, 0 < kept.done < 1000) == ("cancelled", True)
     done = hil("--server", there.url, "campaign", "campaign.yaml", "--resume", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "600 simulations" in done.stdout
+    assert "1000 simulations" in done.stdout
     assert len(client.campaigns()) == before + 1
