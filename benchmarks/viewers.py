@@ -195,12 +195,13 @@ def _used_s(pid: int) -> float:
 
 
 def _line(one: Watched) -> str:
-    sent = one.requests[0].sent
+    p50_ms = max(kind.sent.p50_ms for kind in one.requests)
+    largest_ms = max(kind.sent.max_ms for kind in one.requests)
     updates = f"{min(one.updates_per_s):.1f} to {max(one.updates_per_s):.1f}" if one.updates_per_s else "-"
     return (
         f"{one.viewers:3d} viewers: {one.result.verdict}, {one.lost} samples lost, "
         f"{one.missed} cycles missed, "
-        f"late by {sent.p50_ms:.3f} / {one.p99_ms:.3f} / {sent.max_ms:.3f} ms (p50, p99, largest), "
+        f"late by {p50_ms:.3f} / {one.p99_ms:.3f} / {largest_ms:.3f} ms (p50, p99, largest), "
         f"{updates} updates a second each, service {one.busy:.0%} of a processor"
     )
 
