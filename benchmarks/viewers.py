@@ -23,6 +23,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import urlsplit
 
+import psutil
+
 from hil.core.result import PeriodicRequests, RunResult
 from hil.service.data import OVER
 from tests.hil.cli.test_sim_bench import serving
@@ -87,9 +89,9 @@ def main(viewers: int = VIEWERS, turns: int = TURNS) -> int:
         folder = Path(name)
         file.write_text(re.sub(r'^name = ".*"', 'name = "bench"', file.read_text(), count=1, flags=re.M))
         with served(folder / "data", "--bench", str(file), state=folder / "state") as service:
-            for thread in _threads(service.process.pid):
-                os.sched_setaffinity(thread, others or [first])
-                os.setpriority(os.PRIO_PROCESS, thread, NICE)
+            for thread in psutil.Process(service.process.pid).threads():
+                os.sched_setaffinity(thread.id, others or [first])
+                os.setpriority(os.PRIO_PROCESS, thread.id, NICE)
             service.give("watched", PLAN)
             for _ in range(turns):
                 for count in (0, viewers):
@@ -169,29 +171,16 @@ async def _view(url: str, counts: list[int], number: int) -> None:
 
 def _pin_below(pid: int, processor: int) -> None:
     """Have the run's processes, which the service started, on a processor of their own, and not niced."""
-    for child in _below(pid):
-        with contextlib.suppress(OSError):
-            os.sched_setaffinity(child, {processor})
-            os.setpriority(os.PRIO_PROCESS, child, 0)
-
-
-def _below(pid: int) -> list[int]:
-    found = []
-    with contextlib.suppress(OSError):
-        for thread in _threads(pid):
-            for child in map(int, Path(f"/proc/{pid}/task/{thread}/children").read_text().split()):
-                found += [child, *_below(child)]
-    return found
-
-
-def _threads(pid: int) -> list[int]:
-    return [int(thread.name) for thread in Path(f"/proc/{pid}/task").iterdir()]
+    for child in psutil.Process(pid).children(recursive=True):
+        with contextlib.suppress(psutil.Error):
+            child.cpu_affinity([processor])
+            child.nice(0)
 
 
 def _used_s(pid: int) -> float:
     """Processor time of a process itself, s."""
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    used = psutil.Process(pid).cpu_times()
+    return float(used.user + used.system)
 
 
 def _line(one: Watched) -> str:

@@ -16,8 +16,9 @@ from hil.analysis.campaigns import CampaignFile, Share, load_campaign_file
 from hil.campaign import BEGUN, FOLDER
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._output import print_json, progress
+from hil.cli._patience import OURS, Patience
 from hil.cli._place import Place, results_in
-from hil.cli._remote_run import OURS, TOKEN
+from hil.cli._remote_run import TOKEN
 from hil.cli._streams import complain
 from hil.client import Client, RefusedError
 from hil.core.errors import BadInputError, BenchError, InterruptError
@@ -32,7 +33,6 @@ from test_plans import load_plan
 SUMMARY = "campaign.json"
 _GO_ON = "the service goes on with --resume"
 _LOOK_S = 0.5
-_GONE_S = 60.0  # for a service that is begun again, or a network that comes back
 
 
 @dataclass(frozen=True)
@@ -150,19 +150,11 @@ class _Watching:
             BenchError: the service has not answered for a minute.
             InterruptError: somebody asked twice to stop.
         """
-        heard_s, name = time.monotonic(), f"campaign {self.campaign.id}: {self.campaign.name}"
+        patience, name = Patience(), f"campaign {self.campaign.id}: {self.campaign.name}"
         with progress(name) as show:
             while self.campaign.state not in CAMPAIGN_OVER:
                 time.sleep(_LOOK_S)
-                try:
-                    self._ask()
-                    heard_s = time.monotonic()
-                except RefusedError as error:
-                    if error.status in OURS:
-                        raise
-                except BenchError:
-                    if time.monotonic() - heard_s > _GONE_S:
-                        raise
+                patience.ask(self._ask)
                 show(*_progress(self.campaign))
         return self.campaign
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from hil.cli._one_run import NAMES
 from hil.cli._output import progress
+from hil.cli._patience import OURS, Patience
 from hil.cli._place import Place, results_in
 from hil.cli._result_file import RESULT
 from hil.cli._streams import complain
@@ -24,8 +25,6 @@ from hil.service.data import OVER, RunData, RunWanted
 from test_plans import load_plan
 
 _LOOK_S = 0.3
-_GONE_S = 60.0  # for a service that is begun again, or a network that comes back
-OURS = (400, 401, 403, 404, 413, 421, 422)
 TOKEN = "HIL_TOKEN"
 
 Tell = Callable[[RunResult, Path], None]
@@ -104,23 +103,18 @@ class _Watching:
             BenchError: the service has not answered for a minute.
             InterruptError: somebody asked twice to stop.
         """
-        heard_s = time.monotonic()
+        patience = Patience()
         keys = f" ({KEYS})" if self.terminal is not None else ""
         with progress(f"run {self.run.id}: {self.run.plan} on {self.run.bench}{keys}") as show:
             while self.run.state not in OVER:
-                try:
-                    self._speak()
-                    self.run = self.client.run(self.run.id)
-                    heard_s = time.monotonic()
-                except RefusedError as error:
-                    if error.status in OURS:
-                        raise
-                except BenchError:
-                    if time.monotonic() - heard_s > _GONE_S:
-                        raise
+                patience.ask(self._look)
                 show(self.run.doing or self.run.state.replace("_", " "), self.run.share)
                 time.sleep(_LOOK_S)
         return self.run
+
+    def _look(self) -> None:
+        self._speak()
+        self.run = self.client.run(self.run.id)
 
     def _speak(self) -> None:
         if self.stop.times > 1:

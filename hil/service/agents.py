@@ -163,11 +163,10 @@ class Agents:
         """
         bench = self.benches[name]
         given = [one.id for one in self._runs.running(agent_id) if one.bench == name]
-        run = given[0] if given else self._next(bench) if self._may_take(bench) else None
         taken = None
         if given:
             taken = self._runs.taken(given[0])
-        elif run is not None:
+        elif self._may_take(bench) and (run := self._next(bench)) is not None:
             taken = self._runs.take(run, agent_id)
         if taken is None:
             bench.kept_s = -1e9  # it is looked at once more whose the bench is

@@ -64,7 +64,6 @@ class Buckets:
     def __init__(self) -> None:
         self.names: tuple[str, ...] = ()
         self.next = 0  # number of the bucket that is being filled
-        self.shown = 0  # number of the first that is not shown yet
         self._shown = 0.0
         self._done: deque[tuple[Array, Array]] = deque(maxlen=round(_KEPT_S / BUCKET_S))
         self._open: tuple[Array, Array] | None = None
@@ -82,11 +81,15 @@ class Buckets:
         for number, low, high in zip(numbers[starts].tolist(), lowest, highest, strict=True):
             self._add(number, low, high)
 
+    @property
+    def shown(self) -> int:
+        """Number of the first that is not shown yet."""
+        return int(self._shown)
+
     def show(self, passed_s: float) -> bool:
         """Show what was measured in so much time, and whatever is late; says whether there was anything."""
         before, late = self.shown, self.next - round(_BEHIND_S / BUCKET_S)
         self._shown = min(max(self._shown + passed_s / BUCKET_S, late), self.next)
-        self.shown = int(self._shown)
         return self.shown > before
 
     def since(self, number: int) -> Stretch | None:
@@ -110,7 +113,7 @@ class Buckets:
 
     def _add(self, number: int, low: Array, high: Array) -> None:
         if self._open is None:
-            self.next = self.shown = number
+            self.next = number
             self._shown = float(number)
         while self._open is not None and number > self.next:
             self._done.append(self._open)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from hil.core.errors import HilError
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
-from hil.service.carrying_out import RunningRun
+from hil.service.carrying_out import PLAN, RunningRun
 from hil.service.live import LiveRun
 from hil.service.said import Said
 from test_plans import plan_from_text
@@ -81,7 +81,7 @@ class Showing:
             if shown is not None:
                 shown.live.close()
             try:
-                plan_file = running.folder / "plan.yaml"
+                plan_file = running.folder / PLAN
                 plan = plan_from_text(
                     plan_file.read_text("utf-8"), str(plan_file), running.folder, files_required=False
                 )

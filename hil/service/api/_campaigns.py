@@ -9,8 +9,8 @@ from fastapi.responses import FileResponse
 from starlette.responses import Response
 
 from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._left_files import left_file
 from hil.service.api._problems import RefusedError, missing
-from hil.service.api._runs import MEDIA, SANDBOX
 from hil.service.campaign_data import CampaignData, CampaignExample, CampaignWanted
 from hil.service.data import RunId
 from hil.service.service import Service
@@ -77,16 +77,7 @@ async def get_campaign_file(campaign: RunId, name: str, service: TheService, me:
     del me
     if name not in _there(service, campaign).files:
         raise missing("file", name)
-    path = service.campaigns.file(campaign, name)
-    headers = {"content-security-policy": SANDBOX} if path.suffix == ".html" else {}
-    shown, way = f"campaign-{campaign}-{name}", "attachment" if path.suffix == ".parquet" else "inline"
-    return FileResponse(
-        path,
-        media_type=MEDIA.get(path.suffix, _TABLES),
-        filename=shown,
-        content_disposition_type=way,
-        headers=headers,
-    )
+    return left_file(service.campaigns.file(campaign, name), f"campaign-{campaign}-{name}", _TABLES)
 
 
 def _there(service: Service, campaign: int) -> CampaignData:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Header, Query
-from fastapi.responses import FileResponse
 from starlette.responses import Response
 
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._from_store import from_store
+from hil.service.api._left_files import disposition_of, headers_of, left_file, media_of
 from hil.service.api._problems import RefusedError, missing
 from hil.service.carrying_out import RunningRun
 from hil.service.data import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunWanted
@@ -21,9 +21,6 @@ from hil.service.store import NewRun
 
 router = APIRouter(prefix="/runs", tags=["runs"])
 _LAST = 2**31 - 1
-#: Reports bring their own scripts: they may run them, and reach nothing of the service.
-SANDBOX = "sandbox allow-scripts allow-downloads; default-src 'unsafe-inline' data: blob:"
-MEDIA = {".html": "text/html", ".json": "application/json", ".pdf": "application/pdf", ".xml": "text/xml"}
 
 
 @router.get("", name="list_runs")
@@ -150,17 +147,12 @@ async def get_run_file(
     if name not in service.with_progress(_there(service, run)).files:
         raise missing("file", name)
     path = service.queue.folder_of(run) / name
-    media = MEDIA.get(path.suffix, "application/octet-stream" if path.suffix == ".mcap" else "text/plain")
-    headers = {"content-security-policy": SANDBOX} if path.suffix == ".html" else {}
-    inline = path.suffix != ".mcap"
-    kind = "inline" if inline else "attachment"
+    other, shown = "application/octet-stream" if path.suffix == ".mcap" else "text/plain", f"{run}-{name}"
     kept = None if path.is_file() or service.keeper is None else service.keeper.kept(run, name)
     if kept is not None and service.keeper is not None:
-        headers["content-disposition"] = f'{kind}; filename="{run}-{name}"'
-        return await from_store(service.keeper, run, kept, media, headers, wanted)
-    return FileResponse(
-        path, media_type=media, filename=f"{run}-{name}", content_disposition_type=kind, headers=headers
-    )
+        headers = headers_of(path) | {"content-disposition": f'{disposition_of(path)}; filename="{shown}"'}
+        return await from_store(service.keeper, run, kept, media_of(path, other), headers, wanted)
+    return left_file(path, shown, other)
 
 
 def _there(service: Service, run: int) -> RunData:

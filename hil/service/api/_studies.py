@@ -12,8 +12,8 @@ from starlette.responses import Response
 from hil.core.files import read_text
 from hil.engine import RECORDING
 from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._left_files import left_file
 from hil.service.api._problems import RefusedError, missing
-from hil.service.api._runs import MEDIA, SANDBOX
 from hil.service.data import OVER, Me, RunId
 from hil.service.service import Service
 from hil.service.study_data import (
@@ -91,12 +91,8 @@ async def get_study_file(study: RunId, name: str, service: TheService, me: Viewe
     if name not in _there(service, study).files:
         raise missing("file", name)
     path = service.studies.results(study) / name
-    headers = {"content-security-policy": SANDBOX} if path.suffix == ".html" else {}
-    media = MEDIA.get(path.suffix, "text/plain" if path.suffix in (".toml", ".csv", ".yaml") else None)
-    shown = f"study-{study}-{name}"
-    return FileResponse(
-        path, media_type=media, filename=shown, content_disposition_type="inline", headers=headers
-    )
+    media = "text/plain" if path.suffix in (".toml", ".csv", ".yaml") else None
+    return left_file(path, f"study-{study}-{name}", media)
 
 
 @router.get("/identifications/{study}", name="get_identification")

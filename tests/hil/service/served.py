@@ -103,6 +103,26 @@ def environment_of(data: Path) -> dict[str, str]:
     return {**os.environ, "HIL_DATABASE": _databases[data]}
 
 
+def told_by(process: subprocess.Popen[str]) -> Any:
+    """What a service or an agent says with --json once it is ready."""
+    assert process.stdout is not None
+    told = ""
+    while not told.endswith("}\n"):
+        line = process.stdout.readline()
+        assert line, "the process has ended"
+        told += line
+    return json.loads(told)
+
+
+def ended(process: subprocess.Popen[str]) -> None:
+    """End a process that was not killed meanwhile, and let go of it."""
+    if process.poll() is None:
+        process.terminate()
+    process.wait(60)
+    if process.stdout is not None:
+        process.stdout.close()
+
+
 @contextlib.contextmanager
 def served(data: Path, *arguments: str, state: Path | None = None, token: str = "") -> Iterator[Served]:
     """Start it and end it; it may be killed meanwhile."""
@@ -111,16 +131,7 @@ def served(data: Path, *arguments: str, state: Path | None = None, token: str = 
         environment["HIL_STATE"] = str(state)
     command = [*HIL, "serve", "--data", str(data), "--port", "0", "--json", *arguments]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
-    assert process.stdout is not None
     try:
-        told = ""
-        while not told.endswith("}\n"):
-            line = process.stdout.readline()
-            assert line, "the service has ended"
-            told += line
-        yield Served(process, json.loads(told)["url"], data, token)
+        yield Served(process, told_by(process)["url"], data, token)
     finally:
-        if process.poll() is None:
-            process.terminate()
-        process.wait(60)
-        process.stdout.close()
+        ended(process)

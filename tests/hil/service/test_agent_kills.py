@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import random
 import time
@@ -10,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.core.recording import read_recording
+from tests.hil.service.left import was_safe_and_whole
 from tests.hil.service.served import SHORT, Served, served
 from tests.hil.service.working import bench_called, working
 
@@ -60,11 +59,4 @@ def _look_at_files(data: Path, kept: Path, run: int, state: str) -> None:
     names = {path.name for path in there.glob("[!.]*") if path.name != "run.lock"}
     for name in names:
         assert (here / name).read_bytes() == (there / name).read_bytes(), name
-    result, recording = here / "result.json", here / "recording.mcap"
-    if state == "ended":
-        assert json.loads(result.read_text())["safe_state"] == "confirmed"
-    if result.exists():
-        assert json.loads(result.read_text())["safe_state"] in ("confirmed", "not_needed")
-    if recording.exists():
-        found = read_recording(recording, least_samples=0, allow_missing=True)
-        assert found.damage == [], "its process has closed it"
+    was_safe_and_whole(here, state)

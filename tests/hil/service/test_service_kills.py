@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import random
 import time
@@ -10,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.core.recording import read_recording
+from tests.hil.service.left import was_safe_and_whole
 from tests.hil.service.served import SHORT, Served, served
 
 #: `make service-kills` tries fifty.
@@ -46,12 +45,5 @@ def test_a_queue_survives_a_kill_at_any_moment(tmp_path: Path, moment: int) -> N
 def _look_at(service: Served, data: Path, run: int, state: str) -> None:
     """A run's data are kept, and its bench was safe."""
     folder = data / "runs" / f"{run:06d}"
-    recording, result = folder / "recording.mcap", folder / "result.json"
-    if state == "ended":
-        assert json.loads(result.read_text())["safe_state"] == "confirmed"
-    if result.exists():
-        assert json.loads(result.read_text())["safe_state"] in ("confirmed", "not_needed")
-    if recording.exists():
-        found = read_recording(recording, least_samples=0, allow_missing=True)
-        assert found.damage == [], "its process has closed it"
+    was_safe_and_whole(folder, state)
     assert service.get(f"/runs/{run}")["state"] == state

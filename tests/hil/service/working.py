@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import shutil
 import subprocess
@@ -11,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from tests.hil.service.served import HIL
+from tests.hil.service.served import HIL, ended, told_by
 
 _BENCHES = Path(__file__).parents[3] / "benches"
 
@@ -45,19 +44,10 @@ def working(
 ) -> Iterator[Working]:
     """Start it and end it; it may be killed meanwhile."""
     process = begun(url, data, *benches, state=state, token=token, arguments=arguments)
-    assert process.stdout is not None
     try:
-        told = ""
-        while not told.endswith("}\n"):
-            line = process.stdout.readline()
-            assert line, "the agent has ended"
-            told += line
-        yield Working(process, json.loads(told), data)
+        yield Working(process, told_by(process), data)
     finally:
-        if process.poll() is None:
-            process.terminate()
-        process.wait(60)
-        process.stdout.close()
+        ended(process)
 
 
 def begun(
