@@ -11,6 +11,7 @@ from tests.mutants.covering import Coverage, shown_by
 from tests.mutants.mutating import drawn
 from tests.mutants.page import Outcome, Tried, as_markdown, wilson
 from tests.mutants.run import explained
+from tests.mutants.trying import Trial
 
 SOURCE = '''
 from numba import njit
@@ -101,9 +102,10 @@ def test_the_page_shows_what_was_not_noticed() -> None:
         Outcome("a.py", 3, "AddNot", "if x | y:", "if not x | y:", "", 4),
         Outcome("a.py", 9, "NumberReplacer", "x = 1", "x = 2", "not run", 0),
         Outcome("a.py", 5, "NumberReplacer", "y = 1", "y = 2", "failed", 1),
+        Outcome("a.py", 6, "NumberReplacer", "u = 1", "u = 2", "timeout", 1),
     ]
     page = as_markdown([Tried("hil.core", 1, 50, 20, 1.5, outcomes)], {})
-    assert "| hil.core | 3 | 50 | 1 | 33.3 |" in page
+    assert "| hil.core | 4 | 50 | 2 | 1 | 50.0 |" in page
     assert "| a.py:3 | `if x \\| y:` | `if not x \\| y:` | passed |" in page
     assert "| a.py:9 | `x = 1` | `x = 2` | not run |" in page
     assert "y = 2" not in page
@@ -128,6 +130,26 @@ def test_what_was_not_noticed_is_found_again_wherever_it_has_moved_to(root: Path
     (mutant,) = not_noticed_before([survivor, noticed, gone], root)
     assert mutant.line == SOURCE.splitlines().index("    return value + 0.5") + 1
     assert "value + 1.5" in mutant.code(SOURCE)
+
+
+TESTS = """
+from pathlib import Path
+
+def test_clipping():
+    assert "low: int = 1" in Path("code.py").read_text()
+
+def test_in_real_time():
+    assert False, "the machine is busy"
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("test", "said"), [("test_clipping", "failed"), ("test_in_real_time", "")])
+def test_a_test_that_fails_without_the_fault_too_notices_nothing(root: Path, test: str, said: str) -> None:
+    (root / "test_code.py").write_text(TESTS)
+    mutated = SOURCE.replace("low: int = 1", "low: int = 2")
+    assert Trial(root).notices("code.py", mutated, [f"test_code.py::{test}"], 0.1) == said
+    assert (root / "code.py").read_text() == SOURCE
 
 
 def test_every_explanation_is_of_code_that_stands_there() -> None:
