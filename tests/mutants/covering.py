@@ -27,19 +27,23 @@ class Coverage:
     def tests_for(self, file: str, lines: Iterable[int]) -> list[str]:
         """Those named after the file or its folder first, and the quickest first.
 
-        For lines that only importing runs, those that run any line of the file and those named after it: what
-        a library or another process makes of the file is seen as no line that runs.
+        For lines that only importing runs, those that run any line of the file, those named after it and
+        those of its folder: what a library or another process makes of it is seen as no line that runs.
         """
         own = self.by_line.get(file, {})
         tests = set[str]().union(*(own.get(line, set()) for line in lines))
         named = self._named(file)
-        tests = tests or self.by_file.get(file, set()) | named
+        tests = tests or self.by_file.get(file, set()) | named | self._beside(file)
         return sorted(tests, key=lambda test: (test not in named, self.seconds[test], test))
 
     def _named(self, file: str) -> set[str]:
         path = Path(file)
         own = [f"/test_{name}.py::" for name in (path.stem.removeprefix("_"), path.parent.name)]
         return {test for test in self.seconds if any(name in test for name in own)}
+
+    def _beside(self, file: str) -> set[str]:
+        folder = Path("tests") / Path(file).parent
+        return {test for test in self.seconds if Path(test.partition("::")[0]).parent == folder}
 
 
 def shown_by(source: str, line: int) -> range:

@@ -81,6 +81,13 @@ def test_a_file_that_only_other_processes_run_has_the_tests_named_after_it() -> 
     assert Coverage({}, {}, seconds).tests_for("hil/_worker.py", [3]) == ["tests/test_worker.py::test_it"]
 
 
+def test_lines_of_importing_have_the_tests_of_the_files_folder_too() -> None:
+    seconds = {"tests/hil/test_limits.py::test_them": 1.0, "tests/hil/core/test_limits.py::test_them": 1.0}
+    coverage = Coverage({"hil/code.py": {5: {"elsewhere"}}}, {}, seconds | {"elsewhere": 1.0})
+    assert coverage.tests_for("hil/code.py", [3]) == ["tests/hil/test_limits.py::test_them"]
+    assert coverage.tests_for("hil/code.py", [5]) == ["elsewhere"]
+
+
 def test_a_functions_head_is_shown_by_its_body() -> None:
     lines = SOURCE.splitlines()
     head, decorator = (lines.index(text) + 1 for text in (HEAD, "@njit(cache=True)"))

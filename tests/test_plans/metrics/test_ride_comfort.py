@@ -49,9 +49,29 @@ def test_constant_acceleration_does_not_count():
     assert RideComfort().compute(recorded(0.8 * np.arange(22_000) / 1000), SEGMENT) < 1e-9
 
 
-def test_samples_too_few_for_100_hz_have_no_value():
-    with pytest.raises(NoValueError, match="do not reach 100 Hz"):
-        RideComfort().compute(recorded(np.ones(2200), rate_hz=100.0), SEGMENT)
+@pytest.mark.parametrize("rate_hz", [199.0, 100.0])
+def test_samples_too_few_for_100_hz_have_no_value(rate_hz):
+    speed = np.ones(round(22 * rate_hz))
+    with pytest.raises(NoValueError, match=f"^{rate_hz:g} samples a second do not reach 100 Hz$"):
+        RideComfort().compute(recorded(speed, rate_hz), SEGMENT)
+
+
+def test_200_samples_a_second_are_enough():
+    omega = 2 * np.pi * 2.0
+    speed = 0.4 / omega * np.sin(omega * np.arange(4400) / 200.0)
+    found = RideComfort().compute(recorded(speed, rate_hz=200.0), SEGMENT)
+    assert found == pytest.approx(0.4 / np.sqrt(2) * 0.890, rel=0.01)
+
+
+def test_the_sample_at_the_windows_end_belongs_to_what_follows():
+    time = np.arange(22_000) / 1000
+    smooth, broken = np.sin(2 * np.pi * time), np.sin(2 * np.pi * time)
+    broken[21_000] = 100.0
+    assert RideComfort().compute(recorded(broken), SEGMENT) == RideComfort().compute(
+        recorded(smooth), SEGMENT
+    )
+    broken[20_999] = 100.0
+    assert RideComfort().compute(recorded(broken), SEGMENT) > 1.0
 
 
 def test_it_is_an_acceleration():
