@@ -63,6 +63,13 @@ def test_the_window_is_half_open() -> None:
     assert energy(broken) != energy(speed)
 
 
+def test_what_follows_the_window_is_not_looked_at_where_stamps_lie_early() -> None:
+    speed, early = sine(time_axis(), 1.0, 12.0), time_axis() - 3e-4
+    broken = speed.copy()
+    broken[int(np.flatnonzero(np.isclose(time_axis(), STEP.step_s + 20.0))[0])] = 1e3
+    assert energy(broken, early) == energy(speed, early)
+
+
 def test_lost_samples_do_not_shift_the_lines() -> None:
     time = time_axis()
     kept = np.arange(len(time)) % 1600 != 7

@@ -116,6 +116,12 @@ def test_two_samples_are_a_window_and_a_recording() -> None:
     assert Peak(channel="shaft_torque_nm").compute(torque(np.array([0.0, 0.001])), whole) == 1.0
 
 
+def test_a_single_sample_covers_no_window() -> None:
+    uneven = torque(np.array([0.0, 0.001, 0.0026, 0.0036, 0.0046]))
+    whole = Segment(id="s", start_s=0.0, step_s=0.00155, end_s=0.00275, reference_before=0, reference_after=1)
+    assert "does not cover" in refusal(uneven, whole)
+
+
 def test_the_sample_at_the_end_belongs_to_the_window_or_to_what_follows() -> None:
     for with_end, last in ((True, 23.0), (False, 22.999)):
         time, _ = cut(torque(time_axis()), STEP, "shaft_torque_nm", 3.0, 23.0, with_end=with_end)
