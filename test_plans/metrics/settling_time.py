@@ -63,18 +63,23 @@ class SettlingTime(WindowMetric):
         grid = time[0] + spacing * np.arange(len(even))
         window = grid >= start - 0.5 * spacing
         grid, smooth = grid[window], self._filtered(even, spacing)[window]
-        final = np.mean(smooth[grid > end - self.mean_s])
+        last = smooth[grid > end - self.mean_s]
+        if not last.size:
+            raise NoValueError(
+                f"the mean's last {self.mean_s:g} s hold no sample, these lie {spacing:.3g} s apart"
+            )
+        final = np.mean(last)
         outside = np.flatnonzero(np.abs(smooth - final) > half_width)
         if not outside.size:
             return self.from_s
-        settled = min(int(outside[-1]) + 1, len(grid) - 1)
-        if grid[settled] > end - self.mean_s:
+        settled = int(outside[-1]) + 1
+        if settled == len(grid) or grid[settled] > end - self.mean_s:
             raise DidNotSettleError(
                 f"outside ±{half_width:.4g} {super().unit} around the mean of the last "
                 f"{self.mean_s:g} s until {grid[outside[-1]] - segment.step_s:.4g} s after the step, "
                 f"the window ends at {end - segment.step_s:.4g} s"
             )
-        return float(max(0.0, grid[settled] - segment.step_s))
+        return float(grid[settled] - segment.step_s)
 
     def objection(self, segment: PlannedSegment) -> str:
         """No step, one of another torque than the channel's, or no room for the mean."""

@@ -137,6 +137,22 @@ def test_the_mean_needs_less_than_the_whole_window() -> None:
             assert settled(np.full(len(time_axis()), 326.0), to_s=to_s) == 0.0
 
 
+@pytest.mark.parametrize("mean_s", [0.001, 0.0005, 1e-9])
+def test_a_mean_without_samples_is_no_value(mean_s: float) -> None:
+    time = time_axis(22.999)  # a segment's last sample lies one sample time before its end
+    recording = recording_of(time, shaft_torque_nm=10.0 * time)
+    metric = SettlingTime(channel="shaft_torque_nm", mean_s=mean_s)
+    with pytest.raises(NoValueError, match="hold no sample, these lie 0.001 s apart"):
+        metric.compute(recording, STEP)
+
+
+def test_what_is_outside_at_the_very_last_sample_did_not_settle() -> None:
+    torque = np.where(time_axis() < STEP.end_s - 1.2, 326.0, 0.0)
+    torque[time_axis() >= STEP.end_s - 0.6] = 326.0  # the mean lies half way: all of it is outside
+    with pytest.raises(DidNotSettleError, match="until 20 s after the step, the window ends at 20 s"):
+        settled(torque, mean_s=1.2)
+
+
 def test_the_filter_needs_more_than_two_samples_a_period() -> None:
     for rate_hz, refused in ((120, False), (100, True)):
         time = time_axis(sample_time_s=1 / rate_hz)
