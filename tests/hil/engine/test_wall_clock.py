@@ -108,17 +108,19 @@ def message_of(frame, epoch):
     )
 
 
-def ran_in_real_time(name, request, ends=type(None)):
-    """The outcome of what `request` asks of a bench, its power cut where that sets the event which it is given.
+def ran_in_real_time(name, request, ends=None):
+    """The outcome of what `request` asks of a bench, ended by an error of the kind `ends` if there is one.
 
-    A run that does not end as meant is run again if the machine stood still: that trips the RMCU, as it should.
+    `request` is given the bench file, and an event that cuts the bench's power. A run that does not end as meant
+    is run again if the machine stood still: that trips the RMCU, as it should.
     """
+    meant = ends or type(None)
     for attempt in range(MOST_REPEATS):
         with bench_in_real_time(f"{name}{attempt}") as (bench, unplugged, stalls):
             outcome = run_plan(request(bench, unplugged))
-        if type(outcome.error) is ends or max(stalls) < LONGEST_STALL_S:
+        if type(outcome.error) is meant or max(stalls) < LONGEST_STALL_S:
             break
-    assert type(outcome.error) is ends, (outcome.error, max(stalls))
+    assert type(outcome.error) is meant, (outcome.error, max(stalls))
     return outcome
 
 
