@@ -111,8 +111,8 @@ def message_of(frame, epoch):
 def ran_in_real_time(name, request, ends=None):
     """The outcome of what `request` asks of a bench, ended by an error of the kind `ends` if there is one.
 
-    `request` is given the bench file, and an event that cuts the bench's power. A run that does not end as meant
-    is run again if the machine stood still: that trips the RMCU, as it should.
+    `request` is given the bench file, and an event that cuts the bench's power. A run that does not end as
+    meant is run again if the machine stood still: that trips the RMCU, as it should.
     """
     meant = ends or type(None)
     for attempt in range(MOST_REPEATS):
