@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from reports.figure import Band, Figure, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
 from reports.spectrum import DESCRIPTION, amplitude_spectrum
 from reports.step_figures import controller_name
-from reports.stretch import cut, line
+from reports.stretch import Lines, cut, line
 
 _ROLES = ("gain", "phase", "third", "fourth")
 #: Channels that share axes.
@@ -35,12 +35,21 @@ _SPECTRUM_TO_HZ = 100.0
 
 @dataclass(frozen=True)
 class _Stretch:
-    """Where figures are cut from, and how their ids begin."""
+    """Where figures are cut from, and how their ids begin; `thin`: channels drawn from fewer samples."""
 
     recording: Recording
     id: str
     start_s: float
     end_s: float
+    thin: Lines = field(default_factory=dict)
+
+    def line(self, name: str, role: str) -> Trace | None:
+        """The channel over time; None if there is nothing to draw."""
+        label = channel_label(name)
+        if name not in self.thin:
+            return line(self.recording, name, label, role, start_s=self.start_s, end_s=self.end_s)
+        time, values = self.thin[name]
+        return Trace(label, time, values, role) if np.isfinite(values).sum() > 1 else None
 
 
 def sweep_section(recording: Recording, segment: Segment) -> Section:
@@ -63,9 +72,9 @@ def sweep_section(recording: Recording, segment: Segment) -> Section:
     )
 
 
-def overview_section(recording: Recording, segments: Sequence[Segment]) -> Section | None:
+def overview_section(recording: Recording, thin: Lines, segments: Sequence[Segment]) -> Section | None:
     """Torque request, speed and shaft torque of the whole run, its segments shaded; None without any."""
-    where = _whole(recording, "overview")
+    where = _whole(recording, thin, "overview")
     if where is None:
         return None
     bands = _bands(where, segments)
@@ -75,9 +84,9 @@ def overview_section(recording: Recording, segments: Sequence[Segment]) -> Secti
     return Section("overview", "The whole run", "", figures) if figures else None
 
 
-def further_section(recording: Recording, segments: Sequence[Segment]) -> Section | None:
+def further_section(recording: Recording, thin: Lines, segments: Sequence[Segment]) -> Section | None:
     """What devices of their own have measured in the whole run, on its time; None without any."""
-    where = _whole(recording, "further")
+    where = _whole(recording, thin, "further")
     if where is None:
         return None
     names = [name for name in recording.channels if name not in CHANNELS and name not in _OF_SIDES]
@@ -88,9 +97,9 @@ def further_section(recording: Recording, segments: Sequence[Segment]) -> Sectio
     return Section("further", "Further channels", "", figures, notes) if figures else None
 
 
-def channels_section(recording: Recording) -> Section:
+def channels_section(recording: Recording, thin: Lines) -> Section:
     """Every channel over the whole recording, and spectra of the input and the outputs."""
-    where = _whole(recording, "channels")
+    where = _whole(recording, thin, "channels")
     if where is None:
         return Section("channels", "Channels", "The recording has no samples to draw.", ())
     unknown = [name for name in recording.channels if name not in CHANNELS]
@@ -109,18 +118,14 @@ def _bands(where: _Stretch, segments: Sequence[Segment]) -> tuple[Band, ...]:
     return tuple(Band(start, end, label) for start, end, label in clipped if end > start)
 
 
-def _whole(recording: Recording, section_id: str) -> _Stretch | None:
-    if TIME not in recording or len(recording.time_s) < 2:
+def _whole(recording: Recording, thin: Lines, section_id: str) -> _Stretch | None:
+    if TIME not in recording or recording.samples < 2:
         return None
-    time = recording.time_s
-    return _Stretch(recording, section_id, float(time[0]), float(time[-1]))
+    return _Stretch(recording, section_id, recording.first_s, recording.last_s, thin)
 
 
 def _time_figure(where: _Stretch, names: Sequence[str], bands: tuple[Band, ...] = ()) -> Figure | None:
-    traces = [
-        line(where.recording, name, channel_label(name), role, start_s=where.start_s, end_s=where.end_s)
-        for name, role in zip(names, _ROLES, strict=False)
-    ]
+    traces = [where.line(name, role) for name, role in zip(names, _ROLES, strict=False)]
     drawn = tuple(trace for trace in traces if trace is not None)
     if not drawn:
         return None

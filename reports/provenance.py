@@ -9,6 +9,7 @@ import tomllib
 from dataclasses import dataclass
 from typing import Any
 
+from hil.core.channels import TIME
 from hil.core.errors import BadInputError
 from hil.core.files import sha256_of
 from hil.core.recording import VEHICLE, Recording
@@ -107,10 +108,10 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
             *timing_facts(result),
             *_bus_load_facts(result),
         ]
-    elif len(recording.channels.get("time_s", ())) > 1:
-        span = float(recording.time_s[-1] - recording.time_s[0])
+    elif TIME in recording and recording.samples > 1:
+        span = recording.last_s - recording.first_s
         facts.append(Fact("Length", quantities.quantity(span, "s")))
-        facts.append(Fact("Samples", quantities.number(float(len(recording.time_s)), 0)))
+        facts.append(Fact("Samples", quantities.number(float(recording.samples), 0)))
         facts.append(Fact("Sample time", quantities.nominal(float(f"{recording.sample_time_s:.4g}"), "s")))
     return tuple(fact for fact in facts if fact.value)
 

@@ -10,12 +10,14 @@ from hil.core.result import RunResult, Segment
 from reports.channel_figures import channels_section, further_section, overview_section, sweep_section
 from reports.figure import Section
 from reports.step_figures import step_section
+from reports.stretch import thinned
 
 
 def sections(recording: Recording, result: RunResult | None) -> list[Section]:
     """Steps by initial speed, other segments, the whole run, further channels; without segments all."""
+    whole = thinned(recording)
     if result is None or not result.segments:
-        return _anchored([_filled(channels_section(recording))])
+        return _anchored([_filled(channels_section(recording, whole))])
     criteria = {criterion.id: criterion for criterion in result.criteria}
     steps: dict[float, list[Segment]] = {}
     for segment in result.segments:
@@ -23,8 +25,8 @@ def sections(recording: Recording, result: RunResult | None) -> list[Section]:
             steps.setdefault(segment.initial_speed_km_h, []).append(segment)
     found = [step_section(recording, group, criteria) for group in steps.values()]
     found += [sweep_section(recording, s) for s in result.segments if s.kind != "step"]
-    whole = (overview_section(recording, result.segments), further_section(recording, result.segments))
-    found += [section for section in whole if section]
+    of_all = [section(recording, whole, result.segments) for section in (overview_section, further_section)]
+    found += [section for section in of_all if section]
     return _anchored([_filled(section) for section in found])
 
 

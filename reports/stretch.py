@@ -6,12 +6,17 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.channels import TIME
-from hil.core.recording import Recording
-from reports.envelope import break_at_gaps
+from hil.core.recording import BLOCK, Recording
+from reports.envelope import break_at_gaps, envelope
 from reports.figure import Trace
 from reports.labels import Label
 
 Array = npt.NDArray[np.float64]
+Lines = dict[str, tuple[Array, Array]]
+
+#: Samples beyond which a figure of the whole recording is drawn from fewer: some seventeen minutes at 1 kHz.
+LONGEST_DRAWN = 1 << 20
+_POINTS = 1 << 15  # many times what paper or screen can show
 
 
 def cut(recording: Recording, name: str, start_s: float, end_s: float) -> tuple[Array, Array] | None:
@@ -21,16 +26,14 @@ def cut(recording: Recording, name: str, start_s: float, end_s: float) -> tuple[
     """
     if name not in recording or TIME not in recording:
         return None
-    time = recording.time_s
-    if not (np.isfinite(start_s) and np.isfinite(end_s)) or len(time) < 2:
+    if not (np.isfinite(start_s) and np.isfinite(end_s)) or recording.samples < 2:
         return None
     grace = 0.5 * recording.sample_time_s
-    first = int(np.searchsorted(time, start_s - grace, "left"))
-    last = int(np.searchsorted(time, end_s + grace, "right"))
-    values = recording[name][first:last]
-    if np.isfinite(values).sum() < 2:
+    first, last = recording.rows_before(start_s - grace), recording.rows_before(end_s + grace, or_at=True)
+    rows = recording.rows(first, last, (TIME, name))
+    if np.isfinite(rows[name]).sum() < 2:
         return None
-    return time[first:last], values
+    return rows[TIME], rows[name]
 
 
 def line(
@@ -50,6 +53,28 @@ def line(
         return None
     x, y = break_at_gaps(*_measured(found[0] - zero_s, found[1]))
     return Trace(label, x, y, role, dash)
+
+
+def thinned(recording: Recording) -> Lines:
+    """Every channel of a long recording over its time, as few samples as show its peaks and gaps.
+
+    Empty if the recording is short enough to be drawn as it is. It is read once, block by block.
+    """
+    if recording.samples <= LONGEST_DRAWN:
+        return {}
+    names = [name for name in recording.channels if name != TIME]
+    points = max(2, _POINTS * BLOCK // recording.samples)
+    parts: dict[str, list[tuple[Array, Array]]] = {name: [] for name in names}
+    before = {name: np.zeros(0) for name in (TIME, *names)}  # the last sample: a gap may lie between blocks
+    for _, rows in recording.blocks((TIME, *names)):
+        block = {name: np.concatenate([before[name], rows[name]]) for name in rows}
+        before = {name: values[-1:] for name, values in rows.items()}
+        for name in names:
+            parts[name].append(envelope(*break_at_gaps(*_measured(block[TIME], block[name])), points))
+    return {
+        name: (np.concatenate([x for x, _ in lines]), np.concatenate([y for _, y in lines]))
+        for name, lines in parts.items()
+    }
 
 
 def _measured(times: Array, values: Array) -> tuple[Array, Array]:

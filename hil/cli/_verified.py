@@ -96,7 +96,7 @@ def of_recording(path: Path) -> Iterator[Finding]:
     for text in bad:
         yield Finding(False, path, text)
     if not bad:
-        yield Finding(True, path, f"agrees with its own hashes ({len(recording.time_s)} samples)")
+        yield Finding(True, path, f"agrees with its own hashes ({recording.samples} samples)")
 
 
 def of_report(report: Path, recordings: Iterable[Path]) -> Finding:

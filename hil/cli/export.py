@@ -36,7 +36,7 @@ def carry_out(
         print_json(
             {
                 "file": str(out),
-                "samples": len(table.time_s),
+                "samples": table.samples,
                 "channels": list(table.channels),
                 "damage": table.damage,
                 "notes": table.notes,
@@ -45,9 +45,7 @@ def carry_out(
     else:
         for note in table.notes:
             console().print(f"note: {note}", highlight=False)
-        console().print(
-            f"{len(table.time_s)} samples of {len(table.channels)} channels: {out}", highlight=False
-        )
+        console().print(f"{table.samples} samples of {len(table.channels)} channels: {out}", highlight=False)
     return 0
 
 

@@ -49,7 +49,7 @@ def _as_data(path: Path, out: Path | None, found: Recording, absent: list[str]) 
     return {
         "recording": str(path),
         "recovered": str(out) if out else None,
-        "samples": len(found.time_s),
+        "samples": found.samples,
         "until_s": missing.until_s,
         "missing": {
             "seconds": missing.seconds,
@@ -71,9 +71,9 @@ def _tell(path: Path, out: Path | None, found: Recording, absent: list[str]) -> 
 
     missing = missing_of(found)
     if out is None:
-        say(f"{path} is whole: {len(found.time_s)} samples, nothing to recover")
+        say(f"{path} is whole: {found.samples} samples, nothing to recover")
     else:
-        say(f"{len(found.time_s)} samples until {missing.until_s:.3f} s: {out}")
+        say(f"{found.samples} samples until {missing.until_s:.3f} s: {out}")
     for sentence in (*found.damage, *_sentences(missing, run_of(found), absent)):
         say(f"  {sentence}")
     if out is not None or absent:

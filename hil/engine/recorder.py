@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, MutableMapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,8 +19,8 @@ from hil.core.result import StreamClock
 _FLUSH_S = 0.5
 #: How often `keep` is to be called, s: with what it waits for all is on the disk within 0.25 s.
 KEEP_S = 0.15
-#: Half an hour of rows; of a longer run they are read from its file when somebody wants them.
-MOST_KEPT_BYTES = 1 << 28
+#: Eight minutes of rows; of a longer run they are read from its file when somebody wants them.
+MOST_KEPT_BYTES = 1 << 26
 _LOOK_S = 2.0  # what clocks do shows in seconds
 
 
@@ -157,7 +157,7 @@ class Recorder:
         self.writer.flush()  # what asks may take long, and the process be killed meanwhile
         return Recording(self._channels(), self.writer.path, events=list(self.events))
 
-    def _channels(self) -> dict[str, npt.NDArray[np.float64]]:
+    def _channels(self) -> MutableMapping[str, npt.NDArray[np.float64]]:
         if self._chunks is None:
             return read_as_written(self.writer.path).channels
         names = self._assembler.names

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from hil.core.channels import CHANNELS
+from hil.core.channels import CHANNELS, TIME
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
@@ -88,9 +88,10 @@ def cut(
     Raises:
         NoValueError: the segment or the recording is too short, or samples are missing or not finite.
     """
-    values, time = recording[channel], recording.time_s
-    if len(time) < 2:
-        raise NoValueError(f"the recording has {len(time)} samples")
+    if channel not in recording:
+        recording[channel]  # says which there are
+    if recording.samples < 2:
+        raise NoValueError(f"the recording has {recording.samples} samples")
     spacing = recording.sample_time_s
     # The last sample of a stretch lies one sample time before its end; half a sample is for jitter.
     grace = 1.5 * spacing
@@ -102,8 +103,9 @@ def cut(
     if end_s - start_s < spacing:
         raise NoValueError("the window is empty")
     last_s = end_s + (0.5 if with_end else -0.5) * spacing
-    inside = slice(*np.searchsorted(time, (start_s - 0.5 * spacing, last_s)).tolist())
-    time, values = time[inside], values[inside]
+    first, last = (recording.rows_before(time_s) for time_s in (start_s - 0.5 * spacing, last_s))
+    rows = recording.rows(first, last, (TIME, channel))
+    time, values = rows[TIME], rows[channel]
     if len(time) < 2 or time[0] > start_s + grace or time[-1] < end_s - grace:
         raise NoValueError(f"the recording does not cover the window from {start_s:.3f} s to {end_s:.3f} s")
     missing = int(np.count_nonzero(~np.isfinite(values)))

@@ -103,7 +103,7 @@ def test_without_segments_every_channel_is_drawn(recording: Recording) -> None:
 
 
 def test_many_unknown_channels_are_left_to_the_table(recording: Recording) -> None:
-    recording.channels |= {f"extra_{number}": recording.time_s for number in range(20)}
+    recording.channels.update({f"extra_{number}": recording.time_s for number in range(20)})
     (section,) = sections(recording, None)
     assert section.notes == ("8 further channels are in the table only.",)
 

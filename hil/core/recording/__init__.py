@@ -19,7 +19,7 @@ from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
 from hil.core.recording._regular_file import refuse_unless_regular
 from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, REPLAY, RUN, SEGMENT, VEHICLE, run_of
-from hil.core.recording._table import Event, Recording, checked
+from hil.core.recording._table import BLOCK, Event, Recording, checked
 
 logger = logging.getLogger(__name__)
 
@@ -46,7 +46,7 @@ def read_recording(
     recording = checked(
         recording, least_samples=least_samples, allow_missing=allow_missing, any_channels=foreign
     )
-    logger.info("read %s: %d samples, %d channels", path, len(recording.time_s), len(recording.channels))
+    logger.info("read %s: %d samples, %d channels", path, recording.samples, len(recording.channels))
     for sentence in (*recording.damage, *recording.notes):
         logger.debug("%s: %s", path, sentence)
     return recording
@@ -115,11 +115,12 @@ def write_recording(recording: Recording, path: Path) -> None:
             fix=f"for raw frames in {', '.join(FRAME_LOGS)}",
         )
     writer(recording, path)
-    logger.info("wrote %s: %d samples, %d channels", path, len(recording.time_s), len(recording.channels))
+    logger.info("wrote %s: %d samples, %d channels", path, recording.samples, len(recording.channels))
 
 
 __all__ = [
     "ACCEPTED_EXPIRY",
+    "BLOCK",
     "CHUNK_BYTES",
     "DEVICE",
     "FRAME_LOGS",

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from hil.core.recording._table import Array
+from hil.core.recording._mcap_rows import Times
 
 #: Metadata table that closes a recording: SHA-256 of its samples, and how many they are.
 CHANNELS_TABLE = "channels"
@@ -20,7 +21,8 @@ class Findings:
 
     `breaks`: for each broken stretch, how many samples stood before it; `strange`: likewise for records
     of an unknown kind; `data_end`: None if the end of the data was not found, else whether its checksum
-    agrees; `named`: what the index says is there (an attachment or a table, and its name).
+    agrees; `named`: what the index says is there (an attachment or a table, and its name);
+    `sample_time_s`: the usual distance of `sample_times_s`.
     """
 
     breaks: list[int] = field(default_factory=list)
@@ -34,7 +36,8 @@ class Findings:
     has_last_bytes: bool = False
     index_agrees: bool = True
     samples_sha256: str = ""
-    sample_times_s: Array = field(default_factory=lambda: np.zeros(0))
+    sample_times_s: Times = field(default_factory=lambda: np.zeros(0))
+    sample_time_s: float = math.nan
 
     @property
     def broken(self) -> bool:
@@ -99,15 +102,15 @@ def _breaks(findings: Findings, whole: bool | None) -> list[str]:
                 "are lost, the samples are complete"
             )
         elif 0 < at < len(time):
-            said.append(_inner_break(time, at))
+            said.append(_inner_break(findings, at))
         else:
             said.append(_break_at_an_end(findings, at))
     return said
 
 
-def _inner_break(time: Array, at: int) -> str:
-    before_s, after_s = time[at - 1], time[at]
-    if after_s - before_s > 1.5 * float(np.median(np.diff(time))):
+def _inner_break(findings: Findings, at: int) -> str:
+    before_s, after_s = findings.sample_times_s[at - 1], findings.sample_times_s[at]
+    if after_s - before_s > 1.5 * findings.sample_time_s:
         return (
             f"samples between {before_s:.3f} s and {after_s:.3f} s are lost: a block of the file is damaged"
         )
@@ -124,7 +127,7 @@ def _break_at_an_end(findings: Findings, at: int) -> str:
     return f"samples, raw frames or descriptive data {side} may be lost: a block of the file is damaged"
 
 
-def _near(time: Array, at: int) -> str:
+def _near(time: Times, at: int) -> str:
     return f"near {time[min(at, len(time) - 1)]:.3f} s" if len(time) else "without samples"
 
 

@@ -16,10 +16,12 @@ from hil.core.frames import FrameBlock, empty_block
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording import _schema
 from hil.core.recording._mcap_damage import Findings, damage, lost_earlier
-from hil.core.recording._mcap_walk import MAGIC, records, records_inside
+from hil.core.recording._mcap_rows import Rows
+from hil.core.recording._mcap_walk import MAGIC, placed_records, records_inside
 from hil.core.recording._mcap_writer import CHANNELS_TOPIC, EVENTS_TOPIC, FRAMES_TOPIC
 from hil.core.recording._regular_file import open_regular
-from hil.core.recording._table import Event, Recording
+from hil.core.recording._stored import StoredColumns
+from hil.core.recording._table import Array, Event, Recording
 
 Definitions = tuple[dict[int, mcap.Schema], dict[int, mcap.Channel]]
 
@@ -103,8 +105,9 @@ class _Contents:
         self._path = path
         self._keep_frames = keep_frames
         self._unusable_events = 0
-        self._rows: list[npt.NDArray[np.float64]] = []
-        self._samples = 0
+        self._rows = Rows()
+        self._row_ids: set[int] = set()
+        self._payloads: list[npt.NDArray[np.uint8]] = []  # of the rows of the record that is being taken
         self._hash = hashlib.sha256()
         self.definitions: Definitions = ({}, {})
         self._index: Definitions = ({}, {})
@@ -115,16 +118,9 @@ class _Contents:
         self.findings.attachments = list(self.attachments)
         self.findings.tables = self.metadata
 
-    def channels(self) -> dict[str, npt.NDArray[np.float64]]:
-        """Each channel's samples; empties the rows on the way, so that they are not held twice."""
-        channels = {name: np.empty(self._samples) for name in self.names}
-        end = self._samples
-        while self._rows:
-            rows = self._rows.pop()
-            for column, values in enumerate(channels.values()):
-                values[end - len(rows) : end] = rows[:, column]
-            end -= len(rows)
-        return channels
+    def channels(self) -> dict[str, Array] | StoredColumns:
+        """Each channel's samples, to be asked for once."""
+        return self._rows.channels(self._path, self.names, self._row_ids)
 
     def notes(self) -> list[str]:
         """What reading remarked."""
@@ -143,16 +139,21 @@ class _Contents:
             try:
                 if file.read(len(MAGIC)) != MAGIC:
                     raise BadInputError("not an MCAP file", where=str(path))
-                for record in records(file, size):
+                for position, record in placed_records(file, size):
                     self._take_in_file(record)
+                    self._take_rows(position)
                 file.seek(max(0, size - len(MAGIC)))
                 self.findings.has_last_bytes = file.read() == MAGIC
             except OSError as error:
                 raise BadInputError(f"cannot be read: {error.strerror or error}", where=str(path)) from error
         self.findings.samples_sha256 = self._hash.hexdigest()
-        self.findings.sample_times_s = (
-            np.concatenate([rows[:, 0] for rows in self._rows]) if self._rows else np.zeros(0)
-        )
+        if self.names:
+            times = self._rows.times(path, self.names, self._row_ids)
+            self.findings.sample_times_s, self.findings.sample_time_s = times
+
+    @property
+    def _samples(self) -> int:
+        return self._rows.count + sum(map(len, self._payloads))
 
     def _take_in_file(self, record: mcap.Record) -> None:
         """Take what stands in the file itself, not inside a chunk."""
@@ -221,6 +222,7 @@ class _Contents:
             self.frames.setdefault(channel.topic.removeprefix(FRAMES_TOPIC), [])
         if channel.topic != CHANNELS_TOPIC:
             return
+        self._row_ids.add(channel.id)
         schema = self.definitions[0].get(channel.schema_id)
         try:
             if schema is None:
@@ -234,18 +236,25 @@ class _Contents:
 
     def _take_messages(self, topic: str, payloads: npt.NDArray[np.uint8]) -> None:
         if topic == CHANNELS_TOPIC:
-            try:
-                rows = _schema.decode_rows(payloads, len(self.names))
-            except ValueError as error:
-                raise self._foreign(error) from error
-            self._hash.update(payloads.tobytes())
-            self._rows.append(rows)
-            self._samples += len(rows)
+            self._payloads.append(payloads)
         elif topic == EVENTS_TOPIC:
             for payload in payloads:
                 self._take_event(payload.tobytes())
         elif topic.startswith(FRAMES_TOPIC) and self._keep_frames:
             self.frames[topic.removeprefix(FRAMES_TOPIC)] += [payload.tobytes() for payload in payloads]
+
+    def _take_rows(self, position: int) -> None:
+        """The samples of the record at `position`, all of them at once."""
+        if not self._payloads:
+            return
+        try:
+            rows = _schema.decode_parts(self._payloads, len(self.names))
+        except ValueError as error:
+            raise self._foreign(error) from error
+        for payloads in self._payloads:
+            self._hash.update(payloads.tobytes())
+        self._payloads = []
+        self._rows.add(position, rows)
 
     def _take_event(self, message: bytes) -> None:
         try:

@@ -39,6 +39,15 @@ def records(file: BinaryIO, size: int) -> Iterator[Record]:
     Raises:
         OSError: the file cannot be read.
     """
+    return (record for _, record in placed_records(file, size))
+
+
+def placed_records(file: BinaryIO, size: int) -> Iterator[tuple[int, Record]]:
+    """The same, each with the place in the file at which it begins.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
     position = len(MAGIC)
     checksum: int | None = zlib.crc32(MAGIC)
     while position < size:
@@ -47,22 +56,22 @@ def records(file: BinaryIO, size: int) -> Iterator[Record]:
         if found is None or record is None:
             position = _next_intact(file, position, size)
             checksum = None  # of a broken file it says nothing new
-            yield Break(to_end=position == size)
+            yield position, Break(to_end=position == size)
             continue
         opcode, body = found
-        position += RECORD_HEAD + len(body)
+        began, position = position, position + RECORD_HEAD + len(body)
         head = bytes([opcode]) + len(body).to_bytes(8, "little")
         if isinstance(record, DataEnd):
-            yield DataEnd(_agrees(int.from_bytes(body, "little"), checksum))
+            yield began, DataEnd(_agrees(int.from_bytes(body, "little"), checksum))
             checksum = 0
             continue
         if isinstance(record, Footer):
             summary = None if checksum is None else zlib.crc32(head + bytes(body[:16]), checksum)
-            yield Footer(_agrees(int.from_bytes(body[16:], "little"), summary))
+            yield began, Footer(_agrees(int.from_bytes(body[16:], "little"), summary))
             return
         if checksum is not None:
             checksum = zlib.crc32(body, zlib.crc32(head, checksum))
-        yield record
+        yield began, record
 
 
 def records_inside(content: bytes) -> Iterator[Record]:

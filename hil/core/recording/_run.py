@@ -54,7 +54,7 @@ def accepted_expiry_of(recording: Recording) -> AcceptedExpiry | None:
 
 def _as_far_as_recorded(recording: Recording) -> RunResult:
     run = recording.metadata["run"]
-    last_s = float(recording.time_s[-1]) if len(recording.time_s) else 0.0
+    last_s = recording.last_s if recording.samples else 0.0
     tables = [table for name, table in recording.metadata.items() if name.startswith(SEGMENT)]
     segments = [Segment.model_validate_json(table["json"]) for table in tables]
     return RunResult(

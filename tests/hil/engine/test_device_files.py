@@ -52,7 +52,7 @@ def channels(directory: Path, dbc: str) -> dict[str, np.ndarray]:
     bench = sim_bench(directory.name, rmcu=SIM.rmcu.model_copy(update={"dbc": path}))
     outcome = run_plan(RunRequest(plan(STEPS), bench, directory / "out"))
     assert outcome.error is None
-    return read_recording(outcome.recording).channels
+    return dict(read_recording(outcome.recording).channels)
 
 
 def test_a_big_endian_dbc_gives_the_same_channels(tmp_path):

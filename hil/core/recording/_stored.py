@@ -1,0 +1,146 @@
+"""Channels that stay in their file: what is asked for is read from it, and nothing else is held."""
+
+from __future__ import annotations
+
+import bisect
+import copy
+from collections.abc import Collection, Iterator, MutableMapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+Places = npt.NDArray[np.intp]
+
+#: Rows of more than so much are not held: eight minutes of a bench with sixteen channels.
+MOST_HELD_BYTES = 1 << 26
+
+
+@dataclass(frozen=True)
+class Part:
+    """Some rows that stand together in the file at `position`: the first one's number and time in s."""
+
+    position: int
+    first: int
+    first_s: float
+
+
+class PartReader(Protocol):
+    """Reads the rows of a part, shape (samples, channels)."""
+
+    def __call__(self, position: int, count: int) -> Array:
+        """All of them.
+
+        Raises:
+            BadInputError: the file is not what it was.
+        """
+        ...
+
+
+class StoredColumns(MutableMapping[str, Array]):
+    """Channels by name, each read whole from the file when it is asked for.
+
+    Args:
+        names: of the columns of the file's rows, time stamps first.
+        parts: in the order of the file, each not empty.
+        samples: how many rows there are.
+        sample_time_s: the median of the parts' median distances of time stamps.
+    """
+
+    def __init__(
+        self, names: list[str], parts: list[Part], samples: int, sample_time_s: float, read: PartReader
+    ) -> None:
+        self.samples = self._in_file = samples
+        self.sample_time_s = sample_time_s
+        self._begin = 0  # number in the file of the first sample here
+        self._columns = {name: column for column, name in enumerate(names)}
+        self._parts = parts
+        self._read = read
+        self._held: dict[str, Array] = {}
+        self._cells: dict[str, tuple[Places, Array]] = {}
+
+    def __getitem__(self, name: str) -> Array:
+        if name not in self:
+            raise KeyError(name)
+        return self.rows(0, self.samples, [name])[name]
+
+    def __setitem__(self, name: str, values: Array) -> None:
+        self._held[name] = values
+
+    def __delitem__(self, name: str) -> None:
+        if name not in self:
+            raise KeyError(name)
+        self._held.pop(name, None)
+        self._columns.pop(name, None)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter({**self._columns, **self._held})
+
+    def __len__(self) -> int:
+        return len(self._columns.keys() | self._held.keys())
+
+    def __contains__(self, name: object) -> bool:  # the mixin's would read the channel
+        return name in self._columns or name in self._held
+
+    def rows(self, first: int, last: int, names: Collection[str]) -> dict[str, Array]:
+        """Samples `first` to `last`, the last left out, of some channels; each array is the caller's own."""
+        first, last = max(0, first), min(last, self.samples)
+        count = max(0, last - first)
+        found = {name: np.empty(count) for name in names}
+        asked = [(self._columns[name], found[name]) for name in names if name not in self._held]
+        begin, end = self._begin + first, self._begin + last
+        if asked and count:
+            self._fill(begin, end, asked)
+        for name, values in found.items():
+            if name in self._held:
+                values[:] = self._held[name][first:last]
+            elif name in self._cells:
+                places, cells = self._cells[name]
+                inside = slice(*np.searchsorted(places, (begin, end)).tolist())
+                values[places[inside] - begin] = cells[inside]
+        return found
+
+    def rows_before(self, time_s: float, *, or_at: bool = False) -> int:
+        """How many samples lie before a time, or before and at it; time stamps increase."""
+        search = bisect.bisect_right if or_at else bisect.bisect_left
+        number = search(self._parts, time_s, key=lambda part: part.first_s) - 1
+        if number < 0:
+            return 0
+        time = self._part(number)[:, 0]
+        inside = int(np.searchsorted(time, time_s, "right" if or_at else "left"))
+        return min(max(0, self._parts[number].first + inside - self._begin), self.samples)
+
+    def window(self, first: int, last: int) -> dict[str, Array] | StoredColumns:
+        """Samples `first` to `last`, the last left out: read, or where they are many left in the file."""
+        first, last = max(0, first), min(last, self.samples)
+        count = max(0, last - first)
+        if count * len(self) * np.float64().nbytes <= MOST_HELD_BYTES:
+            return self.rows(first, last, tuple(self))
+        part = copy.copy(self)
+        part._begin, part.samples = self._begin + first, count
+        part._columns, part._cells = dict(self._columns), dict(self._cells)
+        part._held = {name: values[first:last] for name, values in self._held.items()}
+        return part
+
+    def mend(self, name: str, places: Places, cells: Array) -> None:
+        """Put other values in the place of some samples, in increasing order."""
+        self._cells[name] = (self._begin + places, cells)
+
+    def _fill(self, first: int, last: int, asked: list[tuple[int, Array]]) -> None:
+        begin = bisect.bisect_right(self._parts, first, key=lambda part: part.first) - 1
+        for number in range(begin, len(self._parts)):
+            at = self._parts[number].first
+            if at >= last:
+                return
+            rows = self._part(number)
+            rows = rows[max(0, first - at) : last - at]
+            to = max(at, first) - first
+            for column, values in asked:
+                values[to : to + len(rows)] = rows[:, column]
+
+    def _part(self, number: int) -> Array:
+        part = self._parts[number]
+        following = self._parts[number + 1].first if number + 1 < len(self._parts) else self._in_file
+        return self._read(part.position, following - part.first)
