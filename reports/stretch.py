@@ -60,7 +60,7 @@ def thinned(recording: Recording) -> Lines:
 
     Empty if the recording is short enough to be drawn as it is. It is read once, block by block.
     """
-    if recording.samples <= LONGEST_DRAWN:
+    if recording.samples <= LONGEST_DRAWN or TIME not in recording:
         return {}
     names = [name for name in recording.channels if name != TIME]
     points = max(2, _POINTS * BLOCK // recording.samples)

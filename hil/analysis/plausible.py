@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+import numpy.typing as npt
 
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
+
+Array = npt.NDArray[np.float64]
 
 #: In the channel's SI unit: hundreds of thousands of times what an axle can.
 LARGEST_VALUE = 1e9
@@ -27,34 +31,62 @@ def refuse_implausible(recording: Recording) -> None:
     """
     names = [name for name in (INPUT, *OUTPUTS) if name in recording]
     where = str(recording.source)
-    backwards = ~(np.diff(recording[TIME]) > 0)
-    if backwards.any():
-        row = int(np.argmax(backwards)) + 1
-        raise BadInputError(
-            f"'{TIME}' does not increase at sample {row + 1} ({recording[TIME][row]:.17g} s)",
-            where=where,
-            fix="let time_s start near zero: far from it floating point cannot tell the samples apart",
-        )
-    for name in names:
-        values = recording[name]
-        impossible = ~(np.abs(values) <= LARGEST_VALUE)
-        if impossible.any():
-            row = int(np.argmax(impossible))
+    seen = {name: _Seen() for name in names}
+    alike = [pair for pair in combinations(names, 2) if set(pair) != _SAME_IF_DIRECT]
+    last_s = np.zeros(0)
+    for first, rows in recording.blocks((TIME, *names)):
+        _refuse_backwards(np.concatenate([last_s, rows[TIME]]), first - len(last_s), where)
+        last_s = rows[TIME][-1:]
+        for name, one in seen.items():
+            one.look(rows[name], rows[TIME])
+        alike = [(one, other) for one, other in alike if np.array_equal(rows[one], rows[other])]
+    for name, one in seen.items():
+        if one.impossible:
             raise BadInputError(
-                f"'{name}' is {values[row]:g} at {recording[TIME][row]:.6g} s: no axle does that "
-                f"({np.count_nonzero(impossible)} such values, {LARGEST_VALUE:g} is allowed)",
+                f"'{name}' is {one.first:g} at {one.first_s:.6g} s: no axle does that "
+                f"({one.impossible} such values, {LARGEST_VALUE:g} is allowed)",
                 where=where,
                 fix="mend or leave out these samples",
             )
-    for one, other in combinations(names, 2):
-        if {one, other} == _SAME_IF_DIRECT:
-            continue
-        if np.ptp(recording[one]) > 0 and np.array_equal(recording[one], recording[other]):
+    for name, other in alike:
+        if seen[name].highest > seen[name].lowest:
             raise BadInputError(
-                f"'{one}' and '{other}' are equal at every sample: one is a copy of the other",
+                f"'{name}' and '{other}' are equal at every sample: one is a copy of the other",
                 where=where,
                 fix="give each channel its own signal, or leave the copy out",
             )
+
+
+@dataclass
+class _Seen:
+    """A channel's range, and how many of its values are impossible, with the first one and its time in s."""
+
+    lowest: float = np.inf
+    highest: float = -np.inf
+    impossible: int = 0
+    first: float = np.nan
+    first_s: float = np.nan
+
+    def look(self, values: Array, time: Array) -> None:
+        impossible = ~(np.abs(values) <= LARGEST_VALUE)
+        if not self.impossible and impossible.any():
+            row = int(np.argmax(impossible))
+            self.first, self.first_s = float(values[row]), float(time[row])
+        self.impossible += int(np.count_nonzero(impossible))
+        self.lowest = min(self.lowest, float(np.min(values)))
+        self.highest = max(self.highest, float(np.max(values)))
+
+
+def _refuse_backwards(time: Array, first: int, where: str) -> None:
+    """`first`: number of the first of these time stamps."""
+    backwards = ~(np.diff(time) > 0)
+    if backwards.any():
+        row = int(np.argmax(backwards)) + 1
+        raise BadInputError(
+            f"'{TIME}' does not increase at sample {first + row + 1} ({time[row]:.17g} s)",
+            where=where,
+            fix="let time_s start near zero: far from it floating point cannot tell the samples apart",
+        )
 
 
 def same_data(one: Recording, other: Recording) -> bool:
@@ -65,7 +97,10 @@ def same_data(one: Recording, other: Recording) -> bool:
     names = [name for name in (INPUT, *OUTPUTS) if name in one]
     if names != [name for name in (INPUT, *OUTPUTS) if name in other] or one is other:
         return one is other
-    return all(np.array_equal(one[name], other[name]) for name in names)
+    if one.samples != other.samples:
+        return False
+    blocks = zip(one.blocks(names), other.blocks(names), strict=True)
+    return all(np.array_equal(a[name], b[name]) for (_, a), (_, b) in blocks for name in names)
 
 
 def refuse_same_data(recordings: Sequence[Recording], holdout: Sequence[Recording] = ()) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.comparison._runs import ComparedRun, controllers_that_differ, refuse_other_plans
+from hil.core.channels import TIME
 from hil.core.errors import BadInputError
 from hil.core.result import CriterionResult, CriterionVerdict
 
@@ -154,11 +155,11 @@ def aligned(run: ComparedRun, segment: str, channel: str) -> tuple[Array, Array]
     found = next((s for s in run.result.segments if s.id == segment), None)
     if found is None or channel not in run.recording:
         return None
-    time = run.recording.time_s
-    inside = (time >= found.start_s) & (time < found.end_s)
-    if np.count_nonzero(inside) < _LEAST_SAMPLES:
+    first, last = (run.recording.rows_before(time_s) for time_s in (found.start_s, found.end_s))
+    if last - first < _LEAST_SAMPLES:
         return None
-    return time[inside] - found.step_s, run.recording[channel][inside]
+    rows = run.recording.rows(first, last, (TIME, channel))
+    return rows[TIME] - found.step_s, rows[channel]
 
 
 def _rms(found: tuple[Array, Array] | None, over: float) -> float:

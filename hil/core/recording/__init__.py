@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import dataclasses
 import logging
 from pathlib import Path
 
-import numpy as np
-
-from hil.core.channels import WHEEL_ANGLE
 from hil.core.errors import BadInputError
+from hil.core.recording._checked import checked
 from hil.core.recording._evidence import sidecar
 from hil.core.recording._formats import FRAME_LOGS, READ, WRITTEN, reader_of, writer_of
 from hil.core.recording._mcap_following import FollowedRecording
@@ -19,7 +16,8 @@ from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
 from hil.core.recording._regular_file import refuse_unless_regular
 from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, REPLAY, RUN, SEGMENT, VEHICLE, run_of
-from hil.core.recording._table import BLOCK, Event, Recording, checked
+from hil.core.recording._table import BLOCK, Event, Recording
+from hil.core.recording._wheel_angle import with_wheel_angle
 
 logger = logging.getLogger(__name__)
 
@@ -62,13 +60,10 @@ def driven_by_torque(recording: Recording) -> list[Recording]:
     run = run_of(recording)
     if run is None:
         return [recording]
-    turned = _with_wheel_angle(recording)
-    parts = []
-    for segment in run.segments:
-        if segment.load == "vehicle":
-            part = turned.between(segment.start_s, segment.end_s)
-            part.source = recording.source.with_name(f"{recording.source.stem} {segment.id}")
-            parts.append(part)
+    driven = [segment for segment in run.segments if segment.load == "vehicle"]
+    parts = with_wheel_angle(recording, [(segment.start_s, segment.end_s) for segment in driven])
+    for segment, part in zip(driven, parts, strict=True):
+        part.source = recording.source.with_name(f"{recording.source.stem} {segment.id}")
     if not parts:
         raise BadInputError(
             "has no segment during which the dynos simulate the vehicle",
@@ -76,14 +71,6 @@ def driven_by_torque(recording: Recording) -> list[Recording]:
             fix="run a plan with steps or chirps of 'load: vehicle'",
         )
     return parts
-
-
-def _with_wheel_angle(recording: Recording) -> Recording:
-    """The recording with the wheel's angle since its start, at which the axle stood still."""
-    speed = np.nan_to_num(recording["wheel_speed_rad_s"])
-    steps = 0.5 * np.diff(recording.time_s) * (speed[1:] + speed[:-1])
-    angle = np.concatenate([[0.0], np.cumsum(steps)])
-    return dataclasses.replace(recording, channels={**recording.channels, WHEEL_ANGLE: angle})
 
 
 def write_frames(recording: Recording, path: Path) -> int:

@@ -29,18 +29,13 @@ def write_csv(recording: Recording, path: Path) -> None:
     A number always has a decimal point (1.0, not 1); a missing one is an empty cell. What the recording has
     beside its samples stands in a file next to it (`sidecar`).
     """
-    columns = list(recording.channels.values())
-    samples = len(columns[0]) if columns else 0
     header = io.StringIO()
     csv.writer(header, lineterminator="\n").writerow(recording.channels)
     options = arrow_csv.WriteOptions(include_header=False, quoting_style="none")
     with replacing(path) as temporary, temporary.open("wb") as file:
         file.write(header.getvalue().encode())
-        for start in range(0, samples, _ROWS_AT_ONCE):
-            block = {
-                name: _as_text(values[start : start + _ROWS_AT_ONCE], is_time=name == TIME)
-                for name, values in recording.channels.items()
-            }
+        for _, rows in recording.blocks(at_once=_ROWS_AT_ONCE):
+            block = {name: _as_text(values, is_time=name == TIME) for name, values in rows.items()}
             arrow_csv.write_csv(pa.table(block), file, options)
         file.close()
         if has_evidence(recording):

@@ -77,12 +77,11 @@ def has_evidence(recording: Recording) -> bool:
 
 def evidence_of(recording: Recording, table_sha256: str = "") -> str:
     """Units, tables, files, events and damage of a recording, as JSON."""
-    time_s = recording.time_s
     found = _Evidence(
         source=recording.source.name,
-        samples=len(time_s),
-        first_time_s=float(time_s[0]) if len(time_s) else 0.0,
-        last_time_s=float(time_s[-1]) if len(time_s) else 0.0,
+        samples=recording.samples,
+        first_time_s=recording.first_s if recording.samples else 0.0,
+        last_time_s=recording.last_s if recording.samples else 0.0,
         table_sha256=table_sha256,
         units={name: unit_of(name) for name in recording.channels if unit_of(name)},
         metadata=recording.metadata,

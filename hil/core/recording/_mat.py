@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Mapping
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -79,14 +80,32 @@ def write_mat(recording: Recording, path: Path) -> None:
                 fix="rename one of the two columns",
             )
         names[name] = channel
-    held: dict[str, Any] = {name: recording.channels[channel] for name, channel in names.items()}
-    held[_UNITS] = {name: unit_of(channel) for name, channel in names.items()}
-    if has_evidence(recording):
-        held[_EVIDENCE] = evidence_of(recording)
     with replacing(path) as temporary:
         savemat(
-            temporary, held, appendmat=False, do_compression=True, long_field_names=True, oned_as="column"
+            temporary,
+            _Variables(recording, names),
+            appendmat=False,
+            do_compression=True,
+            long_field_names=True,
+            oned_as="column",
         )
+
+
+class _Variables(dict[str, Any]):
+    """The variables of a recording; channels are read as they are written, so that few are held."""
+
+    def __init__(self, recording: Recording, names: Mapping[str, str]) -> None:
+        further: dict[str, Any] = {_UNITS: {name: unit_of(channel) for name, channel in names.items()}}
+        if has_evidence(recording):
+            further[_EVIDENCE] = evidence_of(recording)
+        super().__init__(further)
+        self._recording, self._names = recording, names
+
+    def items(self) -> Any:
+        """Name and value of every variable."""
+        columns = self._recording.columns(list(self._names.values()))
+        named = zip(self._names, (values for _, values in columns), strict=True)
+        return chain(named, super().items())
 
 
 def _refuse_hdf5(path: Path) -> None:

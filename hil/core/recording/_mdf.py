@@ -16,9 +16,8 @@ from hil.core.files import replacing
 from hil.core.mdf_file import open_mdf
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._regular_file import refuse_unless_regular
-from hil.core.recording._table import Array, Recording
+from hil.core.recording._table import BLOCK, Array, Recording
 
-_SAMPLES_AT_ONCE = 1 << 20
 _EVENT_TICKS = 1_000_000  # in a second
 _MASTERS = (2, 3)  # channel types of the standard: time stamps, stored or counted
 
@@ -122,13 +121,12 @@ def write_mdf(recording: Recording, path: Path) -> None:
     from asammdf import MDF, Signal
 
     names = [name for name in recording.channels if name != TIME]
-    time_s = recording.time_s
     with replacing(path) as temporary, MDF(version="4.10") as mdf:
-        first = slice(0, _SAMPLES_AT_ONCE)
+        first = recording.rows(0, BLOCK)
         signals = [
             Signal(
-                samples=recording[name][first],
-                timestamps=time_s[first],
+                samples=first[name],
+                timestamps=first[TIME],
                 name=name,
                 unit=unit_of(name),
                 comment=CHANNELS[name].meaning if name in CHANNELS else "",
@@ -136,9 +134,9 @@ def write_mdf(recording: Recording, path: Path) -> None:
             for name in names
         ]
         mdf.append(signals, comment="eaxle-hil recording", common_timebase=True)
-        for start in range(_SAMPLES_AT_ONCE, len(time_s), _SAMPLES_AT_ONCE):
-            stretch = slice(start, start + _SAMPLES_AT_ONCE)
-            mdf.extend(0, [(values[stretch], None) for values in (time_s, *(recording[n] for n in names))])
+        for start in range(BLOCK, recording.samples, BLOCK):
+            rows = recording.rows(start, start + BLOCK, (TIME, *names))
+            mdf.extend(0, [(values, None) for values in rows.values()])
         if has_evidence(recording):
             _tell(mdf, recording)
         mdf.save(temporary, overwrite=True, compression=2)

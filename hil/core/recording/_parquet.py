@@ -55,13 +55,18 @@ def read_parquet(path: Path) -> Recording:
 def write_parquet(recording: Recording, path: Path) -> None:
     """Write Parquet with a checksum for each page; each column carries its unit in its field's metadata.
 
+    A row group is a block, so that the samples are not held all at once.
     What the recording has beside its samples stands in the file's metadata.
     """
     fields = [pa.field(name, pa.float64(), metadata={"unit": unit_of(name)}) for name in recording.channels]
     metadata = {EVIDENCE: evidence_of(recording)} if has_evidence(recording) else None
-    table = pa.table(list(recording.channels.values()), schema=pa.schema(fields, metadata))
-    with replacing(path) as temporary:
-        pq.write_table(table, temporary, compression="zstd", write_page_checksum=True)
+    schema = pa.schema(fields, metadata)
+    with (
+        replacing(path) as temporary,
+        pq.ParquetWriter(temporary, schema, compression="zstd", write_page_checksum=True) as writer,
+    ):
+        for _, rows in recording.blocks():
+            writer.write_table(pa.table(list(rows.values()), schema=schema))
 
 
 def _refuse_twice(names: list[str], path: Path) -> None:

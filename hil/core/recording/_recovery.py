@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hil.core.channels import TIME
 from hil.core.files import replacing, sha256_of
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording._growing_file import GrowingFile
@@ -45,17 +46,23 @@ class Missing:
 
 def missing_of(recording: Recording) -> Missing:
     """Stretches, shares of channels and files that are missing."""
-    time = recording.time_s
-    steps = np.diff(time)
-    wide = np.flatnonzero(steps > 1.5 * np.median(steps)) if len(steps) else np.zeros(0, int)
+    gaps, lacking = [], dict.fromkeys(recording.channels, 0)
+    widest_s = 1.5 * recording.sample_time_s if recording.samples > 1 else np.inf
+    last_s = np.zeros(0)
+    for _, rows in recording.blocks():
+        time = np.concatenate([last_s, rows[TIME]])
+        gaps += [(float(time[at]), float(time[at + 1])) for at in np.flatnonzero(np.diff(time) > widest_s)]
+        last_s = time[-1:]
+        for name, values in rows.items():
+            lacking[name] += int(np.count_nonzero(~np.isfinite(values)))
     shares = {
-        name: float(np.mean(~np.isfinite(v))) if len(v) else 1.0 for name, v in recording.channels.items()
+        name: count / recording.samples if recording.samples else 1.0 for name, count in lacking.items()
     }
     expected = ("plan.yaml", "bench.toml", "run.json")
     hashed = recording.metadata.get("hashes", {})
     return Missing(
-        gaps_s=tuple((float(time[at]), float(time[at + 1])) for at in wide),
-        until_s=float(time[-1]) if len(time) else float("nan"),
+        gaps_s=tuple(gaps),
+        until_s=recording.last_s if recording.samples else float("nan"),
         channels={name: share for name, share in shares.items() if share > 0.0},
         files=tuple(n for n in dict.fromkeys((*expected, *hashed)) if n not in recording.attachments),
     )

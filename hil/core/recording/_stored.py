@@ -118,11 +118,16 @@ class StoredColumns(MutableMapping[str, Array]):
         count = max(0, last - first)
         if count * len(self) * np.float64().nbytes <= MOST_HELD_BYTES:
             return self.rows(first, last, tuple(self))
-        part = copy.copy(self)
+        part = self.copy()
         part._begin, part.samples = self._begin + first, count
-        part._columns, part._cells = dict(self._columns), dict(self._cells)
         part._held = {name: values[first:last] for name, values in self._held.items()}
         return part
+
+    def copy(self) -> StoredColumns:
+        """Another of the same file, to add channels to or to take some from."""
+        other = copy.copy(self)
+        other._columns, other._cells, other._held = dict(self._columns), dict(self._cells), dict(self._held)
+        return other
 
     def mend(self, name: str, places: Places, cells: Array) -> None:
         """Put other values in the place of some samples, in increasing order."""

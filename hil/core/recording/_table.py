@@ -11,21 +11,14 @@ from typing import NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.channels import CHANNELS, INPUT, OUTPUTS, TIME
+from hil.core.channels import TIME
 from hil.core.errors import BadInputError
-from hil.core.recording._stored import Places, StoredColumns
+from hil.core.recording._stored import MOST_HELD_BYTES, StoredColumns
 
 Array = npt.NDArray[np.float64]
 
 #: Samples that are looked at together where a recording is gone through from end to end.
 BLOCK = 1 << 18
-
-#: Largest share of NaN or infinite cells in a required channel.
-LARGEST_MISSING_SHARE = 0.01
-
-#: Largest magnitude that a channel of the contract may have, in its unit: beyond it no axle can be, and
-#: products of a few such numbers still fit a double.
-LARGEST_MAGNITUDE = 1e15
 
 
 @dataclass
@@ -98,17 +91,21 @@ class Recording:
         """How many there are of each channel."""
         if isinstance(self.channels, StoredColumns):
             return self.channels.samples
-        return len(self.channels.get(TIME, ()))
+        return len(next(iter(self.channels.values()), ()))
 
     @property
     def first_s(self) -> float:
         """The first time stamp; there must be one."""
-        return float(self.rows(0, 1, (TIME,))[TIME][0])
+        return self.time_at(0)
 
     @property
     def last_s(self) -> float:
         """The last time stamp; there must be one."""
-        return float(self.rows(self.samples - 1, self.samples, (TIME,))[TIME][0])
+        return self.time_at(self.samples - 1)
+
+    def time_at(self, sample: int) -> float:
+        """Time stamp of a sample, from 0."""
+        return float(self.rows(sample, sample + 1, (TIME,))[TIME][0])
 
     @property
     def samples_sha256(self) -> str:
@@ -136,27 +133,43 @@ class Recording:
         return int(np.searchsorted(self.time_s, time_s, "right" if or_at else "left"))
 
     def blocks(
-        self, names: Collection[str] | None = None, at_once: int = BLOCK
+        self, names: Collection[str] | None = None, at_once: int | None = None
     ) -> Iterator[tuple[int, dict[str, Array]]]:
-        """All samples of some channels or of all, so many at once, each block with its first one's number."""
+        """All samples of some channels or of all, block by block, each with its first one's number."""
+        at_once = at_once or BLOCK
         for first in range(0, self.samples, at_once):
             yield first, self.rows(first, first + at_once, names)
+
+    def columns(self, names: Collection[str]) -> Iterator[tuple[str, Array]]:
+        """Whole channels, one after the other; read together as many as may be held, at least one."""
+        together = max(1, MOST_HELD_BYTES // max(1, self.samples * np.float64().nbytes))
+        asked = list(names)
+        for first in range(0, len(asked), together):
+            rows = self.rows(0, self.samples, asked[first : first + together])
+            while rows:
+                name = next(iter(rows))
+                yield name, rows.pop(name)
 
     def between(self, start_s: float, end_s: float) -> Recording:
         """The samples with start_s <= time_s <= end_s (half a sample of grace on both ends)."""
         grace = 0.5 * self.sample_time_s
-        channels: MutableMapping[str, Array]
         if isinstance(self.channels, StoredColumns):
-            first, last = self.rows_before(start_s - grace), self.rows_before(end_s + grace, or_at=True)
-            channels = self.channels.window(first, last)
-        else:
-            inside = (self.time_s >= start_s - grace) & (self.time_s <= end_s + grace)
-            channels = {name: values[inside] for name, values in self.channels.items()}
-        return self._with(channels)
+            return self.piece(self.rows_before(start_s - grace), self.rows_before(end_s + grace, or_at=True))
+        inside = (self.time_s >= start_s - grace) & (self.time_s <= end_s + grace)
+        return self._with({name: values[inside] for name, values in self.channels.items()})
 
     def piece(self, first: int, last: int) -> Recording:
-        """Samples `first` to `last`, the last left out."""
+        """Samples `first` to `last`, the last left out; where they are many they stay in their file too."""
+        if isinstance(self.channels, StoredColumns):
+            return self._with(self.channels.window(first, last))
         return self._with(self.rows(first, last))
+
+    def without(self, names: Collection[str]) -> Recording:
+        """The same without some channels."""
+        channels = self.channels.copy() if isinstance(self.channels, StoredColumns) else dict(self.channels)
+        for name in names:
+            del channels[name]
+        return self._with(channels)
 
     def _with(self, channels: MutableMapping[str, Array]) -> Recording:
         return replace(
@@ -169,125 +182,3 @@ class Recording:
             return f"{self.source}: sample {sample + 1}"
         line = sample + 2 + bisect.bisect_right(self.blank_lines, sample)
         return f"{self.source}: sample {sample + 1}, line {line}"
-
-
-def checked(
-    recording: Recording,
-    *,
-    least_samples: int = 2,
-    allow_missing: bool = False,
-    any_channels: bool = False,
-) -> Recording:
-    """Refuse what no command can use; mend small gaps in cells and say so in `notes`.
-
-    With `allow_missing`, channels with many missing cells stay as they are (a report of a failed run); with
-    `any_channels` the axle's need not be there.
-
-    Raises:
-        BadInputError: a required channel is missing, time runs backwards or stands still, too many
-            missing cells, values beyond LARGEST_MAGNITUDE, or too few samples.
-    """
-    where = str(recording.source)
-    for name in (TIME,) if any_channels else (TIME, INPUT):
-        if name not in recording:
-            recording[name]
-    if not any_channels and not any(name in recording for name in OUTPUTS):
-        raise BadInputError(
-            f"has none of the output channels {', '.join(OUTPUTS)}", where=where, fix="record at least one"
-        )
-    if recording.samples < least_samples:
-        raise BadInputError(f"has {recording.samples} samples, {least_samples} are needed", where=where)
-    known = [name for name in CHANNELS if name in recording]
-    lacking = {name: _Lacking() for name in (INPUT, *OUTPUTS) if name in recording}
-    before_s = -np.inf
-    for first, block in recording.blocks(known):
-        time = block[TIME]
-        if not np.all(np.isfinite(time)):
-            row = first + int(np.flatnonzero(~np.isfinite(time))[0])
-            raise BadInputError(f"'{TIME}' is not finite", where=recording.place(row))
-        _refuse_huge(recording, first, block)
-        _refuse_backwards(recording, first, time, before_s)
-        before_s = float(time[-1])
-        for name, cells in lacking.items():
-            cells.count(first, block[name])
-    for name, cells in lacking.items():
-        _mend(recording, name, cells, allow_missing=allow_missing)
-    return recording
-
-
-@dataclass
-class _Lacking:
-    """Cells of a channel that are missing: how many, and the number of the first."""
-
-    missing: int = 0
-    first: int = 0
-
-    def count(self, first: int, values: Array) -> None:
-        missing = ~np.isfinite(values)
-        if not missing.any():
-            return
-        if not self.missing:
-            self.first = first + int(missing.argmax())
-        self.missing += int(missing.sum())
-
-
-def _refuse_backwards(recording: Recording, first: int, time: Array, before_s: float) -> None:
-    """`before_s`: of the sample before the first one of `time`."""
-    time = np.concatenate([[before_s], time])
-    backwards = np.flatnonzero(np.diff(time) <= 0)
-    if backwards.size:
-        row = int(backwards[0])
-        raise BadInputError(
-            f"'{TIME}' does not increase: {time[row + 1]:g} s follows {time[row]:g} s",
-            where=recording.place(first + row),
-        )
-
-
-def _refuse_huge(recording: Recording, first: int, block: dict[str, Array]) -> None:
-    for name, values in block.items():
-        huge = np.isfinite(values) & ((values > LARGEST_MAGNITUDE) | (values < -LARGEST_MAGNITUDE))
-        if huge.any():
-            row = int(huge.argmax())
-            raise BadInputError(
-                f"{values[row]:g} is no measurement: at most {LARGEST_MAGNITUDE:g} can be used",
-                where=f"{recording.place(first + row)}, column '{name}'",
-                fix="correct the cell, or leave it empty",
-            )
-
-
-def _mend(recording: Recording, name: str, lacking: _Lacking, *, allow_missing: bool) -> None:
-    if not lacking.missing:
-        return
-    share = lacking.missing / recording.samples
-    if share > LARGEST_MISSING_SHARE and allow_missing:
-        recording.notes.append(f"{share:.1%} of '{name}' is missing")
-        return
-    if share > LARGEST_MISSING_SHARE:
-        raise BadInputError(
-            f"{share:.1%} of '{name}' is NaN or infinite, {LARGEST_MISSING_SHARE:.0%} is allowed",
-            where=f"first at {recording.place(lacking.first)}",
-        )
-    places, cells = _interpolated(recording, name)
-    if isinstance(recording.channels, StoredColumns):
-        recording.channels.mend(name, places, cells)
-    else:
-        values = recording[name].copy()
-        values[places] = cells
-        recording.channels[name] = values
-    recording.notes.append(f"{lacking.missing} missing cells of '{name}' were interpolated")
-
-
-def _interpolated(recording: Recording, name: str) -> tuple[Places, Array]:
-    """Numbers of the missing samples, and what a straight line between their neighbours gives there."""
-    places, missing_s, beside_s, beside = [], [], [], []
-    for first, block in recording.blocks((TIME, name)):
-        time, values = block[TIME], block[name]
-        there = np.isfinite(values)
-        places.append(first + np.flatnonzero(~there))
-        missing_s.append(time[~there])
-        within = np.append(there[1:], False) & np.append(False, there[:-1])
-        kept = there & ~within  # next to a gap, or at an end of the block
-        beside_s.append(time[kept])
-        beside.append(values[kept])
-    cells = np.interp(np.concatenate(missing_s), np.concatenate(beside_s), np.concatenate(beside))
-    return np.concatenate(places), cells

@@ -59,6 +59,5 @@ def with_outputs_of(model: Model, recording: Recording) -> Recording:
             where=str(recording.source),
             fix="add [transfer_functions] of one of them to the model file, or record what the model shows",
         )
-    kept = {name: values for name, values in recording.channels.items() if name not in lacking}
     notes = [*recording.notes, f"the model has no function for {', '.join(lacking)}: not compared"]
-    return replace(recording, channels=kept, notes=notes)
+    return replace(recording.without(lacking), notes=notes)

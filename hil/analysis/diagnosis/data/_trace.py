@@ -23,7 +23,7 @@ from hil.analysis.diagnosis.data._thresholds import (
     START_SAMPLES,
     UNEVEN_SHARE,
 )
-from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
+from hil.core.channels import INPUT, OUTPUTS, TIME, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.plant import SENSOR_GAIN, SENSOR_OFFSET
@@ -108,28 +108,49 @@ def unbroken(recording: Recording) -> list[Recording]:
     Raises:
         BadInputError: no stretch is long enough.
     """
-    time = recording.time_s
-    if len(time) < 2:
+    if recording.samples < 2:
         return [recording]
-    steps = np.diff(time)
-    cuts = np.flatnonzero(steps > GAP_SAMPLES * recording.sample_time_s) + 1
-    if not cuts.size:
+    gaps = _gaps(recording)
+    if not gaps:
         return [recording]
     pieces = [
         _piece(recording, first, last)
-        for first, last in pairwise([0, *cuts.tolist(), len(time)])
-        if last - first >= LEAST_SAMPLES and time[last - 1] - time[first] >= LEAST_DURATION_S
+        for first, last in pairwise([0, *(gap.after for gap in gaps), recording.samples])
+        if last - first >= LEAST_SAMPLES
+        and recording.time_at(last - 1) - recording.time_at(first) >= LEAST_DURATION_S
     ]
     if not pieces:
         raise BadInputError(
-            f"has {cuts.size} gaps, and no {LEAST_SAMPLES} samples without one between them",
+            f"has {len(gaps)} gaps, and no {LEAST_SAMPLES} samples without one between them",
             where=str(recording.source),
             fix="record again without gaps",
         )
-    left_out = cuts.size + 1 - len(pieces)
-    note = f"cut at gaps: {cuts.size}, the longest of {steps.max():.3g} s at {time[np.argmax(steps)]:.4g} s"
+    left_out = len(gaps) + 1 - len(pieces)
+    longest = max(gaps, key=lambda gap: gap.lasts_s)
+    note = f"cut at gaps: {len(gaps)}, the longest of {longest.lasts_s:.3g} s at {longest.start_s:.4g} s"
     pieces[0].notes.append(note + (f"; short stretches left out: {left_out}" if left_out else ""))
     return pieces
+
+
+@dataclass(frozen=True)
+class _Gap:
+    """A pause between two samples: when it begins, and the number of the sample behind it."""
+
+    start_s: float
+    lasts_s: float
+    after: int
+
+
+def _gaps(recording: Recording) -> list[_Gap]:
+    gaps = []
+    last_s = np.zeros(0)
+    for first, rows in recording.blocks((TIME,)):
+        time = np.concatenate([last_s, rows[TIME]])
+        steps = np.diff(time)
+        for at in np.flatnonzero(steps > GAP_SAMPLES * recording.sample_time_s).tolist():
+            gaps.append(_Gap(float(time[at]), float(steps[at]), first - len(last_s) + at + 1))
+        last_s = time[-1:]
+    return gaps
 
 
 def excerpts(recording: Recording) -> list[Recording]:
@@ -137,7 +158,7 @@ def excerpts(recording: Recording) -> list[Recording]:
 
     Ten stretches rather than every tenth sample: what torque does between samples must be known.
     """
-    count = len(recording.time_s)
+    count = recording.samples
     if count <= MOST_SAMPLES:
         return [recording]
     size = MOST_SAMPLES // EXCERPTS
@@ -146,18 +167,17 @@ def excerpts(recording: Recording) -> list[Recording]:
     seconds = size * recording.sample_time_s
     pieces[0].notes.append(
         f"has {count} samples: {EXCERPTS} stretches of {seconds:.4g} s, spread evenly over its "
-        f"{float(recording.time_s[-1] - recording.time_s[0]):.5g} s, stand for it"
+        f"{recording.last_s - recording.first_s:.5g} s, stand for it"
     )
     return pieces
 
 
 def _piece(recording: Recording, first: int, last: int) -> Recording:
     """Samples `first` to `last` as a recording that is named after the time it begins at."""
-    channels = {name: values[first:last] for name, values in recording.channels.items()}
-    began = f" from {recording.time_s[first]:.4g} s" if first else ""
+    began = f" from {recording.time_at(first):.4g} s" if first else ""
     source = recording.source.with_name(f"{recording.source.stem}{began}{recording.source.suffix}")
     notes = list(recording.notes) if first == 0 else []
-    return dataclasses.replace(recording, channels=channels, source=source, notes=notes)
+    return dataclasses.replace(recording.piece(first, last), source=source, notes=notes)
 
 
 def trace_of(recording: Recording, name: str = "", load: Array | None = None) -> Trace:
