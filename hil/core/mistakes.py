@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from hil.core.errors import BadInputError
+from hil.core.listed import listed
 from hil.core.toml_lines import line_of
 
 
@@ -60,7 +61,7 @@ class Mistakes:
 
 
 def refuse(where: str, mistakes: Iterable[Mistake], text: str = "", fix: str = "") -> None:
-    """Tell every mistake of a file, each on a line; nothing if there is none.
+    """Tell the mistakes of a file, each on a line, as many as somebody reads; nothing if there is none.
 
     Args:
         where: the file.
@@ -68,7 +69,7 @@ def refuse(where: str, mistakes: Iterable[Mistake], text: str = "", fix: str = "
         fix: what to do, where a mistake does not say it.
 
     Raises:
-        MistakesError: there are mistakes.
+        MistakesError: there are mistakes; its `found` has all of them.
     """
     found = tuple(dict.fromkeys(mistakes))
     if len(found) == 1:
@@ -78,8 +79,8 @@ def refuse(where: str, mistakes: Iterable[Mistake], text: str = "", fix: str = "
     if found:
         placed = [(line_of(text, mistake.key) or 0, mistake) for mistake in found]
         placed.sort(key=lambda one: one[0])
-        lines = (f"\n  {_on_a_line(mistake, line)}" for line, mistake in placed)
-        raise MistakesError(f"{len(found)} mistakes{''.join(lines)}", where=where, fix=fix, found=found)
+        lines = listed([_on_a_line(mistake, line) for line, mistake in placed])
+        raise MistakesError(f"{len(found)} mistakes{lines}", where=where, fix=fix, found=found)
 
 
 def all_of(errors: Iterable[BadInputError]) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from hil.core.controller import controller_from_toml
 from hil.core.errors import BadInputError
-from hil.core.mistakes import all_of
+from hil.core.mistakes import Mistake, MistakesError, all_of, refuse
 from hil.core.model import load_model
 from hil.engine import load_bench
 from test_plans import plan_from_text
@@ -116,3 +116,16 @@ def test_of_several_files() -> None:
     assert caught.value is one
     with pytest.raises(BadInputError, match="2 files cannot be used\na: is wrong\nb: too\n  mend it"):
         all_of([one, BadInputError("too", where="b", fix="mend it")])
+
+
+def test_of_very_many_as_many_as_somebody_reads() -> None:
+    with pytest.raises(MistakesError) as caught:
+        refuse(
+            "m.toml", (Mistake(f"key_{number}", f"unknown key 'key_{number}'") for number in range(50_000))
+        )
+    told = str(caught.value).splitlines()
+    assert told[0] == "m.toml: 50000 mistakes"
+    assert told[1:3] == ["  unknown key 'key_0'", "  unknown key 'key_1'"]
+    assert told[-1] == f"  and {50_000 - len(told) + 2} more, when these are corrected"
+    assert len(str(caught.value)) < 5000
+    assert len(caught.value.found) == 50_000
