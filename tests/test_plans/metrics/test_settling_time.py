@@ -129,12 +129,11 @@ def test_what_does_not_settle_says_until_when_it_moved() -> None:
 
 
 def test_the_mean_needs_less_than_the_whole_window() -> None:
-    for to_s, refused in ((2.0, True), (1.5, True), (2.001, False)):
-        if refused:
-            with pytest.raises(NoValueError, match=f"is {to_s:g} s long, the mean alone takes 2 s"):
-                settled(np.full(len(time_axis()), 326.0), to_s=to_s)
-        else:
-            assert settled(np.full(len(time_axis()), 326.0), to_s=to_s) == 0.0
+    level = np.full(len(time_axis()), 326.0)
+    for to_s, mean_s in ((2.0, 2.0), (1.5, 2.0), (3.5, 4.0)):
+        with pytest.raises(NoValueError, match=f"is {to_s:g} s long, the mean alone takes {mean_s:g} s"):
+            settled(level, to_s=to_s, mean_s=mean_s)
+    assert settled(level, to_s=2.001) == 0.0
 
 
 @pytest.mark.parametrize("mean_s", [0.001, 0.0005, 1e-9])
