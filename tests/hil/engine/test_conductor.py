@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from hil.core.errors import BadInputError, BenchError
-from hil.core.recording import Recording
+from hil.core.recording import Recording, read_recording
+from hil.core.result import Segment
 from hil.engine.conductor import RELEASE_S, BenchConductor
 from hil.engine.recorder import Recorder
 from sim_backend.bench import Fault
@@ -94,6 +95,15 @@ def test_samples_are_played_one_each_tick_and_released_in_the_end(tmp_path: Path
         assert (segment.controller, segment.load) == ("", "speed")
         assert one.bench.rmcu.is_safe()
         assert ("segment", "s begins") in one.events()
+
+
+def test_each_segment_is_described_in_the_recording_as_it_ended(tmp_path: Path) -> None:
+    with stage(tmp_path) as one:
+        for name in ("s", "t"):
+            one.conductor.play("motor_torque", np.zeros(300), replace(SEGMENT, id=name))
+    tables = read_recording(tmp_path / "r.mcap", allow_missing=True).metadata
+    stored = [Segment.model_validate_json(tables[f"segment/{name}"]["json"]) for name in ("s", "t")]
+    assert [(segment.id, segment.complete) for segment in stored] == [("s", True), ("t", True)]
 
 
 def test_what_ends_at_no_torque_needs_no_release(tmp_path: Path) -> None:

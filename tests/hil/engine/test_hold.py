@@ -28,10 +28,10 @@ Reading = Callable[[float], float]
 
 
 def held(tmp_path: Path, name: str, reading: Reading = lambda s: 1.0, **changes: Any) -> RunOutcome:
-    terminal = changes.pop("terminal", None)
+    terminal, steps = changes.pop("terminal", None), changes.pop("steps", STEPS)
     changes.setdefault("interlocks", shut())
     file = sim_bench(name, devices=cage(reading), **changes)
-    return run_plan(RunRequest(plan(STEPS, PEAK, END), file, tmp_path, terminal=terminal))
+    return run_plan(RunRequest(plan(steps, PEAK, END), file, tmp_path, terminal=terminal))
 
 
 def events(outcome: RunOutcome, kind: str) -> list[str]:
@@ -58,6 +58,7 @@ def test_an_interlock_holds_the_run_and_the_step_is_begun_again(tmp_path: Path) 
     assert (outcome.error, outcome.result.verdict, outcome.result.safe_state) == (None, "pass", "confirmed")
     cut, whole = outcome.result.segments
     assert (cut.id, cut.complete, whole.id, whole.complete) == ("s_held_1", False, "s", True)
+    assert (cut.load, whole.load) == ("vehicle", "vehicle")
     (hold,) = outcome.result.holds
     assert hold.ended_by == "well again"
     assert hold.end_s - hold.start_s == pytest.approx(2.0, abs=0.3)  # a second open, a second well again
@@ -69,6 +70,16 @@ def test_an_interlock_holds_the_run_and_the_step_is_begun_again(tmp_path: Path) 
     begun = recording.between(whole.start_s, whole.start_s + 0.1)["vehicle_speed_m_s"]
     assert np.allclose(begun, 5 / 3.6, atol=0.2)  # as it was begun the first time
     assert (len(events(outcome, "hold")), outcome.result.end_steps[:11]) == (2, "carried out")
+
+
+def test_dynos_that_held_their_speed_hold_it_again(tmp_path: Path) -> None:
+    steps = STEPS.replace("motor_torque, ", "motor_torque, load: speed, ")
+    outcome = held(tmp_path, "speed", open_between(3.0, 3.5), steps=steps)
+    assert outcome.error is None
+    cut, whole = outcome.result.segments
+    assert (cut.id, cut.load, whole.load) == ("s_held_1", "speed", "speed")
+    ended = read_recording(outcome.recording, allow_missing=True).between(whole.end_s - 0.1, whole.end_s)
+    assert np.allclose(ended["vehicle_speed_m_s"], 5 / 3.6, atol=0.05)
 
 
 def test_torque_is_taken_away_by_a_ramp(tmp_path: Path) -> None:

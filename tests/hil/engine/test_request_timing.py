@@ -90,6 +90,13 @@ def test_percentiles_and_the_latest_are_told_for_sending_and_for_the_bus() -> No
     np.testing.assert_allclose(times[2] - times[1], 0.0004)
 
 
+def test_a_request_that_was_later_than_the_histogram_reaches_is_told_by_the_latest() -> None:
+    timing, _ = sent([0.0] * 10 + [0.25])
+    (found,) = timing.results()
+    assert (found.sent.p50_ms, found.sent.max_ms) == pytest.approx((0.0, 250.0), abs=2e-3)
+    assert found.sent.p99_ms == 250.0
+
+
 def test_cycles_that_were_late_by_a_cycle_or_more_are_missed() -> None:
     timing, _ = sent([0.0] * 10 + [0.0030, 0.0021, 0.0012, 0.0003] + [0.0] * 10)
     (found,) = timing.results()

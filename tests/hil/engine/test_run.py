@@ -208,6 +208,28 @@ def test_a_fault_while_criteria_are_judged_leaves_a_whole_recording_with_its_tra
     assert any("in fails" in event.text for event in recording.events if event.kind == "traceback")
 
 
+def test_a_recording_that_cannot_take_the_result_does_not_keep_it_from_being_told(tmp_path, monkeypatch):
+    def fails(*arguments):
+        raise BenchError("no space left on device", where="recording")
+
+    monkeypatch.setattr("hil.engine.run.store_result", fails)
+    outcome = run(tmp_path)
+    assert "no space left on device" in str(outcome.error)
+    assert outcome.result.safe_state == "confirmed"
+
+
+@pytest.mark.parametrize(
+    ("answers", "refused"),
+    [({}, True), ({"terminal": object()}, False), ({"confirmed_by": "A. Prüferin"}, False)],
+)
+def test_a_prompt_on_hardware_needs_a_terminal_or_a_name(answers, refused, tmp_path):
+    hardware = sim_bench("hardware", simulation=None)  # nobody gives it its bus
+    request = RunRequest(plan("[{operator_prompt: {text: Shut the guard}}]"), hardware, tmp_path, **answers)
+    with pytest.raises(BadInputError if refused else BenchError) as caught:
+        run_plan(request)
+    assert ("there is no terminal to ask on" in str(caught.value)) is refused
+
+
 def test_idle_nodes_may_be_called_anything(tmp_path):
     outcome = run(tmp_path, dyno=SIM.dyno.model_copy(update={"idle": {"front left": 1, "ghost": 2}}))
     assert outcome.error is None

@@ -1,5 +1,7 @@
 """Sensors at rest: offset before a run, drift after it."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -48,7 +50,9 @@ def test_the_doctor_finds_it_too():
     found = examine_bench(DoctorRequest(offset(20.0, within=5.0), 0.3))
     (finding,) = found.findings
     assert (finding.severity, finding.where) == ("fault", "zero check")
-    assert finding.what.startswith(f"{LEFT} reads 20")
+    assert re.fullmatch(
+        rf"{LEFT} reads (20|20\.\d+|19\.\d+) N m at rest, the bench file allows 5 N m", finding.what
+    )
     zeros = {zero.channel: zero.before for zero in found.zeros}
     assert zeros["shaft_torque_right_nm"] == pytest.approx(0.0, abs=0.6)
     assert zeros["motor_speed_rad_s"] == pytest.approx(0.0, abs=0.01)
@@ -79,6 +83,11 @@ def test_drift_is_the_change():
     assert (zero.before, zero.after, zero.drift) == (1.0, 3.5, 2.5)
     with pytest.raises(BenchError, match="has drifted by 4 N m during the run, the bench file allows 3 N m"):
         checked(-1.0, 3.0)
+
+
+def test_a_reading_just_below_zero_is_no_minus_zero():
+    zero = zero_of(LEFT, "N m", None, -1e-9, -1e-9, "")
+    assert (str(zero.before), str(zero.after)) == ("0.0", "0.0")
 
 
 def test_an_axle_that_turns_is_not_read():

@@ -191,8 +191,9 @@ def test_a_step_is_one_that_changes_the_torque_by_value() -> None:
 
 def test_the_definition_tells_band_mean_and_filter() -> None:
     assert SettlingShaftTorque().definition == (
-        "Time from the step after which shaft_torque_nm (T_s) stays within ±5 % of the step's size around its "
-        "mean over the last 2 s, from the step until the end of the segment. The channel is low-pass filtered "
-        "at 50 Hz (Butterworth, order 2, forward and backward). Outside during the last 2 s: did not settle."
+        "Time from the step after which shaft_torque_nm (T_s) stays within ±5 % of the step's size around "
+        "its mean over the last 2 s, from the step until the end of the segment. The channel is low-pass "
+        "filtered at 50 Hz (Butterworth, order 2, forward and backward). Outside during the last 2 s: did "
+        "not settle."
     )
     assert "within ±5 % of 80 around" in SettlingTime(channel="shaft_torque_nm", step_size=80.0).definition
