@@ -31,6 +31,11 @@ _SPEED_GRACE_S = 5.0
 RELEASE_S = 0.2  # torque is taken away over this time after a stretch of samples
 
 
+def release_from(torque_nm: float) -> Array:
+    """Samples, one each tick, that take a torque away; none where there is none."""
+    return np.linspace(torque_nm, 0.0, round(RELEASE_S / TICK_S)) if torque_nm else np.zeros(0)
+
+
 class BenchConductor:
     """The engine's side of `test_plans.Conductor`."""
 
@@ -158,8 +163,7 @@ class BenchConductor:
 
     def _played_whole(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> bool:
         loop = self._bench.loop
-        tail = np.linspace(samples_nm[-1], 0.0, round(RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
-        values = np.concatenate([samples_nm, tail])
+        values = np.concatenate([samples_nm, release_from(samples_nm[-1])])
         if segment:
             self._begin(segment, loop.clock.now_s(), len(samples_nm))
         playing = Playing(self._bench, self._noted)
@@ -170,7 +174,7 @@ class BenchConductor:
             if segment:
                 self._end(loop.clock.now_s(), complete=whole)
         if sent < len(values) and values[sent - 1]:
-            playing.send(quantity, np.linspace(values[sent - 1], 0.0, round(RELEASE_S / TICK_S)))
+            playing.send(quantity, release_from(values[sent - 1]))
         self._switch_off()
         return whole
 

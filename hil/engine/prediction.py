@@ -24,7 +24,7 @@ from hil.engine._predicted_bench import PredictedBench
 from hil.engine._predicted_wire import PredictedWire
 from hil.engine.bench import Bench
 from hil.engine.bench_tables import BenchFile
-from hil.engine.conductor import RELEASE_S, BenchConductor
+from hil.engine.conductor import BenchConductor, release_from
 from hil.engine.recorder import Recorder
 from hil.plant import LONGEST_STEP_S
 from hil.plant.closed_loop import TICK_S, Noise
@@ -176,10 +176,9 @@ class PredictionConductor(BenchConductor):
     def play(self, quantity: Quantity, samples_nm: Array, segment: PlannedSegment | None) -> None:
         """Request all samples at once, then take the torque away and switch it off."""
         self._check.play(quantity, samples_nm, segment)
-        tail = np.linspace(samples_nm[-1], 0.0, round(RELEASE_S / TICK_S)) if samples_nm[-1] else np.zeros(0)
         if segment:
             self._begin(segment, self._loop.now_s(), len(samples_nm))
-        self._rmcu.play(quantity, np.concatenate([samples_nm, tail]))
+        self._rmcu.play(quantity, np.concatenate([samples_nm, release_from(samples_nm[-1])]))
         if segment:
             self._end(self._loop.now_s(), complete=True)
         self._switch_off()

@@ -78,6 +78,16 @@ def test_a_file_that_cannot_be_used_is_told_with_its_key_and_on_one_line(tmp_pat
     assert "\n" not in told
 
 
+def test_device_files_that_no_simulated_bench_can_be_made_of_are_told(tmp_path: Any) -> None:
+    whole = SIM.rmcu.dbc.read_text("utf-8")
+    (tmp_path / "other.dbc").write_text(whole.replace("RMCU_ParameterWrite", "RMCU_Unknown"))
+    bench = SIM.model_copy(update={"rmcu": SIM.rmcu.model_copy(update={"dbc": tmp_path / "other.dbc"})})
+    (told,) = device_mistakes(bench)
+    assert told.startswith("for the simulated bench: ")
+    assert "RMCU_ParameterWrite" in told
+    assert str(tmp_path) not in told  # the key shows the file
+
+
 @pytest.mark.parametrize(
     ("held", "said"),
     [

@@ -14,7 +14,7 @@ import pytest
 from hil.core.errors import BadInputError, BenchError
 from hil.core.recording import Recording, read_recording
 from hil.core.result import Segment
-from hil.engine.conductor import RELEASE_S, BenchConductor
+from hil.engine.conductor import RELEASE_S, BenchConductor, release_from
 from hil.engine.recorder import Recorder
 from sim_backend.bench import Fault
 from sim_backend.can_interface import attached
@@ -104,6 +104,14 @@ def test_each_segment_is_described_in_the_recording_as_it_ended(tmp_path: Path) 
     tables = read_recording(tmp_path / "r.mcap", allow_missing=True).metadata
     stored = [Segment.model_validate_json(tables[f"segment/{name}"]["json"]) for name in ("s", "t")]
     assert [(segment.id, segment.complete) for segment in stored] == [("s", True), ("t", True)]
+
+
+def test_torque_is_taken_away_evenly_within_its_time() -> None:
+    assert len(release_from(0.0)) == 0
+    samples = release_from(-8.0)
+    assert len(samples) == round(RELEASE_S * 1000)
+    assert (samples[0], samples[-1]) == (-8.0, 0.0)
+    assert np.diff(samples) == pytest.approx(8.0 / (len(samples) - 1))
 
 
 def test_what_ends_at_no_torque_needs_no_release(tmp_path: Path) -> None:
