@@ -115,6 +115,13 @@ def test_all_mistakes_of_a_file_are_told_at_once(tmp_path):
     assert "dutt: unknown key" in said
 
 
+def test_a_mistake_in_a_devices_table_does_not_hide_one_in_another(tmp_path):
+    text = SIM.text.replace("[rmcu]", '[rmcu]\nkind = "rmcu-cam"').replace("[dyno]", "[dyno]\ncolour = 1")
+    said = refused(text.replace("wheel_radius_m = 0.33", "wheel_radius_m = -1.0"), tmp_path)
+    for key in ("rmcu.kind = 'rmcu-cam'", "dyno.colour", "vehicle.wheel_radius_m"):
+        assert key in said
+
+
 def test_the_files_that_a_bench_names_are_looked_at(tmp_path):
     text = SIM.text.replace('"rmcu.dbc"', '"rcs_dyno.eds"').replace(
         'eds = "rcs_dyno.eds"', 'eds = "none.eds"'
