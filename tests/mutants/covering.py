@@ -14,6 +14,7 @@ from pathlib import Path
 from coverage import CoverageData
 
 QUICK = "not slow and not hunt"
+_LONG_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Coverage:
     seconds: dict[str, float]
 
     def tests_for(self, file: str, lines: Iterable[int]) -> list[str]:
-        """Those named after the file or its folder first, and the quickest first.
+        """Those named after the file or its folder first, and the quickest first; what takes long is last.
 
         For lines that only importing runs, those that run any line of the file, those named after it and
         those of its folder: what a library or another process makes of it is seen as no line that runs.
@@ -34,7 +35,10 @@ class Coverage:
         tests = set[str]().union(*(own.get(line, set()) for line in lines))
         named = self._named(file)
         tests = tests or self.by_file.get(file, set()) | named | self._beside(file)
-        return sorted(tests, key=lambda test: (test not in named, self.seconds[test], test))
+        return sorted(
+            tests,
+            key=lambda test: (self.seconds[test] > _LONG_S, test not in named, self.seconds[test], test),
+        )
 
     def _named(self, file: str) -> set[str]:
         path = Path(file)

@@ -76,6 +76,13 @@ def test_the_quickest_tests_of_a_line_come_first_and_a_line_of_imports_has_its_f
     assert coverage.tests_for("elsewhere.py", [1]) == []
 
 
+def test_tests_named_after_the_file_come_before_quicker_ones_unless_they_take_long() -> None:
+    seconds = {"tests/test_code.py::one": 0.5, "tests/test_code.py::two": 5.0, "a": 0.1, "b": 2.0}
+    coverage = Coverage({"code.py": {5: set(seconds)}}, {}, seconds)
+    named = [f"tests/test_code.py::{name}" for name in ("one", "two")]
+    assert coverage.tests_for("code.py", [5]) == [named[0], "a", named[1], "b"]
+
+
 def test_a_file_that_only_other_processes_run_has_the_tests_named_after_it() -> None:
     seconds = {"tests/test_worker.py::test_it": 1.0, "tests/test_workers.py::test_them": 1.0}
     assert Coverage({}, {}, seconds).tests_for("hil/_worker.py", [3]) == ["tests/test_worker.py::test_it"]

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from drivers import Samples, Stream
+from drivers import Counting, Samples, Stream
 from hil.core.recording import read_recording
 from hil.engine.recorder import Recorder
 
@@ -108,3 +108,21 @@ def test_what_comes_too_late_for_its_row_is_counted(recorder: Recorder) -> None:
     assert [e.kind for e in whole.events] == ["late"]
     assert whole.events[0].text == "1 samples came too late for their row and were left out"
     assert whole.events[0].time_s == pytest.approx(1.999, abs=1e-6)
+
+
+def test_how_clocks_went_is_told_without_minus_zeros(tmp_path: Path) -> None:
+    counted = Stream(
+        "status", "bus 'rmcu'", CHANNELS, ("N m", "rad/s"), 0.001, counting=Counting("8 bits", 256)
+    )
+    recorder = Recorder(tmp_path / "r.mcap", [counted], ["rmcu"], 0.001)
+    recorder.begin()
+    numbers = np.array([k for k in range(1000) if k not in (400, 401)])
+    recorder.take(Samples(counted, 5.0 + 0.001 * numbers, np.ones((len(numbers), 2)), numbers))
+    recorder.finish_rows()
+    (clock,) = recorder.clocks()
+    recorder.writer.close()
+    assert (clock.stream, clock.where, clock.counted_by) == ("status", "bus 'rmcu'", "8 bits")
+    assert clock.drift_ppm == pytest.approx(0.0, abs=0.5)
+    assert str(clock.drift_ppm) != "-0.0"
+    assert clock.offset_s == pytest.approx(0.0, abs=1e-3)
+    assert (clock.lost, clock.left_out) == (2, 0)
