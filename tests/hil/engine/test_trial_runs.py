@@ -62,6 +62,16 @@ def test_what_comes_before_the_tuned_controller_is_predicted_once_and_changes_no
     assert (kept[0].recording[names[0]] != kept[1].recording[names[0]]).any()
 
 
+def test_of_many_cars_the_one_that_was_tried_longest_ago_is_forgotten(monkeypatch):
+    monkeypatch.setattr("hil.engine.trial_runs._CARS_KEPT", 2)
+    trial = trial_of()
+    runs = TrialRuns(trial.plan, SIM, trial.driven.file, frozenset({"motor_speed_rad_s"}))
+    for seed in (1, 2, 1, 3):
+        runs(MODEL, None, 1.0, seed)
+    assert runs._here is not None
+    assert [seed for _, _, seed in runs._here.begun] == [1, 3]
+
+
 def test_steps_of_a_sample_give_the_figures_of_steps_as_short_as_the_wires():
     trial = trial_of()
     tuned = trial.controller({"lead_deg": 20.0})

@@ -8,7 +8,7 @@ import numpy as np
 
 from hil.core.can_logs import CanLog
 from hil.core.frames import frames
-from hil.engine.replay._channels import merged
+from hil.engine.replay._channels import listed, merged
 
 SECOND = 10**9
 
@@ -32,3 +32,13 @@ def test_logs_lie_as_their_wall_clock_says(tmp_path: Path) -> None:
     assert one is not None
     assert (both["time_s"].tolist(), len(one)) == ([0.0, 1.0, 8.5, 9.5], 2)
     assert found.names == ["1"]
+
+
+def test_six_identifiers_of_a_channel_are_shown_and_that_there_are_more(tmp_path: Path) -> None:
+    for count, shown in ((6, "0x001, 0x002, 0x003, 0x004, 0x005, 0x006"), (7, "0x006, …")):
+        block = frames(0, np.zeros(count, np.uint64), 8, np.arange(float(count)))
+        block["id"] = np.arange(1, count + 1)
+        found = merged([CanLog(tmp_path / "a.asc", {"1": block}, SECOND)])
+        said = listed(found, {"rmcu": {1, 2, 99}, "dyno": {88}})
+        assert said.startswith(f"channel '1' of a.asc: {count} frames, {count} standard identifiers (0x001, ")
+        assert f"{shown}), 2 of bus 'rmcu'" in said
