@@ -209,7 +209,8 @@ def test_a_fault_while_criteria_are_judged_leaves_a_whole_recording_with_its_tra
 
 
 def test_a_recording_that_cannot_take_the_result_does_not_keep_it_from_being_told(tmp_path, monkeypatch):
-    def fails(*arguments):
+    def fails(recorder, *arguments):
+        recorder.writer.close()
         raise BenchError("no space left on device", where="recording")
 
     monkeypatch.setattr("hil.engine.run.store_result", fails)
