@@ -19,6 +19,7 @@ from hil.core.frames import ERROR_FRAME, EXTENDED, SENT_BY_HOST, FrameBlock
 
 _DRAIN_EVERY = 10
 _GIVEN_UP_TICKS = 10  # who is later than this goes on from where it is
+_PART_S = 0.25e-3  # a part of long work that begins closer to a tick than this would hold it up
 _STANDARD_IDS = 2048
 _OTHERS = SENT_BY_HOST | EXTENDED | ERROR_FRAME
 
@@ -54,6 +55,7 @@ class BusLoop:
         self._anchor_s, self._since_anchor = clock.now_s(), 0  # a sum of ticks would drift
         self._ticks = self._drained_at = 0
         self._sending: _Sending | None = None
+        self._timed: list[_Duty] = []
         self._duties: list[_Duty] = []
         self._next_duty_s = np.inf
         self._callbacks: dict[str, dict[int, FrameCallback]] = {wire.name: {} for wire in wires}
@@ -68,8 +70,12 @@ class BusLoop:
         duty: Callable[[], None],
         done: Callable[[float], None] | None = None,
     ) -> None:
-        """Call `duty` every `period_s` of the clock, from now on; then `done` with the time it was meant."""
-        self._duties.append(_Duty(period_s, self.clock.now_s(), duty, done))
+        """Call `duty` every `period_s` of the clock, from now on; then `done` with the time it was meant.
+
+        One with `done` is timed: it comes before those without, and `keep_up` does it too.
+        """
+        made = _Duty(period_s, self.clock.now_s(), duty, done)
+        (self._duties if done is None else self._timed).append(made)
         self._next_duty_s = -np.inf
 
     def on_frame(self, wire: Wire, frame_id: int, callback: FrameCallback) -> None:
@@ -148,16 +154,25 @@ class BusLoop:
             yield passed
 
     def keep_up(self) -> None:
-        """Send what `each_tick` has due while something else is being done."""
-        if self._sending is None:
-            return
-        late_s = self.clock.now_s() - self._anchor_s - (self._since_anchor + 1) * TICK_S
-        if 0.0 <= late_s < _GIVEN_UP_TICKS * TICK_S:
-            for _ in range(1 + int(late_s / TICK_S)):
-                self._since_anchor += 1
-                self._ticks += 1
-                self.tick_s = self._anchor_s + self._since_anchor * TICK_S
-                self._sending.next()
+        """Between parts of long work: send what `each_tick` has due, and do the timed duties that are.
+
+        A tick that is so near that the next part would hold it up is waited for.
+        """
+        if self._sending is not None:
+            next_s = self._anchor_s + (self._since_anchor + 1) * TICK_S
+            if 0.0 < next_s - self.clock.now_s() < _PART_S:
+                self.clock.sleep_until(next_s)
+            late_s = self.clock.now_s() - next_s
+            if 0.0 <= late_s < _GIVEN_UP_TICKS * TICK_S:
+                for _ in range(1 + int(late_s / TICK_S)):
+                    self._since_anchor += 1
+                    self._ticks += 1
+                    self.tick_s = self._anchor_s + self._since_anchor * TICK_S
+                    self._sending.next()
+        if self._timed:
+            now_s = self.clock.now_s()
+            for duty in self._timed:
+                duty.run_if_due(now_s - 0.5 * TICK_S, self.tick_s)
 
     def _as_time_comes(self, count: int, send: Callable[[int], None]) -> Iterator[int]:
         self.resume()
@@ -240,10 +255,11 @@ class BusLoop:
 
     def _do_duties(self, now_s: float) -> None:
         self._next_duty_s = np.inf
+        duties = [*self._timed, *self._duties]
         try:
-            _each([partial(duty.run_if_due, now_s, self.tick_s) for duty in self._duties])
+            _each([partial(duty.run_if_due, now_s, self.tick_s) for duty in duties], self.keep_up)
         finally:
-            nearest_s = min((duty.due_s for duty in self._duties), default=np.inf) - 0.5 * TICK_S
+            nearest_s = min((duty.due_s for duty in duties), default=np.inf) - 0.5 * TICK_S
             self._next_duty_s = min(self._next_duty_s, nearest_s)
 
     def hand_out(self, name: str, block: FrameBlock) -> None:

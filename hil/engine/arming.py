@@ -55,9 +55,9 @@ class Arming:
         self._identify()
         if not bench.simulated:
             warm_up(bench)
+        bench.start_heartbeats(self._timing)
         if not bench.loop.clock.virtual:
             bench.loop.every(KEEP_S, self._recorder.keep)
-        bench.start_heartbeats(self._timing)
         bench.loop.every(TURNED_S, self._turned)
         bench.rmcu.come_up()
         bench.dyno.come_up()

@@ -25,7 +25,7 @@ _LOOK_S = 2.0  # what clocks do shows in seconds
 
 
 class Recorder:
-    """Writes raw frames as they come and rows of samples every half second.
+    """Writes raw frames as they come and rows of samples every half second, or as often as it is told to.
 
     The first stream is the time base. `start_s` is the bench time at which its first sample came; recording
     times count samples from there, at the pace of the time base's own clock.
@@ -34,6 +34,7 @@ class Recorder:
         promptly: the recording is of a bench that nobody can repeat: `keep` will be called every `KEEP_S`,
             and what it has written survives a power cut a quarter of a second later.
         clock_0_ns: wall-clock time at the zero of the bench clock, ns since 1970.
+        between: called between parts of long work.
     """
 
     def __init__(
@@ -45,12 +46,19 @@ class Recorder:
         *,
         promptly: bool = False,
         clock_0_ns: int = 0,
+        between: Callable[[], None] = lambda: None,
     ) -> None:
         self._assembler = SampleAssembler(streams, sample_time_s)
         self.writer = RecordingWriter(
-            path, self._assembler.names, buses, durable=promptly, clock_0_ns=clock_0_ns
+            path,
+            self._assembler.names,
+            buses,
+            durable=promptly,
+            clock_0_ns=clock_0_ns,
+            between=between,
         )
-        self._clock_0_ns = clock_0_ns
+        self._clock_0_ns, self._between = clock_0_ns, between
+        self._flush_s = np.inf if promptly else _FLUSH_S
         self._base = streams[0]
         self._chunks: list[npt.NDArray[np.float64]] | None = []  # None: too many, the file has them
         self._kept_bytes = 0
@@ -60,7 +68,6 @@ class Recorder:
         self._begun = False
         self._parted = False
         self.events: list[Event] = []
-        self.between: Callable[[], None] = lambda: None  # called between parts of long work
 
     def take_frames(self, bus: str, block: FrameBlock) -> None:
         """Record the raw frames of one bus."""
@@ -81,12 +88,14 @@ class Recorder:
         if self.start_s is None:
             self.start_s = self._flushed_s = self.writer.row_0_s = float(samples.time_s[0])
         latest_s = float(samples.time_s[-1])
-        if latest_s - self._flushed_s > _FLUSH_S:
+        if latest_s - self._flushed_s > self._flush_s:
             self._flushed_s = latest_s
             self._write_rows()
         if latest_s - self._looked_s > _LOOK_S:
             self._looked_s = latest_s
+            self._between()
             self._look_at_clocks()
+            self._between()
 
     def begin(self) -> None:
         """Keep samples from the next ones on: every device is giving its channels now."""
@@ -97,7 +106,7 @@ class Recorder:
         if self.start_s is not None:
             self._write_rows()
         self.writer.flush()
-        self.between()
+        self._between()
 
     def event(self, clock_s: float, kind: str, text: str) -> None:
         """Record what happened at a time of the bench clock."""
@@ -159,6 +168,7 @@ class Recorder:
 
     def _channels(self) -> MutableMapping[str, npt.NDArray[np.float64]]:
         if self._chunks is None:
+            self.writer.settle()
             return read_as_written(self.writer.path).channels
         names = self._assembler.names
         rows = np.concatenate(self._chunks) if self._chunks else np.zeros((0, len(names)))
@@ -184,9 +194,9 @@ class Recorder:
             raise
 
     def _write_rows(self, *, everything: bool = False) -> None:
-        rows = self._assembler.rows(everything=everything, between=self.between)
-        self.between()
+        rows = self._assembler.rows(everything=everything, between=self._between)
+        self._between()
         if len(rows):
             self.writer.add_rows(rows)
             self._remember(rows)
-            self.between()
+            self._between()

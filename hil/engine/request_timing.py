@@ -18,7 +18,7 @@ Times: TypeAlias = npt.NDArray[np.float64]
 #: Takes name, bench time (s) and the times meant, sent and seen (NaN: not seen), s, shape (3, n).
 Record: TypeAlias = Callable[[str, float, Times], None]
 
-COLLECT_S = 0.5  # how often what waits is summed up and recorded
+COLLECT_S = 0.1  # how often what waits is summed up and recorded; short, for nothing is sent meanwhile
 _GIVEN_UP_S = 0.25  # an echo that has not come by then does not come
 _BIN_S, _BINS = 2e-6, 50_000  # of a histogram: 0 to 0.1 s
 _NOT_SEEN = np.nan

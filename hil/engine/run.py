@@ -111,8 +111,8 @@ class _Run:
             TICK_S,
             promptly=not clock.virtual,
             clock_0_ns=time.time_ns() - round(clock.now_s() * 1e9),
+            between=bench.loop.keep_up,
         )
-        self._recorder.between = bench.loop.keep_up
         self._inputs = store_inputs(self._recorder, request, bench)
         if self._expired:
             store_expiry(self._recorder, self._expired)

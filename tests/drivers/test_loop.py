@@ -91,19 +91,36 @@ def test_a_serial_line_that_takes_nothing_is_not_waited_for() -> None:
     os.close(there)
 
 
+def test_what_is_timed_comes_before_what_is_not_and_between_its_parts() -> None:
+    clock = SteppedClock(virtual=False)
+    loop = BusLoop(clock, [])
+    late_s: list[float] = []
+
+    def work() -> None:
+        for _ in range(30):
+            clock.time_s += 0.0005
+            loop.keep_up()
+
+    loop.every(0.02, work)
+    loop.every(0.01, lambda: None, lambda meant_s: late_s.append(clock.time_s - meant_s))
+    loop.run_for(0.2)
+    assert len(late_s) == pytest.approx(clock.time_s / 0.01, abs=1)
+    assert max(late_s) < 0.00051
+
+
 class Busy:
     """A loop that sends, and work that takes 4.5 ms each time that wires were looked at."""
 
-    def __init__(self, *, keeps_up: bool) -> None:
+    def __init__(self, *, keeps_up: bool, part_s: float = 0.0005) -> None:
         self.clock = SteppedClock(virtual=False)
         self.loop = BusLoop(self.clock, [])
         self.sent: list[tuple[int, float, float]] = []
-        self._keeps_up = keeps_up
+        self._keeps_up, self._part_s = keeps_up, part_s
         self.loop.on_drained(self._work)
 
     def _work(self) -> None:
-        for _ in range(9):
-            self.clock.time_s += 0.0005
+        for _ in range(round(0.0045 / self._part_s)):
+            self.clock.time_s += self._part_s
             if self._keeps_up:
                 self.loop.keep_up()
 
@@ -122,6 +139,13 @@ def test_long_work_holds_up_no_request_if_it_lets_the_loop_keep_up(keeps_up: boo
     meant = [meant_s for _, meant_s, _ in busy.sent]
     assert meant == pytest.approx([number * 1e-3 for number in range(30)])
     assert max(sent_s - meant_s for _, meant_s, sent_s in busy.sent) < latest_s
+
+
+def test_work_in_small_parts_lets_a_tick_that_is_near_come_first() -> None:
+    busy = Busy(keeps_up=True, part_s=0.00013)
+    assert list(busy.each_tick(30))[-1] == 30
+    assert [number for number, *_ in busy.sent] == list(range(30))
+    assert max(sent_s - meant_s for _, meant_s, sent_s in busy.sent) < 1e-9
 
 
 def test_what_is_left_early_is_sent_no_further() -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import struct
 import zlib
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Protocol, TypeAlias
 
@@ -111,16 +111,19 @@ class McapFile:
 
     Args:
         chunk_bytes: size before compression beyond which a chunk is written.
+        between: called between the parts of writing a chunk; may add nothing here.
 
     Attributes:
         slow: channel whose messages come later than those of the same time of other channels; these wait
             for it, some chunks at most.
     """
 
-    def __init__(self, output: Output, *, library: str, chunk_bytes: int) -> None:
+    def __init__(
+        self, output: Output, *, library: str, chunk_bytes: int, between: Callable[[], None] = lambda: None
+    ) -> None:
         self.slow = 0
         self._output = output
-        self._chunk_bytes = chunk_bytes
+        self._chunk_bytes, self._between = chunk_bytes, between
         self._compressor = zstandard.ZstdCompressor(level=_LEVEL)
         self._index = _Index()
         self._definitions = b""
@@ -255,7 +258,9 @@ class McapFile:
         times.sort(kind="stable")
         channels = np.array([some.channel for some in ready])[source]
         self._definitions = b""
+        self._between()
         packed = self._compressor.compress(content)
+        self._between()
         first, last = int(times[0]), int(times[-1])
         chunk = mcap.Chunk("zstd", packed, last, first, zlib.crc32(content), len(content))
         start = self._output.tell()

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,8 @@ class RecordingWriter:
     Args:
         durable: a power cut too costs no more than what was added in the last quarter of a second before.
         clock_0_ns: wall-clock time, ns since 1970, at which the frames' stamps are 0: what other tools show.
+        between: called between the parts of work that together takes longer than a millisecond; may add
+            nothing here.
 
     Attributes:
         row_0_s: time of the frames' stamps at which `time_s` is 0: rows and events are logged on their base.
@@ -55,16 +58,17 @@ class RecordingWriter:
         chunk_bytes: int = CHUNK_BYTES,
         durable: bool = False,
         clock_0_ns: int = 0,
+        between: Callable[[], None] = lambda: None,
     ) -> None:
         self.path = path
-        self._clock_0_ns = clock_0_ns
+        self._clock_0_ns, self._between = clock_0_ns, between
         self.row_0_s = 0.0
         self._samples = 0
         self._hash = hashlib.sha256()
         self._waiting: dict[str, list[FrameBlock]] = {bus: [] for bus in buses}
         try:
             self._file = GrowingFile(path, durable=durable)
-            self._writer = McapFile(self._file, library="eaxle-hil", chunk_bytes=chunk_bytes)
+            self._writer = McapFile(self._file, library="eaxle-hil", chunk_bytes=chunk_bytes, between=between)
             self._register(channel_names, buses)
         except OSError as error:
             raise self._failed(error) from error
@@ -142,26 +146,33 @@ class RecordingWriter:
     def flush(self) -> None:
         """Hand over to the operating system what was added until now: a killed process loses none of it.
 
-        Frames that are newer than the newest row wait for theirs, a quarter of a second at most.
+        If it is to be durable, a thread does that, as soon as the disk takes it. Frames that are newer than
+        the newest row wait for theirs, a quarter of a second at most.
         """
         try:
             for bus in self._frames:
                 self._flush_frames(bus)
+                self._between()
             self._writer.flush()
         except OSError as error:
             raise self._failed(error) from error
 
+    def settle(self) -> None:
+        """Return when whoever reads the file finds all that was flushed."""
+        self._file.settle()
+
     def close(self) -> None:
         """Finish the file; it can be read without this, but then what was not flushed is missing."""
         try:
-            for bus in self._frames:
-                self._flush_frames(bus)
-            self.describe(CHANNELS_TABLE, {"sha256": self._hash.hexdigest(), "samples": str(self._samples)})
-            self._writer.finish()
+            with contextlib.closing(self._file):
+                for bus in self._frames:
+                    self._flush_frames(bus)
+                self.describe(
+                    CHANNELS_TABLE, {"sha256": self._hash.hexdigest(), "samples": str(self._samples)}
+                )
+                self._writer.finish()
         except OSError as error:
             raise self._failed(error) from error
-        finally:
-            self._file.close()
 
     def _add(self, channel: int, time_s: float, message: bytes) -> None:
         stamps = np.array([self._clock_0_ns + round(time_s * 1e9)], np.int64)

@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from hil.core.real_time import undisturbed
+from hil.core.real_time import as_this_thread, undisturbed
 
 
 @pytest.mark.parametrize("collections", [True, False])
@@ -34,3 +34,19 @@ def test_only_the_thread_itself_comes_first_and_only_for_the_time():
         thread.join()
     assert policy() == before
     assert of_others == [before]
+
+
+@pytest.mark.skipif(not hasattr(os, "SCHED_RESET_ON_FORK"), reason="Linux alone has it")
+def test_a_thread_that_is_waited_for_has_the_priority_of_who_waits():
+    found = []
+
+    def look(as_who_waits):
+        as_who_waits()
+        found.append(os.sched_getscheduler(0))
+
+    with undisturbed(collections=True):
+        wanted = os.sched_getscheduler(0)
+        thread = threading.Thread(target=look, args=(as_this_thread(),))
+        thread.start()
+        thread.join()
+    assert found == [wanted]

@@ -62,16 +62,33 @@ def test_rows_are_written_every_half_second_and_the_rest_at_the_end(
     assert np.array_equal(read["oil_temperature_k"], whole["oil_temperature_k"], equal_nan=True)
 
 
-def test_others_have_their_turn_between_the_streams_while_rows_are_made(recorder: Recorder) -> None:
+def test_others_have_their_turn_between_the_streams_while_rows_are_made(tmp_path: Path) -> None:
     turns: list[int] = []
-    recorder.between = lambda: turns.append(0)
+    recorder = Recorder(tmp_path / "r.mcap", [BASE, SLOW], ["rmcu"], 0.001, between=lambda: turns.append(0))
     recorder.begin()
     for first in range(0, 400, 10):
         recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(first, first + 10))))
-    assert not turns
+    assert len(turns) == 2  # the clocks were looked at, once
     recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(400, 600))))
     # Two streams numbered, one placed; the rows as a whole, and as they are written
     assert len(turns) >= 5
+    made = len(turns)
+    recorder.keep()
+    assert len(turns) >= made + 7  # likewise; the bus's frames, the block put together, and compressed
+    recorder.writer.close()
+
+
+def test_what_is_kept_promptly_is_written_when_it_is_to_be_kept_and_not_before(tmp_path: Path) -> None:
+    recorder = Recorder(tmp_path / "r.mcap", [BASE], ["rmcu"], 0.001, promptly=True)
+    recorder.begin()
+    for first in range(0, 900, 10):
+        recorder.take(samples(BASE, *(5.0 + 0.001 * np.arange(first, first + 10))))
+    assert recorder._last_row_s == 0.0
+    recorder.keep()
+    recorder.writer.settle()
+    kept = read_recording(tmp_path / "r.mcap").time_s[-1]
+    assert recorder._last_row_s == kept > 0.85
+    recorder.writer.close()
 
 
 def test_rows_of_a_long_run_are_read_from_its_file(
