@@ -6,9 +6,10 @@ from typing import Any
 
 import can
 import pytest
+from can.interfaces.kvaser import canlib as kvaser
 
 from hil.core.errors import BadInputError
-from hil.engine._bus_settings import adapter_mistakes, can_settings
+from hil.engine._bus_settings import adapter_mistakes, can_settings, listens_only
 from hil.engine.bench_file import bench_from_dict, load_bench
 from hil.engine.bench_tables import Bus
 
@@ -83,6 +84,27 @@ def test_timing_is_what_python_can_makes_of_it() -> None:
     fd = can_settings("b", table).timing
     assert isinstance(fd, can.BitTimingFd)
     assert (fd.nom_bitrate, fd.data_bitrate, fd.data_tseg2) == (500_000, 2_000_000, 4)
+
+
+#: Of python-can's documentation: the argument that keeps an adapter from acknowledging what it hears.
+SILENT: dict[str, dict[str, Any]] = {
+    "kvaser": {"driver_mode": kvaser.DRIVER_MODE_SILENT},
+    "nixnet": {"listen_only": True},
+    "pcan": {"state": can.BusState.PASSIVE},
+    "seeedstudio": {"operation_mode": "silent"},
+    "slcan": {"listen_only": True},
+    "systec": {"state": can.BusState.PASSIVE},
+    "vector": {"listen_only": True},
+}
+
+
+@pytest.mark.parametrize("interface", [*SILENT, "socketcan", "gs_usb"])
+def test_an_adapter_that_can_is_told_not_even_to_acknowledge(interface: str) -> None:
+    table = bus(interface, "c", options={"own": 1})
+    silent = SILENT.get(interface, {})
+    assert listens_only(table) is bool(silent)
+    assert can_settings("b", table, listen_only=True).options == {"own": 1, **silent}
+    assert can_settings("b", table).options == {"own": 1}
 
 
 REAL = load_bench("rear_axle_socketcan")

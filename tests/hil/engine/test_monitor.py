@@ -5,16 +5,21 @@ import math
 import threading
 import time
 
+import numpy as np
 import pytest
 
+from drivers import BusLoop
 from hil.core.errors import BadInputError, BenchError
+from hil.core.frames import ERROR_FRAME, frames
 from hil.core.model import load_model
 from hil.engine import StopRequest
 from hil.engine.bench import bench_clock, open_wire
-from hil.engine.monitor import MonitorRequest, View, monitor
+from hil.engine.bus_tally import Tally
+from hil.engine.monitor import MonitorRequest, View, _Stretch, monitor
 from sim_backend.bench import SimulatedBench, SimulationSettings
 from sim_backend.serving import BenchServer, UdpHub
 from tests.benches_for_tests import SIM, sim_bench
+from tests.clocks import SteppedClock
 from tests.drivers.pseudo_adapter import plugged_in
 
 
@@ -58,6 +63,21 @@ def test_channels_and_load_without_a_single_frame_of_ours():
     assert math.isnan(whole.channels["wheel_speed_left_rad_s"].value)  # the dynos have not been started
     assert 0.1 < whole.buses["rmcu"].load < 0.6
     assert whole.devices["rmcu"] == "off"
+
+
+def test_rates_are_of_the_stretch_alone():
+    clock = SteppedClock()
+    clock.time_s = 5.0
+    stretch = _Stretch(SIM, BusLoop(clock, []), {})
+    tally = stretch.tallies["rmcu"] = Tally()
+    tally.take(frames(0x110, np.zeros(100, np.uint64), 8, 5.0))
+    tally.take(frames(0x7, np.zeros(10, np.uint64), 0, 5.0, flags=ERROR_FRAME))
+    clock.time_s = 7.0
+    view = stretch.view(4.0)
+    assert (view.time_s, view.duration_s) == (3.0, 2.0)
+    bus = view.buses["rmcu"]
+    assert (bus.frames_s, bus.errors_s, bus.unknown) == (50.0, 5.0, {})
+    assert bus.load == tally.load(1_000_000, 2.0)
 
 
 def test_an_adapter_that_can_is_told_to_listen_only():

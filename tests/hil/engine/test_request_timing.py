@@ -126,6 +126,30 @@ def test_an_echo_that_was_lost_moves_no_other() -> None:
     assert np.flatnonzero(np.isnan(np.hstack(recorded)[2])).tolist() == [3, 50, 51]
 
 
+def test_an_echo_that_is_still_on_its_way_is_waited_for() -> None:
+    clock, recorded = AtHand(), []
+    line = Line(clock, 0.0004)
+    timing = RequestTiming(clock, [line], lambda name, now_s, times: recorded.append(times))  # type: ignore[list-item]
+    noted = timing.of(Device(), "rmcu", "torque request", PERIOD_S)  # type: ignore[arg-type]
+    clock.time_s = 1.0
+    line.send()
+    noted.noted(1.0)
+    on_its_way, line._back = line._back, []
+    clock.time_s = 1.2
+    timing.collect()
+    assert recorded == []
+    line._back = on_its_way
+    timing.collect()
+    (times,) = recorded
+    np.testing.assert_allclose(times.ravel(), (1.0, 1.0, 1.0004))
+    line.send()
+    noted.noted(1.2)
+    line._back = []
+    clock.time_s = 1.46  # a quarter of a second later it does not come any more
+    timing.collect()
+    assert np.isnan(recorded[1][2]).all()
+
+
 def test_an_hour_needs_no_more_memory_than_a_second() -> None:
     clock = AtHand()
     noted = Periodic(clock, None, "torque request", "RMCU", PERIOD_S)

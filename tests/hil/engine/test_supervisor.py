@@ -186,3 +186,14 @@ def test_its_log_is_told_as_that_of_this_process(tmp_path: Path, caplog: pytest.
 def test_a_simulated_bench_stays_in_this_process_unless_its_file_says_otherwise(tmp_path: Path):
     asked = RunRequest(plan("[{hold_speed: {speed_km_h: 0, duration_s: 0.1}}]"), sim_bench("here"), tmp_path)
     assert carry_out(asked, ["/bin/false"]).error is None
+
+
+def test_hardware_whose_process_was_lost_is_listened_to_once_its_loop_has_turned(tmp_path: Path):
+    nowhere = {"interface": "socketcan", "channel": "none9"}
+    buses = {name: bus.model_copy(update=nowhere) for name, bus in sim_bench().buses.items()}
+    hardware = watched_bench().model_copy(update={"simulation": None, "buses": buses})
+    for said, expected in ((TOLD, "nothing was commanded"), (TURNED, "safe: not confirmed (bus 'rmcu': ")):
+        asked = RunRequest(plan("[{wait: {duration_s: 1}}]"), hardware, tmp_path)
+        with pytest.raises(BenchError) as caught:
+            carry_out(asked, process(said, then="sys.exit(1)"))
+        assert expected in str(caught.value)
