@@ -108,17 +108,23 @@ def explained() -> dict[tuple[str, str, str], str]:
 
 
 def _copy(source: Path, target: Path) -> None:
-    """What the repository holds, with changes that are not committed yet."""
+    """What the repository holds, with changes that are not committed yet, and what numba has compiled of it.
+
+    Compiled anew it would count as seconds of the first test that needs it, which then is not tried.
+    """
     listed = subprocess.run(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         cwd=source,
         capture_output=True,
         check=True,
     )
-    for name in listed.stdout.decode().split("\0"):
-        if name and (source / name).is_file():
-            (target / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy2(source / name, target / name)
+    files = [Path(name) for name in listed.stdout.decode().split("\0") if name]
+    folders = {file.parent / "__pycache__" for file in files}
+    compiled = [file.relative_to(source) for folder in folders for file in (source / folder).glob("*.nb[ic]")]
+    for file in (*files, *compiled):
+        if (source / file).is_file():
+            (target / file).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(source / file, target / file)
 
 
 def _in_copy(options: argparse.Namespace) -> int:
