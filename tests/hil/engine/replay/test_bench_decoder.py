@@ -10,6 +10,7 @@ import pytest
 from drivers import read_rmcu
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, frames, inserted
+from hil.core.recording import read_frames
 from hil.engine.replay._bench import BenchDecoder
 from tests.benches_for_tests import SIM
 
@@ -40,6 +41,8 @@ def test_only_devices_of_the_buses_that_are_there_give_channels(tmp_path: Path) 
     assert len(recording.time_s) == count - 1  # the first came before anything had been counted
     np.testing.assert_allclose(recording["driving_torque_ref_nm"], 5.0, atol=0.1)
     assert set(decoder.attachments) == {"bench.toml", "device/rmcu/rmcu.dbc"}
+    raw = read_frames(tmp_path / "a.mcap")["rmcu"]
+    assert raw["id"].tolist() == [LAYOUTS["RMCU_Status"].id, control.id] * count  # each once, in order
 
 
 def test_without_the_frames_that_count_there_are_no_rows(tmp_path: Path) -> None:
