@@ -113,13 +113,29 @@ def test_every_type_of_cia_301_has_its_bits_and_its_sign() -> None:
                 one_signal(code, bits - 1)
 
 
+def test_a_part_of_a_record_is_mapped_by_its_subindex() -> None:
+    dictionary = ObjectDictionary()
+    record = ODRecord("Record", 0x2000)
+    for subindex, name in ((1, "First"), (3, "Third")):
+        value = ODVariable(name, 0x2000, subindex)
+        value.data_type = 7
+        record.add_member(value)
+    dictionary.add_object(record)
+    assert mapped(dictionary, 0x2000 << 16 | 3 << 8 | 32).name == "Third"
+
+
 def one_signal(code: int, bits: int) -> Any:
     dictionary = ObjectDictionary()
     value = ODVariable("Value", 0x2000)
     value.data_type = code
     dictionary.add_object(value)
+    return mapped(dictionary, 0x2000 << 16 | bits)
+
+
+def mapped(dictionary: ObjectDictionary, what: int) -> Any:
+    """The signal of a PDO that maps one object."""
     mapping = ODRecord("Mapping", 0x1A00)
-    for subindex, default in ((0, 1), (1, 0x2000 << 16 | bits)):
+    for subindex, default in ((0, 1), (1, what)):
         entry = ODVariable("Entry", 0x1A00, subindex)
         entry.default = default
         mapping.add_member(entry)

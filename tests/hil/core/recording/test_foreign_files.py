@@ -3,6 +3,7 @@
 import os
 import threading
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from mcap.writer import CompressionType, Writer
 
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording, _schema, read_frames, read_recording, write_recording
+from hil.core.recording._parquet import _column
 
 NAMES = ["time_s", "motor_torque_ref_nm", "motor_speed_rad_s"]
 ENDINGS = ["csv", "parquet", "mf4", "mcap", "mat"]
@@ -86,6 +88,19 @@ def test_parquet_columns_that_are_not_numbers_are_refused_or_left_out(column, tm
 def test_parquet_columns_of_any_kind_of_number_are_read(column, tmp_path):
     table = read_recording(parquet(tmp_path, own=column))
     np.testing.assert_array_equal(table["own"], np.arange(100))
+
+
+def test_parquet_that_promises_more_rows_than_it_has_gives_none():
+    batch = pa.record_batch({"own": pa.array([1.0, 2.0])})
+
+    class Promising:
+        metadata = SimpleNamespace(num_rows=3)
+
+        def iter_batches(self, **options):
+            yield batch
+
+    with pytest.raises(ValueError, match="fewer rows than the file says"):
+        _column(Promising(), "own")
 
 
 def test_parquet_with_a_damaged_page_is_refused(tmp_path):

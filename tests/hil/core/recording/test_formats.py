@@ -36,6 +36,30 @@ def test_every_format_gives_back_what_was_written(ending, tmp_path):
         np.testing.assert_allclose(again[name], values, rtol=1e-8, atol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("ending", "stretch"), [("csv", "_csv_writer._ROWS_AT_ONCE"), ("mf4", "_mdf.BLOCK")]
+)
+def test_what_is_written_in_stretches_is_whole(ending, stretch, tmp_path, monkeypatch):
+    monkeypatch.setattr(f"hil.core.recording.{stretch}", 64)  # 200 samples: three whole ones and a part
+    write_recording(recording(), tmp_path / f"r.{ending}")
+    again = read_recording(tmp_path / f"r.{ending}")
+    for name, values in recording().channels.items():
+        np.testing.assert_allclose(again[name], values, rtol=1e-8, atol=1e-12)
+
+
+def test_a_recording_of_times_alone_is_written(tmp_path):
+    write_recording(Recording({"time_s": TIME}, Path("memory")), tmp_path / "r.csv")
+    assert (tmp_path / "r.csv").read_text().splitlines()[:3] == ["time_s", "0.0", "0.001"]
+
+
+def test_a_channel_that_is_not_there_is_told_with_those_that_are():
+    with pytest.raises(BadInputError) as caught:
+        recording()["oil_temperature_k"]
+    assert caught.value.fix == "it has: time_s, motor_torque_ref_nm, motor_speed_rad_s, own_channel"
+    with pytest.raises(BadInputError, match="it has: none"):
+        Recording({}, Path("memory"))["time_s"]
+
+
 def test_csv_is_read_by_pandas(tmp_path):
     write_recording(recording(), tmp_path / "r.csv")
     frame = pd.read_csv(tmp_path / "r.csv")
@@ -105,6 +129,12 @@ def test_any_bytes_are_a_recording_or_bad_input(ending, content, tmp_path_factor
         read_recording(path)
     except HilError as error:
         assert str(path) in str(error)
+
+
+def test_a_file_that_is_not_there_is_told_in_the_systems_words(tmp_path):
+    with pytest.raises(BadInputError) as caught:
+        read_recording(tmp_path / "none.mcap")
+    assert caught.value.what == "No such file or directory"
 
 
 def test_a_missing_file_and_an_unknown_ending_say_so(tmp_path):
