@@ -7,6 +7,7 @@ from hil.core.errors import BenchError
 from hil.core.recording import read_recording
 from hil.core.result import RunResult
 from hil.engine import RunRequest, run_plan
+from hil.engine.doctor import DoctorRequest, examine_bench
 from hil.engine.identification import identities_of, refuse_others
 from tests.benches_for_tests import SIM, plan, running, sim_bench
 
@@ -54,6 +55,15 @@ def test_other_software_is_refused_before_anything_is_armed(tmp_path):
     assert outcome.error.what == "rmcu: software is 1.0.0, the bench file expects 2.4.1"
     assert (outcome.result.verdict, outcome.result.safe_state) == ("error", "not_needed")
     assert not outcome.result.identities[0].matches
+
+
+def test_the_doctor_tells_other_software():
+    expecting = SIM.rmcu.model_copy(update={"expects": {"software": "2.4.1", "hardware": "1"}})
+    found = examine_bench(DoctorRequest(sim_bench(rmcu=expecting), 0.3))
+    (finding,) = found.findings
+    assert finding.what == "software is 1.0.0, the bench file expects 2.4.1"
+    assert "[rmcu.expects]" in finding.fix
+    assert found.devices["rmcu"].facts["hardware"] == "1"
 
 
 def test_what_they_say_stands_in_result_and_recording(tmp_path):
