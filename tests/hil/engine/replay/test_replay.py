@@ -82,6 +82,9 @@ def test_a_plan_is_judged_where_the_runs_own_recording_says(logs: Path, run: Pat
         assert result.criteria[0].value == pytest.approx(original.criteria[0].value, rel=1e-12)
         assert result.safe_state == "not_needed"
     assert own is not None
+    kept = read_recording(tmp_path / "own.mcap", allow_missing=True)
+    assert run_of(kept) == own
+    assert kept.attachments["plan.yaml"].decode() == PLAN.text
     rows = read_as_written(tmp_path / "own.mcap").time_s
     assert own.bench_time_s == pytest.approx(rows[-1] - rows[0], abs=1e-3)
     assert own.real_time_factor > 0
