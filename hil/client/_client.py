@@ -268,6 +268,10 @@ class Client:
         """End one; a diagnosis writes what it knows by then."""
         return self._one(StudyData, "POST", f"/studies/{study}/cancel")
 
+    def remove_study(self, study: int) -> None:
+        """Remove one that is over, with its files."""
+        self._done("DELETE", f"/studies/{study}")
+
     def identification(self, study: int) -> IdentificationData:
         """What an identification found."""
         path = f"/identifications/{study}"
@@ -301,6 +305,10 @@ class Client:
         """Go on with one that was cancelled or has failed."""
         return self._one(CampaignData, "POST", f"/campaigns/{campaign}/resume")
 
+    def remove_campaign(self, campaign: int) -> None:
+        """Remove one that is over, with its files."""
+        self._done("DELETE", f"/campaigns/{campaign}")
+
     def download_of_campaign(self, campaign: int, name: str, path: Path) -> None:
         """Write a file of a campaign, whole or not at all.
 
@@ -323,8 +331,7 @@ class Client:
 
     def let_agent_go(self, bench: str) -> None:
         """Let another agent have the bench of one that is away."""
-        with self._opened("DELETE", f"/benches/{_part(bench)}/agent", None, _WITHIN_S):
-            pass
+        self._done("DELETE", f"/benches/{_part(bench)}/agent")
 
     def report(self, agent: str, report: AgentReport) -> AgentOrders:
         """What an agent tells of itself, and what it has to do."""
@@ -388,6 +395,10 @@ class Client:
                 return json.load(answer)
         except (ValueError, HTTPException, OSError) as error:
             raise self._unreachable(error) from error
+
+    def _done(self, method: str, path: str) -> None:
+        with self._opened(method, path, None, _WITHIN_S):
+            pass
 
     def _opened(self, method: str, path: str, body: _Body, within_s: float) -> HTTPResponse:
         headers = {"Authorization": f"Bearer {self._token}"} if self._token else {}

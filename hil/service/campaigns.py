@@ -172,6 +172,14 @@ class Campaigns:
         self._begin(number)
         return True
 
+    def remove(self, number: int) -> bool:
+        """Remove one that is over, with its files; False if it is not over."""
+        found = self._records.get(number)
+        if found is None or found.state not in CAMPAIGN_OVER or number in self._tasks:
+            return False
+        self._records.remove(number)
+        return True
+
     async def close(self) -> None:
         """End all that are under way: a service that begins again goes on with them."""
         self._closing = True

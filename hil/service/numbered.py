@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -29,7 +30,11 @@ class Numbered(Generic[R]):
         self._folder, self._file, self._kind = folder, file, kind
         make_directory(folder)
         self._known = {record.id: record for record in self._read()}
-        self._last = max((int(path.name) for path in folder.glob("[0-9]" * 6)), default=0)
+        folders = list(folder.glob("[0-9]" * 6))
+        self._last = max((int(path.name) for path in folders), default=0)
+        for path in folders:
+            if not (path / file).exists():
+                _empty(path)  # whoever removed it, or was beginning it, was killed
 
     def __iter__(self) -> Iterator[R]:
         """Newest first."""
@@ -59,12 +64,28 @@ class Numbered(Generic[R]):
         """Write down what has changed of one."""
         return self.keep(self._known[number].model_copy(update=changes))
 
+    def remove(self, number: int) -> None:
+        """Remove one with all its files; its number is not given again."""
+        folder = self.folder_of(number)
+        (folder / self._file).unlink()  # first: without it there is none, whatever happens next
+        del self._known[number]
+        _empty(folder)
+
     def _read(self) -> Iterator[R]:
         for path in sorted(self._folder.glob(f"[0-9]*/{self._file}")):
             try:
                 yield self._kind.model_validate_json(path.read_bytes())
             except (OSError, ValueError) as error:
                 logger.warning("%s cannot be read: %s", path, error)
+
+
+def _empty(folder: Path) -> None:
+    """Leave nothing in it, as far as that goes."""
+    for path in folder.iterdir():
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
 
 
 def files_in_results(results: Path) -> list[str]:

@@ -97,6 +97,14 @@ class Studies:
             await task
         return True
 
+    def remove(self, number: int) -> bool:
+        """Remove one that is over, with its files; False if it is not over."""
+        found = self._records.get(number)
+        if found is None or found.state not in STUDY_OVER or number in self._tasks:
+            return False
+        self._records.remove(number)
+        return True
+
     async def close(self) -> None:
         """End all that are under way; a service that begins again finds them interrupted."""
         self._closing = True

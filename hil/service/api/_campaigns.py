@@ -71,6 +71,16 @@ async def resume_campaign(campaign: RunId, service: TheService, me: Engineer) ->
     return _there(service, campaign)
 
 
+@router.delete("/campaigns/{campaign}", name="remove_campaign", status_code=204)
+async def remove_campaign(campaign: RunId, service: TheService, me: Engineer) -> None:
+    """Remove one that is over, with its files."""
+    found = _there(service, campaign)
+    if not service.campaigns.remove(campaign):
+        raise RefusedError(409, f"campaign {campaign} is {found.state}", fix="cancel it first")
+    told = f"{found.name}: {found.done} of {found.simulations} simulations"
+    service.log.add(me.name, me.role, "campaign removed", str(campaign), told)
+
+
 @router.get("/campaigns/{campaign}/files/{name}", name="get_campaign_file", response_class=Response)
 async def get_campaign_file(campaign: RunId, name: str, service: TheService, me: Viewer) -> FileResponse:
     """A file of one that is over: report, `campaign.json`, the table as `simulations.parquet`."""

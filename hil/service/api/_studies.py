@@ -84,6 +84,15 @@ async def cancel_study(study: RunId, service: TheService, me: Engineer) -> Study
     return _there(service, study)
 
 
+@router.delete("/studies/{study}", name="remove_study", status_code=204)
+async def remove_study(study: RunId, service: TheService, me: Engineer) -> None:
+    """Remove one that is over, with its files; runs, and models that were saved from it, stay."""
+    found = _there(service, study)
+    if not service.studies.remove(study):
+        raise RefusedError(409, f"study {study} is {found.state}", fix="cancel it first")
+    service.log.add(me.name, me.role, "study removed", str(study), f"runs {found.runs} {found.model}")
+
+
 @router.get("/studies/{study}/files/{name}", name="get_study_file", response_class=Response)
 async def get_study_file(study: RunId, name: str, service: TheService, me: Viewer) -> FileResponse:
     """A file of one that is over: report, model, plan of a separating test."""

@@ -1,6 +1,6 @@
 // Campaigns: many simulations of a plan, how many are done, and which share of them passes so far.
 
-import { get, post } from "./api.js";
+import { ask, get, post } from "./api.js";
 import { at, badge, cell, offer, row, said, whenOpened } from "./dom.js";
 
 const LOOK_MS = 1500;
@@ -30,7 +30,7 @@ export function beginCampaigns(act, may) {
     at("campaign-list").hidden = all.length === 0;
     const focused = document.activeElement?.id;
     at("campaign-list").tBodies[0].replaceChildren(...all.map(shown));
-    if (focused?.startsWith("campaign-do-")) at(focused)?.focus();
+    if (/^campaign-(do|remove)-/.test(focused)) at(focused)?.focus();
     if (at("campaigns").open && all.some((one) => !OVER.includes(one.state))) timer = setTimeout(() => act(look), LOOK_MS);
   }
 
@@ -39,15 +39,21 @@ export function beginCampaigns(act, may) {
     const about = [`${campaign.plan} on ${campaign.model}, by ${campaign.requested_by}`, campaign.reason.split("\n")[0]].filter(Boolean).join("; ");
     name.append(Object.assign(document.createElement("span"), { className: "reason", textContent: about }));
     const state = campaign.passed === null ? campaign.state : campaign.passed ? "pass" : "fail";
-    return row(cell(String(campaign.id), "number"), name, cell(badge(state)), cell(progress(campaign)), cell(shares(campaign)), cell(links(campaign)), cell(may ? action(campaign) : ""));
+    return row(cell(String(campaign.id), "number"), name, cell(badge(state)), cell(progress(campaign)), cell(shares(campaign)), cell(links(campaign)), cell(may ? actions(campaign) : ""));
   }
 
-  function action({ id, state }) {
-    const [text, what] = OVER.includes(state) ? ["Go on", "resume"] : [state === "stopping" ? "End at once" : "Cancel", "cancel"];
-    if (state === "ended") return "";
-    const made = Object.assign(document.createElement("button"), { type: "button", textContent: text, id: `campaign-do-${id}` });
+  function actions({ id, state }) {
+    const made = document.createElement("span"), over = OVER.includes(state);
+    const [text, what] = over ? ["Go on", "resume"] : [state === "stopping" ? "End at once" : "Cancel", "cancel"];
+    if (state !== "ended") made.append(button(id, "do", text, () => post(`/campaigns/${id}/${what}`)));
+    if (over) made.append(button(id, "remove", "Remove", () => confirm(`Remove campaign ${id} with its files?`) && ask("DELETE", `/campaigns/${id}`)));
+    return made;
+  }
+
+  function button(id, what, text, work) {
+    const made = Object.assign(document.createElement("button"), { type: "button", textContent: text, id: `campaign-${what}-${id}` });
     made.setAttribute("aria-label", `${text}: campaign ${id}`);
-    made.onclick = () => act(async () => { await post(`/campaigns/${id}/${what}`); await look(); });
+    made.onclick = () => act(async () => { await work(); await look(); });
     return made;
   }
 }

@@ -30,12 +30,18 @@ export class Studies {
   constructor(kind, id, act, show) {
     Object.assign(this, { kind, id, act, show, shown: "", timer: 0 });
     at(`${id}-study`).onchange = () => this.look();
+    at(`${id}-remove`).onclick = () => this.remove(at(`${id}-study`).value);
     at(`${id}-cancel`).onclick = () => act(async () => { await post(`/studies/${at(`${id}-study`).value}/cancel`); await this.look(); });
   }
 
   async begin(path, body) {
     const study = await post(path, body);
     await this.look(study.id);
+  }
+
+  remove(study) {
+    if (!confirm(`Remove ${this.kind} ${study} with its files?`)) return;
+    this.act(async () => { await ask("DELETE", `/studies/${study}`); await this.look(); });
   }
 
   async look(wanted) {
@@ -46,6 +52,7 @@ export class Studies {
     const study = all.find((one) => String(one.id) === at(`${this.id}-study`).value);
     at(`${this.id}-row`).hidden = !study;
     at(`${this.id}-cancel`).hidden = !study || OVER.includes(study.state);
+    at(`${this.id}-remove`).hidden = !study || !OVER.includes(study.state);
     at(`${this.id}-state`).replaceChildren(...(study ? [badge(study.state)] : []), study?.reason ? ` ${study.reason}` : "");
     const key = study ? `${study.id} ${study.state}` : "";
     if (key !== this.shown) { this.shown = key; await this.found(study); }

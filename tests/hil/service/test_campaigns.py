@@ -72,6 +72,12 @@ def test_a_campaign_is_given_carried_out_and_its_table_fetched(there: Served, tm
         client.cancel_campaign(found.id)
     with pytest.raises(RefusedError, match="is ended"):
         client.resume_campaign(found.id)
+    client.remove_campaign(found.id)
+    with pytest.raises(RefusedError, match="there is no campaign"):
+        client.campaign(found.id)
+    assert list((there.data / f"campaigns/{found.id:06d}").iterdir()) == []
+    removed = next(one for one in client.audit() if one.action == "campaign removed")
+    assert removed.detail == "short_campaign: 16 of 16 simulations"
 
 
 @pytest.mark.slow
@@ -126,6 +132,8 @@ def test_a_cancelled_campaign_keeps_what_was_done_and_goes_on(there: Served) -> 
     begun = until(client, first.id, lambda found: found.done > 0)
     assert (begun.state, client.campaign(second.id).state) == ("running", "waiting")
     assert begun.controllers[0].of == begun.done
+    with pytest.raises(RefusedError, match=f"campaign {first.id} is running"):
+        client.remove_campaign(first.id)
     assert client.cancel_campaign(second.id).state == "cancelled"
     assert client.cancel_campaign(first.id).state == "stopping"
     kept = over(client, first.id)

@@ -61,6 +61,9 @@ def test_a_campaign_is_begun_watched_cancelled_and_gone_on_with(
     page.get_by_role("button", name="Go on: campaign 2").click()
     expect(rows.first).to_contain_text("of 1000, ")
     expect(rows.first).to_contain_text("1000 of 1000")
+    page.once("dialog", lambda dialog: dialog.accept())
+    page.get_by_role("button", name="Remove: campaign 1").click()
+    expect(rows).to_have_count(1)
     with page.expect_download() as fetched:
         rows.first.get_by_role("link", name="table of campaign 2").click()
     assert fetched.value.suggested_filename == "campaign-2-simulations.parquet"

@@ -76,7 +76,17 @@ def test_a_diagnosis_is_cancelled_and_leaves_the_next_its_turn(there: tuple[Serv
     assert over(client, second).state == "ended"
     with pytest.raises(RefusedError, match="is over"):
         client.cancel_study(first.id)
-    assert ("local", "study cancelled") in {(one.who, one.action) for one in client.audit()}
+    third = client.identify(IdentificationWanted(runs=[run]))
+    with pytest.raises(RefusedError, match=rf"study {third.id} is (waiting|running)"):
+        client.remove_study(third.id)
+    over(client, third)
+    client.remove_study(first.id)
+    assert first.id not in {one.id for one in client.studies()}
+    with pytest.raises(RefusedError, match="there is no study"):
+        client.remove_study(first.id)
+    assert {("local", "study cancelled"), ("local", "study removed")} <= {
+        (one.who, one.action) for one in client.audit()
+    }
 
 
 def test_a_diagnosis_tells_map_gap_and_verdict(there: tuple[Served, int]) -> None:
