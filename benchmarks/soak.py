@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hil.core.channels import TIME
 from hil.core.recording import read_recording
 from hil.engine.disk_room import needed_bytes
 from test_plans import load_plan
@@ -88,12 +89,13 @@ def told(hours: float, folder: Path, memory: list[tuple[float, float]]) -> int:
     recording = read_recording(path)
     model = folder / "model.toml"
     model.write_bytes(recording.attachments[model.name])
-    time_s = recording.time_s
-    off_s = float(np.max(np.abs(time_s - 1e-3 * np.arange(len(time_s)))))
+    off_s = max(
+        float(np.max(np.abs(rows[TIME] - 1e-3 * (first + np.arange(len(rows[TIME]))))))
+        for first, rows in recording.blocks((TIME,))
+    )
     lasted_s = result["bench_time_s"]
-    print(f"{len(time_s)} samples, off their millisecond by at most {off_s:.2g} s; the run took {lasted_s} s")
+    print(f"{recording.samples} samples, off their millisecond by at most {off_s:.2g} s, over {lasted_s} s")
     print(f"file {size / 1e6:.0f} MB, predicted with its reports at most {predicted / 1e6:.0f} MB")
-    del recording, time_s
     after: list[list[str | Path]] = [
         ["export", path, "--out", folder / "r.parquet"],
         ["report", path, "--out", folder / "again"],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from dataclasses import dataclass
 from functools import cache
 
@@ -43,7 +44,7 @@ class SampleClock:
     def __init__(self, period_s: float) -> None:
         self.period_s = period_s
         self._origin: tuple[int, float] | None = None
-        self._stretches: list[list[float]] = []  # place and delay, both against the origin
+        self._stretches = array("d")  # place and delay of each, both against the origin: a run has very many
         self._newest = np.zeros((0, 2))
         self._open = np.array([0.0, np.inf, 0.0])  # samples of the stretch so far, its least delay and place
         self._slope, self._level_s = 0.0, 0.0  # delay = level + slope * (number - origin)
@@ -55,6 +56,11 @@ class SampleClock:
     def begun(self) -> bool:
         """Whether it has seen anything."""
         return self._origin is not None
+
+    @property
+    def _known(self) -> int:
+        """How many stretches are whole."""
+        return len(self._stretches) // 2
 
     def guess(self, numbers: Numbers, arrivals_s: Array) -> None:
         """Begin with numbers that may yet turn out to lack some."""
@@ -68,20 +74,20 @@ class SampleClock:
         if self._origin is None:
             self._origin = (int(numbers[0]), float(arrivals_s[0]))
         number, time_s = self._origin
-        if len(self._stretches) <= _FEW:
+        if self._known <= _FEW:
             delays = self._delays(numbers, arrivals_s)
             self._parts += [float(np.min(delays[at : at + _PART])) for at in range(0, len(delays), _PART)]
         found = np.empty((len(numbers) // _STRETCH + 1, 2))
-        known = len(self._stretches) > 0
+        known = self._known > 0
         count, late_s = _least(
             numbers, arrivals_s, number, time_s, self.period_s, self._slope, self._open, found
         )
         if known:
             self.latest_s = max(self.latest_s, late_s - self._level_s)
         if count:
-            self._stretches += found[:count].tolist()
+            self._stretches.frombytes(found[:count].tobytes())
             self._newest = np.concatenate([self._newest, found[:count]])[-_STRETCHES:]
-        if count or len(self._stretches) < _FEW:
+        if count or self._known < _FEW:
             self._fit()
 
     def times(self, numbers: Numbers) -> Array:
@@ -107,7 +113,7 @@ class SampleClock:
             return ClockFigures(0.0, 0.0)
         if base is None:
             return ClockFigures(0.0, self._whole_drift() * 1e6)
-        newest = self._origin[0] + (round(self._stretches[-1][0]) if self._stretches else 0)
+        newest = self._origin[0] + (round(self._stretches[-2]) if self._stretches else 0)
         aside = base.number_at(float(self.times(np.array([newest]))[0]))
         offset_s = (aside - round(aside)) * base.period_s
         return ClockFigures(offset_s, (self._whole_drift() - base._whole_drift()) * 1e6)
@@ -115,10 +121,10 @@ class SampleClock:
     def parted_from(self, base: SampleClock | None) -> str:
         """What to say if this clock and another (None: the bench's) have parted; else nothing."""
         drift = (self._slope - (base._slope if base else 0.0)) / self.period_s
-        known = len(self._stretches) >= _STRETCHES
+        known = self._known >= _STRETCHES
         if known and abs(drift) > _LARGEST_DRIFT and self.spread_s < self.period_s:
             return f"its samples come {abs(drift) * 1e6:.0f} ppm too {'slow' if drift > 0 else 'fast'}"
-        if base is None or min(len(self._stretches), len(base._stretches)) < _STEPPED + _BEFORE:
+        if base is None or min(self._known, base._known) < _STEPPED + _BEFORE:
             return ""
         aside = self._aside() - base._aside()
         room_s = self.period_s + 2 * (self.spread_s + base.spread_s)
@@ -150,10 +156,9 @@ class SampleClock:
 
     def _whole_drift(self) -> float:
         """Of the whole run, as a share."""
-        if len(self._stretches) < _FOR_SLOPE:
+        if self._known < _FOR_SLOPE:
             return 0.0
-        some = self._stretches[:: len(self._stretches) // 200 + 1]
-        places, delays = np.array(some, float).T
+        places, delays = np.array(self._stretches).reshape(-1, 2)[:: self._known // 200 + 1].T
         return float(_slope(places, delays)) / self.period_s
 
 
