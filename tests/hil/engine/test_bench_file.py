@@ -1,14 +1,17 @@
 import re
 import shutil
 import tomllib
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from hil.core.errors import BadInputError
 from hil.engine.bench_file import bench_from_dict, load_bench
+from hil.engine.bench_tables import NoiseTable, SensorTable, Simulation, Supervision, Vehicle
 from tests.benches_for_tests import SIM
 
 
@@ -120,6 +123,36 @@ def test_a_mistake_in_a_devices_table_does_not_hide_one_in_another(tmp_path):
     said = refused(text.replace("wheel_radius_m = 0.33", "wheel_radius_m = -1.0"), tmp_path)
     for key in ("rmcu.kind = 'rmcu-cam'", "dyno.colour", "vehicle.wheel_radius_m"):
         assert key in said
+
+
+def test_what_a_bench_file_leaves_out_is_as_documented():
+    vehicle, supervision, noise = Vehicle(), Supervision(), NoiseTable()
+    assert (vehicle.wheel_radius_m, vehicle.slip, vehicle.inertia_kg_m2) == (0.33, 0.0, None)
+    assert (supervision.own_process, supervision.hung_after_s, supervision.alone_after_s) == (None, 2.0, 2.0)
+    assert (noise.motor_speed_rad_s, noise.wheel_speed_rad_s, noise.shaft_torque_nm) == (0.02, 0.002, 0.5)
+    assert Simulation(model=Path("m.toml")).seed == 1
+    assert (SensorTable().gain, SensorTable().offset) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "refused", "taken"),
+    [
+        (Vehicle, "wheel_radius_m", (0.0, 0.0099, 10.1), (0.01, 10.0)),
+        (Vehicle, "slip", (-0.1, 1.0), (0.0, 0.99)),
+        (Vehicle, "inertia_kg_m2", (0.0, 1.1e6), (0.5, 1e6)),
+        (Vehicle, "rolling_nm", (-0.5, 1.1e6), (0.0, 1e6)),
+        (Vehicle, "aero_nms2_rad2", (-0.5, 1.1e6), (0.0, 1e6)),
+        (Supervision, "hung_after_s", (0.4, 60.5), (0.5, 60.0)),
+        (Supervision, "alone_after_s", (0.4, 60.5), (0.5, 60.0)),
+        (NoiseTable, "shaft_torque_nm", (-0.1, 1.1e4, float("nan")), (0.0, 1e4)),
+    ],
+)
+def test_numbers_of_a_bench_file_have_bounds(table, key, refused, taken):
+    for value in refused:
+        with pytest.raises(ValidationError, match=key):
+            table(**{key: value})
+    for value in taken:
+        assert getattr(table(**{key: value}), key) == value
 
 
 def test_the_files_that_a_bench_names_are_looked_at(tmp_path):
