@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 from hil.engine import RunRequest, run_plan
 from hil.engine.last_look import complaints_of
 from tests.benches_for_tests import SIM, plan
+from tests.drivers.pseudo_adapter import plugged_in
+from tests.hil.engine.doctor.test_examine import with_slcan
 from tests.hil.engine.test_wall_clock import bench_in_real_time
 
 
@@ -23,3 +26,11 @@ def test_a_bus_that_cannot_be_opened_is_a_complaint_of_its_own() -> None:
     bench = SIM.model_copy(update={"buses": {"rmcu": bus, "dyno": bus}, "simulation": None})
     found = complaints_of(bench)
     assert [text.partition(":")[0] for text in found] == ["bus 'rmcu'", "bus 'dyno'", "rmcu", "dyno"]
+
+
+def test_a_bus_that_fails_while_it_is_heard_is_named() -> None:
+    with plugged_in() as rmcu, plugged_in() as dyno:
+        bench = with_slcan(rmcu, dyno)
+        threading.Timer(0.3, rmcu.unplug).start()
+        found = complaints_of(bench)
+    assert [text.partition(":")[0] for text in found] == ["bus 'rmcu'", "RMCU", "dynos"]

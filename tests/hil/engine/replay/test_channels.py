@@ -8,7 +8,7 @@ import numpy as np
 
 from hil.core.can_logs import CanLog
 from hil.core.frames import frames
-from hil.engine.replay._channels import listed, merged
+from hil.engine.replay._channels import chosen_buses, listed, merged
 
 SECOND = 10**9
 
@@ -42,3 +42,15 @@ def test_six_identifiers_of_a_channel_are_shown_and_that_there_are_more(tmp_path
         said = listed(found, {"rmcu": {1, 2, 99}, "dyno": {88}})
         assert said.startswith(f"channel '1' of a.asc: {count} frames, {count} standard identifiers (0x001, ")
         assert f"{shown}), 2 of bus 'rmcu'" in said
+
+
+def test_a_bus_of_which_no_log_has_frames_does_not_hide_the_next(tmp_path: Path) -> None:
+    block = frames(0x183, np.zeros(5, np.uint64), 8, np.arange(5.0))
+    found = merged([CanLog(tmp_path / "a.asc", {"1": block}, SECOND)])
+    names: dict[str, set[str]] = {"rmcu": set(), "dyno": set()}
+    chosen, told = chosen_buses(found, {"rmcu": {0x110}, "dyno": {0x183, 0x184}}, names, {})
+    assert list(chosen) == ["dyno"]
+    assert told == [
+        "no log has frames of bus 'rmcu': its channels are missing",
+        "bus 'dyno' is channel '1': 5 frames, 1 of 2 known identifiers",
+    ]
