@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.core.errors import BadInputError, BenchError, InterruptError
+from hil.core.errors import BadInputError, BenchError, InterruptError, OrderlyEndError
 from hil.core.recording import read_frames, read_recording
 from hil.engine.border import RunRequest
 from hil.engine.run import run_plan
@@ -229,6 +229,35 @@ def test_a_prompt_on_hardware_needs_a_terminal_or_a_name(answers, refused, tmp_p
     with pytest.raises(BadInputError if refused else BenchError) as caught:
         run_plan(request)
     assert ("there is no terminal to ask on" in str(caught.value)) is refused
+
+
+class Leaving:
+    """Watches a run until it is gone."""
+
+    def __init__(self):
+        self.gone, self.told = "", []
+
+    def turned(self):
+        return self.gone
+
+    def progress(self, share, text):
+        if share > 0.4:
+            self.gone = "nobody watches this process"
+
+    def concluded(self, *, armed, unsafe):
+        self.told.append((armed, unsafe))
+
+
+def test_a_run_that_nobody_watches_any_more_ends_in_order(tmp_path):
+    watched = Leaving()
+    request = RunRequest(plan(CHIRP), sim_bench("left"), tmp_path, watched=watched)
+    request.progress = watched.progress
+    outcome = run_plan(request)
+    assert isinstance(outcome.error, OrderlyEndError)
+    assert "nobody watches this process" in str(outcome.error)
+    assert outcome.result.end_steps.startswith("carried out: ramp_down")
+    assert outcome.result.safe_state == "confirmed"
+    assert watched.told == [(True, [])]
 
 
 def test_idle_nodes_may_be_called_anything(tmp_path):
