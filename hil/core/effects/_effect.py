@@ -126,6 +126,8 @@ class Effect:
         kin: effects that look like it, tried along with it.
         abrupt: errors have false minima in its size: fits are repeated from other sizes.
         many_laws: formulas for it differ, so that one of them never closes a gap to the noise.
+        forms: laws of other authors, each the numbers that it moves with the values to try them from: tried
+            by a diagnosis where the effect as it is leaves more than noise, fitted in every other way.
         least: the smallest size worth naming; None: any that the data prove.
         derived: numbers that users know beside the fitted ones: of its values, name (with its unit): number.
     """
@@ -148,6 +150,7 @@ class Effect:
     kin: tuple[str, ...] = ()
     abrupt: bool = False
     many_laws: bool = False
+    forms: tuple[Mapping[str, tuple[float, ...]], ...] = ()
     least: Least | None = None
     derived: Callable[[Mapping[str, float]], Mapping[str, float]] | None = None
     source: str = ""

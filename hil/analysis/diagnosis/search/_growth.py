@@ -18,6 +18,7 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._foretold import where_foretold
+from hil.analysis.diagnosis.search._forms import by_other_laws
 from hil.analysis.diagnosis.search._hidden_speeds import with_hidden_speeds
 from hil.analysis.diagnosis.search._optional import little, refined
 from hil.analysis.diagnosis.search._places import placed
@@ -272,7 +273,7 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
             i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
         )
         best = _from_sizes(evidence, best, _nominal(best.hypothesis, best.theta), own, OTHER_SIZES)
-    return best if evidence.problem.partial else placed(evidence, best)
+    return by_other_laws(evidence, best if evidence.problem.partial else placed(evidence, best))
 
 
 def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:

@@ -218,6 +218,9 @@ OUT_OF_RACE: Annotated[
 OPTIONAL_LEAVES: Annotated[
     float, Means("of the remaining gap", "an optional number must leave less", "hidden")
 ] = 0.8
+FORM_LEAVES: Annotated[
+    float, Means("of the remaining gap", "the law of another author must leave less", "hidden")
+] = 0.5
 UNTOLD_SIGMAS: Annotated[
     float, Means("standard errors", "an optional number nearer to its default is closed again", "laws")
 ] = 3.0

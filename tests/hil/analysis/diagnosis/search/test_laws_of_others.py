@@ -6,6 +6,7 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._forms import by_other_laws
 from hil.analysis.diagnosis.search._optional import refined
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
@@ -42,3 +43,31 @@ def test_numbers_that_the_data_do_not_tell_are_closed_again() -> None:
     assert found.hypothesis.open == ()
     assert values_of(found)["offset_nm"] == 0.0
     assert values_of(found)["torque_nm"] == pytest.approx(2.0, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    "law", [{"contact_damping_nms_rad": 40.0}, {"depth_damping_nms_rad2": 1500.0}], ids=["speed", "depth"]
+)
+def test_flanks_that_pull_are_found_from_flanks_that_do_not(law: dict[str, float]) -> None:
+    problem = one_problem(use("backlash", half_gap_rad=0.01, tension=1.0, **law))
+    evidence, one = fitted(problem, use("backlash", half_gap_rad=0.01))
+    assert not evidence.closed(one)
+    found = by_other_laws(evidence, one)
+    values = values_of(found)
+    assert (values["tension"], evidence.closed(found)) == (1.0, True)
+    assert values["half_gap_rad"] == pytest.approx(0.01, rel=0.01)
+    for name, value in law.items():
+        assert values[name] == pytest.approx(value, rel=0.1)
+
+
+def test_an_effect_whose_own_law_leaves_noise_alone_is_tried_by_no_other() -> None:
+    told = use("backlash", half_gap_rad=0.01)
+    problem = one_problem(told)
+    evidence, one = fitted(problem, told)
+    assert by_other_laws(evidence, one) is one
+
+
+def test_an_effect_without_other_laws_is_left_as_it_is() -> None:
+    problem = one_problem(use("viscous_drag", coefficient_nms_rad=0.3))
+    evidence, one = fitted(problem, use("viscous_drag", coefficient_nms_rad=0.1))
+    assert by_other_laws(evidence, one) is one

@@ -1,0 +1,71 @@
+"""Laws of other authors, tried where an effect, fitted in every other way, leaves more than noise.
+
+Not before: a law with more freedom makes up for a width that is not right yet, and then keeps it wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
+from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
+from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._places import placed
+from hil.analysis.diagnosis.search._rank import rank
+from hil.analysis.diagnosis.search._thresholds import FORM_LEAVES, LEAST_EVIDENCE
+from hil.analysis.diagnosis.search._width import width_of, with_likely_width
+from hil.core.effects import EFFECTS
+from hil.core.model import EffectUse
+
+Array = npt.NDArray[np.float64]
+
+
+def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
+    """`best`, or its newest effect by the law of another author that leaves clearly less."""
+    forms = EFFECTS[best.hypothesis.ids[-1]].forms
+    if not forms or evidence.closed(best):
+        return best
+    first = min((_by(evidence, best, form) for form in forms), key=rank)
+    less = evidence.left(first) < FORM_LEAVES * evidence.left(best)
+    if not less or evidence.between(best, first) < LEAST_EVIDENCE:
+        return best
+    return first if evidence.problem.partial else placed(evidence, first)
+
+
+def _by(evidence: Evidence, best: Fit, form: Mapping[str, tuple[float, ...]]) -> Fit:
+    """`best` with the law `form`, from the most promising of its values and with the width that suits it."""
+    problem = evidence.problem.with_angles(best.angles)
+    hypothesis = _written(best.hypothesis, form)
+    theta = carried(best, hypothesis)
+    own = {c.name: (i, c) for i, c in enumerate(hypothesis.coordinates()) if _is_newest(hypothesis, c)}
+    moved = {own[name]: values for name, values in form.items() if name in own}
+    tried = []
+    for values in product(*moved.values()):
+        other = theta.copy()
+        for (index, c), value in zip(moved, values, strict=True):
+            other[index] = value if c.scale == "linear" else np.log(value)
+        tried.append(other)
+    first = cheapest(problem, hypothesis, tried, best.starts)
+    if (width := width_of(hypothesis)) is not None:
+        likely = with_likely_width(problem, hypothesis, first, best.starts, width)
+        first = cheapest(problem, hypothesis, [first, likely], best.starts)
+    return fit(problem, hypothesis, best.starts, first)
+
+
+def _written(hypothesis: Hypothesis, form: Mapping[str, tuple[float, ...]]) -> Hypothesis:
+    """`hypothesis`, its newest effect by `form`: what a fit can move is open, the rest as it is given."""
+    newest = hypothesis.terms[-1]
+    effect = EFFECTS[newest.id]
+    given = {name: values[0] for name, values in form.items()}
+    moved = {name for name in form if effect.parameter(name).fitted}
+    terms = (*hypothesis.terms[:-1], EffectUse(newest.id, {**newest.values, **given}))
+    return replace(hypothesis, terms=terms, open=tuple(sorted({*hypothesis.open, *moved})))
+
+
+def _is_newest(hypothesis: Hypothesis, c: Coordinate) -> bool:
+    return c.term == len(hypothesis.terms) - 1
