@@ -141,7 +141,8 @@ def _coherent(
 
 def _spectra(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence[Array]) -> Spectra:
     """Segments x frequencies x signals; the segments' mean squares add up to the power over frequency."""
-    signals = [_signals(*of_one) for of_one in zip(traces, weights, errors, strict=True)]
+    whole = [_signals(*of_one) for of_one in zip(traces, weights, errors, strict=True)]
+    signals = [one[trace.lead_blocks :] for one, trace in zip(whole, traces, strict=True)]
     period = traces[0].dt * traces[0].block
     shortest = min(len(s) for s in signals)
     total = sum(len(s) for s in signals)
@@ -150,7 +151,7 @@ def _spectra(traces: Sequence[Trace], weights: Sequence[Array], errors: Sequence
     cut = []
     for trace, one_signals in zip(traces, signals, strict=True):
         starts = np.arange(0, len(one_signals) - length + 1, max(1, length // 2))
-        counts = trace.judged_blocks
+        counts = trace.judged_blocks[trace.lead_blocks :]
         cut += [one_signals[s : s + length] for s in starts if counts[s : s + length].all()]
     if not cut:
         raise BadInputError("no stretch of 2 s is left to judge errors in", fix="record longer")

@@ -40,7 +40,8 @@ class Trace:
     `block` samples; `samples` is the same at full rate; `start` is motor speed, wheel speed (rad/s) and
     shaft torque (N m) at the first sample, NaN where not measured. `source` is the file, for messages.
     `judged` says of each block whether errors count there; everywhere if None. `load` is the torque in N m
-    that brakes the wheels at every sample; None where the model takes none.
+    that brakes the wheels at every sample; None where the model takes none. In the first `lead` samples of
+    a recording that begins in motion errors do not count: torque that was asked for before acts there.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Trace:
     source: str = ""
     judged: Flags | None = None
     load: Array | None = None
+    lead: int = 0
 
     def angles(self, gear_ratio: float, sensors: Array | None = None) -> Array:
         """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
@@ -85,7 +87,14 @@ class Trace:
     @property
     def judged_blocks(self) -> Flags:
         """Of each block whether errors count there."""
-        return np.ones(len(self.measured), bool) if self.judged is None else self.judged
+        judged = np.ones(len(self.measured), bool) if self.judged is None else self.judged.copy()
+        judged[: self.lead_blocks] = False
+        return judged
+
+    @property
+    def lead_blocks(self) -> int:
+        """How many blocks `lead` reaches into."""
+        return -(-self.lead // self.block)
 
     @property
     def judged_samples(self) -> Flags:

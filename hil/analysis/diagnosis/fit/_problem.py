@@ -21,6 +21,8 @@ from hil.analysis.diagnosis.fit._thresholds import (
     DIVERGED,
     FINE,
     HUGE,
+    LEAD_PART,
+    LEAD_S,
     MID_MOTION,
     REST_SAMPLES,
     REST_SHARE,
@@ -147,6 +149,7 @@ class Problem:
         difference = np.where(weights > 0, self.traces[trace].measured - simulated, 0.0)
         error = np.nan_to_num(difference * weights, nan=HUGE, posinf=HUGE, neginf=-HUGE)
         error = np.clip(error, -HUGE, HUGE)
+        error[: self.traces[trace].lead_blocks] = 0.0
         return self._counted(trace, self._whitened(error))
 
     def changes(self, trace: int, simulated: Array) -> Array:
@@ -160,6 +163,7 @@ class Problem:
         """
         change = simulated[1:] - simulated[0]
         change *= self.weights[trace]
+        change[:, : self.traces[trace].lead_blocks] = 0.0
         if self.whitening is not None:
             change = np.stack([self._whitened(one) for one in change])
         return self._counted(trace, change)
@@ -270,18 +274,24 @@ def problem_of(
     noise = read_only(noise)
     floor = noise if floor is None else read_only(floor)
     weights = [np.where(t.has, np.sqrt(t.block) / np.where(noise > 0, noise, np.inf), 0.0) for t in traces]
+    resting = tuple(_rests(t, noise, floor) for t in traces)
     return Problem(
-        tuple(traces),
+        tuple(t if rests else replace(t, lead=_lead(t)) for t, rests in zip(traces, resting, strict=True)),
         noise,
         floor,
         gear_ratio,
         tuple(t.angles(gear_ratio) for t in traces),
         tuple(map(read_only, weights)),
-        tuple(_rests(t, noise, floor) for t in traces),
+        resting,
         read_only(proven_noise(traces, noise, stated)),
         allowance=allowance,
         functions=functions or None,
     )
+
+
+def _lead(trace: Trace) -> int:
+    """How many samples at the beginning may show a torque that nobody recorded."""
+    return min(round(LEAD_S / trace.dt), len(trace.samples) // LEAD_PART)
 
 
 def read_only(values: Array) -> Array:

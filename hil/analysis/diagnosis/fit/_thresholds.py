@@ -54,6 +54,17 @@ HUGE: Annotated[float, Means("noise levels", "errors of a diverged simulation ar
 DIVERGED: Annotated[
     float, Means("noise levels", "a larger change is no derivative that could be followed", "problem")
 ] = 1e9
+LEAD_S: Annotated[
+    float,
+    Means(
+        "s",
+        "of a recording that begins in motion do not count: torque asked for before acts there",
+        "problem",
+    ),
+] = 0.02
+LEAD_PART: Annotated[
+    int, Means("of a recording", "one part in so many is the most that does not count so", "problem")
+] = 20
 REST_SHARE: Annotated[float, Means("of a sample's noise", "how still an axle at rest is held", "problem")] = (
     0.1
 )

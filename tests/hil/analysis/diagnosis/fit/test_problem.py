@@ -1,12 +1,18 @@
 """Errors and derivatives of a hypothesis over recordings, and that a problem stays as it is."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._problem import problem_of
+from hil.analysis.diagnosis.fit._simulated import settled_starts
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.recording import Recording
+from hil.plant import simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE, one_problem, one_trace
 
 RATIO = MODEL.parameters["gear_ratio"]
@@ -84,3 +90,37 @@ def test_noise_that_the_caller_changes_later_does_not_reach_a_problem() -> None:
     problem = problem_of([one_trace()], noise, RATIO)
     noise[0] = 99.0
     assert problem.noise[0] == NOISE[0]
+
+
+def test_torque_from_before_a_recording_in_mid_motion_is_no_error() -> None:
+    """Cut where the request jumps, as when a controller takes over: the dead time still knows the old."""
+    time = np.arange(0.0, 6.0, 1e-3)
+    torque = 10.0 * np.sin(2 * np.pi * 0.5 * time) + np.where((time > 1.0) & (time < 3.0), 6.0, 0.0)
+    shown = simulate(MODEL, torque, 1e-3)
+    assert MODEL.parameters["torque_delay"] > 0.001
+    rng = np.random.default_rng(3)
+    noisy = {
+        name: shown[name] + rng.normal(0.0, 0.05 * level, 6000)
+        for name, level in zip(OUTPUTS, NOISE, strict=True)
+    }
+    late = {name: values[3000:] for name, values in {TIME: time, INPUT: torque, **noisy}.items()}
+    trace = trace_of(Recording(late, Path("cut.csv")))
+    problem = problem_of([trace], 0.05 * np.array(NOISE), RATIO)
+    assert problem.resting == (False,)
+    hypothesis = Hypothesis(MODEL)
+    (start,) = settled_starts(problem, hypothesis, hypothesis.start(), problem.first_starts())
+    known = problem.linearised(hypothesis, hypothesis.start(), [start])
+    assert known.cost == pytest.approx(problem.rows, rel=0.1)
+    assert problem.rows == 3 * (len(trace.measured) - 5)
+    told = dataclasses.replace(problem, traces=(trace,))  # every sample counts
+    (start,) = settled_starts(told, hypothesis, hypothesis.start(), problem.first_starts())
+    whole = told.linearised(hypothesis, hypothesis.start(), [start])
+    assert whole.cost > 2.0 * told.rows
+
+
+def test_of_a_short_recording_little_does_not_count() -> None:
+    away = dataclasses.replace(one_trace(seconds=0.2), start=np.array([100.0, 12.0, 0.0]))
+    (trace,) = problem_of([away], np.array(NOISE), RATIO).traces
+    assert trace.lead == 10
+    assert np.count_nonzero(~trace.judged_samples) == trace.block * trace.lead_blocks
+    assert not one_problem().traces[0].lead  # it begins at rest: there was no torque before
