@@ -14,9 +14,11 @@ from reports.svg_canvas import svg_canvas
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
 _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
 _LEGEND_ROW_MM = 3.4
+_MOST_LEGEND_ROWS = 6
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
 
@@ -24,16 +26,18 @@ def svg_figure(figure: Figure) -> bytes:
     """The figure in the house style for paper, half a text line wide, or a whole one if it is `wide`."""
     narrow = (style.PAPER_WIDTH_MM, style.PAPER_HEIGHT_MM)
     width, height = style.PAPER_WIDE_MM if figure.wide else narrow
-    rows = len(figure.traces) if len(figure.traces) > 1 else 0
     columns = 3 if figure.wide else 1
-    top = _TOP_MM + _LEGEND_ROW_MM * -(-rows // columns)
+    named = _named(figure, _MOST_LEGEND_ROWS * columns)
+    top = _TOP_MM + _LEGEND_ROW_MM * -(-len(named) // columns)
     with svg_canvas(width, height) as picture:
         canvas = picture.canvas
         box = (_LEFT_MM / width, _BOTTOM_MM / height, _axes_width_mm(figure) / width)
         axes = canvas.add_axes((*box, 1 - (_BOTTOM_MM + top) / height))
-        _draw(axes, figure)
-        if rows:
+        lines = _draw(axes, figure)
+        if named:
             canvas.legend(
+                handles=_handles(lines, named),
+                labels=named,
                 loc="upper left",
                 bbox_to_anchor=(_LEFT_MM / width, 1.0),
                 ncols=columns,
@@ -45,18 +49,37 @@ def svg_figure(figure: Figure) -> bytes:
     return picture.svg
 
 
+def _named(figure: Figure, most: int) -> list[str]:
+    """What the legend says: of one line nothing, of more than `most` how many more there are."""
+    names = [trace.label.as_mathtext() for trace in figure.traces]
+    if len(names) <= most:
+        return names if len(names) > 1 else []
+    return [*names[: most - 1], f"and {len(names) - most + 1} more"]
+
+
+def _handles(lines: list[Line2D], named: list[str]) -> list[Line2D]:
+    """What stands before each name: the lines, and nothing before how many more there are."""
+    if len(lines) <= len(named):
+        return lines
+    from matplotlib.lines import Line2D
+
+    return [*lines[: len(named) - 1], Line2D([], [], alpha=0.0)]
+
+
 def _axes_width_mm(figure: Figure) -> float:
     width = style.PAPER_WIDE_MM[0] if figure.wide else style.PAPER_WIDTH_MM
     return width - _LEFT_MM - _RIGHT_MM
 
 
-def _draw(axes: Axes, figure: Figure) -> None:
+def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
+    lines = []
     for trace in figure.traces:
         points = style.POINTS_ON_PAPER * (2 if figure.wide else 1)
         x, y = envelope(trace.x, trace.y, points, logarithmic=figure.logarithmic)
         color = style.SERIES[trace.role].light
-        (drawn,) = axes.plot(x, y, _DASHES[trace.dash], color=color, label=trace.label.as_mathtext())
+        (drawn,) = axes.plot(x, y, _DASHES[trace.dash], color=color)
         drawn.set_linewidth(drawn.get_linewidth() * style.WIDER.get(trace.role, 1.0) * trace.width)
+        lines.append(drawn)
     if figure.logarithmic:
         axes.set_xscale("log")
         axes.set_yscale("log")
@@ -69,6 +92,7 @@ def _draw(axes: Axes, figure: Figure) -> None:
     axes.set_ylabel(figure.y_title.as_mathtext(), va="top")
     axes.yaxis.set_label_coords(-(_LEFT_MM - 0.5) / _axes_width_mm(figure), 0.5)  # one edge for all figures
     _mark(axes, figure)
+    return lines
 
 
 def _mark(axes: Axes, figure: Figure) -> None:

@@ -11,11 +11,13 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
+from hil.core.recording._growing_file import GrowingFile
 from hil.engine import RunRequest, load_bench, run_plan
 from test_plans import load_plan
 from tests.benches_for_tests import SIM
@@ -181,6 +183,17 @@ def _in_child(fault: FaultRow, phase: str, folder: Path, writing: int) -> None:
         os._exit(code)
 
 
+def _awaited(write: Callable[[GrowingFile, bytes], int]) -> Callable[[GrowingFile, bytes], int]:
+    """A disk as quick as the bench: while the thread that writes does so, much bench time would pass."""
+
+    def written(file: GrowingFile, data: bytes) -> int:
+        count = write(file, data)
+        file.settle()
+        return count
+
+    return written
+
+
 def _carried_out(fault: FaultRow, phase: str, folder: Path, *, reports: bool) -> Outcome:
     command: Any = importlib.import_module("hil.cli._one_run")
     guarded = importlib.import_module("hil.cli._app").guarded
@@ -194,9 +207,10 @@ def _carried_out(fault: FaultRow, phase: str, folder: Path, *, reports: bool) ->
     stage.begin()
     files = written(fault, phase, folder)
     try:
-        code = guarded(
-            ["run", str(files[0]), "--bench", str(files[1]), "--out", str(folder / "out"), "--json"]
-        )
+        with patch.object(GrowingFile, "write", _awaited(GrowingFile.write)):
+            code = guarded(
+                ["run", str(files[0]), "--bench", str(files[1]), "--out", str(folder / "out"), "--json"]
+            )
     finally:
         command.operators_terminal, command.write_documents = before
     ended_s = stage.now_s if stage.world is not None else 0.0
