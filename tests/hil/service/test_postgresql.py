@@ -103,7 +103,7 @@ def test_two_services_of_a_database_never_drive_one_bench(server: Cluster, tmp_p
     bench.write_text(text.replace('name = "sim"', 'name = "other"', 1).replace('"sim/', '"other/'))
     with served(tmp_path / "one", "--database", url, state=tmp_path / "state") as one:
         second = served(tmp_path / "two", "--database", url)
-        with pytest.raises(AssertionError, match="the service has ended"), second:
+        with pytest.raises(AssertionError, match="the process has ended"), second:
             pass
         with served(tmp_path / "two", "--database", url, "--bench", str(bench)) as two:
             one.give("short", SHORT)
