@@ -50,6 +50,8 @@ class SampleAssembler:
         self._base = self._waiting[streams[0]]
         self._slow = [w for w in self._waiting.values() if w.stream.period_s > _SLOWER * sample_time_s]
         self._even = [w for w in self._waiting.values() if w not in self._slow and w.stream.channels]
+        # A stream without channels of its own is there for its count, and is forgotten like the others
+        self._passing = [w for w in self._waiting.values() if w not in self._slow]
         self._alike = [w for w in self._even if w.clock and w.stream.period_s == streams[0].period_s]
         self._begun = False
         self.late = 0
@@ -140,7 +142,7 @@ class SampleAssembler:
             if name in self.names:
                 both = columns[left] + columns[right]
                 columns[name] = both if is_sum else 0.5 * both
-        for waiting in self._even:
+        for waiting in self._passing:
             last_s = stamps[-1] - waiting.stream.late_s
             waiting.forget(np.nextafter(stamps[-1], np.inf) if waiting is self._base else last_s)
         self._begun = True

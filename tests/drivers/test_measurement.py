@@ -1,9 +1,11 @@
+import tracemalloc
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivers import Binding, FrameSource, SampleAssembler
+from drivers import Binding, Counting, FrameSource, SampleAssembler, Samples, Stream
 from hil.core.frames import FRAME
 from hil.core.signals import Signal
 
@@ -81,3 +83,28 @@ def test_nothing_yet_is_no_rows():
     assert SampleAssembler(streams, 1e-3).rows().shape[0] == 0
     with pytest.raises(ValueError, match="not in list"):
         SampleAssembler(streams, 1e-3).names.index("wheel_speed_rad_s")
+
+
+def test_what_is_kept_does_not_grow_with_the_run_not_even_of_a_stream_that_is_there_for_its_count():
+    value = Stream("values", "here", ("value",), ("N m",), 1e-3, counting=Counting("8 bits", 256))
+    count = Stream("a count", "here", (), (), 1e-3, counting=Counting("8 bits of another", 256))
+    assembler = SampleAssembler([value, count], 1e-3)
+
+    def play(first: int) -> int:
+        numbers = np.arange(first, first + 1000)
+        for stream in (value, count):
+            values = np.zeros((1000, len(stream.channels)))
+            assembler.add(Samples(stream, numbers.astype(float) / 1000, values, numbers % 256))
+        return len(assembler.rows())
+
+    tracemalloc.start()
+    try:
+        rows = play(0) + play(1000)
+        held = tracemalloc.get_traced_memory()[0]
+        for second in range(2, 40):
+            rows += play(1000 * second)
+        grown = tracemalloc.get_traced_memory()[0] - held
+    finally:
+        tracemalloc.stop()
+    assert rows > 39_000
+    assert grown < 38 * 1000 * 8 / 2  # numbers alone would be 8 bytes of each sample
