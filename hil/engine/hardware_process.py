@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 import time
 import traceback
 from collections.abc import Sequence
@@ -25,6 +26,7 @@ from hil.engine.border_messages import (
     Typed,
 )
 from hil.engine.border_pipe import BorderPipe
+from hil.engine.ending_process import is_ending
 from hil.engine.run import run_plan
 from hil.engine.stopping import StopRequest, hear_signals
 
@@ -74,6 +76,7 @@ class _Command:
     def __init__(self, pipe: BorderPipe, stop: StopRequest) -> None:
         self._pipe, self._stop = pipe, stop
         self._lines: list[str] = []
+        self._process = os.getppid()
         self._heard_s = time.monotonic()
         self.alone_after_s = float("inf")
 
@@ -95,7 +98,7 @@ class _Command:
         self._pipe.send_if_idle(Turned())
         for message in self._pipe.fetch():
             self._take(message)
-        if self._pipe.gone:
+        if self._pipe.gone or is_ending(self._process):
             return "the command that asked for this run has ended"
         silent_s = time.monotonic() - self._heard_s
         return f"the command stands still since {silent_s:.1f} s" if silent_s > self.alone_after_s else ""
