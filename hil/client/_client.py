@@ -59,6 +59,7 @@ from hil.service.design_data import (
     ModelData,
     PlanCopyWanted,
 )
+from hil.service.given_data import KeptApart
 from hil.service.study_data import (
     DiagnosisData,
     DiagnosisWanted,
@@ -141,6 +142,10 @@ class Client:
     def give_plan(self, name: str, text: str) -> PlanData:
         """Give a plan (YAML), or replace one that was given."""
         return self._one(PlanData, "PUT", f"/plans/{_part(name)}", text)
+
+    def kept_apart(self) -> list[KeptApart]:
+        """Files of an earlier version's folder that the service has kept as they are, and does not share."""
+        return self._several(KeptApart, "/kept-apart")
 
     def forecast(self, plan: str, bench: str, values: Mapping[str, float] | None = None) -> ForecastData:
         """Duration, peaks and criteria as predicted."""

@@ -20,7 +20,7 @@ from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
 from hil.service.agent_data import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
 from hil.service.carrying_out import PLAN, RunningRun
-from hil.service.plans import files_of
+from hil.service.plan_files import files_of
 from hil.service.remote_bench import Agent, AgentsRun, RemoteBench
 from hil.service.run_files import folder_of
 from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
@@ -38,6 +38,7 @@ class Agents:
     Args:
         service: the name of this one in the database.
         folder: where runs have their folders.
+        source: where a plan lies here by its name, with what it loads beside it.
         changed: called whenever something of a bench is to be shown anew.
     """
 
@@ -48,9 +49,11 @@ class Agents:
         runs: RunStore,
         leases: LeaseStore,
         folder: Path,
+        source: Callable[[str], Path],
         changed: Callable[[str], None],
     ) -> None:
         self._engine, self._runs, self._leases, self._folder = engine, runs, leases, folder
+        self._source = source
         self._store = AgentStore(engine, service)
         self._changed = changed
         self.benches: dict[str, RemoteBench] = {}
@@ -173,9 +176,12 @@ class Agents:
             return None
         folder = folder_of(self._folder, taken.data.id)
         try:
-            plan = sent(plan_from_text(taken.plan_text, taken.plan_source, Path(taken.plan_source).parent))
+            source = self._source(taken.data.plan)
+            plan = sent(plan_from_text(taken.plan_text, str(source), source.parent))
             make_directory(folder)
             write_atomically(folder / PLAN, taken.plan_text)
+        except DatabaseAwayError:  # the agent is given it once more
+            raise
         except HilError as error:
             self._runs.end(taken.data.id, "ended", exit_code=error.exit_code, reason=str(error))
             self._changed(name)

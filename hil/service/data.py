@@ -56,6 +56,7 @@ class Health(_Data):
     up_s: float = Field(description="seconds since the service began")
     runs_not_stored: int = Field(0, description="runs whose files the store has not all; 0 without a store")
     store_problem: str = Field("", description="why files do not reach the store; '' if they do")
+    kept_apart: int = Field(0, description="files of an earlier version's folder that are not shared")
 
 
 class RunWanted(_Data):

@@ -5,17 +5,17 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
-import shutil
 import tempfile
 from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 
 from hil.core.errors import BadInputError, BenchError
+from hil.core.files import read_bytes
 from hil.engine import BenchFile
 from hil.service.background import begun
 from hil.service.data import ForecastData
-from hil.service.plans import files_of
+from hil.service.plan_files import files_of
 from test_plans import Plan
 
 _AT_ONCE = 1  # a run needs the other processor
@@ -55,7 +55,7 @@ class Forecasts:
             file.write_text(plan.text, "utf-8")
             for loaded in files_of(plan):  # the service's controllers lie beside its plans
                 if loaded.parent == plan.source.parent:
-                    shutil.copyfile(loaded, file.parent / loaded.name)
+                    (file.parent / loaded.name).write_bytes(read_bytes(loaded))
             code, out, said = await self._carried_out("check", str(file), f"--bench={bench.source}", "--json")
         if code in (0, 1):
             found = json.loads(out)

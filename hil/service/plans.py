@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import contextlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
-from pydantic import BaseModel
-
 from hil.core.errors import BadInputError
-from hil.core.files import make_directory, read_text, write_atomically
+from hil.core.files import read_text
 from hil.core.printable import printable
 from hil.service.data import PlanData, VariableData
+from hil.service.given_files import GivenFiles, NameTakenError
+from hil.service.plan_files import files_of
 from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
 from test_plans.yaml_document import read_yaml
 
@@ -21,20 +21,27 @@ class Plans:
     """Plans by name. A plan that was given may load built-in and given controllers and no other file.
 
     Args:
-        folder: where given plans are kept, each in a file of its name, beside the given controllers.
+        given: those that people gave.
+        controllers: that people gave; plans find them beside themselves, in the same folder.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        make_directory(folder)
+    def __init__(self, given: GivenFiles, controllers: GivenFiles) -> None:
+        self._given, self._controllers = given, controllers
         self._built_in = {name: load_plan(name) for name in library_plans()}
+
+    def fresh_folder(self) -> Path:
+        """Where given plans are, with the controllers that they load: as the database has them now."""
+        self._given.paths()
+        return self._with_controllers()
 
     def all(self) -> list[PlanData]:
         """What there is; a plan that cannot be read any more is left out."""
+        self._with_controllers()
         given = []
-        for path in sorted(self.folder.glob("[!.]*.yaml")):
+        for name, path in self._given.paths().items():
             with contextlib.suppress(BadInputError):
-                given.append(_data(load_plan(path), built_in=False))
+                if name not in self._built_in:
+                    given.append(_data(load_plan(path), built_in=False))
         return [*(_data(plan, built_in=True) for plan in self._built_in.values()), *given]
 
     def get(self, name: str) -> PlanData | None:
@@ -60,70 +67,89 @@ class Plans:
         path = self._path(name)
         return None if path is None else read_text(path)
 
-    def give(self, name: str, text: str) -> PlanData:
+    def source(self, name: str) -> Path:
+        """Where a plan that was queued, here or elsewhere, would lie now: beside what it loads."""
+        if name in self._built_in:
+            return self._built_in[name].source
+        return self._with_controllers() / f"{name}.yaml"
+
+    def give(self, name: str, text: str, by: str, *, replace: bool = True) -> PlanData:
         """Keep a plan; one of the same name is replaced. Runs that are queued keep theirs.
 
+        Args:
+            by: who gives it.
+            replace: whether one of the same name may be replaced.
+
         Raises:
+            NameTakenError: a built-in plan has the name, or somebody else has given one just now.
             BadInputError: all that is wrong with it.
         """
         if name in self._built_in:
-            raise BadInputError("is the name of a built-in plan", where=name, fix="give it another name")
-        where = f"{name}.yaml"
-        for file in files_of(plan_from_text(text, where, self.folder, files_required=False)):
+            raise NameTakenError("is the name of a built-in plan", where=name, fix="give it another name")
+        before = self._given.text(name) if replace else None
+        where, folder = f"{name}.yaml", self._with_controllers()
+        for file in files_of(plan_from_text(text, where, folder, files_required=False)):
             if file.name != str(file):
                 raise BadInputError(
                     f"loads the file {printable(repr(str(file)), 100)}",
                     where=where,
                     fix="a plan that is given to the service loads controllers that it has, by their names",
                 )
-        plan = plan_from_text(text, where, self.folder)
+        plan = plan_from_text(text, where, folder)
         if plan.name != name:
             raise BadInputError(
                 f"the plan calls itself '{plan.name}'", where=where, fix="give it under that name"
             )
-        write_atomically(self.folder / where, text)
+        fix = "look at it, then give yours again, or under another name"
+        self._given.give(name, text, by, instead_of=before, fix=fix)
         return _data(plan, built_in=False)
 
-    def copied(self, name: str, copy: str, controllers: Mapping[str, str]) -> PlanData | None:
+    def copied(self, name: str, copy: str, controllers: Mapping[str, str], by: str) -> PlanData | None:
         """Keep a copy that loads other controllers, by the files that they replace; None if there is no plan.
 
         Raises:
-            BadInputError: the plan loads no such file, or the copy's name is that of another plan.
+            NameTakenError: the copy's name is that of another plan.
+            BadInputError: the plan loads no such file.
         """
         text = self.text(name)
         if text is None:
             return None
-        chosen = {old: self.folder.resolve() / file for old, file in controllers.items()}
+        folder = self._with_controllers().resolve()
+        chosen = {old: folder / file for old, file in controllers.items()}
         text = Choices(controllers=chosen).applied(text, read_yaml(text, name))
         for path in chosen.values():  # plans find what lies beside them by its name alone
             text = text.replace(json.dumps(str(path), ensure_ascii=False), json.dumps(path.name))
         text = _renamed(text, copy)
         if self.text(copy) not in (None, text):
-            raise BadInputError("is the name of another plan", where=copy, fix="give the copy another name")
-        return self.give(copy, text)
+            raise NameTakenError("is the name of another plan", where=copy, fix="give the copy another name")
+        return self.give(copy, text, by, replace=False)
 
     def loading(self, file: str) -> list[str]:
         """Names of given plans that load a controller file."""
         found = []
-        for path in sorted(self.folder.glob("[!.]*.yaml")):
+        self._with_controllers()
+        for name, path in self._given.paths().items():
             with contextlib.suppress(BadInputError):
                 if any(one.name == file for one in files_of(load_plan(path))):
-                    found.append(path.stem)
+                    found.append(name)
         return found
 
     def remove(self, name: str) -> bool:
         """Remove a plan that was given; false if there is none."""
-        path = self._path(name)
-        if path is None or name in self._built_in:
-            return False
-        path.unlink(missing_ok=True)
-        return True
+        return name not in self._built_in and self._given.remove(name)
 
     def _path(self, name: str) -> Path | None:
         if name in self._built_in:
             return self._built_in[name].source
-        path = self.folder / f"{name}.yaml"
-        return path if path.parent == self.folder and path.is_file() else None
+        path = self._given.path(name)
+        if path is not None:
+            self._with_controllers()
+        return path
+
+    def _with_controllers(self) -> Path:
+        """The folder, once every controller that a given plan may load lies there."""
+        self._controllers.paths()
+        return self._given.folder
 
 
 def _renamed(text: str, name: str) -> str:
@@ -135,22 +161,6 @@ def _renamed(text: str, name: str) -> str:
     for start, end in sorted(places, reverse=True):
         text = text[:start] + json.dumps(places[start, end], ensure_ascii=False) + text[end:]
     return text
-
-
-def files_of(value: object) -> Iterator[Path]:
-    """All files that a plan's steps name, also steps within steps."""
-    if isinstance(value, Path):
-        yield value
-    elif isinstance(value, Plan):
-        yield from files_of((value.steps, value.finally_))
-    elif isinstance(value, BaseModel):
-        for name in type(value).model_fields:
-            yield from files_of(getattr(value, name))
-    elif isinstance(value, list | tuple):
-        for one in value:
-            yield from files_of(one)
-    elif isinstance(value, dict):
-        yield from files_of(list(value.values()))
 
 
 def _data(plan: Plan, *, built_in: bool) -> PlanData:

@@ -51,6 +51,7 @@ class Queue:
     Args:
         folder: where each run has a folder of its own, by its number.
         command: starts a process that carries a run out (`hil.cli._served_run`).
+        source: where a plan lies here by its name, with what it loads beside it.
         changed: called whenever something is to be shown anew, with the bench's name.
     """
 
@@ -62,12 +63,13 @@ class Queue:
         held: BenchStore,
         folder: Path,
         command: Sequence[str],
-        changed: Callable[[str], None] = lambda bench: None,
+        source: Callable[[str], Path],
+        changed: Callable[[str], None],
     ) -> None:
         self._places = {name: _Place(bench) for name, bench in benches.items()}
         self._runs, self._leases, self._held = runs, leases, held
         self._folder, self._command = folder, command
-        self._changed = changed
+        self._source, self._changed = source, changed
         self._wake = asyncio.Event()
         self._tasks: set[asyncio.Task[None]] = set()
         self._closing = False
@@ -182,7 +184,11 @@ class Queue:
     async def _begin(self, place: _Place, taken: TakenRun) -> None:
         run = taken.data
         try:
+            taken = taken.model_copy(update={"plan_source": str(self._source(run.plan))})
             place.running = await CarriedRun.begin(self._command, taken, place.bench, self.folder_of(run.id))
+        except DatabaseAwayError:
+            place.unsure = run.id
+            return
         except (HilError, OSError) as error:
             code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
             why = str(error)

@@ -23,7 +23,9 @@ from hil.service.campaigns import Campaigns, Places
 from hil.service.carrying_out import RunningRun
 from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
 from hil.service.desk import Desk
+from hil.service.earlier_folders import EarlierFolders
 from hil.service.forecasts import Forecasts
+from hil.service.given_files import GivenFiles
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
@@ -34,6 +36,7 @@ from hil.service.store import (
     BenchStore,
     DatabaseAwayError,
     FileStore,
+    GivenStore,
     LeaseStore,
     LogStore,
     Presence,
@@ -99,10 +102,14 @@ class Service:
         self.database = Presence(engine)
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
-        self.plans = Plans(folder / "plans")
+        given = GivenStore(engine)
+        models = GivenFiles(given, "model", folder / "given/models", ".toml")
+        controllers = GivenFiles(given, "controller", folder / "given/plans", ".toml")
+        self.plans = Plans(GivenFiles(given, "plan", folder / "given/plans", ".yaml"), controllers)
+        self.models, self.controllers = model_shelf(models), controller_shelf(controllers)
+        earlier = EarlierFolders(folder, given, self.log, self.plans, self.controllers, self.models)
+        self.kept_apart = earlier.take_in()
         self.forecasts = Forecasts(commands.hil)
-        self.models = model_shelf(folder / "models")
-        self.controllers = controller_shelf(folder / "plans")
         self.studies = Studies(folder / "studies", commands.hil)
         # Recordings are read at one desk, so that who designs at the other need not wait.
         self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
@@ -115,13 +122,12 @@ class Service:
         if archive is not None:
             files = FileStore(engine)
             self.keeper = Keeper(archive, files, held.service, runs_folder, self.showing.runs, local_days)
-        self.queue = Queue(
-            benches, self.runs, self.leases, held, runs_folder, commands.run, self.showing.changed
-        )
+        source, changed = self.plans.source, self.showing.changed
+        self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, commands.run, source, changed)
         self.began_s = time.monotonic()
         self.closing = False
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
-        self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, self.showing.changed)
+        self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, source, changed)
         self.agents_forecasts = AgentsForecasts()
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
@@ -219,9 +225,8 @@ class Service:
 
     def places(self) -> Places:
         """What a campaign may name."""
-        models = {name: path for name in self.models if (path := self.models.path(name)) is not None}
         here = {name: one.file.source for name, one in self.benches.items() if isinstance(one, Bench)}
-        return Places(self.plans.folder, models, here)
+        return Places(self.plans.fresh_folder(), self.models.paths(), here)
 
     def stop_run_in_emergency(self, bench: str) -> None:
         """Tell the run under way, if there is one; asks nobody anything before."""

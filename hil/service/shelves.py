@@ -11,29 +11,28 @@ from hil.core.model import Model, load_model, model_from_dict
 from hil.core.toml_file import parse_toml
 from hil.engine.bench_file import shipped
 from hil.service.design_data import ControllerData, ModelData
+from hil.service.given_files import GivenFiles
 from hil.service.shelf import Shelf
 from test_plans import library_controllers
 
 
-def model_shelf(folder: Path) -> Shelf[Model]:
+def model_shelf(given: GivenFiles) -> Shelf[Model]:
     """Models: the shipped ones are those beside the shipped benches."""
-    return Shelf(folder, _shipped_models(), _model)
+    return Shelf(given, _shipped_models(), _model)
 
 
-def controller_shelf(folder: Path) -> Shelf[Controller]:
-    """Controllers; `folder` is the one of the plans, which find them there by their names."""
-    return Shelf(folder, library_controllers(), controller_from_toml)
+def controller_shelf(given: GivenFiles) -> Shelf[Controller]:
+    """Controllers; given ones lie in the folder of the plans, which find them there by their names."""
+    return Shelf(given, library_controllers(), controller_from_toml)
 
 
-def model_data(shelf: Shelf[Model], name: str) -> ModelData | None:
-    """What is told of a model.
+def model_data(shelf: Shelf[Model], name: str, path: Path) -> ModelData:
+    """What is told of a model that lies there.
 
     Raises:
         BadInputError: it cannot be read any more.
     """
-    model = shelf.get(name)
-    if model is None:
-        return None
+    model = shelf.read(path)
     warning = model.meta.get("warning")
     return ModelData(
         name=name,
@@ -44,15 +43,13 @@ def model_data(shelf: Shelf[Model], name: str) -> ModelData | None:
     )
 
 
-def controller_data(shelf: Shelf[Controller], name: str) -> ControllerData | None:
-    """What is told of a controller.
+def controller_data(shelf: Shelf[Controller], name: str, path: Path) -> ControllerData:
+    """What is told of a controller that lies there.
 
     Raises:
         BadInputError: it cannot be read any more.
     """
-    controller = shelf.get(name)
-    if controller is None:
-        return None
+    controller = shelf.read(path)
     warnings = controller.meta.get("warnings")
     return ControllerData(
         name=name,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
 from fastapi import APIRouter, Body, Request, Response
@@ -51,7 +52,7 @@ async def get_model_text(model: FileName, service: TheService, me: Viewer) -> Re
 @router.put("/models/{model}", name="give_model", openapi_extra=_GIVEN)
 async def give_model(model: FileName, request: Request, service: TheService, me: Engineer) -> ModelData:
     """Give a model file (TOML); a name stands for one content."""
-    service.models.give(model, await _body(request, model))
+    service.models.give(model, await _body(request, model), me.name)
     service.log.add(me.name, me.role, "model given", model)
     return _there(service.models, model_data, "model", model)
 
@@ -83,7 +84,7 @@ async def give_controller(
     controller: FileName, request: Request, service: TheService, me: Engineer
 ) -> ControllerData:
     """Give a controller file (TOML); plans that are given may load it by its name."""
-    service.controllers.give(controller, await _body(request, controller))
+    service.controllers.give(controller, await _body(request, controller), me.name)
     service.log.add(me.name, me.role, "controller given", controller)
     return _there(service.controllers, controller_data, "controller", controller)
 
@@ -110,7 +111,7 @@ async def copy_plan(
         if service.controllers.path(name) is None:
             raise missing("controller", name)
     files = {old: f"{name}.toml" for old, name in wanted.controllers.items()}
-    found = service.plans.copied(plan, wanted.name, files)
+    found = service.plans.copied(plan, wanted.name, files, me.name)
     if found is None:
         raise missing("plan", plan)
     service.log.add(me.name, me.role, "plan given", wanted.name, f"copy of {plan}")
@@ -140,20 +141,18 @@ def _chosen(service: Service, wanted: DraftWanted) -> dict[str, Any]:
     return {**wanted.model_dump(), "model": str(path.resolve())}
 
 
-def _readable(shelf: Shelf[Any], told: Callable[[Shelf[Any], str], T | None]) -> Iterator[T]:
+def _readable(shelf: Shelf[Any], told: Callable[[Shelf[Any], str, Path], T]) -> Iterator[T]:
     """What is told of all that can still be read."""
-    for name in shelf:
+    for name, path in shelf.paths().items():
         with contextlib.suppress(BadInputError):
-            found = told(shelf, name)
-            if found is not None:
-                yield found
+            yield told(shelf, name, path)
 
 
-def _there(shelf: Shelf[Any], told: Callable[[Shelf[Any], str], T | None], kind: str, name: str) -> T:
-    found = told(shelf, name)
-    if found is None:
+def _there(shelf: Shelf[Any], told: Callable[[Shelf[Any], str, Path], T], kind: str, name: str) -> T:
+    path = shelf.path(name)
+    if path is None:
         raise missing(kind, name)
-    return found
+    return told(shelf, name, path)
 
 
 def _text(shelf: Shelf[Any], kind: str, name: str) -> Response:

@@ -25,6 +25,7 @@ async def health(service: TheService) -> Health:
         up_s=round(time.monotonic() - service.began_s, 1),
         runs_not_stored=keeper.waiting() if keeper else 0,
         store_problem=keeper.problem if keeper else "",
+        kept_apart=len(service.kept_apart),
     )
 
 

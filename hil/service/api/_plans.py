@@ -10,6 +10,7 @@ from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError, missing
 from hil.service.data import ForecastData, ForecastWanted, PlanData, PlanName
+from hil.service.given_data import KeptApart
 
 router = APIRouter(tags=["plans"])
 _YAML = "application/yaml"
@@ -53,7 +54,7 @@ async def give_plan(plan: PlanName, request: Request, service: TheService, me: E
         text = (await request.body()).decode("utf-8")
     except UnicodeDecodeError as error:
         raise RefusedError(422, "is not UTF-8", where=plan) from error
-    found = service.plans.give(plan, text)
+    found = service.plans.give(plan, text, me.name)
     service.log.add(me.name, me.role, "plan given", plan)
     return found
 
@@ -64,6 +65,13 @@ async def remove_plan(plan: PlanName, service: TheService, me: Engineer) -> None
     if not service.plans.remove(plan):
         raise missing("given plan", plan)
     service.log.add(me.name, me.role, "plan removed", plan)
+
+
+@router.get("/kept-apart", name="list_kept_apart")
+async def list_kept_apart(service: TheService, me: Viewer) -> list[KeptApart]:
+    """Plans, controllers and models of an earlier version's folder that the database has otherwise."""
+    del me
+    return service.kept_apart
 
 
 @router.post("/forecasts", name="forecast")

@@ -12,6 +12,7 @@ from starlette.exceptions import HTTPException
 
 from hil.core.errors import BadInputError, HilError
 from hil.service.data import Problem
+from hil.service.given_files import NameTakenError
 from hil.service.store import DatabaseAwayError
 
 _MEANINGS = {
@@ -20,7 +21,7 @@ _MEANINGS = {
     403: "the token's role may not do this",
     404: "there is no such thing",
     405: "not with this method",
-    409: "not in the state that it is in",
+    409: "not in the state that it is in, or the name stands for another content",
     413: "more than is taken",
     416: "the file has no such bytes",
     421: "the service is not called by this name",
@@ -70,6 +71,8 @@ async def _of_ours(request: Request, error: Exception) -> JSONResponse:
     del request
     assert isinstance(error, HilError)
     status = 422 if isinstance(error, BadInputError) else 503
+    if isinstance(error, NameTakenError):
+        status = 409
     headers = {"Retry-After": "5"} if isinstance(error, DatabaseAwayError) else None
     return _answer(status, Problem(what=error.what, where=error.where, fix=error.fix), headers)
 

@@ -3,6 +3,7 @@
 from hil.service.store._agents import AgentStore, RegisteredBench
 from hil.service.store._benches import BenchStore
 from hil.service.store._files import FileStore, KeptFile
+from hil.service.store._given import GivenStore, GivenText
 from hil.service.store._leases import LeaseStore
 from hil.service.store._opening import open_database
 from hil.service.store._people import LogStore, TokenStore
@@ -16,6 +17,8 @@ __all__ = [
     "BenchStore",
     "DatabaseAwayError",
     "FileStore",
+    "GivenStore",
+    "GivenText",
     "KeptFile",
     "LeaseStore",
     "LogStore",

@@ -105,6 +105,20 @@ class FileRow(Base):
     sha256: Mapped[str] = mapped_column(String(64))
 
 
+class GivenRow(Base):
+    """A plan, controller or model that somebody gave; `sha256` of its text, hexadecimal."""
+
+    __tablename__ = "given"
+
+    kind: Mapped[str] = mapped_column(String(12), primary_key=True)
+    name: Mapped[str] = mapped_column(String(64), primary_key=True)
+    sha256: Mapped[str] = mapped_column(String(64))
+    text: Mapped[str] = mapped_column(Text)
+    given_by: Mapped[str] = mapped_column(String(100))
+    given_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
+    removed_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+
+
 class TokenRow(Base):
     """A token; `sha256` of its secret, which is 256 random bits."""
 

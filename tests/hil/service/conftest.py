@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from playwright import sync_api as playwright
+from sqlalchemy import Engine
 
+from hil.service.store import BenchStore, open_database
 from tests.hil.service import served as served_by
 from tests.hil.service.postgresql import Cluster, cluster
 from tests.hil.service.served import ASKING, SHORT, Served, served
@@ -24,6 +27,23 @@ def _database(request: pytest.FixtureRequest) -> None:
     """With HIL_SERVICE_DATABASE=postgresql every service has a database of this server."""
     if served_by.ON_POSTGRESQL:
         served_by.new_database = request.getfixturevalue("postgresql").database
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
+    """A new database of either kind."""
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path / 'service.sqlite'}"
+    server: Cluster = request.getfixturevalue("postgresql")
+    return server.database()
+
+
+@pytest.fixture
+def engine(url: str) -> Iterator[Engine]:
+    engine = open_database(url)
+    BenchStore(engine, "me").hold("sim")
+    yield engine
+    engine.dispose()
 
 
 @pytest.fixture(scope="package")

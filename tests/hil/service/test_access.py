@@ -41,6 +41,7 @@ LEAST = {
     ("GET", "/plans/{plan}/text"): "viewer",
     ("PUT", "/plans/{plan}"): "engineer",
     ("DELETE", "/plans/{plan}"): "engineer",
+    ("GET", "/kept-apart"): "viewer",
     ("POST", "/forecasts"): "operator",
     ("GET", "/runs"): "viewer",
     ("POST", "/runs"): "operator",

@@ -38,7 +38,15 @@ class _There:
         self.arrivals = Arrivals("service", self.runs, folder)
 
     def begun(self, service: str = "service") -> Agents:
-        return Agents(self.engine, service, self.runs, self.leases, self.folder, lambda bench: None)
+        return Agents(
+            self.engine,
+            service,
+            self.runs,
+            self.leases,
+            self.folder,
+            lambda plan: self.folder / f"{plan}.yaml",
+            lambda bench: None,
+        )
 
     def queue(self, plan: str = SHORT) -> int:
         source = self.folder / "short.yaml"

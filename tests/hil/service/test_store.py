@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -26,23 +25,6 @@ from hil.service.store import (
     TokenStore,
     open_database,
 )
-from tests.hil.service.postgresql import Cluster
-
-
-@pytest.fixture(params=["sqlite", "postgresql"])
-def url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
-    if request.param == "sqlite":
-        return f"sqlite:///{tmp_path / 'service.sqlite'}"
-    server: Cluster = request.getfixturevalue("postgresql")
-    return server.database()
-
-
-@pytest.fixture
-def engine(url: str) -> Iterator[Engine]:
-    engine = open_database(url)
-    BenchStore(engine, "me").hold("sim")
-    yield engine
-    engine.dispose()
 
 
 def wanted(

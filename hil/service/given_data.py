@@ -1,0 +1,21 @@
+"""Plans, controllers and models that people give, as services of one database share them."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+GivenKind = Literal["model", "controller", "plan"]
+
+
+class KeptApart(BaseModel):
+    """A file of an earlier version's folder that has not become one that services share."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    kind: GivenKind
+    name: str
+    file: str = Field(description="where it lies, below the service's --data")
+    why: str
+    fix: str
