@@ -1,5 +1,6 @@
 """A typed client of the bench service (docs/reference/api.md); needs nothing that only the service does."""
 
-from hil.client._client import Client, RefusedError
+from hil.client._client import Client
+from hil.client._requests import RefusedError
 
 __all__ = ["Client", "RefusedError"]

@@ -1,22 +1,13 @@
-"""Requests to a bench service, with the types that the service itself uses."""
+"""What can be asked of a bench service, with the types that the service itself uses."""
 
 from __future__ import annotations
 
-import json
-import shutil
 import time
-import urllib.error
 import urllib.parse
-import urllib.request
 from collections.abc import Iterator, Mapping
-from http.client import HTTPException, HTTPResponse
 from pathlib import Path
-from typing import Any, TypeVar
 
-from pydantic import BaseModel, TypeAdapter, ValidationError
-
-from hil.core.errors import BenchError
-from hil.core.files import replacing
+from hil.client._requests import WITHIN_S, Requests, part
 from hil.service.agent_data import (
     AgentData,
     AgentOrders,
@@ -41,7 +32,6 @@ from hil.service.data import (
     LeaseWanted,
     Me,
     PlanData,
-    Problem,
     Role,
     RunChange,
     RunData,
@@ -68,28 +58,12 @@ from hil.service.study_data import (
     StudyData,
 )
 
-A = TypeVar("A")
-T = TypeVar("T", bound=BaseModel)
-_WITHIN_S = 30.0
 _FORECAST_WITHIN_S = 300.0
 _REPORTED_WITHIN_S = 5.0
 _LOOK_S = 0.5
-#: What a request carries: JSON, a text, or bytes of a file.
-_Body = BaseModel | str | bytes | None
 
 
-_KINDS = {str: "application/yaml", bytes: "application/octet-stream"}
-
-
-class RefusedError(BenchError):
-    """The service has refused a request: `status` is that of HTTP."""
-
-    def __init__(self, status: int, problem: Problem) -> None:
-        super().__init__(problem.what, where=problem.where, fix=problem.fix)
-        self.status = status
-
-
-class Client:
+class Client(Requests):
     """A bench service.
 
     Every method raises RefusedError if the service refuses, and BenchError if it cannot be reached or does
@@ -99,9 +73,6 @@ class Client:
         url: where it is, as `hil serve` says: `http://127.0.0.1:8080`.
         token: who asks; a service without tokens asks nobody.
     """
-
-    def __init__(self, url: str, token: str = "") -> None:
-        self._url, self._token = url.rstrip("/"), token
 
     def health(self) -> Health:
         """Whether it works."""
@@ -117,23 +88,23 @@ class Client:
 
     def bench(self, bench: str) -> BenchData:
         """A bench and what it does."""
-        return self._one(BenchData, "GET", f"/benches/{_part(bench)}")
+        return self._one(BenchData, "GET", f"/benches/{part(bench)}")
 
     def stop_in_emergency(self, bench: str) -> BenchData:
         """Have a bench safe at once, and keep it so until it is reset."""
-        return self._one(BenchData, "POST", f"/benches/{_part(bench)}/emergency-stop")
+        return self._one(BenchData, "POST", f"/benches/{part(bench)}/emergency-stop")
 
     def reset(self, bench: str) -> BenchData:
         """Let a bench be armed again after an emergency stop."""
-        return self._one(BenchData, "POST", f"/benches/{_part(bench)}/reset")
+        return self._one(BenchData, "POST", f"/benches/{part(bench)}/reset")
 
     def lease(self, bench: str, for_s: float = 60.0) -> LeaseData:
         """Have a bench for oneself for a while; call it again before it is over to go on."""
-        return self._one(LeaseData, "PUT", f"/benches/{_part(bench)}/lease", LeaseWanted(for_s=for_s))
+        return self._one(LeaseData, "PUT", f"/benches/{part(bench)}/lease", LeaseWanted(for_s=for_s))
 
     def give_back(self, bench: str) -> BenchData:
         """Give a bench back."""
-        return self._one(BenchData, "DELETE", f"/benches/{_part(bench)}/lease")
+        return self._one(BenchData, "DELETE", f"/benches/{part(bench)}/lease")
 
     def plans(self) -> list[PlanData]:
         """All plans."""
@@ -141,7 +112,7 @@ class Client:
 
     def give_plan(self, name: str, text: str) -> PlanData:
         """Give a plan (YAML), or replace one that was given."""
-        return self._one(PlanData, "PUT", f"/plans/{_part(name)}", text)
+        return self._one(PlanData, "PUT", f"/plans/{part(name)}", text)
 
     def kept_apart(self) -> list[KeptApart]:
         """Files of an earlier version's folder that the service has kept as they are, and does not share."""
@@ -231,7 +202,7 @@ class Client:
 
     def give_model(self, name: str, text: str) -> ModelData:
         """Give a model file."""
-        return self._one(ModelData, "PUT", f"/models/{_part(name)}", text)
+        return self._one(ModelData, "PUT", f"/models/{part(name)}", text)
 
     def controllers(self) -> list[ControllerData]:
         """All controllers."""
@@ -239,11 +210,11 @@ class Client:
 
     def give_controller(self, name: str, text: str) -> ControllerData:
         """Give a controller file, so that plans can load it."""
-        return self._one(ControllerData, "PUT", f"/controllers/{_part(name)}", text)
+        return self._one(ControllerData, "PUT", f"/controllers/{part(name)}", text)
 
     def copy_plan(self, plan: str, wanted: PlanCopyWanted) -> PlanData:
         """Give a copy of a plan that loads other controllers."""
-        return self._one(PlanData, "POST", f"/plans/{_part(plan)}/copies", wanted)
+        return self._one(PlanData, "POST", f"/plans/{part(plan)}/copies", wanted)
 
     def draft(self, wanted: DraftWanted) -> DraftData:
         """Loops, margins and steps of a controller on a model."""
@@ -320,7 +291,7 @@ class Client:
         Raises:
             BadInputError: the place cannot be written.
         """
-        self._download(f"/campaigns/{campaign}/files/{_part(name)}", path)
+        self._download(f"/campaigns/{campaign}/files/{part(name)}", path)
 
     def download(self, run: int, name: str, path: Path) -> None:
         """Write a file of a run, whole or not at all.
@@ -328,7 +299,7 @@ class Client:
         Raises:
             BadInputError: the place cannot be written.
         """
-        self._download(f"/runs/{run}/files/{_part(name)}", path)
+        self._download(f"/runs/{run}/files/{part(name)}", path)
 
     def agents(self) -> list[AgentData]:
         """Agents that have benches there."""
@@ -336,7 +307,7 @@ class Client:
 
     def let_agent_go(self, bench: str) -> None:
         """Let another agent have the bench of one that is away."""
-        self._done("DELETE", f"/benches/{_part(bench)}/agent")
+        self._done("DELETE", f"/benches/{part(bench)}/agent")
 
     def report(self, agent: str, report: AgentReport) -> AgentOrders:
         """What an agent tells of itself, and what it has to do."""
@@ -344,15 +315,15 @@ class Client:
 
     def take(self, agent: str, bench: str) -> Taken:
         """The run whose turn it is on a bench of an agent."""
-        return self._one(Taken, "POST", f"/agents/{agent}/benches/{_part(bench)}/take")
+        return self._one(Taken, "POST", f"/agents/{agent}/benches/{part(bench)}/take")
 
     def send(self, agent: str, run: int, name: str, at: int, piece: bytes) -> FileThere:
         """A piece of a file of an agent's run; how much of it is there then."""
-        return self._one(FileThere, "PUT", f"/agents/{agent}/runs/{run}/files/{_part(name)}?at={at}", piece)
+        return self._one(FileThere, "PUT", f"/agents/{agent}/runs/{run}/files/{part(name)}?at={at}", piece)
 
     def answer_forecast(self, agent: str, order: str, answer: AgentsForecast) -> None:
         """What an agent predicts of a plan that it was asked about."""
-        with self._opened("PUT", f"/agents/{agent}/forecasts/{order}", answer, _WITHIN_S):
+        with self._opened("PUT", f"/agents/{agent}/forecasts/{order}", answer, WITHIN_S):
             pass
 
     def deliver(self, agent: str, run: int, ending: RunEnding) -> Delivered:
@@ -372,92 +343,3 @@ class Client:
     def audit(self, most: int = 100) -> list[AuditEntry]:
         """What was done by whom, newest first."""
         return self._several(AuditEntry, f"/audit?most={most}")
-
-    def _download(self, what: str, path: Path) -> None:
-        with (
-            self._opened("GET", what, None, _WITHIN_S) as answer,
-            replacing(path) as temporary,
-            temporary.open("wb") as file,
-        ):
-            shutil.copyfileobj(answer, file)
-
-    def _one(
-        self,
-        kind: type[T],
-        method: str,
-        path: str,
-        body: _Body = None,
-        within_s: float = _WITHIN_S,
-    ) -> T:
-        return _checked(TypeAdapter(kind), self._json(method, path, body, within_s))
-
-    def _several(self, kind: type[T], path: str) -> list[T]:
-        return _checked(TypeAdapter(list[kind]), self._json("GET", path, None, _WITHIN_S))  # type: ignore[valid-type]
-
-    def _json(self, method: str, path: str, body: _Body, within_s: float) -> Any:
-        try:
-            with self._opened(method, path, body, within_s) as answer:
-                return json.load(answer)
-        except (ValueError, HTTPException, OSError) as error:
-            raise self._unreachable(error) from error
-
-    def _done(self, method: str, path: str) -> None:
-        with self._opened(method, path, None, _WITHIN_S):
-            pass
-
-    def _opened(self, method: str, path: str, body: _Body, within_s: float) -> HTTPResponse:
-        headers = {"Authorization": f"Bearer {self._token}"} if self._token else {}
-        if body is not None:
-            headers["Content-Type"] = _KINDS.get(type(body), "application/json")
-        content = body.model_dump_json() if isinstance(body, BaseModel) else body
-        data = content.encode() if isinstance(content, str) else content
-        try:
-            request = urllib.request.Request(f"{self._url}/api/v1{path}", data, headers, method=method)
-            answer: HTTPResponse = _opener.open(request, timeout=within_s)
-        except urllib.error.HTTPError as error:
-            with error:
-                raise RefusedError(error.code, _problem(error)) from None
-        except (OSError, ValueError, HTTPException) as error:
-            raise self._unreachable(error) from error
-        return answer
-
-    def _unreachable(self, error: Exception) -> BenchError:
-        reason = getattr(error, "reason", error)
-        return BenchError(
-            f"the service cannot be reached, or does not answer as one: {reason}",
-            where=self._url,
-            fix="is it running (hil serve)? Is the URL what it said when it began?",
-        )
-
-
-class _NoRedirect(urllib.request.HTTPRedirectHandler):
-    """A token is for one service: it follows nobody elsewhere."""
-
-    def redirect_request(self, *arguments: Any, **named: Any) -> None:
-        """Follow nothing."""
-        del arguments, named
-
-
-_opener = urllib.request.build_opener(_NoRedirect)
-
-
-def _checked(adapter: TypeAdapter[A], found: Any) -> A:
-    try:
-        return adapter.validate_python(found)
-    except ValidationError as error:
-        raise BenchError(
-            f"the service answers in another way than this version knows: {error.errors()[0]['msg']}",
-            where="service",
-            fix="install the same version of eaxle-hil on both sides",
-        ) from error
-
-
-def _problem(error: urllib.error.HTTPError) -> Problem:
-    try:
-        return Problem.model_validate_json(error.read())
-    except (ValidationError, OSError, HTTPException):
-        return Problem(what=f"status {error.code}", where=str(error.url))
-
-
-def _part(name: str) -> str:
-    return urllib.parse.quote(name, safe="")

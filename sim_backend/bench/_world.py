@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from hil.plant.closed_loop import drive as drive
 from hil.plant.closed_loop import tick as T
 from hil.plant.controller import memory as memory
 from sim_backend.bench._faults import Fault
+from sim_backend.bench._inbox import Inbox, Sent
 from sim_backend.bench._outgoing import DYNO_BUS, RAM_BUS, RMCU_BUS, Outgoing
 from sim_backend.bench._settings import SENSED_CHANNELS, SensorFault, SimulationSettings
 from sim_backend.bench._tampering import Tamper
@@ -67,9 +67,6 @@ class SimulatedBench:
         self._samples = 0  # computed so far
         self._due = 0  # samples whose time has come
         self._now_s = 0.0
-        # bus, identifier, payload and length, each with the sample that it comes before
-        self._inbox: deque[tuple[int, str, int, int, int]] = deque()
-        self._breaks: deque[int] = deque()  # samples before which more comes than a torque request
         self._modes, self._codes = np.zeros(_NODES_EVERY, np.int64), np.zeros(_NODES_EVERY, np.int64)
         self._requests = np.zeros(_NODES_EVERY)
         self._rows = np.zeros((_LARGEST_BATCH, T.COLUMNS))
@@ -129,9 +126,7 @@ class SimulatedBench:
         """A host's frame: it reaches the nodes at the next sample."""
         sent = [(frame_id, data)] if self.tamper is None else self.tamper.to_nodes(bus, frame_id, data)
         for number, content in sent:
-            self._inbox.append((self._due, bus, number, int.from_bytes(content, "little"), len(content)))
-            if number != self._request_id or bus != RMCU_BUS:
-                self._breaks.append(self._due)
+            self._inbox.put(self._due, bus, number, content)
 
     def put_ahead(
         self,
@@ -143,10 +138,7 @@ class SimulatedBench:
     ) -> None:
         """A host's frames of one identifier, each at a time that is now or will come, in order."""
         samples = ((times_s + 1e-9) / TICK_S).astype(np.int64).tolist()
-        for sample, payload in zip(samples, payloads.tolist(), strict=True):
-            self._inbox.append((sample, bus, frame_id, payload, length))
-        if frame_id != self._request_id or bus != RMCU_BUS:
-            self._breaks.extend(samples)
+        self._inbox.put_all(samples, bus, frame_id, payloads.tolist(), length)
 
     def take(self, bus: str) -> FrameBlock:
         """All frames that have appeared on `bus` until now and were not taken yet, in order of time."""
@@ -179,7 +171,7 @@ class SimulatedBench:
         self._make_memory()
         self._rmcu = RmcuNode(dbc, lambda i, data: self._event(RMCU_BUS, i, data), s.held)
         request = dbc.layouts["RMCU_Request"]
-        self._request_id = request.id
+        self._inbox = Inbox((RMCU_BUS, request.id))
         rows = {s.rear_left: self._drives[0], s.rear_right: self._drives[1]}
         self._dynos = [
             DynoNode(
@@ -227,8 +219,7 @@ class SimulatedBench:
             end = min(
                 self._due, first - first % _NODES_EVERY + _NODES_EVERY, self._first_row + _LARGEST_BATCH
             )
-            if self._breaks:
-                end = min(end, self._breaks[0])
+            end = self._inbox.next_break(end)
             self._advance(first, end)
             self._samples = end
             if end - self._first_row == _LARGEST_BATCH:
@@ -268,37 +259,33 @@ class SimulatedBench:
 
     def _requests_until(self, end: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.uint64]]:
         """The samples before which torque requests come, and these."""
-        inbox, came = self._inbox, []
-        while inbox and inbox[0][0] < end:
-            came.append(inbox.popleft())
-        if not came or self._is_deaf(RMCU_BUS):
-            return _NO_SAMPLES, _NO_REQUESTS
-        return np.array([c[0] for c in came], np.int64), np.array([c[3] for c in came], np.uint64)
+        came = self._inbox.requests_before(end)
+        return (_NO_SAMPLES, _NO_REQUESTS) if self._is_deaf(RMCU_BUS) else came
 
     def _deliver(self, sample: int) -> None:
         """What hosts sent before `sample`."""
-        inbox, time_s = self._inbox, sample * TICK_S
-        while inbox and inbox[0][0] <= sample:
-            _, bus, frame_id, payload, length = inbox.popleft()
-            if self._is_deaf(bus):
+        time_s = sample * TICK_S
+        for sent in self._inbox.until(sample):
+            if self._is_deaf(sent.bus):
                 continue
-            if self._xcp is not None and bus == self._ram_bus and frame_id == self._command_id:
-                self._serve_memory(payload.to_bytes(8, "little")[:length], time_s)
-            elif bus == RMCU_BUS:
-                self._rmcu.receive(frame_id, payload, time_s)
-            elif frame_id in _HEARTBEATS:  # they change nothing of what is sent
-                for node in self._dynos:
-                    node.receive(frame_id, payload.to_bytes(8, "little")[:length], time_s)
+            if self._xcp is not None and (sent.bus, sent.frame_id) == (self._ram_bus, self._command_id):
+                self._serve_memory(sent.data, time_s)
+            elif sent.bus == RMCU_BUS:
+                self._rmcu.receive(sent.frame_id, sent.payload, time_s)
             else:
-                self._show_measured()
-                self._emit()  # what the nodes send may change from here on
-                data = payload.to_bytes(8, "little")[:length]
-                for node in self._dynos:
-                    node.receive(frame_id, data, time_s)
-                self._take_vehicle_model()
-                self._outgoing.dynos_changed()
-        while self._breaks and self._breaks[0] <= sample:
-            self._breaks.popleft()
+                self._to_dynos(sent, time_s)
+
+    def _to_dynos(self, sent: Sent, time_s: float) -> None:
+        heartbeat = sent.frame_id in _HEARTBEATS  # it changes nothing of what is sent
+        if not heartbeat:
+            self._show_measured()
+            self._emit()  # what the nodes send may change from here on
+        data = sent.data
+        for node in self._dynos:
+            node.receive(sent.frame_id, data, time_s)
+        if not heartbeat:
+            self._take_vehicle_model()
+            self._outgoing.dynos_changed()
 
     def _serve_memory(self, command: bytes, time_s: float) -> None:
         assert self._xcp is not None

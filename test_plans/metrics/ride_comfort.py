@@ -15,6 +15,9 @@ from test_plans.metrics._window import WindowMetric, cut
 
 _LEAST_RATE_HZ = 200.0  # what is weighted reaches to 100 Hz
 _LOWEST_HZ, _HIGHEST_HZ = 0.4, 100.0
+_LEAST_S = (
+    1 / _LOWEST_HZ
+)  # shorter than a period of the lowest, the window's trend takes what is weighted with it
 _TRANSITION_HZ, _TRANSITION_Q = 2.0, 0.63
 
 
@@ -44,6 +47,8 @@ class RideComfort(WindowMetric):
         """Root of the sum of weighted density times line spacing (Parseval)."""
         start_s, end_s = self.bounds_s(segment)
         time, values = cut(recording, segment, self.channel, start_s, end_s, with_end=False)
+        if end_s - start_s < _LEAST_S - 1e-9:
+            raise NoValueError(f"{end_s - start_s:.4g} s do not hold a period of {_LOWEST_HZ:g} Hz")
         count = round((end_s - start_s) / recording.sample_time_s)
         spacing = (end_s - start_s) / count
         if 1 / spacing < _LEAST_RATE_HZ - 1e-6:

@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from drivers import read_rmcu
 from hil.engine import RunRequest, run_plan
 from sim_backend.bench import SimulatedBench
 from test_plans import load_plan
-from tests.benches_for_tests import sim_bench
+from tests.benches_for_tests import SIM, sim_bench
 from tests.late_stamps import late_bench
 
 _LATEST_MS = 4
+REQUEST_ID = read_rmcu(SIM.rmcu.dbc).layouts["RMCU_Request"].id
 
 
 def identified(bench: Any, out: Path) -> dict[str, tuple[float, float]]:
@@ -39,7 +41,7 @@ def jitter(monkeypatch: pytest.MonkeyPatch) -> None:
     latest_s: dict[SimulatedBench, float] = {}
 
     def late(self: SimulatedBench, bus: str, frame_id: int, data: bytes) -> None:
-        if bus != "rmcu" or frame_id != self._request_id:
+        if bus != "rmcu" or frame_id != REQUEST_ID:
             put(self, bus, frame_id, data)
             return
         due_s = self.now_s() + 1e-3 * int(random.integers(0, _LATEST_MS + 1))

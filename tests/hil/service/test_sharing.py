@@ -86,11 +86,12 @@ def test_what_was_answered_is_there_after_a_kill_whatever_the_folder_has(tmp_pat
     answered: list[str] = []
     with served(data, state=state) as service:
         client = Client(service.url)
-        threading.Timer(0.3, service.process.kill).start()
         with contextlib.suppress(BenchError):
             while True:
                 name = f"c{len(answered)}"
                 client.give_controller(name, CONTROLLER + f"# {name}\n")
+                if not answered:
+                    threading.Timer(0.3, service.process.kill).start()
                 answered.append(name)
         service.process.wait(10)
     assert answered

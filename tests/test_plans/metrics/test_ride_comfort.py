@@ -56,6 +56,20 @@ def test_samples_too_few_for_100_hz_have_no_value(rate_hz):
         RideComfort().compute(recorded(speed, rate_hz), SEGMENT)
 
 
+@pytest.mark.parametrize("length_s", [0.5, 2.499])
+def test_a_window_shorter_than_a_period_of_the_lowest_frequency_has_no_value(length_s):
+    short = SEGMENT.model_copy(update={"end_s": SEGMENT.step_s + length_s})
+    with pytest.raises(NoValueError, match=f"^{length_s:.4g} s do not hold a period of 0.4 Hz$"):
+        RideComfort().compute(recorded(np.ones(22_000)), short)
+
+
+def test_a_window_of_one_period_of_the_lowest_frequency_is_enough():
+    short = SEGMENT.model_copy(update={"end_s": SEGMENT.step_s + 2.5})
+    omega = 2 * np.pi * 2.0
+    speed = 0.4 / omega * np.sin(omega * np.arange(22_000) / 1000)
+    assert RideComfort().compute(recorded(speed), short) == pytest.approx(0.4 / np.sqrt(2) * 0.890, rel=0.1)
+
+
 def test_200_samples_a_second_are_enough():
     omega = 2 * np.pi * 2.0
     speed = 0.4 / omega * np.sin(omega * np.arange(4400) / 200.0)
