@@ -105,19 +105,19 @@ coverage: setup
 	$(BIN)/python -m tests.coverage_by_package
 
 # Thousands of calls that nobody thought of, made from the OpenAPI document.
-api-fuzz: setup
+api-fuzz: setup compile
 	HIL_API_CALLS=150 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/test_api_fuzz.py
 
 # The service killed at fifty random moments of a queue of runs.
-service-kills: setup
+service-kills: setup compile
 	HIL_SERVICE_KILLS=50 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/test_service_kills.py
 
 # An agent, or its service, killed at fifty random moments of a queue.
-agent-kills: setup
+agent-kills: setup compile
 	HIL_AGENT_KILLS=50 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/test_agent_kills.py
 
 # The service's tests on a PostgreSQL server of Debian's, begun and ended by them; as root it is installed.
-service-stores: setup
+service-stores: setup compile
 	$(BIN)/python -m tests.hil.service.postgresql
 	HIL_SERVICE_DATABASE=postgresql $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service
 

@@ -165,7 +165,7 @@ def _request(request: PeriodicRequests) -> str:
         f"{request.count} every {quantities.quantity(request.period_s * 1e3, 'ms', 0)}",
         f"sent {_late(request.sent)}",
         f"on the bus {_late(request.seen) if request.seen else f'not known: {request.why_not_seen}'}",
-        f"{request.missed} cycles missed",
+        request.missed_in_words,
     )
     return ", ".join(parts)
 

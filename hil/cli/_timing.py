@@ -20,7 +20,7 @@ def timing_in_words(timing: Timing | None) -> Iterator[str]:
         seen = _late(request.seen) if request.seen else f"not known ({request.why_not_seen})"
         yield (
             f"{request.device} {request.request}: {request.count} every {request.period_s * 1e3:g} ms, sent "
-            f"{_late(request.sent)}; on the bus {seen}; {request.missed} cycles missed"
+            f"{_late(request.sent)}; on the bus {seen}; {request.missed_in_words}"
         )
     if timing.pauses:
         times = "once" if timing.pauses == 1 else f"{timing.pauses} times"

@@ -121,7 +121,8 @@ class PeriodicRequests(_Frozen):
     period_s: float
     count: int
     missed: int = Field(
-        description="cycles in which none was sent: it came a cycle late or more, or not at all"
+        description="cycles in which none was sent: it came a cycle late or more, or not at all; also those "
+        "in which the machine itself stood still"
     )
     sent: Lateness
     seen: Lateness | None = Field(None, description="on the bus; null where the adapter does not say")
@@ -135,6 +136,12 @@ class PeriodicRequests(_Frozen):
         if self.seen is not None:
             return ""
         return "none came back from the bus" if self.unseen else "the adapter gives own frames not back"
+
+    @property
+    def missed_in_words(self) -> str:
+        """How many cycles were missed, and that this says nothing of whose doing it was."""
+        cycles = "1 cycle missed" if self.missed == 1 else f"{self.missed} cycles missed"
+        return f"{cycles}, by the loop or while the machine stood still" if self.missed else cycles
 
 
 class Timing(_Frozen):

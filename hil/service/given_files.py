@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.core.errors import BadInputError
-from hil.core.files import make_directory, sha256_of, write_atomically
+from hil.core.files import make_directory, of_the_system, sha256_of, write_atomically
 from hil.service.given_data import GivenKind
 from hil.service.store import GivenStore, GivenText
 
@@ -38,14 +38,17 @@ class GivenFiles:
         wanted = self._store.all(self.kind)
         for path in self.folder.glob(f"[!.]*{self._ending}"):
             if path.name.removesuffix(self._ending) not in wanted:
-                path.unlink(missing_ok=True)
+                _gone(path)
         found = {name: self._fresh(name, sha256) for name, sha256 in wanted.items()}
         return {name: path for name, path in found.items() if path is not None}
 
     def path(self, name: str) -> Path | None:
         """Where one is, as it is in the database; None if there is none."""
         found = self.text(name)
-        return None if found is None else self._written(found)
+        if found is None:
+            _gone(self._place(name))
+            return None
+        return self._written(found)
 
     def text(self, name: str) -> GivenText | None:
         """One as it is in the database; None if there is none."""
@@ -84,7 +87,7 @@ class GivenFiles:
         """Remove one; false if there is none."""
         removed = self._store.remove(self.kind, name)
         if removed:
-            self._place(name).unlink(missing_ok=True)
+            _gone(self._place(name))
         return removed
 
     def _fresh(self, name: str, sha256: str) -> Path | None:
@@ -99,3 +102,11 @@ class GivenFiles:
 
     def _place(self, name: str) -> Path:
         return self.folder / f"{name}{self._ending}"
+
+
+def _gone(path: Path) -> None:
+    """Remove a file, whoever else may be doing so."""
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise of_the_system(error) from error

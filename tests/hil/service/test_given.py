@@ -78,6 +78,20 @@ def test_of_many_who_replace_a_plan_at_once_one_does(engine: Engine) -> None:
     assert [store.get("plan", "p").text] == [f"text {who}" for who in kept]
 
 
+def test_of_many_who_remove_one_at_once_one_does(one: _Here, other: _Here) -> None:
+    for name in ("a", "b", "c"):
+        text = SHORT.replace("name: short", f"name: {name}")
+        one.plans.give(name, text, "anna")
+        assert other.plans.text(name) == text
+        with ThreadPoolExecutor(8) as several:
+            removed = [several.submit(here.plans.remove, name) for here in 4 * [one, other]]
+        assert sorted(done.result() for done in removed) == 7 * [False] + [True]
+        assert (one.plans.text(name), other.plans.text(name)) == (None, None)
+        assert not (one.files.folder / f"{name}.yaml").exists()
+        other.plans.give(name, text, "bert")
+        assert one.plans.text(name) == text, "the name is free again for all"
+
+
 def test_a_name_that_was_removed_is_free_and_the_same_text_may_be_given_again(engine: Engine) -> None:
     store = GivenStore(engine)
     assert store.give("model", "m", "first", "anna")
