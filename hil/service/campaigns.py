@@ -33,6 +33,7 @@ from hil.service.campaign_data import (
 from hil.service.command_process import CommandProcess, kill_left
 from hil.service.desk import Desk
 from hil.service.numbered import Numbered, files_in_results
+from hil.service.shared_results import SharedResults
 
 _AT_ONCE = 1  # each has every processor that campaigns may use
 _MOST_WAITING = 20
@@ -70,22 +71,25 @@ class Campaigns:
         folder: where each has a folder of its own.
         command: starts `hil campaign`, with what says who simulates.
         desk: reads campaigns and their tables.
+        shared: those of other services.
     """
 
-    def __init__(self, folder: Path, command: Sequence[str], desk: Desk) -> None:
-        self._command, self._desk = command, desk
+    def __init__(
+        self, folder: Path, command: Sequence[str], desk: Desk, shared: SharedResults[CampaignData]
+    ) -> None:
+        self._command, self._desk, self._shared = command, desk, shared
         self._turn = asyncio.Semaphore(_AT_ONCE)
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._going: dict[int, _Going] = {}
         self._closing = False
-        self._records = Numbered(folder, "state.json", CampaignData)
+        self._records = Numbered(folder, "state.json", CampaignData, shared.draw)
 
     def go_on(self) -> None:
         """Begin anew what was under way when the service before this one ended, oldest first."""
         for campaign in reversed(list(self._records)):
             if campaign.state in CAMPAIGN_OVER:
                 continue
-            kill_left(self._records.folder_of(campaign.id), self._results(campaign.id))
+            kill_left(self._records.folder_of(campaign.id), self.results(campaign.id))
             stopped = campaign.state == "stopping"
             state = "cancelled" if stopped else "waiting"
             self._records.change(campaign.id, state=state, reason="cancelled" if stopped else "")
@@ -93,17 +97,43 @@ class Campaigns:
                 self._begin(campaign.id)
 
     def all(self) -> list[CampaignData]:
-        """Newest first."""
-        return [self._shown(one) for one in self._records]
+        """Newest first, also those of other services."""
+        return self._shared.with_others(self.own())
 
     def get(self, number: int) -> CampaignData | None:
         """One of them."""
         found = self._records.get(number)
-        return None if found is None else self._shown(found)
+        return self._shared.other(number) if found is None else self._shown(found)
 
-    def file(self, number: int, name: str) -> Path:
-        """Where a file of one is."""
-        return self._results(number) / name
+    def own(self) -> list[CampaignData]:
+        """Those of this service, newest first."""
+        return [self._shown(one) for one in self._records]
+
+    def is_over(self, one: CampaignData) -> bool:
+        """Whether it leaves no more files, unless it is gone on with."""
+        return one.state in CAMPAIGN_OVER
+
+    def is_removed(self, number: int) -> bool:
+        """Whether one was here and is removed."""
+        return self._records.is_removed(number)
+
+    async def file(self, number: int, name: str) -> Path:
+        """A file of one, brought here if it is another service's.
+
+        Raises:
+            ArchiveAwayError: the archive does not give it.
+        """
+        here = self._records.get(number) is not None
+        return self.results(number) / name if here else await self._shared.bring(number, name)
+
+    async def share(self) -> str:
+        """Tell other services of them, and keep their files for all; what keeps one from it."""
+        return await self._shared.share(self)
+
+    @property
+    def not_stored(self) -> int:
+        """How many that are over have files which the archive has not."""
+        return self._shared.waiting
 
     async def examples(self) -> list[CampaignExample]:
         """The built-in ones."""
@@ -202,7 +232,7 @@ class Campaigns:
         try:
             async with self._turn:
                 going = self._going[number] = _Going()
-                make_directory(self._results(number))
+                make_directory(self.results(number))
                 await self._free(number)
                 self._records.change(number, state="running")
                 code, said = await self._simulated(number, going)
@@ -227,7 +257,7 @@ class Campaigns:
         until_s = time.monotonic() + _FREE_WITHIN_S
         while True:
             try:
-                with lock_on(self._results(number)):
+                with lock_on(self.results(number)):
                     return
             except HeldError as error:
                 if time.monotonic() > until_s:
@@ -238,7 +268,7 @@ class Campaigns:
         folder = self._records.folder_of(number)
         file = folder / _GIVEN / "campaign.yaml"
         command = [*self._command, str(file.resolve()), "--resume"]
-        process = await CommandProcess.begin(command, folder, self._results(number))
+        process = await CommandProcess.begin(command, folder, self.results(number))
         going.process = process
         over = asyncio.ensure_future(process.over())
         try:
@@ -287,18 +317,19 @@ class Campaigns:
 
     def _passed(self, number: int) -> bool | None:
         with contextlib.suppress(OSError, ValueError):
-            found = json.loads((self._results(number) / _SUMMARY).read_bytes())["passed"]
+            found = json.loads((self.results(number) / _SUMMARY).read_bytes())["passed"]
             return found if isinstance(found, bool) else None
         return None
 
     def _shown(self, campaign: CampaignData) -> CampaignData:
         if campaign.state in CAMPAIGN_OVER:
-            return campaign.model_copy(update={"files": files_in_results(self._results(campaign.id))})
+            return campaign.model_copy(update={"files": files_in_results(self.results(campaign.id))})
         going = self._going.get(campaign.id)
         return campaign if going is None else campaign.model_copy(update=going.told)
 
-    def _results(self, number: int) -> Path:
+    def results(self, number: int) -> Path:
+        """Where the files of one of this service are."""
         return self._records.folder_of(number) / _RESULTS
 
     def _at(self, number: int, name: str = "") -> str:
-        return str((self._results(number) / name).resolve())
+        return str((self.results(number) / name).resolve())

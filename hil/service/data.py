@@ -38,6 +38,7 @@ class Record(_Data):
     """What is known of something by its number."""
 
     id: RunId
+    place: str = Field("", description="the service whose it is, if that is another than the one asked")
 
 
 class Problem(_Data):
@@ -55,6 +56,7 @@ class Health(_Data):
     version: str
     up_s: float = Field(description="seconds since the service began")
     runs_not_stored: int = Field(0, description="runs whose files the store has not all; 0 without a store")
+    results_not_stored: int = Field(0, description="studies and campaigns that are over, likewise")
     store_problem: str = Field("", description="why files do not reach the store; '' if they do")
     kept_apart: int = Field(0, description="files of an earlier version's folder that are not shared")
 

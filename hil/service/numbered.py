@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -18,19 +18,22 @@ R = TypeVar("R", bound=Record)
 
 
 class Numbered(Generic[R]):
-    """All of them. What is changed is on disk before it counts.
+    """All of them. What is changed is on disk before it counts. One process has a folder (`alone_in`).
 
     Args:
         folder: where each has a folder of its own.
         file: name of the file that says what one is.
         kind: what the file is read as; one that cannot be read is left out, and its number is taken.
+        draw: gives a new number above the one that it is given; without it numbers are this folder's own.
     """
 
-    def __init__(self, folder: Path, file: str, kind: type[R]) -> None:
-        self._folder, self._file, self._kind = folder, file, kind
+    def __init__(
+        self, folder: Path, file: str, kind: type[R], draw: Callable[[int], int] = lambda last: last + 1
+    ) -> None:
+        self._folder, self._file, self._kind, self._draw = folder, file, kind, draw
         make_directory(folder)
         self._known = {record.id: record for record in self._read()}
-        folders = list(folder.glob("[0-9]" * 6))
+        folders = [path for path in folder.glob("[0-9]" * 6) if path.is_dir()]
         self._last = max((int(path.name) for path in folders), default=0)
         for path in folders:
             if not (path / file).exists():
@@ -49,8 +52,12 @@ class Numbered(Generic[R]):
         return self._folder / f"{number:06d}"
 
     def take_number(self) -> int:
-        """A number for a new one."""
-        self._last += 1
+        """A number for a new one.
+
+        Raises:
+            DatabaseAwayError: the database gives them, and does not answer.
+        """
+        self._last = self._draw(self._last)
         return self._last
 
     def keep(self, record: R) -> R:
@@ -70,6 +77,11 @@ class Numbered(Generic[R]):
         (folder / self._file).unlink()  # first: without it there is none, whatever happens next
         del self._known[number]
         _empty(folder)
+
+    def is_removed(self, number: int) -> bool:
+        """Whether one was here and is removed; one whose folder is lost was not."""
+        folder = self.folder_of(number)
+        return number not in self._known and folder.is_dir() and not any(folder.iterdir())
 
     def _read(self) -> Iterator[R]:
         for path in sorted(self._folder.glob(f"[0-9]*/{self._file}")):

@@ -16,9 +16,10 @@ from sqlalchemy import Engine
 from hil.service.agents import Agents
 from hil.service.agents_forecasts import AgentsForecasts
 from hil.service.apart import apart
-from hil.service.archive import Archive, Keeper
+from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.arrivals import Arrivals
 from hil.service.benches import Bench
+from hil.service.campaign_data import CampaignData
 from hil.service.campaigns import Campaigns, Places
 from hil.service.carrying_out import RunningRun
 from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
@@ -30,6 +31,7 @@ from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
 from hil.service.run_files import files_in
+from hil.service.shared_results import SharedResults
 from hil.service.shelves import controller_shelf, model_shelf
 from hil.service.showing import Showing
 from hil.service.store import (
@@ -40,10 +42,12 @@ from hil.service.store import (
     LeaseStore,
     LogStore,
     Presence,
+    ResultStore,
     RunStore,
     TokenStore,
 )
 from hil.service.studies import Studies
+from hil.service.study_data import StudyData
 from test_plans import Plan
 
 _ASK_S = 1.0  # a database that is away
@@ -81,7 +85,7 @@ class Service:
     Args:
         folder: where everything is kept.
         held: the benches that it drives, for other services of the same database.
-        archive: where files of runs are kept for good; None keeps them in the folder.
+        archive: where files are kept for good; None keeps them in the folder.
         local_days: how long files that the archive has stay in the folder.
 
     Raises:
@@ -110,11 +114,15 @@ class Service:
         earlier = EarlierFolders(folder, given, self.log, self.plans, self.controllers, self.models)
         self.kept_apart = earlier.take_in()
         self.forecasts = Forecasts(commands.hil)
-        self.studies = Studies(folder / "studies", commands.hil)
+        results, elsewhere = ResultStore(engine, held.service, held.place), folder / "elsewhere"
+        studies = SharedResults(results, "study", StudyData, archive, elsewhere / "studies")
+        campaigns = SharedResults(results, "campaign", CampaignData, archive, elsewhere / "campaigns")
+        self.studies = Studies(folder / "studies", commands.hil, studies)
         # Recordings are read at one desk, so that who designs at the other need not wait.
         self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
         campaign = (*commands.hil, "campaign", *commands.simulating)
-        self.campaigns = Campaigns(folder / "campaigns", campaign, self.desk)
+        self.campaigns = Campaigns(folder / "campaigns", campaign, self.desk, campaigns)
+        self.sharing = Rounds(self._share, "files of studies and campaigns")
         self._held = held
         self.showing = Showing(lambda: self.benches, self.running)
         runs_folder = folder / "runs"
@@ -132,6 +140,10 @@ class Service:
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
         self._unwritten: list[tuple[str, str, str, str]] = []
+
+    async def _share(self) -> str:
+        said = await self.studies.share(), await self.campaigns.share()
+        return "; ".join(filter(None, said))
 
     @property
     def benches(self) -> Mapping[str, Bench | RemoteBench]:

@@ -136,6 +136,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
     ]
     besides = [asyncio.create_task(service.watch_database())]
     service.campaigns.go_on()
+    besides.append(asyncio.create_task(service.sharing.work()))
     if service.keeper is not None:
         besides.append(asyncio.create_task(service.keeper.work()))
     try:

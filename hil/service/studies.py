@@ -16,6 +16,7 @@ from pathlib import Path
 from hil.core.errors import BadInputError
 from hil.service.command_process import CommandProcess, kill_left
 from hil.service.numbered import Numbered, files_in_results
+from hil.service.shared_results import SharedResults
 from hil.service.study_data import STUDY_OVER, StudyData, StudyKind
 
 _AT_ONCE = 1  # a run needs the other processor
@@ -32,32 +33,72 @@ class Studies:
     Args:
         folder: where each has a folder of its own.
         command: starts the command line.
+        shared: those of other services.
     """
 
-    def __init__(self, folder: Path, command: Sequence[str]) -> None:
-        self._command = command
+    def __init__(self, folder: Path, command: Sequence[str], shared: SharedResults[StudyData]) -> None:
+        self._command, self._shared = command, shared
         self._turn = asyncio.Semaphore(_AT_ONCE)
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._processes: dict[int, CommandProcess] = {}
         self._closing = False
-        self._records = Numbered(folder, "study.json", StudyData)
+        self._records = Numbered(folder, "study.json", StudyData, shared.draw)
         for study in self._records:
             if study.state not in STUDY_OVER:
                 kill_left(self._records.folder_of(study.id), self.results(study.id))
                 self._end(study.id, "interrupted", "the service ended meanwhile; ask for it again")
 
     def all(self, kind: StudyKind | None = None) -> list[StudyData]:
-        """Newest first."""
-        return [self._shown(study) for study in self._records if kind in (None, study.kind)]
+        """Newest first, also those of other services."""
+        return [study for study in self._shared.with_others(self.own()) if kind in (None, study.kind)]
 
     def get(self, number: int) -> StudyData | None:
         """One of them."""
         found = self._records.get(number)
-        return None if found is None else self._shown(found)
+        return self._shared.other(number) if found is None else self._shown(found)
+
+    def own(self) -> list[StudyData]:
+        """Those of this service, newest first."""
+        return [self._shown(study) for study in self._records]
+
+    def is_over(self, one: StudyData) -> bool:
+        """Whether it leaves no more files."""
+        return one.state in STUDY_OVER
+
+    def is_removed(self, number: int) -> bool:
+        """Whether one was here and is removed."""
+        return self._records.is_removed(number)
 
     def results(self, number: int) -> Path:
-        """Where the files of one are."""
+        """Where the files of one of this service are."""
         return self._records.folder_of(number) / _RESULTS
+
+    async def file(self, number: int, name: str) -> Path:
+        """A file of one, brought here if it is another service's.
+
+        Raises:
+            ArchiveAwayError: the archive does not give it.
+        """
+        here = self._records.get(number) is not None
+        return self.results(number) / name if here else await self._shared.bring(number, name)
+
+    async def files(self, number: int) -> Path:
+        """The folder with all files of one, brought here if it is another service's.
+
+        Raises:
+            ArchiveAwayError: the archive does not give them.
+        """
+        here = self._records.get(number) is not None
+        return self.results(number) if here else await self._shared.bring_all(number)
+
+    async def share(self) -> str:
+        """Tell other services of them, and keep their files for all; what keeps one from it."""
+        return await self._shared.share(self)
+
+    @property
+    def not_stored(self) -> int:
+        """How many that are over have files which the archive has not."""
+        return self._shared.waiting
 
     def begin(
         self, kind: StudyKind, runs: list[int], model: str, by: str, arguments: Sequence[str], within_s: float

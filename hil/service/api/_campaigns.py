@@ -10,7 +10,7 @@ from starlette.responses import Response
 
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
-from hil.service.api._problems import RefusedError, missing
+from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
 from hil.service.campaign_data import CampaignData, CampaignExample, CampaignWanted
 from hil.service.data import RunId
 from hil.service.service import Service
@@ -32,7 +32,7 @@ async def add_campaign(
 
 @router.get("/campaigns", name="list_campaigns")
 async def list_campaigns(service: TheService, me: Viewer) -> list[CampaignData]:
-    """Campaigns with their progress and the shares that pass so far, newest first."""
+    """Campaigns of all services with their progress and the shares that pass so far, newest first."""
     del me
     return service.campaigns.all()
 
@@ -54,7 +54,7 @@ async def get_campaign(campaign: RunId, service: TheService, me: Viewer) -> Camp
 @router.post("/campaigns/{campaign}/cancel", name="cancel_campaign")
 async def cancel_campaign(campaign: RunId, service: TheService, me: Engineer) -> CampaignData:
     """End one: what is under way is awaited, a few seconds, and kept; asked twice, it is not awaited."""
-    _there(service, campaign)
+    refuse_elsewhere("campaign", _there(service, campaign))
     if not await service.campaigns.cancel(campaign):
         raise RefusedError(409, f"campaign {campaign} is over")
     service.log.add(me.name, me.role, "campaign cancelled", str(campaign))
@@ -64,7 +64,7 @@ async def cancel_campaign(campaign: RunId, service: TheService, me: Engineer) ->
 @router.post("/campaigns/{campaign}/resume", name="resume_campaign")
 async def resume_campaign(campaign: RunId, service: TheService, me: Engineer) -> CampaignData:
     """Go on with one that was cancelled or has failed: only what is missing is simulated."""
-    found = _there(service, campaign)
+    found = refuse_elsewhere("campaign", _there(service, campaign))
     if not service.campaigns.resume(campaign):
         raise RefusedError(409, f"campaign {campaign} is {found.state}")
     service.log.add(me.name, me.role, "campaign resumed", str(campaign))
@@ -74,7 +74,7 @@ async def resume_campaign(campaign: RunId, service: TheService, me: Engineer) ->
 @router.delete("/campaigns/{campaign}", name="remove_campaign", status_code=204)
 async def remove_campaign(campaign: RunId, service: TheService, me: Engineer) -> None:
     """Remove one that is over, with its files."""
-    found = _there(service, campaign)
+    found = refuse_elsewhere("campaign", _there(service, campaign))
     if not service.campaigns.remove(campaign):
         raise RefusedError(409, f"campaign {campaign} is {found.state}", fix="cancel it first")
     told = f"{found.name}: {found.done} of {found.simulations} simulations"
@@ -87,7 +87,8 @@ async def get_campaign_file(campaign: RunId, name: str, service: TheService, me:
     del me
     if name not in _there(service, campaign).files:
         raise missing("file", name)
-    return left_file(service.campaigns.file(campaign, name), f"campaign-{campaign}-{name}", _TABLES)
+    path = await service.campaigns.file(campaign, name)
+    return left_file(path, f"campaign-{campaign}-{name}", _TABLES)
 
 
 def _there(service: Service, campaign: int) -> CampaignData:

@@ -24,7 +24,8 @@ async def health(service: TheService) -> Health:
         version=version,
         up_s=round(time.monotonic() - service.began_s, 1),
         runs_not_stored=keeper.waiting() if keeper else 0,
-        store_problem=keeper.problem if keeper else "",
+        results_not_stored=service.studies.not_stored + service.campaigns.not_stored,
+        store_problem=(keeper.rounds.problem or service.sharing.problem) if keeper else "",
         kept_apart=len(service.kept_apart),
     )
 
@@ -48,6 +49,9 @@ async def metrics(service: TheService, me: Viewer) -> Response:
     if service.keeper is not None:
         lines += ["# HELP hil_runs_not_stored Runs whose files the store has not all."]
         lines += ["# TYPE hil_runs_not_stored gauge", f"hil_runs_not_stored {service.keeper.waiting()}"]
+        count = service.studies.not_stored + service.campaigns.not_stored
+        lines += ["# HELP hil_results_not_stored Studies and campaigns that are over, likewise."]
+        lines += ["# TYPE hil_results_not_stored gauge", f"hil_results_not_stored {count}"]
     lines += ["# HELP hil_up_seconds Seconds since the service began.", "# TYPE hil_up_seconds counter"]
     lines.append(f"hil_up_seconds {time.monotonic() - service.began_s:.1f}")
     return Response("\n".join(lines) + "\n", media_type="text/plain; version=0.0.4")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -11,10 +11,11 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.data import Problem
+from hil.service.data import Problem, Record
 from hil.service.given_files import NameTakenError
 from hil.service.store import DatabaseAwayError
 
+R = TypeVar("R", bound=Record)
 _MEANINGS = {
     400: "the body cannot be read as what its type says",
     401: "a token is needed, or the one given is not valid",
@@ -45,6 +46,17 @@ class RefusedError(Exception):
 def missing(kind: str, name: object) -> RefusedError:
     """There is no such thing."""
     return RefusedError(404, f"there is no {kind} '{name}'")
+
+
+def refuse_elsewhere(kind: str, found: R) -> R:
+    """What was found, if it is this service's.
+
+    Raises:
+        RefusedError: it is another service's.
+    """
+    if found.place:
+        raise RefusedError(409, f"{kind} {found.id} is another service's", fix=f"ask {found.place}")
+    return found
 
 
 def answer_problems(app: FastAPI) -> None:

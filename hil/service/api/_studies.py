@@ -13,10 +13,11 @@ from hil.core.files import read_text
 from hil.engine import RECORDING
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
-from hil.service.api._problems import RefusedError, missing
+from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
 from hil.service.data import OVER, Me, RunId
 from hil.service.service import Service
 from hil.service.study_data import (
+    STUDY_OVER,
     DiagnosisData,
     DiagnosisWanted,
     IdentificationData,
@@ -62,7 +63,7 @@ async def diagnose(
 async def list_studies(
     service: TheService, me: Viewer, kind: Annotated[StudyKind | None, Query()] = None
 ) -> list[StudyData]:
-    """Identifications and diagnoses, newest first."""
+    """Identifications and diagnoses of all services, newest first."""
     del me
     return service.studies.all(kind)
 
@@ -77,7 +78,7 @@ async def get_study(study: RunId, service: TheService, me: Viewer) -> StudyData:
 @router.post("/studies/{study}/cancel", name="cancel_study")
 async def cancel_study(study: RunId, service: TheService, me: Engineer) -> StudyData:
     """End one; a diagnosis writes what it knows by then."""
-    _there(service, study)
+    refuse_elsewhere("study", _there(service, study))
     if not await service.studies.cancel(study):
         raise RefusedError(409, f"study {study} is over")
     service.log.add(me.name, me.role, "study cancelled", str(study))
@@ -87,7 +88,7 @@ async def cancel_study(study: RunId, service: TheService, me: Engineer) -> Study
 @router.delete("/studies/{study}", name="remove_study", status_code=204)
 async def remove_study(study: RunId, service: TheService, me: Engineer) -> None:
     """Remove one that is over, with its files; runs, and models that were saved from it, stay."""
-    found = _there(service, study)
+    found = refuse_elsewhere("study", _there(service, study))
     if not service.studies.remove(study):
         raise RefusedError(409, f"study {study} is {found.state}", fix="cancel it first")
     service.log.add(me.name, me.role, "study removed", str(study), f"runs {found.runs} {found.model}")
@@ -99,7 +100,7 @@ async def get_study_file(study: RunId, name: str, service: TheService, me: Viewe
     del me
     if name not in _there(service, study).files:
         raise missing("file", name)
-    path = service.studies.results(study) / name
+    path = await service.studies.file(study, name)
     media = "text/plain" if path.suffix in (".toml", ".csv", ".yaml") else None
     return left_file(path, f"study-{study}-{name}", media)
 
@@ -109,7 +110,8 @@ async def get_identification(study: RunId, service: TheService, me: Viewer) -> I
     """What an identification found: responses with coherence, the fit, parameters with intervals."""
     del me
     of = _with(service, study, "identification", "identification.json")
-    found = await service.desk.ask("fitted", folder=str(service.studies.results(study).resolve()))
+    folder = await service.studies.files(study)
+    found = await service.desk.ask("fitted", folder=str(folder.resolve()))
     return IdentificationData(study=of, **found)
 
 
@@ -118,7 +120,7 @@ async def get_diagnosis(study: RunId, service: TheService, me: Viewer) -> Diagno
     """What a diagnosis found: names, alternatives with the tests that tell them apart, the map."""
     del me
     of = _with(service, study, "diagnosis", "diagnosis.json")
-    content = json.loads(read_text(service.studies.results(study) / "diagnosis.json"))
+    content = json.loads(read_text(await service.studies.file(study, "diagnosis.json")))
     return DiagnosisData(study=of, **_findings(content))
 
 
@@ -167,6 +169,8 @@ def _with(service: Service, study: int, kind: StudyKind, file: str) -> StudyData
     found = _there(service, study)
     if found.kind != kind:
         raise missing(kind, study)
+    if file not in found.files and found.place and found.state in STUDY_OVER:
+        raise RefusedError(409, f"files of {kind} {study} are not in a store", fix=f"ask {found.place}")
     if file not in found.files:
         raise RefusedError(409, f"{kind} {study} has found nothing: {found.reason or found.state}")
     return found

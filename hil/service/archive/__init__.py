@@ -2,5 +2,6 @@
 
 from hil.service.archive._archive import Archive, ArchiveAwayError, Kept
 from hil.service.archive._keeper import Keeper
+from hil.service.archive._rounds import Rounds
 
-__all__ = ["Archive", "ArchiveAwayError", "Keeper", "Kept"]
+__all__ = ["Archive", "ArchiveAwayError", "Keeper", "Kept", "Rounds"]

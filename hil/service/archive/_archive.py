@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from urllib.parse import urlsplit
 from fsspec.core import url_to_fs
 
 from hil.core.errors import BadInputError, BenchError
-from hil.core.files import read_bytes, sha256_of
+from hil.core.files import read_bytes, replacing, sha256_of
 
 T = TypeVar("T")
 #: What is asked for at once, and so how much of a file is in memory.
@@ -117,6 +118,33 @@ class Archive:
         if len(found) != end - start:
             raise ArchiveAwayError("the store's file is too short", where=self._where(name))
         return bytes(found)
+
+    def get(self, name: str, path: Path, wanted: Kept) -> None:
+        """Bring a file back, as it was when it was kept.
+
+        Raises:
+            BadInputError: it cannot be written there.
+            ArchiveAwayError: the store does not give it, or not as it was.
+        """
+        with replacing(path) as temporary:
+            with temporary.open("wb") as file:
+                for at in range(0, wanted.size, PIECE_BYTES):
+                    file.write(self.read(name, at, min(wanted.size, at + PIECE_BYTES)))
+            if sha256_of(temporary) != wanted.sha256:
+                raise ArchiveAwayError("the store's file is not what was given to it", where=name)
+
+    def remove(self, name: str) -> None:
+        """Remove a file; one that is not there is no mistake.
+
+        Raises:
+            ArchiveAwayError: the store does not answer, or does not remove it.
+        """
+
+        def drop() -> None:
+            with contextlib.suppress(FileNotFoundError):
+                self._files.rm_file(self._place(name))
+
+        self._asked(drop, name)
 
     def _read_back(self, name: str, size: int) -> Kept:
         found = hashlib.sha256()

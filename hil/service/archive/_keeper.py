@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import logging
 import time
@@ -11,14 +10,13 @@ from functools import partial
 from pathlib import Path
 
 from hil.core.errors import HilError
-from hil.core.files import replacing, sha256_of
+from hil.core.files import sha256_of
 from hil.service.apart import apart
 from hil.service.archive._archive import PIECE_BYTES, Archive, ArchiveAwayError, Kept
+from hil.service.archive._rounds import Rounds
 from hil.service.run_files import LOCK, files_in, folder_of
 from hil.service.store import DatabaseAwayError, FileStore, KeptFile
 
-_LOOK_S = 2.0
-_LONGEST_S = 60.0  # between two tries while the store is away
 _DAY_S = 86400.0
 _CLEAR_S = 3600.0  # how often old files are looked for; after each run that was kept, too
 _LEAST_S = 600.0  # what was brought back is being read
@@ -51,8 +49,7 @@ class Keeper:
         self._archive, self._files, self._service = archive, files, service
         self._folder, self._shown = folder, shown
         self._local_s = max(local_days * _DAY_S, _LEAST_S)
-        self.problem = ""
-        self.rounds = 0
+        self.rounds = Rounds(self._round, "files of runs")
         self._cleared_s = -1e9
 
     def waiting(self) -> int:
@@ -61,21 +58,7 @@ class Keeper:
 
     async def work(self) -> None:
         """Keep what is to be kept, until it is cancelled."""
-        wait_s = _LOOK_S
-        while True:
-            said = ""
-            try:
-                said = await self._round()
-            except (ArchiveAwayError, DatabaseAwayError) as error:
-                said = str(error)
-            wait_s = min(2.0 * wait_s, _LONGEST_S) if said else _LOOK_S
-            if said and said != self.problem:
-                logger.warning("files of runs wait: %s", said)
-            elif self.problem and not said:
-                logger.warning("files of runs are kept again")
-            self.problem = said
-            self.rounds += 1
-            await asyncio.sleep(wait_s)
+        await self.rounds.work()
 
     async def bring_back(self, run: int, name: str) -> Path:
         """A file of a run, here.
@@ -86,7 +69,8 @@ class Keeper:
         path = folder_of(self._folder, run) / name
         found = None if path.is_file() else self.kept(run, name)
         if found is not None:
-            await apart(partial(self._bring_back, path, _name(run, name), found))
+            wanted = Kept(found.size, found.sha256)
+            await apart(partial(self._archive.get, _name(run, name), path, wanted))
         return path
 
     def kept(self, run: int, name: str) -> KeptFile | None:
@@ -150,14 +134,6 @@ class Keeper:
                 (folder / LOCK).unlink(missing_ok=True)
                 with contextlib.suppress(OSError):  # something else lies there: it stays
                     folder.rmdir()
-
-    def _bring_back(self, path: Path, name: str, wanted: KeptFile) -> None:
-        with replacing(path) as temporary:
-            with temporary.open("wb") as file:
-                for at in range(0, wanted.size, PIECE_BYTES):
-                    file.write(self._archive.read(name, at, min(wanted.size, at + PIECE_BYTES)))
-            if sha256_of(temporary) != wanted.sha256:
-                raise ArchiveAwayError("the store's file is not what was given to it", where=name)
 
 
 def _name(run: int, name: str) -> str:

@@ -36,10 +36,10 @@ export function beginCampaigns(act, may) {
 
   function shown(campaign) {
     const name = cell(campaign.title || campaign.name, "", "th");
-    const about = [`${campaign.plan} on ${campaign.model}, by ${campaign.requested_by}`, campaign.reason.split("\n")[0]].filter(Boolean).join("; ");
+    const about = [`${campaign.plan} on ${campaign.model}, by ${campaign.requested_by}`, campaign.place, campaign.reason.split("\n")[0]].filter(Boolean).join("; ");
     name.append(Object.assign(document.createElement("span"), { className: "reason", textContent: about }));
     const state = campaign.passed === null ? campaign.state : campaign.passed ? "pass" : "fail";
-    return row(cell(String(campaign.id), "number"), name, cell(badge(state)), cell(progress(campaign)), cell(shares(campaign)), cell(links(campaign)), cell(may ? actions(campaign) : ""));
+    return row(cell(String(campaign.id), "number"), name, cell(badge(state)), cell(progress(campaign)), cell(shares(campaign)), cell(links(campaign)), cell(may && !campaign.place ? actions(campaign) : ""));
   }
 
   function actions({ id, state }) {

@@ -51,10 +51,10 @@ export class Studies {
     if (wanted) at(`${this.id}-study`).value = wanted;
     const study = all.find((one) => String(one.id) === at(`${this.id}-study`).value);
     at(`${this.id}-row`).hidden = !study;
-    at(`${this.id}-cancel`).hidden = !study || OVER.includes(study.state);
-    at(`${this.id}-remove`).hidden = !study || !OVER.includes(study.state);
-    at(`${this.id}-state`).replaceChildren(...(study ? [badge(study.state)] : []), study?.reason ? ` ${study.reason}` : "");
-    const key = study ? `${study.id} ${study.state}` : "";
+    at(`${this.id}-cancel`).hidden = !study || study.place !== "" || OVER.includes(study.state);
+    at(`${this.id}-remove`).hidden = !study || study.place !== "" || !OVER.includes(study.state);
+    at(`${this.id}-state`).replaceChildren(...(study ? [badge(study.state)] : []), [study?.place, study?.reason].filter(Boolean).map((told) => ` ${told}`).join(";"));
+    const key = study ? `${study.id} ${study.state} ${study.files.length}` : "";
     if (key !== this.shown) { this.shown = key; await this.found(study); }
     if (all.some((one) => !OVER.includes(one.state))) this.timer = setTimeout(() => this.act(() => this.look()), LOOK_MS);
   }

@@ -8,6 +8,7 @@ from hil.service.store._leases import LeaseStore
 from hil.service.store._opening import open_database
 from hil.service.store._people import LogStore, TokenStore
 from hil.service.store._presence import DatabaseAwayError, Presence
+from hil.service.store._results import ResultKind, ResultStore, Told
 from hil.service.store._runs import NewRun, RunStore
 from hil.service.store._tables import Base
 
@@ -25,7 +26,10 @@ __all__ = [
     "NewRun",
     "Presence",
     "RegisteredBench",
+    "ResultKind",
+    "ResultStore",
     "RunStore",
     "TokenStore",
+    "Told",
     "open_database",
 ]

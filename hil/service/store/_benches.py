@@ -29,7 +29,7 @@ class BenchStore:
 
     def __init__(self, engine: Engine, service: str, place: str = "") -> None:
         self._transaction = sessionmaker(engine, expire_on_commit=False).begin
-        self.service, self._place = service, place
+        self.service, self.place = service, place
 
     def hold(self, bench: str, for_s: float = HELD_S) -> str:
         """Drive a bench, or go on with it; who drives it if that is somebody else."""
@@ -42,7 +42,7 @@ class BenchStore:
                 RunRow.service.not_in((self.service, "")),
             )
             free = or_(BenchRow.service == self.service, and_(BenchRow.until <= moment, ~others))
-            row = {"bench": bench, "service": self.service, "place": self._place[:300], "until": until}
+            row = {"bench": bench, "service": self.service, "place": self.place[:300], "until": until}
             if put(session, BenchRow, row, where=free):
                 return ""
             there = session.scalars(select(BenchRow).where(BenchRow.bench == bench)).one()

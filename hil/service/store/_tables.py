@@ -105,6 +105,43 @@ class FileRow(Base):
     sha256: Mapped[str] = mapped_column(String(64))
 
 
+class ResultRow(Base):
+    """A study or a campaign of a service, for all; `facts`: what is told of it, as JSON.
+
+    `place` is where its service runs, in words; `kept_at`: when the archive had all of its files.
+    """
+
+    __tablename__ = "results"
+
+    kind: Mapped[str] = mapped_column(String(12), primary_key=True)
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    service: Mapped[str] = mapped_column(String(40))
+    place: Mapped[str] = mapped_column(String(300))
+    facts: Mapped[str] = mapped_column(Text)
+    kept_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+
+
+class ResultFileRow(Base):
+    """A file of a study or a campaign that the archive has, as it was read back; `sha256` hexadecimal."""
+
+    __tablename__ = "result_files"
+
+    kind: Mapped[str] = mapped_column(String(12), primary_key=True)
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    name: Mapped[str] = mapped_column(String(255), primary_key=True)
+    size: Mapped[int] = mapped_column(BigInteger)
+    sha256: Mapped[str] = mapped_column(String(64))
+
+
+class NumberRow(Base):
+    """The last number of a kind that was given to anything, also if that is removed."""
+
+    __tablename__ = "numbers"
+
+    kind: Mapped[str] = mapped_column(String(12), primary_key=True)
+    last: Mapped[int]
+
+
 class GivenRow(Base):
     """A plan, controller or model that somebody gave; `sha256` of its text, hexadecimal."""
 

@@ -15,13 +15,21 @@ from typing import Any
 import pytest
 from sqlalchemy import Engine, text
 
+from hil.client import Client
+from hil.client import RefusedError as AnswerError
 from hil.core.errors import BadInputError
 from hil.service.archive import Archive, ArchiveAwayError, Keeper
+from hil.service.campaign_data import CampaignWanted
 from hil.service.service import Commands
 from hil.service.serving import ServeRequest, serve
 from hil.service.store import BenchStore, FileStore, NewRun, RunStore, open_database
+from hil.service.study_data import IdentificationWanted
+from tests.hil.analysis.tuning.trials import PLAN
+from tests.hil.campaign.short import CAMPAIGN
 from tests.hil.service.s3 import BUCKET, S3, s3_server
 from tests.hil.service.served import SHORT, RefusedError, Served, served
+from tests.hil.service.test_studies import CHIRP
+from tests.hil.service.working import bench_called
 
 STORE = f"s3://{BUCKET}/bench"
 
@@ -104,7 +112,7 @@ def _a_run_that_is_over(engine: Engine) -> int:
 
 async def _until_kept(keeper: Keeper) -> None:
     work = asyncio.create_task(keeper.work())
-    while keeper.rounds == 0:
+    while keeper.rounds.count == 0:
         await asyncio.sleep(0.01)
     work.cancel()
 
@@ -169,6 +177,55 @@ def test_a_store_that_is_away_holds_no_run_up_and_loses_no_file(s3: S3, tmp_path
         for path in (data / f"runs/{run:06d}").iterdir():
             there = s3.folder / "kept" / BUCKET / f"bench-away/{run:06d}" / path.name
             assert path.name == "run.lock" or there.read_bytes() == path.read_bytes()
+
+
+@pytest.mark.slow
+def test_what_a_study_and_a_campaign_left_is_read_at_another_service(s3: S3, tmp_path: Path) -> None:
+    database = ("--database", f"sqlite:///{tmp_path / 'shared.sqlite'}", "--store", f"{STORE}-results")
+    arguments, state = (*database, "--workers", "0"), tmp_path / "state"
+    bench = bench_called("other", tmp_path / "benches")
+    with served(tmp_path / "two", *arguments, "--bench", str(bench), state=state) as second:
+        two = Client(second.url)
+        with served(tmp_path / "one", *arguments, state=state) as first:
+            one = Client(first.url)
+            first.give("chirp", CHIRP)
+            run = first.queue("chirp")
+            assert first.over(run)["state"] == "ended"
+            study = one.identify(IdentificationWanted(runs=[run]))
+            campaign = one.add_campaign(CampaignWanted(text=CAMPAIGN, files={"short.yaml": PLAN}))
+            _until(lambda: two.study(study.id).files and two.campaign(campaign.id).files, 240.0)
+            _until(lambda: (one.health().results_not_stored, one.health().runs_not_stored) == (0, 0))
+            found = one.study(study.id)
+            assert (found.state, found.place, two.study(study.id).files) == ("ended", "", found.files)
+            for ask in (
+                lambda: two.remove_study(study.id),
+                lambda: two.cancel_campaign(campaign.id),
+                lambda: two.remove_campaign(campaign.id),
+            ):
+                with pytest.raises(AnswerError, match="is another service's") as refused:
+                    ask()
+                assert (refused.value.status, str(tmp_path / "one") in refused.value.fix) == (409, True)
+            assert first.process.poll() is None
+        _read_without_the_first(two, second, tmp_path / "one", study.id, campaign.id)
+        assert two.identify(IdentificationWanted(runs=[run])).id == study.id + 1
+        names = [name for name in s3.names() if name.startswith("bench-results/studies/000001/")]
+        assert "report.html" in {name.rpartition("/")[2] for name in names}
+    with served(tmp_path / "one", *arguments, state=state) as first:
+        Client(first.url).remove_study(study.id)
+        _until(lambda: not [name for name in s3.names() if "studies/000001/" in name])
+
+
+def _read_without_the_first(two: Client, second: Served, data: Path, study: int, campaign: int) -> None:
+    """All that the other service has left is read while its folder is away."""
+    data.rename(data.with_name("away"))
+    found = two.identification(study)
+    assert str(data) in found.study.place
+    assert found.resonance_hz is not None
+    path = f"studies/{study:06d}/results/report.html"
+    assert second.get(f"/studies/{study}/files/report.html") == (data.with_name("away") / path).read_bytes()
+    assert second.get(f"/campaigns/{campaign}/files/simulations.parquet").startswith(b"PAR1")
+    assert [(one.id, one.state) for one in two.campaigns()] == [(campaign, "ended")]
+    data.with_name("away").rename(data)
 
 
 def _ranged(service: Served, run: int, wanted: str) -> tuple[int, bytes]:

@@ -71,3 +71,12 @@ def test_a_link_is_removed_and_not_what_it_names(two: Numbered[StudyData], tmp_p
     (two.folder_of(2) / "link").symlink_to(elsewhere)
     two.remove(2)
     assert (elsewhere / "kept").read_text() == "kept"
+
+
+def test_what_is_no_folder_of_one_is_left_alone(two: Numbered[StudyData], tmp_path: Path) -> None:
+    (tmp_path / "000009").write_text("a file")
+    (tmp_path / "000012-copy").mkdir()
+    (tmp_path / "000012-copy/mine").write_text("kept")
+    again = studies(tmp_path)
+    assert ([one.id for one in again], again.take_number()) == ([2, 1], 3)
+    assert (tmp_path / "000012-copy/mine").read_text() == "kept"
