@@ -84,7 +84,7 @@ class RemoteCampaign:
         try:
             if not self.resume:
                 return client.add_campaign(wanted)
-            same = [one for one in client.campaigns() if one.digest == wanted.digest]
+            same = [one for one in client.campaigns() if one.digest == wanted.digest and not one.place]
             if not same:
                 raise BadInputError(
                     "the service has no campaign of this content", where="--resume", fix="leave it out"

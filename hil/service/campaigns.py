@@ -109,6 +109,10 @@ class Campaigns:
         """Those of this service, newest first."""
         return [self._shown(one) for one in self._records]
 
+    def to_tell(self) -> list[CampaignData]:
+        """Those of this service as they are now, without the names of their files."""
+        return [one if self.is_over(one) else self._shown(one) for one in self._records]
+
     def is_over(self, one: CampaignData) -> bool:
         """Whether it leaves no more files, unless it is gone on with."""
         return one.state in CAMPAIGN_OVER

@@ -31,8 +31,8 @@ logger = logging.getLogger(__name__)
 class Own(Protocol[R]):
     """Those of this service."""
 
-    def own(self) -> list[R]:
-        """All of them as they are now."""
+    def to_tell(self) -> list[R]:
+        """All of them as they are now, without the names of their files."""
 
     def is_over(self, one: R) -> bool:
         """Whether it leaves no more files, as it is."""
@@ -59,6 +59,7 @@ class SharedResults(Generic[R]):
         self._store, self._kind, self._data = store, kind, data
         self._archive, self._folder = archive, folder
         self._told: dict[int, str] | None = None  # as the database has it
+        self._facts: dict[int, tuple[R, str]] = {}  # those that have not changed need not be written anew
         self._apart: set[int] = set()
         self.waiting = 0
         shutil.rmtree(folder, ignore_errors=True)
@@ -123,9 +124,9 @@ class SharedResults(Generic[R]):
             DatabaseAwayError: the database does not.
         """
         told = self._told = self._store.mine(self._kind) if self._told is None else self._told
-        there = {one.id: one for one in mine.own()}
+        there = {one.id: one for one in mine.to_tell()}
         for number, one in there.items():
-            facts = one.model_dump_json(exclude=_OF_THE_SERVICE)
+            facts = self._facts_of(one)
             if told.get(number) != facts and number not in self._apart:
                 self._tell(number, facts, told)
         for number in [number for number in told if mine.is_removed(number)]:
@@ -133,6 +134,12 @@ class SharedResults(Generic[R]):
             del told[number]
         wanted = [one for one in there.values() if one.id in told and mine.is_over(one)]
         return "" if self._archive is None else await self._keep(self._archive, wanted, mine, told)
+
+    def _facts_of(self, one: R) -> str:
+        before = self._facts.get(one.id)
+        if before is None or before[0] is not one:
+            before = self._facts[one.id] = one, one.model_dump_json(exclude=_OF_THE_SERVICE)
+        return before[1]
 
     def _tell(self, number: int, facts: str, told: dict[int, str]) -> None:
         if self._store.tell(self._kind, number, facts):

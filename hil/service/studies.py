@@ -61,6 +61,10 @@ class Studies:
         """Those of this service, newest first."""
         return [self._shown(study) for study in self._records]
 
+    def to_tell(self) -> list[StudyData]:
+        """Those of this service, without the names of their files."""
+        return list(self._records)
+
     def is_over(self, one: StudyData) -> bool:
         """Whether it leaves no more files."""
         return one.state in STUDY_OVER

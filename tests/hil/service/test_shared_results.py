@@ -35,6 +35,9 @@ class _Here:
         files = {one.id: files_in_results(self.results(one.id)) for one in self.records}
         return [one.model_copy(update={"files": files[one.id]}) for one in self.records]
 
+    def to_tell(self) -> list[StudyData]:
+        return list(self.records)
+
     def is_over(self, one: StudyData) -> bool:
         return one.state in STUDY_OVER
 
