@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._thresholds import (
     FAR_PRIOR,
+    LOSS_REACH,
     MISMATCH_REACH,
     PRIOR,
     RATIO_PRIOR,
@@ -25,6 +26,8 @@ from hil.core.model import EffectUse, Model, parameter_names
 from hil.plant import SENSOR_STEP, pack, sensor_of
 
 Array = npt.NDArray[np.float64]
+
+_LOSSES = ("_damping", "_drag")
 
 
 @dataclass(frozen=True)
@@ -96,7 +99,7 @@ class Hypothesis:
         """How far a parameter may go, and the standard deviation of its correction, natural logarithms."""
         if self.far:
             prior = RATIO_PRIOR if name == "gear_ratio" else FAR_PRIOR
-            return MISMATCH_REACH, prior
+            return LOSS_REACH if name.endswith(_LOSSES) else MISMATCH_REACH, prior
         widened = self.base.tolerance.get(name, TOLERANCE) / TOLERANCE
         return REACH * widened, PRIOR * widened
 

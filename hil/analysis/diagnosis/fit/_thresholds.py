@@ -20,6 +20,10 @@ MISMATCH_REACH: Annotated[
     float,
     Means("natural logarithm", "how far a wrong parameter may go: a factor of five either way", "blind"),
 ] = 1.6
+LOSS_REACH: Annotated[
+    float,
+    Means("natural logarithm", "the same of a loss in a far model, often guessed: a factor of twenty", "far"),
+] = 3.0
 FAR_PRIOR: Annotated[
     float,
     Means("natural logarithm", "standard deviation of a parameter that is as good as unknown", "far"),

@@ -69,6 +69,7 @@ def search_from_base(
         return finished(near, show)
     far = far or _identified(near, rounded, show)
     known.append(far)
+    near.numbers = far.base
     return _better(near, far, show)
 
 

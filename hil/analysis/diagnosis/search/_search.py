@@ -18,8 +18,9 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import with_base_angles
 from hil.analysis.diagnosis.search._evidence import Evidence
-from hil.analysis.diagnosis.search._growth import Step, grow
+from hil.analysis.diagnosis.search._growth import grow
 from hil.analysis.diagnosis.search._quantization import rounding_of
+from hil.analysis.diagnosis.search._race import Step
 from hil.analysis.diagnosis.search._rank import doubted, rank
 from hil.analysis.diagnosis.search._screen import Score
 from hil.analysis.diagnosis.search._thresholds import (
@@ -53,6 +54,8 @@ class Found:
     effects: int = 0
     #: The model as it was given, where the search began from another one.
     given: Fit | None = None
+    #: Other numbers of the base model alone, where they were looked for and not taken.
+    numbers: Fit | None = None
 
     @property
     def clear(self) -> bool:

@@ -206,9 +206,21 @@ OTHER_SIZES: Annotated[
     tuple[float, ...],
     Means("factor", "sizes of an abrupt effect that are fitted from: it has false minima", "hidden"),
 ] = (0.75, 1.0, 1.3)
+FREED_SIZES: Annotated[
+    tuple[float, ...],
+    Means("factor", "the same once the base model's numbers are free: wrong ones bent the size", "far"),
+] = (0.35, 0.6, 1.0)
 RACE: Annotated[int, Means("effects", "are fitted at each step", "hidden")] = 5
 PROMISING: Annotated[float, Means("of the best score", "effects below it are not fitted", "hidden")] = 0.4
 RACE_ROUNDS: Annotated[int, Means("rounds", "after which the hopeless are given up", "hidden")] = 3
+STILL_FALLS: Annotated[
+    float,
+    Means(
+        "of the total",
+        "a fit that gets below it in as many rounds is fitted on, far from the noise",
+        "growth",
+    ),
+] = 0.5
 OUT_OF_RACE: Annotated[
     float,
     Means(

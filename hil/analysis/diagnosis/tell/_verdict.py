@@ -41,7 +41,16 @@ def verdict_of(found: Found, rounded: bool) -> Verdict:
         return "unknown"
     if found.clear:
         return "named"
+    if _no_better_than_numbers(found):
+        return "unknown"
     return verdict_on(ids, evidence.worst(found.base), evidence.share(best), evidence.worst(best))
+
+
+def _no_better_than_numbers(found: Found) -> bool:
+    """Whether other numbers of the base model alone leave no more than the effects, which leave a gap."""
+    if found.numbers is None or found.settled:
+        return False
+    return found.evidence.left(found.numbers) <= found.evidence.left(found.best)
 
 
 def open_channels(ids: Sequence[str], before: Array, after: Array, apart: bool) -> list[bool]:

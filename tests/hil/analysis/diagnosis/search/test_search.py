@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.search._growth import grown
+from hil.analysis.diagnosis.search._race import grown
 from hil.analysis.diagnosis.search._search import earned, following, search
 from hil.analysis.diagnosis.search._thresholds import FAR
 from hil.core.channels import OUTPUTS

@@ -1,0 +1,25 @@
+"""One step of a search: what is tried beside a hypothesis, and which of it comes first."""
+
+from __future__ import annotations
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._growth import grow
+from hil.analysis.diagnosis.search._race import Step
+from hil.core.channels import OUTPUTS
+from hil.core.model import EffectUse
+from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
+
+OFFSET = EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0})
+
+
+def test_what_explains_most_comes_first_and_what_promises_nothing_is_not_fitted() -> None:
+    problem = one_problem(OFFSET)
+    base = fit(problem, Hypothesis(MODEL))
+    step = Step(base, [], [])
+    grow(Evidence(problem, base), step)
+    assert step.fits[0].hypothesis.keys == (("sensor_offset", OUTPUTS[2]),)
+    assert [one.total for one in step.fits] == sorted(one.total for one in step.fits)
+    tried = {one.hypothesis.keys[-1] for one in step.fits}
+    assert tried < {score.key for score in step.scores}
