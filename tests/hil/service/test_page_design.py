@@ -12,7 +12,7 @@ from playwright import sync_api as playwright
 
 from hil.core.controller import load_controller
 from tests.hil.service.looks import refuse_hard_to_use, roles_drawn
-from tests.hil.service.served import SHORT, Served, served
+from tests.hil.service.served import SHORT, Served, environment_of, served
 
 playwright.expect.set_options(timeout=60_000)  # the first draft waits for a process to begin
 pytestmark = [
@@ -111,7 +111,8 @@ def test_a_notch_has_its_own_numbers_and_all_is_easy_to_use(page: playwright.Pag
 def test_a_viewer_designs_nothing(page: playwright.Page, tmp_path: Path) -> None:
     from hil.service.serving import make_token
 
-    made = make_token(tmp_path / "data", "", "anna", "viewer")
+    database = environment_of(tmp_path / "data")["HIL_DATABASE"]
+    made = make_token(tmp_path / "data", database, "anna", "viewer")
     with served(tmp_path / "data", state=tmp_path / "state", token=made.secret) as service:
         page.goto(service.url)
         page.get_by_label("Token").fill(made.secret)

@@ -96,7 +96,7 @@ def test_a_model_is_identified_from_a_run_and_saved(page: playwright.Page, there
     page.locator("#identify > summary").click()
     page.locator("#identify-runs").get_by_label("chirp").first.check()
     page.get_by_role("button", name="Identify", exact=True).click()
-    expect(page.locator("#identify-verdict")).to_contain_text("resonance 11")
+    expect(page.locator("#identify-verdict")).to_contain_text("resonance 11", timeout=240_000)
     expect(page.locator("#identify-parameters")).to_contain_text("gear ratio")
     assert roles_drawn(page, "fit-motor", ("gain", "phase")) == {"gain", "phase"}
     assert "gain" in roles_drawn(page, "fit-coherence", ("gain",))
