@@ -84,7 +84,7 @@ class Served:
     def queue(self, plan: str = "short", bench: str = "sim", **more: object) -> int:
         return int(self.post("/runs", {"plan": plan, "bench": bench, **more})["id"])
 
-    def until(self, run: int, wanted: Callable[[Any], bool], within_s: float = 60.0) -> Any:
+    def until(self, run: int, wanted: Callable[[Any], bool], within_s: float = 240.0) -> Any:
         """The run once it is as wanted."""
         until_s = time.monotonic() + within_s
         while not wanted(found := self.get(f"/runs/{run}")):
