@@ -119,3 +119,4 @@ def test_a_viewer_designs_nothing(page: playwright.Page, tmp_path: Path) -> None
         page.get_by_role("button", name="Log in").click()
         playwright.expect(page.get_by_role("heading", name="Free")).to_be_visible()
         assert page.locator("#design").is_hidden()
+        page.goto("about:blank")  # it would tell that the service has gone
