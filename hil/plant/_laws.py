@@ -6,7 +6,9 @@ that calls it, not when a compiled one is loaded:
 
     shaft_force, rotor_loss, dry_friction, vehicle_load, tyre_force, tyre_rate
         one force of all effects together: (motion, chain, memories, p)
-    moves_shaft, slows_rotor, may_stick, loads, moves_tyre, remembers, turns, pushes
+    shaft_leap
+        what the shafts' torque is within a step beyond a straight line: (before, after, chain, memories, p, h)
+    moves_shaft, slows_rotor, may_stick, loads, moves_tyre, remembers, turns, pushes, leaps
         whether any effect that has such a law does anything: (p)
     shaped: the torque that a request becomes: (torque, p)
     steepest: the steepest slope of the acting torque in N m/s: (p)
@@ -209,6 +211,20 @@ def _remembered(others: Any, effect: Effect) -> Any:
     return _compile(remember)
 
 
+def _leaping(others: Any, effect: Effect) -> Any:
+    first, last, memory, acts = _place(effect.id)
+    law = _law(effect.law.leap)  # type: ignore[arg-type]
+
+    def leap(before, after, chain, memories, p, h):  # type: ignore[no-untyped-def]
+        begins, rises = others(before, after, chain, memories, p, h)
+        if acts(p):
+            more, rise = law(before, after, chain, memories[memory] if memory >= 0 else 0.0, p[first:last], h)
+            begins, rises = begins + more, rises + rise
+        return begins, rises
+
+    return _compile(leap)
+
+
 def _begun(others: Any, effect: Effect) -> Any:
     first, last, memory, acts = _place(effect.id)
     law = _law(effect.law.begin)  # type: ignore[arg-type]
@@ -248,10 +264,12 @@ _MAKERS: dict[str, Callable[[], Any]] = {
     "moves_tyre": lambda: _any_of("tyre", "tyre_rate"),
     "remembers": lambda: _any_of("remember"),
     "turns": lambda: _any_of("follows"),
+    "leaps": lambda: _any_of("leap"),
     "pushes": lambda: _any_of("shaft", "loss", "dry", "load", "tyre", "tyre_rate"),
     "shaped": lambda: _in_turn("shape", _shaped, lambda torque, p: torque),
     "steepest": lambda: _in_turn("slope", _gentler, lambda p: _NO_LIMIT),
     "stretched": lambda: _in_turn("stretch", _stretched, lambda twist, chain, memories, p: twist),
+    "shaft_leap": lambda: _in_turn("leap", _leaping, lambda before, after, chain, memories, p, h: (0.0, 0.0)),
     "remembered": lambda: _in_turn(
         "remember", _remembered, lambda before, after, chain, memories, p, h: memories
     ),

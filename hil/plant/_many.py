@@ -211,14 +211,14 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
     transition, column, held, rising = matrices
     x, memories = first
     chain = chain_of(p)
-    dry, turns, moves_tyre = L.may_stick(p), L.turns(p), L.moves_tyre(p)
+    dry, turns, moves_tyre, leaps = L.may_stick(p), L.turns(p), L.moves_tyre(p), L.leaps(p)
     gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
     friction = 0.0
     at = F.first_angles(angles, x, p)
     m = motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
     f = F.forces(m, chain, memories, p)
     has_wheel = chain.kind == P.THREE_INERTIA
-    brakes, rises = 0.0, 0.0
+    brakes, rises, foreseen = 0.0, 0.0, 0.0
     for k in range(acting.shape[0]):
         if load is not None:
             brakes = load[k]
@@ -232,6 +232,8 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
             y = _pushed(_moved(x, sub, old, new, column, transition), f, held, moves_tyre)
             if load is not None:
                 y = _braked(y, brakes + sub * rises, rises, held, rising, has_wheel)
+            if leaps:
+                y = plus_row(y, foreseen, rising, F.SHAFT)
             before = relative_speed(x)
             if dry:
                 level = F.level(before, chain, memories, p)
@@ -244,7 +246,12 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
                 kept = L.remembered(m, n, chain, memories, p, h)
                 n = motion_of(y, chain, kept, later[F.WHEEL], later[F.ROTOR], p)
                 middle = 0.5 * (before + relative_speed(y))
-                y = _pushed(y, F.change(F.forces(n, chain, kept, p), f), rising, moves_tyre)
+                changed = F.change(F.forces(n, chain, kept, p), f)
+                y = _pushed(y, changed, rising, moves_tyre)
+                if leaps:
+                    more, rise = L.shaft_leap(m, n, chain, memories, p, h)
+                    y = plus_row(plus_row(y, more, held, F.SHAFT), rise - foreseen, rising, F.SHAFT)
+                    foreseen = changed[F.SHAFT] if more == 0.0 and rise == 0.0 else 0.0
                 if dry:
                     level = F.level(middle, chain, memories, p)
                     free = relative_speed(y) + gain * friction

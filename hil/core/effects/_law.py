@@ -55,6 +55,9 @@ class Law:
         tyre: torque that the tyre takes from the wheel beside stiffness and damping.
         tyre_rate: rate in rad/s that the tyre's twist gains beside wheel speed less vehicle speed.
         begin: the memory at a start with a shaft torque: (torque, chain, values).
+        leap: what `shaft` is within a step beyond a straight line between its ends, where it sets in or ends
+            there: (before, after, chain, memory, values, h), two motions and the seconds between them; torque
+            at the beginning, and its rise.
         remember: the memory after `h` seconds: (before, after, chain, memory, values, h); two motions.
         steps: in how many parts a sample of `dt` seconds is to be cut: (chain, values, dt).
         steady: whether forces are constant for these values: then they are not computed anew.
@@ -68,6 +71,7 @@ class Law:
     slope: Callable[[Values], float] | None = None
     stretch: Callable[[float, Chain, float, Values], float] | None = None
     shaft: Force | None = None
+    leap: Callable[[Motion, Motion, Chain, float, Values, float], tuple[float, float]] | None = None
     loss: Force | None = None
     dry: Force | None = None
     load: Force | None = None

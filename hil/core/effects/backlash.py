@@ -34,7 +34,7 @@ _SEATED_NM = 2.0  # a first shaft torque that surely is in contact
 _HALVINGS = 60
 _CRITICAL = 1e-6
 _LEAST_RESTITUTION = 0.1
-_STEPS, _STEPS_UNDER_TENSION = 2, 3
+_STEP_S = 1e-3  # of fits: an axle's shafts swing in 30 and more
 _SIZES = 12  # of gaps that a diagnosis tries first
 
 
@@ -75,18 +75,85 @@ def _shaft(motion: Motion, chain: Chain, seat: float, values: Values) -> float:
 
 def _contact(motion: Motion, chain: Chain, seat: float, values: Values) -> float:
     """Torque of the shafts in N m, with free play."""
-    half_gap, contact_damping, _, depth_damping, tension = values
-    if -half_gap < seat < half_gap:
+    if -values[0] < seat < values[0]:
         return 0.0
-    damping = (chain.shaft_damping + contact_damping) * motion.twist_rate
-    spring = chain.shaft_stiffness * (motion.twist - seat)
-    spring += depth_damping * abs(motion.twist - seat) * motion.twist_rate
+    return _torque(motion.twist, motion.twist_rate, chain, seat, values)
+
+
+def _torque(twist: float, rate: float, chain: Chain, seat: float, values: Values) -> float:
+    """The same while flanks touch."""
+    _, contact_damping, _, depth_damping, tension = values
+    damping = (chain.shaft_damping + contact_damping) * rate
+    spring = chain.shaft_stiffness * (twist - seat) + depth_damping * abs(twist - seat) * rate
     free, held = spring + damping, spring
     if seat > 0.0:
         free, held = max(0.0, free), max(0.0, held)
     else:
         free, held = min(0.0, free), min(0.0, held)
     return (1.0 - tension) * free + tension * (held + damping)
+
+
+def _leap(
+    before: Motion, after: Motion, chain: Chain, seat: float, values: Values, h: float
+) -> tuple[float, float]:
+    """What flanks that meet or part within a step do beyond a torque that goes straight from end to end.
+
+    Torque leaps as they meet, and as flanks that pull part. What is told has the mean and the first moment
+    over the step of a torque that goes straight only while flanks touch.
+    """
+    half_gap, tension = values[0], values[4]
+    if 0.0 < tension < 1.0:
+        return 0.0, 0.0
+    free = _unbounded(before, after, chain, seat, values, h)
+    first, last = _touching(seat, half_gap), _touching(free, half_gap)
+    if first == last:
+        return 0.0, 0.0
+    begins, rises, parted = 0.0, 0.0, 0.0
+    if first != 0.0:
+        torque = _torque(before.twist, before.twist_rate, chain, seat, values)
+        parted = _parted(before, after, chain, seat, values)
+        at_end = (
+            tension
+            * (chain.shaft_damping + values[1])
+            * _between(before.twist_rate, after.twist_rate, parted)
+        )
+        mean, moment = 0.5 * parted * (torque + at_end), parted * parted * (torque + 2.0 * at_end) / 6.0
+        begins += 4.0 * mean - 6.0 * moment - torque
+        rises += 12.0 * moment - 6.0 * mean + torque
+    if last != 0.0:
+        flank = last * half_gap
+        met = parted + (1.0 - parted) * (flank - seat) / (free - seat)
+        twist = _between(before.twist, after.twist, met)
+        at_start = _torque(twist, _between(before.twist_rate, after.twist_rate, met), chain, flank, values)
+        torque = _torque(after.twist, after.twist_rate, chain, flank, values)
+        mean = 0.5 * (1.0 - met) * (at_start + torque)
+        moment = (1.0 - met) * ((2.0 * met + 1.0) * at_start + (met + 2.0) * torque) / 6.0
+        begins += 4.0 * mean - 6.0 * moment
+        rises += 12.0 * moment - 6.0 * mean - torque
+    return begins, rises
+
+
+def _touching(seat: float, half_gap: float) -> float:
+    """Which flank the seat is at: 1, -1, or 0 for none."""
+    return 1.0 if seat >= half_gap else -1.0 if seat <= -half_gap else 0.0
+
+
+def _parted(before: Motion, after: Motion, chain: Chain, seat: float, values: Values) -> float:
+    """Share of a step after which flanks part: where the spring, or without tension the torque, is at zero."""
+    begins, ends = before.twist - seat, after.twist - seat
+    if values[4] == 0.0:
+        damping = chain.shaft_damping + values[1]
+        begins = chain.shaft_stiffness * begins + damping * before.twist_rate
+        ends = chain.shaft_stiffness * ends + damping * after.twist_rate
+    if seat < 0.0:
+        begins, ends = -begins, -ends
+    if ends >= 0.0:
+        return 1.0
+    return begins / (begins - ends) if begins > 0.0 else 0.0
+
+
+def _between(begins: float, ends: float, share: float) -> float:
+    return begins + share * (ends - begins)
 
 
 def _kept(chain: Chain, values: Values, h: float) -> float:
@@ -99,8 +166,19 @@ def _stretch(twist: float, chain: Chain, seat: float, values: Values) -> float:
     return twist - seat if abs(seat) >= values[0] else 0.0
 
 
+def _unbounded(before: Motion, after: Motion, chain: Chain, seat: float, values: Values, h: float) -> float:
+    """Where the seat would be after a step if the gap had no end on the other side."""
+    if values[4] > 0.0 or -values[0] < seat < values[0]:
+        return after.twist - _kept(chain, values, h) * (before.twist - seat)
+    parted = _parted(before, after, chain, seat, values)
+    if parted == 1.0:
+        return seat
+    stretch = _between(before.twist, after.twist, parted) - seat
+    return after.twist - _kept(chain, values, (1.0 - parted) * h) * stretch
+
+
 def _remember(before: Motion, after: Motion, chain: Chain, seat: float, values: Values, h: float) -> float:
-    return min(max(after.twist - _kept(chain, values, h) * (before.twist - seat), -values[0]), values[0])
+    return min(max(_unbounded(before, after, chain, seat, values, h), -values[0]), values[0])
 
 
 def _begin(torque: float, chain: Chain, values: Values) -> float:
@@ -109,7 +187,7 @@ def _begin(torque: float, chain: Chain, values: Values) -> float:
 
 
 def _steps(chain: Chain, values: Values, dt: float) -> int:
-    return _STEPS if values[4] == 0.0 else _STEPS_UNDER_TENSION  # whose torque leaps as flanks part
+    return max(1, round(dt / _STEP_S))
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
@@ -176,6 +254,7 @@ EFFECT = Effect(
     law=Law(
         prepare=_prepare,
         shaft=_shaft,
+        leap=_leap,
         stretch=_stretch,
         remember=_remember,
         begin=_begin,
