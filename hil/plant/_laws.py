@@ -7,7 +7,7 @@ that calls it, not when a compiled one is loaded:
     shaft_force, rotor_loss, dry_friction, vehicle_load, tyre_force, tyre_rate
         one force of all effects together: (motion, chain, memories, p)
     shaft_leap
-        what the shafts' torque is within a step beyond a straight line: (before, after, chain, memories, p, h)
+        what their torque is within a step beyond a straight line: (before, after, chain, memories, p, h)
     moves_shaft, slows_rotor, may_stick, loads, moves_tyre, remembers, turns, pushes, leaps
         whether any effect that has such a law does anything: (p)
     shaped: the torque that a request becomes: (torque, p)

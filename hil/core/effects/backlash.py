@@ -101,9 +101,7 @@ def _leap(
     Torque leaps as they meet, and as flanks that pull part. What is told has the mean and the first moment
     over the step of a torque that goes straight only while flanks touch.
     """
-    half_gap, tension = values[0], values[4]
-    if 0.0 < tension < 1.0:
-        return 0.0, 0.0
+    half_gap = values[0]
     free = _unbounded(before, after, chain, seat, values, h)
     first, last = _touching(seat, half_gap), _touching(free, half_gap)
     if first == last:
@@ -112,19 +110,14 @@ def _leap(
     if first != 0.0:
         torque = _torque(before.twist, before.twist_rate, chain, seat, values)
         parted = _parted(before, after, chain, seat, values)
-        at_end = (
-            tension
-            * (chain.shaft_damping + values[1])
-            * _between(before.twist_rate, after.twist_rate, parted)
-        )
+        at_end = _torque_at(parted, before, after, chain, seat, values)
         mean, moment = 0.5 * parted * (torque + at_end), parted * parted * (torque + 2.0 * at_end) / 6.0
         begins += 4.0 * mean - 6.0 * moment - torque
         rises += 12.0 * moment - 6.0 * mean + torque
     if last != 0.0:
         flank = last * half_gap
         met = parted + (1.0 - parted) * (flank - seat) / (free - seat)
-        twist = _between(before.twist, after.twist, met)
-        at_start = _torque(twist, _between(before.twist_rate, after.twist_rate, met), chain, flank, values)
+        at_start = _torque_at(met, before, after, chain, flank, values)
         torque = _torque(after.twist, after.twist_rate, chain, flank, values)
         mean = 0.5 * (1.0 - met) * (at_start + torque)
         moment = (1.0 - met) * ((2.0 * met + 1.0) * at_start + (met + 2.0) * torque) / 6.0
@@ -139,17 +132,23 @@ def _touching(seat: float, half_gap: float) -> float:
 
 
 def _parted(before: Motion, after: Motion, chain: Chain, seat: float, values: Values) -> float:
-    """Share of a step after which flanks part: where the spring, or without tension the torque, is at zero."""
-    begins, ends = before.twist - seat, after.twist - seat
-    if values[4] == 0.0:
-        damping = chain.shaft_damping + values[1]
-        begins = chain.shaft_stiffness * begins + damping * before.twist_rate
-        ends = chain.shaft_stiffness * ends + damping * after.twist_rate
+    """Share of a step after which flanks part: where spring and dampings, less what they may pull, are 0."""
+    damping = (1.0 - values[4]) * (chain.shaft_damping + values[1])
+    begins = chain.shaft_stiffness * (before.twist - seat) + damping * before.twist_rate
+    ends = chain.shaft_stiffness * (after.twist - seat) + damping * after.twist_rate
     if seat < 0.0:
         begins, ends = -begins, -ends
     if ends >= 0.0:
         return 1.0
     return begins / (begins - ends) if begins > 0.0 else 0.0
+
+
+def _torque_at(
+    share: float, before: Motion, after: Motion, chain: Chain, seat: float, values: Values
+) -> float:
+    """Torque after a share of a step in which flanks touch."""
+    twist = _between(before.twist, after.twist, share)
+    return _torque(twist, _between(before.twist_rate, after.twist_rate, share), chain, seat, values)
 
 
 def _between(begins: float, ends: float, share: float) -> float:
@@ -168,7 +167,7 @@ def _stretch(twist: float, chain: Chain, seat: float, values: Values) -> float:
 
 def _unbounded(before: Motion, after: Motion, chain: Chain, seat: float, values: Values, h: float) -> float:
     """Where the seat would be after a step if the gap had no end on the other side."""
-    if values[4] > 0.0 or -values[0] < seat < values[0]:
+    if -values[0] < seat < values[0]:
         return after.twist - _kept(chain, values, h) * (before.twist - seat)
     parted = _parted(before, after, chain, seat, values)
     if parted == 1.0:

@@ -14,10 +14,17 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
+from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._places import placed
 from hil.analysis.diagnosis.search._rank import rank
-from hil.analysis.diagnosis.search._thresholds import FORM_LEAVES, LEAST_EVIDENCE
+from hil.analysis.diagnosis.search._thresholds import (
+    AS_GOOD,
+    FORM_LEAVES,
+    FORM_ROUNDS,
+    LEAST_EVIDENCE,
+    PLACE_ROUNDS,
+)
 from hil.analysis.diagnosis.search._width import width_of, with_likely_width
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
@@ -31,6 +38,8 @@ def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
     if not forms or evidence.closed(best):
         return best
     first = min((_by(evidence, best, form) for form in forms), key=rank)
+    problem = evidence.problem.with_angles(best.angles)
+    first = _widened(problem, fit(problem, first.hypothesis, first.starts, first.theta))
     less = evidence.left(first) < FORM_LEAVES * evidence.left(best)
     if not less or evidence.between(best, first) < LEAST_EVIDENCE:
         return best
@@ -38,7 +47,10 @@ def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
 
 
 def _by(evidence: Evidence, best: Fit, form: Mapping[str, tuple[float, ...]]) -> Fit:
-    """`best` with the law `form`, from the most promising of its values and with the width that suits it."""
+    """`best` with the law `form`, from the most promising of its values and with the width that suits it.
+
+    It is fitted for a few rounds: these tell one law from another.
+    """
     problem = evidence.problem.with_angles(best.angles)
     hypothesis = _written(best.hypothesis, form)
     theta = carried(best, hypothesis)
@@ -54,7 +66,20 @@ def _by(evidence: Evidence, best: Fit, form: Mapping[str, tuple[float, ...]]) ->
     if (width := width_of(hypothesis)) is not None:
         likely = with_likely_width(problem, hypothesis, first, best.starts, width)
         first = cheapest(problem, hypothesis, [first, likely], best.starts)
-    return fit(problem, hypothesis, best.starts, first)
+    return fit(problem, hypothesis, best.starts, first, rounds=FORM_ROUNDS)
+
+
+def _widened(problem: Problem, one: Fit) -> Fit:
+    """`one`, or what it comes to from the width that is likeliest now that its damping is known."""
+    width = width_of(one.hypothesis)
+    for _ in range(PLACE_ROUNDS if width is not None else 0):
+        assert width is not None
+        theta = with_likely_width(problem, one.hypothesis, one.theta, one.starts, width)
+        other = fit(problem, one.hypothesis, one.starts, theta)
+        better, one = rank(other) < (1.0 - AS_GOOD) * rank(one), min(one, other, key=rank)
+        if not better:
+            break
+    return one
 
 
 def _written(hypothesis: Hypothesis, form: Mapping[str, tuple[float, ...]]) -> Hypothesis:

@@ -18,7 +18,7 @@ from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._foretold import where_foretold
 from hil.analysis.diagnosis.search._forms import by_other_laws
 from hil.analysis.diagnosis.search._optional import little, refined
-from hil.analysis.diagnosis.search._places import placed
+from hil.analysis.diagnosis.search._places import places_of, told
 from hil.analysis.diagnosis.search._race import Step, chosen, freed, nominal, race, with_moved, with_width
 from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
@@ -30,6 +30,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     NEARLY,
     OTHER_SIZES,
     PLAIN,
+    SIZE_ROUNDS,
     WORTH_POLISH,
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
@@ -140,15 +141,21 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
             i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
         )
         best = _from_sizes(evidence, best, nominal(best.hypothesis, best.theta), own, OTHER_SIZES)
-    return by_other_laws(evidence, best if evidence.problem.partial else placed(evidence, best))
+    if evidence.problem.partial:
+        return by_other_laws(evidence, best)
+    begun = places_of(evidence, best)
+    other = by_other_laws(evidence, begun.best)  # a law that is not right tells no width from another
+    return other if other is not begun.best else told(evidence, begun)
 
 
 def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:
-    """The best of `best` and of fits from `theta` with its number `index` times each factor."""
-    problem = evidence.problem.with_angles(best.angles)
+    """The better of `best` and of a fit from `theta` with its number `index` times the likeliest factor."""
+    problem, starts = evidence.problem.with_angles(best.angles), evidence.base.starts
+    begun = []
     for factor in factors:
         other = theta.copy()
         other[index] += np.log(factor)
-        starts, enough = evidence.base.starts, little(problem, best)
-        best = min(best, fit(problem, best.hypothesis, starts, other, enough=enough), key=rank)
-    return best
+        begun.append(fit(problem, best.hypothesis, starts, other, rounds=SIZE_ROUNDS))
+    first = min(begun, key=rank)
+    enough = little(problem, best)
+    return min(best, fit(problem, best.hypothesis, first.starts, first.theta, enough=enough), key=rank)

@@ -47,14 +47,27 @@ class _Begun:
     total: float
 
 
+@dataclass(frozen=True)
+class Places:
+    """The best of fits from other widths and places, and all of them; alone, where there is no width."""
+
+    best: Fit
+    fits: list[Fit]
+
+
 def placed(evidence: Evidence, best: Fit) -> Fit:
     """The best of fits from other widths and places, with the scatter of those that are as good.
 
     `best` itself where its newest effect does not remember a place.
     """
+    return told(evidence, places_of(evidence, best))
+
+
+def places_of(evidence: Evidence, best: Fit) -> Places:
+    """Fits from other widths and places than those of `best`, where its newest effect remembers a place."""
     index = width_of(best.hypothesis)
     if index is None:
-        return best
+        return Places(best, [best])
     problem = evidence.problem.with_angles(best.angles)
     fits = [best]
     for _ in range(PLACE_ROUNDS):
@@ -63,10 +76,19 @@ def placed(evidence: Evidence, best: Fit) -> Fit:
         if rank(first) > (1.0 - AS_GOOD) * rank(best):
             break
         best = first
-    best = min(fits, key=rank)
+    return Places(min(fits, key=rank), fits)
+
+
+def told(evidence: Evidence, places: Places) -> Fit:
+    """Of fits that explain the data as well the one that begins in the middle, with their scatter."""
+    best, fits = places.best, places.fits
+    index = width_of(best.hypothesis)
+    if index is None:
+        return best
+    problem = evidence.problem.with_angles(best.angles)
     if max(abs(one.theta[index] - best.theta[index]) for one in _as_good(fits)) > UNTOLD_WIDTH:
         middle = [_begun(problem, best, index, width) for width in _from_the_middle(problem, best, index)]
-        fits += _fitted(problem, best, middle)
+        fits = fits + _fitted(problem, best, middle)
         best = min(_as_good(fits), key=lambda one: _off_the_middle(problem, one))
         return replace(best, scatter=np.max(_away(best, fits), axis=0))  # any of them, and those beyond
     return replace(best, scatter=np.sqrt(np.mean(_away(best, fits) ** 2, axis=0)))

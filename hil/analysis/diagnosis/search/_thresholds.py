@@ -233,6 +233,17 @@ OPTIONAL_LEAVES: Annotated[
 FORM_LEAVES: Annotated[
     float, Means("of the remaining gap", "the law of another author must leave less", "hidden")
 ] = 0.5
+FORM_ROUNDS: Annotated[
+    int, Means("rounds", "after which one other author's law goes on, the one that leaves least", "laws")
+] = 5
+SIZE_ROUNDS: Annotated[
+    int,
+    Means(
+        "rounds",
+        "after which one other size of an abrupt effect goes on, the one that leaves least",
+        "hidden",
+    ),
+] = 4
 UNTOLD_SIGMAS: Annotated[
     float, Means("standard errors", "an optional number nearer to its default is closed again", "laws")
 ] = 3.0
