@@ -34,16 +34,21 @@ Array = npt.NDArray[np.float64]
 
 def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
     """`best`, or its newest effect by the law of another author that leaves clearly less."""
-    forms = EFFECTS[best.hypothesis.ids[-1]].forms
-    if not forms or evidence.closed(best):
+    if not EFFECTS[best.hypothesis.ids[-1]].forms or evidence.closed(best):
         return best
-    first = min((_by(evidence, best, form) for form in forms), key=rank)
+    first = by_likeliest_law(evidence, best)
     problem = evidence.problem.with_angles(best.angles)
     first = _widened(problem, fit(problem, first.hypothesis, first.starts, first.theta))
     less = evidence.left(first) < FORM_LEAVES * evidence.left(best)
     if not less or evidence.between(best, first) < LEAST_EVIDENCE:
         return best
     return first if evidence.problem.partial else placed(evidence, first)
+
+
+def by_likeliest_law(evidence: Evidence, one: Fit) -> Fit:
+    """`one` with its newest effect by that law of another author that leaves least after a few rounds."""
+    forms = EFFECTS[one.hypothesis.ids[-1]].forms
+    return min((_by(evidence, one, form) for form in forms), key=rank)
 
 
 def _by(evidence: Evidence, best: Fit, form: Mapping[str, tuple[float, ...]]) -> Fit:

@@ -16,7 +16,7 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._foretold import where_foretold
-from hil.analysis.diagnosis.search._forms import by_other_laws
+from hil.analysis.diagnosis.search._forms import by_likeliest_law, by_other_laws
 from hil.analysis.diagnosis.search._optional import little, refined
 from hil.analysis.diagnosis.search._places import places_of, told
 from hil.analysis.diagnosis.search._race import Step, chosen, freed, nominal, race, with_moved, with_width
@@ -69,6 +69,7 @@ def grow(
     step.scores += scores
     if not scores or scores[0].gain >= max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
         race(problem, step)
+        step.fits += _of_other_laws(evidence, step.fits)
     step.fits.sort(key=lambda f: f.total + price(f))
     if step.fits:
         step.fits[:] = _contended(problem, evidence, step.fits)
@@ -78,6 +79,21 @@ def grow(
             if step.foretold:
                 return
         step.fits[0] = _polished(evidence, best)
+
+
+def _of_other_laws(evidence: Evidence, fits: list[Fit]) -> list[Fit]:
+    """Effects that lost a race that nobody won, by the laws of other authors.
+
+    Flanks that pull, met by some that do not, explain less than a damping that is wrong elsewhere.
+    """
+    best = min(fits, key=rank, default=None)
+    if best is None or evidence.settled(best) or evidence.share(best) > NEARLY:
+        return []
+    return [
+        by_likeliest_law(evidence, one)
+        for one in fits
+        if one is not best and EFFECTS[one.hypothesis.ids[-1]].forms
+    ]
 
 
 def _contended(problem: Problem, evidence: Evidence, fits: list[Fit]) -> list[Fit]:
