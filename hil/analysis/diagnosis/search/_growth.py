@@ -30,7 +30,6 @@ from hil.analysis.diagnosis.search._thresholds import (
     NEARLY,
     OTHER_SIZES,
     PLAIN,
-    SIZE_ROUNDS,
     WORTH_POLISH,
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
@@ -165,13 +164,11 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
 
 
 def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:
-    """The better of `best` and of a fit from `theta` with its number `index` times the likeliest factor."""
-    problem, starts = evidence.problem.with_angles(best.angles), evidence.base.starts
-    begun = []
+    """The best of `best` and of fits from `theta` with its number `index` times each factor."""
+    problem = evidence.problem.with_angles(best.angles)
     for factor in factors:
         other = theta.copy()
         other[index] += np.log(factor)
-        begun.append(fit(problem, best.hypothesis, starts, other, rounds=SIZE_ROUNDS))
-    first = min(begun, key=rank)
-    enough = little(problem, best)
-    return min(best, fit(problem, best.hypothesis, first.starts, first.theta, enough=enough), key=rank)
+        starts, enough = evidence.base.starts, little(problem, best)
+        best = min(best, fit(problem, best.hypothesis, starts, other, enough=enough), key=rank)
+    return best

@@ -236,14 +236,6 @@ FORM_LEAVES: Annotated[
 FORM_ROUNDS: Annotated[
     int, Means("rounds", "after which one other author's law goes on, the one that leaves least", "laws")
 ] = 5
-SIZE_ROUNDS: Annotated[
-    int,
-    Means(
-        "rounds",
-        "after which one other size of an abrupt effect goes on, the one that leaves least",
-        "hidden",
-    ),
-] = 4
 UNTOLD_SIGMAS: Annotated[
     float, Means("standard errors", "an optional number nearer to its default is closed again", "laws")
 ] = 3.0
