@@ -109,11 +109,23 @@ def test_two_speeds_and_a_drag_that_is_a_guess_are_friction_and_no_offset_of_a_s
 @pytest.mark.slow
 def test_steps_of_torque_with_a_rounded_speed_are_friction_and_no_limit_of_torque() -> None:
     steps = [(-0.03, -0.045), (-0.03, -0.04), (0.05, 0.065), (0.05, 0.06)]
-    numbers = {"inertia": 1.57e-4, "drag": 1.33e-4, "friction": 0.021, "offset": 0.009}
     measured = []
     for seed, (before, after) in enumerate(steps):
         begins = (before - 0.009 - np.sign(before) * 0.021) / 1.33e-4
         torque: Torque = lambda t, _, b=before, a=after: b if t < 1.0 else a  # type: ignore[misc] # noqa: E731
-        measured.append(servo(torque, 8.0, **numbers, begins=begins, seed=seed, rounded=0.628, warms=0.2))
+        measured.append(
+            servo(
+                torque,
+                8.0,
+                inertia=1.57e-4,
+                drag=1.33e-4,
+                friction=0.021,
+                offset=0.009,
+                begins=begins,
+                seed=seed,
+                rounded=0.628,
+                warms=0.2,
+            )
+        )
     found = diagnose(data_sheet(2.26e-4, 7e-5), measured)
     assert friction_of(found) == pytest.approx(0.021, rel=0.1)
