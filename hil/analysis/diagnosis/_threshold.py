@@ -39,6 +39,7 @@ CHECKS = {
     "laws": _TESTS.format("search/test_laws_of_others.py"),
     "orders": _TESTS.format("search/test_orders.py"),
     "quantization": _TESTS.format("search/test_quantization.py"),
+    "race": _TESTS.format("search/test_race.py"),
     "rank": _TESTS.format("search/test_rank.py"),
     "transfer_functions": _TESTS.format("test_transfer_functions.py"),
     "screen": _TESTS.format("search/test_screen.py"),

@@ -22,7 +22,9 @@ MISMATCH_REACH: Annotated[
 ] = 1.6
 LOSS_REACH: Annotated[
     float,
-    Means("natural logarithm", "the same of a loss in a far model, often guessed: a factor of twenty", "far"),
+    Means(
+        "natural logarithm", "the same of a loss in a far model, often guessed: a factor of twenty", "race"
+    ),
 ] = 3.0
 FAR_PRIOR: Annotated[
     float,

@@ -208,7 +208,7 @@ OTHER_SIZES: Annotated[
 ] = (0.75, 1.0, 1.3)
 FREED_SIZES: Annotated[
     tuple[float, ...],
-    Means("factor", "the same once the base model's numbers are free: wrong ones bent the size", "far"),
+    Means("factor", "the same once the base model's numbers are free: wrong ones bent the size", "race"),
 ] = (0.35, 0.6, 1.0)
 RACE: Annotated[int, Means("effects", "are fitted at each step", "hidden")] = 5
 PROMISING: Annotated[float, Means("of the best score", "effects below it are not fitted", "hidden")] = 0.4
@@ -218,7 +218,7 @@ STILL_FALLS: Annotated[
     Means(
         "of the total",
         "a fit that gets below it in as many rounds is fitted on, far from the noise",
-        "growth",
+        "race",
     ),
 ] = 0.5
 OUT_OF_RACE: Annotated[
