@@ -98,6 +98,10 @@ class Problem:
         traces = (replace(t, judged=flags) for t, flags in zip(self.traces, judged, strict=True))
         return replace(self, traces=tuple(traces))
 
+    def judging_all(self) -> Problem:
+        """The same, errors counting everywhere."""
+        return replace(self, traces=tuple(replace(t, judged=None) for t in self.traces))
+
     def whitened(self, whitening: Array) -> Problem:
         """The same, errors filtered by `whitening` (3 x order + 1)."""
         return replace(self, whitening=read_only(whitening))

@@ -23,6 +23,7 @@ from hil.analysis.diagnosis.search._race import Step, chosen, freed, nominal, ra
 from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._thresholds import (
+    AS_GOOD,
     CONTENDER,
     FAR,
     HOPE,
@@ -40,13 +41,19 @@ Array = npt.NDArray[np.float64]
 
 
 def grow(
-    evidence: Evidence, step: Step, scores: list[Score] | None = None, beside: Sequence[Fit] = ()
+    evidence: Evidence,
+    step: Step,
+    scores: list[Score] | None = None,
+    beside: Sequence[Fit] = (),
+    *,
+    everywhere: bool = False,
 ) -> None:
     """Try the parent of `step` with each promising further effect; it gets what is found as that is known.
 
     Args:
         scores: of `screen`, where these are known already.
         beside: fits with one effect more that other numbers led to, to be fitted on from where they are.
+        everywhere: errors count in all of the recordings, whatever an effect foretells.
     """
     parent = step.parent
     if adds_ripple(parent.hypothesis):
@@ -55,7 +62,8 @@ def grow(
         problem = evidence.problem.following(parent.hypothesis, parent.theta)
     blocks = problem.rows / max(problem.channels, 1)
     scores = screen(problem, parent) if scores is None else scores
-    if not problem.partial:
+    sought = not (problem.partial or everywhere)
+    if sought:
         step.foretold = _foretold(problem, parent, scores)
         if step.foretold:
             return
@@ -73,8 +81,8 @@ def grow(
     if step.fits:
         step.fits[:] = _contended(problem, evidence, step.fits)
         best = aligned(problem, step.fits[0])
-        if not problem.partial and width_of(best.hypothesis) is not None and not evidence.closed(best):
-            step.foretold = where_foretold(problem, parent, best, fitted=True)
+        if sought and width_of(best.hypothesis) is not None and not evidence.closed(best):
+            best, step.foretold = _foretold_at_best(problem, evidence, parent, best)
             if step.foretold:
                 return
         step.fits[0] = _polished(evidence, best)
@@ -142,6 +150,23 @@ def _foretold(problem: Problem, parent: Fit, scores: list[Score]) -> tuple[Probl
         if found := where_foretold(problem, parent, one):
             return found
     return None
+
+
+def _foretold_at_best(
+    problem: Problem, evidence: Evidence, parent: Fit, best: Fit
+) -> tuple[Fit, tuple[Problem, Fit] | None]:
+    """`best`, and where alone it foretells the motion, if it does not nearly everywhere.
+
+    A play that begins in the wrong place leaves as much, in the same few windows, as one that is chaotic
+    there: before these are given up it is tried from other places.
+    """
+    found = where_foretold(problem, parent, best, fitted=True)
+    if found is None:
+        return best, None
+    other = places_of(evidence, best).best
+    if rank(other) >= (1.0 - AS_GOOD) * rank(best):
+        return best, found
+    return other, None if evidence.closed(other) else where_foretold(problem, parent, other, fitted=True)
 
 
 def _polished(evidence: Evidence, best: Fit) -> Fit:

@@ -56,6 +56,8 @@ class Found:
     given: Fit | None = None
     #: Other numbers of the base model alone, where they were looked for and not taken.
     numbers: Fit | None = None
+    #: Errors count everywhere: what was left out for an effect that was not found is not left out again.
+    everywhere: bool = False
 
     @property
     def clear(self) -> bool:
@@ -94,10 +96,23 @@ def begun(problem: Problem, base: Fit, rounded: Sequence[EffectUse] = ()) -> Fou
 
 
 def finished(found: Found, show: Callable[[str], None]) -> Found:
-    """`found` searched to its end, needless effects dropped."""
+    """`found` searched to its end, needless effects dropped.
+
+    What no model could foretell with an effect does not go unjudged without it: then all is looked at anew.
+    """
     while advanced(found, show):
         pass
-    return _needed(found.evidence.problem, found)
+    found = _needed(found.evidence.problem, found)
+    if not found.evidence.problem.partial or any(_may_leave_out(id_) for id_ in found.best.hypothesis.ids):
+        return found
+    show("looking at all of the recordings after all")
+    found.everywhere = True
+    return finished(_begin_again(found, found.evidence.problem.judging_all()), show)
+
+
+def _may_leave_out(effect: str) -> bool:
+    """Whether motion may be chaotic with this effect: it remembers a place."""
+    return EFFECTS[effect].law.begin is not None
 
 
 def so_far(known: Sequence[Found]) -> Found:
@@ -136,7 +151,7 @@ def advanced(
     for parent in parents:
         steps.append(Step(parent, [], []))
         found.steps = [*before, *steps]  # what is known by then if the search is ended from outside
-        grow(found.evidence, steps[-1], scores, beside)
+        grow(found.evidence, steps[-1], scores, beside, everywhere=found.everywhere)
         if chaotic := steps[-1].foretold:
             show("looking at what can be foretold alone")
             return advanced(_begin_again(found, chaotic[0]), show, beside=[chaotic[1]] * (number == 0))

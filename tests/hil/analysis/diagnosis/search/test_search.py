@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._race import grown
-from hil.analysis.diagnosis.search._search import earned, following, search
+from hil.analysis.diagnosis.search._search import begun, earned, finished, following, search
 from hil.analysis.diagnosis.search._thresholds import FAR
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
@@ -68,3 +69,17 @@ def test_an_effect_is_grown_from_its_best_size() -> None:
     base = search(one_problem(), Hypothesis(MODEL), lambda text: None).base
     one = grown(problem, base, EffectUse("actuator_lag", {"time_constant_s": 0.007}), 3)
     assert np.exp(one.theta[-1]) == pytest.approx(0.01, rel=0.2)
+
+
+def test_what_was_left_out_for_an_effect_that_is_not_found_is_judged_after_all() -> None:
+    """An offset in the half that is left out: `none` of the other half would be a false calm."""
+    whole = one_problem(OFFSET)
+    flags = np.arange(len(whole.traces[0].measured)) < 4  # so few that they say nothing
+    found = begun(whole, search(one_problem(), Hypothesis(MODEL), lambda text: None).base)
+    found.evidence = Evidence(whole.judging([flags]), found.base)
+    found.best = found.base
+    told: list[str] = []
+    after = finished(found, told.append)
+    assert "looking at all of the recordings after all" in told
+    assert not after.evidence.problem.partial
+    assert after.best.hypothesis.keys == (("sensor_offset", OUTPUTS[2]),)
