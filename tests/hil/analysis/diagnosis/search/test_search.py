@@ -3,14 +3,17 @@
 import numpy as np
 import pytest
 
+from hil.analysis.diagnosis.data._noise import noise_levels
+from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.search._race import grown
 from hil.analysis.diagnosis.search._search import begun, earned, finished, following, search
 from hil.analysis.diagnosis.search._thresholds import FAR
-from hil.core.channels import OUTPUTS
+from hil.core.channels import OUTPUTS, TIME
 from hil.core.model import EffectUse
-from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
+from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem, recorded
 
 OFFSET = EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0})
 LAG = EffectUse("actuator_lag", {"time_constant_s": 0.01})
@@ -72,14 +75,18 @@ def test_an_effect_is_grown_from_its_best_size() -> None:
 
 
 def test_what_was_left_out_for_an_effect_that_is_not_found_is_judged_after_all() -> None:
-    """An offset in the half that is left out: `none` of the other half would be a false calm."""
-    whole = one_problem(OFFSET)
-    flags = np.arange(len(whole.traces[0].measured)) < 4  # so few that they say nothing
-    found = begun(whole, search(one_problem(), Hypothesis(MODEL), lambda text: None).base)
-    found.evidence = Evidence(whole.judging([flags]), found.base)
-    found.best = found.base
+    """Errors in the half that is left out alone: to see nothing in the other half is a false calm."""
+    one = recorded(seconds=8.0)
+    shaft = one.channels[OUTPUTS[2]]
+    shaft += np.where(one.channels[TIME] < 3.0, 20.0, 0.0)
+    traces = [trace_of(one)]
+    whole = problem_of(traces, noise_levels(one_problem().traces), MODEL.parameters["gear_ratio"])
+    blocks = len(traces[0].measured)
+    half = whole.judging([np.arange(blocks) > blocks // 2])
+    found = begun(half, fit(half, Hypothesis(MODEL)))
+    assert found.settled  # with nothing named: this would be the answer
     told: list[str] = []
     after = finished(found, told.append)
-    assert "looking at all of the recordings after all" in told
-    assert not after.evidence.problem.partial
-    assert after.best.hypothesis.keys == (("sensor_offset", OUTPUTS[2]),)
+    assert told[0] == "looking at all of the recordings after all"
+    assert after.evidence.problem.rows == whole.rows
+    assert not after.evidence.closed(after.base)
