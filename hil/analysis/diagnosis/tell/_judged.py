@@ -185,7 +185,7 @@ class Judged:
         wrong = {
             use.values["parameter"]
             for use in model.effects
-            if use.id == "parameter_mismatch" and not _within_tolerance(use, base)
+            if use.id == "parameter_mismatch" and not self._correction(use, kept)
         }
         updates = {}
         if kept.hypothesis.far:
@@ -211,8 +211,8 @@ class Judged:
         errors = standard_errors(self.problem, kept)
         named = []
         for index, use in enumerate(uses):
-            if use.id == "parameter_mismatch" and _within_tolerance(use, kept.hypothesis.base.parameters):
-                continue  # a correction within the calibration tolerance is an update, not a finding
+            if use.id == "parameter_mismatch" and self._correction(use, kept):
+                continue  # an update, not a finding
             fewer = kept.hypothesis.without(index)
             theta = carried(kept, fewer)
             if use.id == "parameter_mismatch":  # without it the parameter is as it was
@@ -237,6 +237,17 @@ class Judged:
             )
             named.append(NamedEffect(use, {"step": 0.0}, 0.99, place))
         return tuple(named)
+
+    def _correction(self, mismatch: EffectUse, kept: Fit) -> bool:
+        """Whether a parameter is off by no more than its tolerance, or it cannot be told that it is.
+
+        Beside friction or contact by a law that is not quite the right one a parameter makes up for what the
+        formula misses, as a shafts' damping does for flanks that damp otherwise.
+        """
+        if _within_tolerance(mismatch, kept.hypothesis.base.parameters):
+            return True
+        by_law = any(EFFECTS[id_].many_laws for id_ in kept.hypothesis.ids)
+        return by_law and not self.found.evidence.closed(kept)
 
     def _considered(self, kept: Fit) -> tuple[Considered, ...]:
         named = set(kept.hypothesis.keys)

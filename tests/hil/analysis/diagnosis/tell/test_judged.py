@@ -5,10 +5,12 @@ import pytest
 
 from hil.analysis.diagnosis.data._sanity import Examined
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.search._search import search
+from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.search._search import begun, search
 from hil.analysis.diagnosis.tell._judged import Judged
 from hil.analysis.diagnosis.tell._result import NamedEffect
 from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
@@ -29,3 +31,21 @@ def test_a_named_effect_comes_with_its_error_and_an_unknown_gap_with_its_signatu
     assert OUTPUTS[2] in unknown.signature
     assert np.array_equal(problem.floor, floor)
     assert unknown.gap_before == named.gap_before
+
+
+@pytest.mark.parametrize("more", [False, True])
+def test_beside_a_law_that_leaves_more_than_noise_a_wrong_number_is_a_correction(more: bool) -> None:
+    """It may be what the formula of the friction misses."""
+    friction = EffectUse("coulomb_friction", EFFECTS["coulomb_friction"].completed({"torque_nm": 2.0}))
+    problem = one_problem(friction, *[OFFSET] * more)
+    inertia = MODEL.parameters["motor_inertia"]
+    base = Hypothesis(MODEL.with_parameters(motor_inertia=0.9 * inertia))
+    mismatch = EffectUse("parameter_mismatch", {"parameter": "motor_inertia", "value": inertia})
+    found = begun(problem, fit(problem, base))
+    found.best = fit(problem, base.with_term(friction).with_term(mismatch), found.base.starts)
+    assert found.evidence.closed(found.best) is not more
+    told = Judged(problem, found, "named", NOTHING_HELD).diagnosis([], [], 1.0)
+    names = [effect.use.id for effect in told.effects]
+    assert names == (["coulomb_friction"] if more else ["coulomb_friction", "parameter_mismatch"])
+    assert ("motor_inertia" in told.parameter_updates) is more
+    assert told.model.parameters["motor_inertia"] == pytest.approx(inertia, rel=0.02)
