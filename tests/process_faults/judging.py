@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 import signal
 
-from tests.process_faults.trying import Fault, Outcome
+from tests.process_faults.trying import LOST_S, Fault, Outcome
 
-TORQUE_S, LOST_S = 0.1, 0.5
+TORQUE_S = 0.1
 #: `hung_after_s` and `alone_after_s` of a bench file that does not name them, s.
 NOTICED_S = 2.0
 _SAYS: dict[tuple[str, int], str] = {

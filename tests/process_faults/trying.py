@@ -16,14 +16,17 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from hil.core.errors import HilError
 from hil.core.recording import Recording, read_recording, run_of
+from hil.core.recording._growing_file import DURABLE_WITHIN_S
 from hil.core.result import RunResult
 from tests.hil.cli.test_kills import REQUEST, STATUS, Observer, holder_of, is_running
 from tests.hil.cli.test_operator_terminal import Operator
 from tests.hil.cli.test_sim_bench import serving
+from tests.process_faults.disk import DiskWatch
 from tests.process_faults.steps import ENTERED, ENTRY_POINTS
 
 ROOT = Path(__file__).parents[2]
@@ -54,6 +57,7 @@ _END = "finally:\n  - enter: {phase: ramping down}\n  - ramp_down: {duration_s: 
 Run = subprocess.Popen[Any]
 _HOST_HEARTBEAT = 0x77F
 _LONGEST_S = 90.0
+LOST_S = 0.5  # of what was measured may be missing
 _AFTERWARDS_S = 0.4
 
 
@@ -141,7 +145,11 @@ def packages(place: Path) -> Iterator[None]:
 
 
 def carry_out(fault: Fault, phase: str, folder: Path) -> Outcome | None:
-    """The cell's outcome; None if the run did not come as far as its phase."""
+    """The cell's outcome; None if the run did not come as far as its phase, or its disk stood still.
+
+    What is missing was measured, and not written: a disk that keeps another file waiting as long is no
+    fault of whoever writes.
+    """
     folder.mkdir()
     own = _OWN.get(phase, "")
     text = f"name: processes\n{_STEPS}{own}{_END}"
@@ -150,17 +158,21 @@ def carry_out(fault: Fault, phase: str, folder: Path) -> Outcome | None:
         buses = tomllib.loads(file.read_text())["buses"]
         observers = [Observer(buses[name]["channel"]) for name in ("rmcu", "dyno")]
         command = Watched(folder, text, "--bench", file, "--log", folder / "run.log")
+        disk = DiskWatch(folder / "disk")
         try:
             done = _hit(fault, phase, folder, command, bench, observers[1])
             code = command.left()
             time.sleep(_AFTERWARDS_S)
         finally:
+            disk.close()
             for observer in observers:
                 observer.close()
     if done is None:
         return None
     done_s, holder = done
     outcome = _outcome(fault, folder, command, code, done_s, holder, observers[0])
+    if outcome.missing_s > LOST_S and disk.longest_s > LOST_S - DURABLE_WITHIN_S:
+        return None
     return replace(outcome, missing_s=0.0) if phase == "writing" else outcome  # nothing is measured any more
 
 
@@ -246,7 +258,7 @@ def _outcome(
     )
     return Outcome(
         code, re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", command.seen), _result(folder, recording),
-        torque_s, stale_s, _missing_s(folder, recording, done_s), left,
+        torque_s, stale_s, _missing_s(folder, recording, _last_sent_s(status["time_s"], done_s)), left,
     )  # fmt: skip
 
 
@@ -257,10 +269,16 @@ def _result(folder: Path, recording: Recording | None) -> RunResult | None:
     return run_of(recording) if recording is not None else None
 
 
-def _missing_s(folder: Path, recording: Recording | None, done_s: float) -> float:
-    """Rows began before the first phase: those from there to the fault must be there."""
+def _last_sent_s(stamps_s: npt.NDArray[np.float64], done_s: float) -> float:
+    """When the stand-in sent its last sample before the fault: while it stood still there was none."""
+    before = stamps_s[stamps_s <= done_s]
+    return float(before[-1]) if len(before) else done_s
+
+
+def _missing_s(folder: Path, recording: Recording | None, sent_s: float) -> float:
+    """Rows began before the first phase: those from there to the last that was sent must be there."""
     began = entered(folder, "holding speed")[1:]
     if not began:
         return 0.0
     last_s = float(recording.time_s[-1]) if recording is not None and len(recording.time_s) else 0.0
-    return max(0.0, done_s - began[0] - last_s)
+    return max(0.0, sent_s - began[0] - last_s)
