@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run autotune serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run autotune browser serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -60,8 +60,14 @@ test-can-vm: setup
 	$(BIN)/python -m tests.can_vm
 
 # What takes minutes: the fixed part of the blind diagnosis set, bad inputs, the wheel, long hunts for faults.
-test-slow: setup
+test-slow: setup browser
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m slow --durations 40
+
+# Debian's Chromium, in which the page of the service is tested; as root on Debian it is installed.
+browser:
+	@command -v chromium >/dev/null || if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	  apt-get -qq update; DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends chromium >/dev/null; fi
+	@command -v chromium || echo "There is no chromium: the page of the service is not tested."
 
 # The closed loop of tuning on a bench in virtual time that hides backlash and dead time from the model.
 autotune: setup
