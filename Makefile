@@ -14,12 +14,12 @@ run: setup
 PACE ?= 1
 SERVICE := out/service
 serve: setup
-	@mkdir -p $(SERVICE) && rm -f $(SERVICE)/sim.toml
-	@$$(command -v setsid) $(BIN)/hil sim-bench sim --time-scale $(PACE) --port 0 --bench-file $(SERVICE)/sim.toml >/dev/null & \
-	bench=$$!; trap 'kill $$bench 2>/dev/null' EXIT; trap : INT TERM; \
-	while [ ! -s $(SERVICE)/sim.toml ]; do kill -0 $$bench || exit 3; sleep 0.2; done; \
-	sed 's/^name = .*/name = "rear-axle"/' $(SERVICE)/sim.toml > $(SERVICE)/rear-axle.toml; \
-	$(BIN)/hil serve --data $(SERVICE) --bench $(SERVICE)/rear-axle.toml --bench sim
+	@mkdir -p $(SERVICE); place=$$(mktemp -d); file=$$place/sim.toml; \
+	$$(command -v setsid) $(BIN)/hil sim-bench sim --time-scale $(PACE) --port 0 --bench-file $$file >/dev/null & \
+	bench=$$!; trap 'kill $$bench 2>/dev/null; rm -rf "$$place"' EXIT; trap : INT TERM; \
+	while [ ! -s $$file ]; do kill -0 $$bench || exit 3; sleep 0.2; done; \
+	sed 's/^name = .*/name = "rear-axle"/' $$file > $$place/rear-axle.toml; \
+	$(BIN)/hil serve --data $(SERVICE) --bench $$place/rear-axle.toml --bench sim
 
 # The README's picture of the page, while `make serve` is running elsewhere.
 page-picture: setup

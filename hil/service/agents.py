@@ -220,15 +220,19 @@ class Agents:
         return place.agent.orders.pop(order.id, None) is None  # nobody expects it any more, later
 
     def let_go(self, bench: str, by: str) -> None:
-        """Let another agent have the bench of one that is away; a run that it has is interrupted."""
+        """Let another agent have the bench of one that is away; a run that it has is interrupted.
+
+        An emergency stop that nobody has confirmed is told whoever has the bench next.
+        """
         place = self.benches[bench]
         why = f"{by} has let the bench of an agent go that was away; what it has comes when it is back"
         for run in self._runs.running(place.agent.id):
             if run.bench == bench:
                 self._runs.end(run.id, "interrupted", reason=why)
         place.agent.held.give_back(bench)
-        place.running, place.stop_by = None, ""
-        self._store.forget(bench)
+        place.running = None
+        if not place.stop_by:
+            self._store.forget(bench)
         self._changed(bench)
 
     def _agent(

@@ -83,7 +83,9 @@ class CarriedRun(RunningRun):
         make_directory(folder)
         write_atomically(folder / PLAN, taken.plan_text)
         process = await RunProcess.begin(command, _asked(taken, bench, folder))
-        return cls(taken.data, folder, process)
+        run = cls(taken.data, folder, process)
+        process.answered = run._asks_no_more
+        return run
 
     async def ended(self, bench: Bench, changed: Callable[[], None], closing: Callable[[], bool]) -> RunEnd:
         """Listen to it until it has ended; how it did.
@@ -111,6 +113,9 @@ class CarriedRun(RunningRun):
             reason += f"\n  hil recover {self.folder} makes a whole recording of what was measured"
         dut = bench.file.dut.get("serial", bench.file.dut.get("name", ""))
         return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
+
+    def _asks_no_more(self) -> None:
+        self.told = ""
 
 
 def end_of_left(folder: Path, who: str) -> RunEnd:

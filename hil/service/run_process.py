@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from pathlib import Path
 
 from hil.core.errors import BenchError
@@ -20,10 +20,14 @@ _LONGEST_LINE = 1 << 24
 
 
 class RunProcess:
-    """One run in a process of its own, which ends its run by itself when the service is gone."""
+    """One run in a process of its own, which ends its run by itself when the service is gone.
+
+    `answered` is called when somebody said something that a run which is held, or asks, waits for.
+    """
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         self._process = process
+        self.answered: Callable[[], None] = lambda: None
 
     @classmethod
     async def begin(cls, command: Sequence[str], asked: RunAsked) -> RunProcess:
@@ -55,18 +59,22 @@ class RunProcess:
     def resume(self) -> None:
         """Let a run go on that is held."""
         self._say(Typed(line=RESUME))
+        self.answered()
 
     def end(self) -> None:
         """End the run, with its end steps."""
         self._say(Typed(line=END))
+        self.answered()
 
     def stop_in_emergency(self) -> None:
         """Have the bench safe at once."""
         self._say(Typed(line=EMERGENCY))
+        self.answered()
 
     def answer(self, text: str) -> None:
         """A line for the operator's prompt."""
         self._say(Typed(line=text))
+        self.answered()
 
     async def messages(self) -> AsyncIterator[Message]:
         """What it says, until it has ended."""

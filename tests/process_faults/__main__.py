@@ -30,9 +30,9 @@ where the command was killed, in its recording. A command that is killed has no 
 one that was frozen goes on when the run has ended. Frozen processes are noticed after 2 s (`hung_after_s`,
 `alone_after_s`); where it is the process that holds the bench, its requests stop at once, and with them the
 torque. Every cell also has to say what happened, to leave no process behind, no traceback, and a recording
-that lacks at most its last 0.5 s of what the stand-in had sent. A run that ended before its phase, as one does
-in which the machine stood still, is repeated; so is one that lacks more while the disk kept another file
-waiting for over 0.25 s.
+that lacks at most its last 0.5 s of what the stand-in had sent. A run that ended before its phase, as one
+does in which the machine stood still, is repeated; so is one that lacks more while the disk kept another
+file waiting for over 0.25 s.
 """
 
 Cell = tuple[Fault, str, Outcome, list[str]]

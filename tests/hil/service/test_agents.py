@@ -187,6 +187,25 @@ def test_a_bench_that_was_let_go_is_anothers_and_its_run_comes_all_the_same(ther
     assert datetime.datetime.now(datetime.UTC) - over.ended_at > datetime.timedelta(seconds=99)
 
 
+@pytest.mark.parametrize("agent", [ONE, OTHER])
+def test_an_emergency_stop_of_a_bench_that_was_let_go_is_told_whoever_has_it_next(
+    there: _There, agent: str
+) -> None:
+    there.agents.heard(ONE, _report())
+    there.lapse()
+    there.agents.stop_in_emergency("far", "anna")
+    there.agents.let_go("far", "anna")
+    assert there.agents.benches["far"].state()[0] == "emergency_stop"
+    there.agents = there.begun()
+    assert there.agents.heard(agent, _report())[1] == {}
+    there.queue()
+    orders = there.agents.orders(agent, {})
+    assert ([one.kind for one in orders.orders], orders.waiting) == (["emergency_stop"], [])
+    assert there.agents.take(agent, "far") is None
+    there.agents.heard(agent, _report(obeyed=[orders.orders[0].id]))
+    assert there.agents.benches["far"].state() == ("free", "")
+
+
 def test_an_emergency_stop_is_told_until_the_agent_has_obeyed_also_by_the_next_service(
     there: _There,
 ) -> None:
