@@ -53,6 +53,19 @@ def test_a_run_that_waits_is_cancelled_and_one_under_way_ends_safely(service: Se
 
 
 @pytest.mark.slow
+def test_what_a_run_asked_is_shown_until_somebody_answers(service: Served) -> None:
+    """Not while it goes on, for minutes."""
+    goes_on = "'Is the cage shut?'}\n  - hold_speed: {speed_km_h: 0, duration_s: 3000}"
+    service.give("going-on", ASKING.replace("'Is the cage shut?'}", goes_on).replace("asking", "going-on"))
+    run = service.queue("going-on")
+    service.until(run, lambda found: "cage" in found["told"])
+    service.post(f"/runs/{run}/answer", {"text": "yes"})
+    service.until(run, lambda found: found["state"] == "running" and not found["told"])
+    service.post(f"/runs/{run}/abort")
+    assert service.over(run)["exit_code"] == 130
+
+
+@pytest.mark.slow
 def test_an_emergency_stop_latches_the_bench_until_somebody_resets_it(service: Served) -> None:
     run = service.queue("asking")
     service.until(run, lambda found: found["state"] == "running" and found["share"] is not None)
