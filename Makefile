@@ -66,7 +66,7 @@ test-slow: setup browser
 # Debian's Chromium, in which the page of the service is tested; as root on Debian it is installed.
 browser:
 	@command -v chromium >/dev/null || if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
-	  apt-get -qq update; DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends chromium >/dev/null; fi
+	  apt-get -qq update; DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends chromium >/dev/null || true; fi
 	@command -v chromium || echo "There is no chromium: the page of the service is not tested."
 
 # The closed loop of tuning on a bench in virtual time that hides backlash and dead time from the model.
