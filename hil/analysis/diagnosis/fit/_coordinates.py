@@ -63,6 +63,11 @@ class Hypothesis:
         return tuple(term.id for term in self.terms)
 
     @property
+    def of_many_laws(self) -> bool:
+        """Whether formulas differ for any of its effects."""
+        return any(EFFECTS[id_].many_laws for id_ in self.ids)
+
+    @property
     def keys(self) -> tuple[tuple[str, str], ...]:
         """Effect ids with the channel or parameter they speak of."""
         return tuple(key_of(term) for term in self.terms)

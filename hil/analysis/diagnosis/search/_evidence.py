@@ -20,7 +20,6 @@ from hil.analysis.diagnosis.search._thresholds import (
     SMALLISH,
     WHITE_AT_LEAST,
 )
-from hil.core.effects import EFFECTS
 
 Array = npt.NDArray[np.float64]
 
@@ -76,8 +75,7 @@ class Evidence:
 
         Contact comes and goes between samples, which a fit that moves by samples misses a little.
         """
-        many = any(EFFECTS[id_].many_laws for id_ in one.hypothesis.ids)
-        return many and self.share(one) > ALL_BUT and self.worst(one) < ALL_BUT_NOISES
+        return one.hypothesis.of_many_laws and self.share(one) > ALL_BUT and self.worst(one) < ALL_BUT_NOISES
 
     def colouring(self, one: Fit) -> Array:
         """Standard deviation of each channel's noise over that of its white part, shape (3,).

@@ -246,8 +246,7 @@ class Judged:
         """
         if _within_tolerance(mismatch, kept.hypothesis.base.parameters):
             return True
-        by_law = any(EFFECTS[id_].many_laws for id_ in kept.hypothesis.ids)
-        return by_law and not self.found.evidence.closed(kept)
+        return kept.hypothesis.of_many_laws and not self.found.evidence.closed(kept)
 
     def _considered(self, kept: Fit) -> tuple[Considered, ...]:
         named = set(kept.hypothesis.keys)
