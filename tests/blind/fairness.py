@@ -47,14 +47,14 @@ def _excess(ratio: float) -> float:
     return math.sqrt(max(ratio**2 - 1.0, 0.0))
 
 
-def intervals_that_hold(
+def standard_errors_off(
     answer: Answer, entries: Sequence[Mapping[str, Any]], named: Sequence[str]
-) -> list[bool]:
-    """For each number with a standard error, whether its 95 % interval holds the true one.
+) -> dict[str, float]:
+    """How far each number with a standard error is from the true one, in standard errors; by `name.number`.
 
     Only of effects whose law has the same numbers in the plant and in the registry.
     """
-    held = []
+    off = {}
     for id, values in answer.effects:
         about = values.get("channel") or values.get("parameter")
         label = f"{id}({about})" if about else id
@@ -65,8 +65,13 @@ def intervals_that_hold(
             true = values.get(name)
             if isinstance(true, str) or true is None or not error:
                 continue
-            off = float(entry["parameters"][name]) - float(true)
+            miss = float(entry["parameters"][name]) - float(true)
             if name == "phase_rad":
-                off = (off + math.pi) % (2.0 * math.pi) - math.pi
-            held.append(abs(off) <= _NORMAL_95 * float(error))
-    return held
+                miss = (miss + math.pi) % (2.0 * math.pi) - math.pi
+            off[f"{label}.{name}"] = miss / float(error)
+    return off
+
+
+def holds(standard_errors: float) -> bool:
+    """Whether a 95 % interval holds a number that is so many standard errors away."""
+    return abs(standard_errors) <= _NORMAL_95

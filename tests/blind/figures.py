@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from tests.blind.fairness import holds
 from tests.blind.scoring import Score
 
 Rows = list[list[object]]
@@ -21,7 +22,7 @@ def figure_rows(scores: Sequence[Score]) -> Rows:
             rows.append([title, len(members), share, line, target])
     rows += _other_laws([s for s in scores if s.group == "other_laws"])
     rows += _counts(scores)
-    held = [one for s in scores for one in s.intervals]
+    held = [holds(off) for s in scores for off in s.standard_errors_off.values()]
     if held:
         share = f"{100.0 * float(np.mean(held)):.0f} %"
         rows.append(["95 % intervals that hold the true number", len(held), share, "85 %", "93 to 97 %"])

@@ -10,7 +10,7 @@ from typing import Any
 from hil.core.channels import OUTPUTS
 from tests.blind.casefiles import Answer
 from tests.blind.diagnosing import Reply
-from tests.blind.fairness import intervals_that_hold, judged_gaps
+from tests.blind.fairness import judged_gaps, standard_errors_off
 from tests.blind.families import FAMILIES
 from tests.blind.later_families import LATER_FAMILIES
 from tests.blind.specs import Spec
@@ -47,7 +47,7 @@ class Score:
     gap_before_over_noise: dict[str, float] = field(default_factory=dict)
     unshrunk: list[str] = field(default_factory=list)
     unexplained: list[str] = field(default_factory=list)
-    intervals: list[bool] = field(default_factory=list)
+    standard_errors_off: dict[str, float] = field(default_factory=dict)
     started: list[str] = field(default_factory=list)
 
     @property
@@ -87,10 +87,10 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
     )  # fmt: skip
     result.started = sorted((diagnosis.get("start") or {}).get("parameters", {}))
     result.unshrunk, result.unexplained = judged_gaps(answer, diagnosis)
+    result.standard_errors_off = standard_errors_off(answer, entries, named)
     result.honest = not any(confidence >= _SURE and not true for confidence, true in judged)
     if result.right and spec.group != "outside":
         result.parameter_errors = _parameter_errors(answer, entries, named)
-        result.intervals = intervals_that_hold(answer, entries, named)
     gaps = diagnosis.get("holdout_gap") or diagnosis.get("gap") or {}
     for channel in OUTPUTS:
         noise = answer.holdout_noise[channel]

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
+from tests.blind.fairness import holds
 from tests.blind.figures import figure_rows
 from tests.blind.later_groups import LATER_GROUPS
 from tests.blind.scoring import Score
@@ -45,6 +46,13 @@ def as_markdown(scores: Sequence[Score], how: str) -> str:
     parts += ["## Confusions", "What was named where one effect, or none, was hidden.", _confusions(scores)]
     parts += ["## Calibration of confidence", _calibration(scores)]
     parts += ["## Parameter errors, right answers", _parameters(scores)]
+    parts += [
+        "## Intervals by number",
+        "Of the registry's own laws: 95 % intervals that hold the true number, and how far numbers are off.",
+        _intervals(scores),
+        "## Intervals that miss",
+        _missed(scores),
+    ]
     parts += ["## Not right", _failures(scores)]
     return "\n\n".join(parts) + "\n"
 
@@ -141,6 +149,33 @@ def _parameters(scores: Sequence[Score]) -> str:
             errors.setdefault(f"{effect}.{parameter}", []).append(error)
     rows = [[name, len(values), *_quantiles(values)] for name, values in sorted(errors.items())]
     return _table(["parameter", "cases", "median error", "95th percentile"], rows)
+
+
+def _intervals(scores: Sequence[Score]) -> str:
+    found: dict[str, list[float]] = {}
+    for one in scores:
+        for name, off in one.standard_errors_off.items():
+            effect, number = name.split("(")[0].split(".")[0], name.split(".")[-1]
+            found.setdefault(f"{effect}.{number}", []).append(off)
+    rows = [
+        [name, len(offs), f"{100 * float(np.mean([holds(off) for off in offs])):.0f}", f"{_rms(offs):.2f}"]
+        for name, offs in sorted(found.items())
+    ]
+    return _table(["number", "intervals", "hold %", "rms of standard errors off"], rows)
+
+
+def _rms(values: Sequence[float]) -> float:
+    return math.sqrt(float(np.mean(np.square(values))))
+
+
+def _missed(scores: Sequence[Score]) -> str:
+    rows = [
+        [one.key, one.kind, name, f"{off:+.1f}"]
+        for one in scores
+        for name, off in one.standard_errors_off.items()
+        if not holds(off)
+    ]
+    return _table(["case", "kind", "number", "standard errors off"], rows)
 
 
 def _failures(scores: Sequence[Score]) -> str:

@@ -13,7 +13,7 @@ from hil.core.recording import read_recording
 from tests.blind.casefiles import LOAD, Answer, write_case
 from tests.blind.diagnosing import Reply
 from tests.blind.draws import draw
-from tests.blind.fairness import intervals_that_hold, judged_gaps
+from tests.blind.fairness import holds, judged_gaps, standard_errors_off
 from tests.blind.figures import figure_rows
 from tests.blind.later_groups import LATER_GROUPS, later_specs
 from tests.blind.plant import COARSE, Truth, true_outputs
@@ -237,7 +237,8 @@ def test_intervals_count_where_plant_and_registry_write_the_same_numbers():
     def held(effect, value, error):
         id, ((name, _),) = effect[0], effect[1].items()
         entry = {"id": id, "parameters": {name: value}, "standard_error": {name: error}}
-        return intervals_that_hold(_answer(effect), [entry], [id])
+        off = standard_errors_off(_answer(effect), [entry], [id])
+        return [holds(one) for one in off.values()]
 
     assert held(LAG, 0.0118, 1e-3) == [True]
     assert held(LAG, 0.0122, 1e-3) == [False]
