@@ -34,7 +34,7 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
 
     Args:
         noise: standard deviation of each output per sample, shape (3,).
-        model: its gear ratio and the stiffness of its shafts are used, roughly.
+        model: its gear ratio, the stiffness of its shafts and its motor's inertia are used, roughly.
 
     Raises:
         BadInputError: names the channel, the recording and the stretch.
@@ -42,9 +42,11 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
     step = trace.dt * trace.block
     gear_ratio = gear_ratio_of(model) or 1.0
     stiffness = model.parameters.get("shaft_stiffness", np.inf)
+    inertia = model.parameters.get("motor_inertia", 0.0)
     scale = np.array([1.0 / gear_ratio, 1.0, 1.0])
     values = trace.measured * scale
     torque = trace.torque[: len(values) * trace.block].reshape(len(values), trace.block).mean(axis=1)
+    pulls = _shaft_torque(torque, values[:, 0] / scale[0], step, inertia) * gear_ratio
     moves = np.std(values, axis=0)
     holds = np.maximum(HOLDS_NOISE * noise * scale / np.sqrt(trace.block), HOLDS_SHARE * moves)
     steps = np.array(
@@ -62,7 +64,7 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
                 if column == 2:
                     other = _on_by_torque(part, torque[inside] * gear_ratio, trace, least, moves, holds)
                 else:
-                    apart = PLAY_RAD + float(np.std(torque[inside])) * gear_ratio / stiffness
+                    apart = PLAY_RAD + float(np.std(pulls[inside])) / stiffness
                     other = _on_by_turning(part[:, 1 - column], 1 - column, step, least, apart)
                 if other:
                     begin, end = _stretch(values[:, column], first, length, float(holds[column]))
@@ -75,11 +77,16 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
                     )
 
 
+def _shaft_torque(torque: Array, motor_speed: Array, step: float, inertia: float) -> Array:
+    """What a motor gives to the shafts: its torque and, at a resonance much more, what slows its rotor down."""
+    return torque - inertia * np.gradient(motor_speed, step)
+
+
 def _on_by_turning(other: Array, column: int, step: float, least: float, apart: float) -> str:
     """The other speed, where it turns further than play and twist allow; even change may be drift."""
     at = np.linspace(-1.0, 1.0, len(other))
     about = other - np.polynomial.Legendre.fit(at, other, 1)(at)
-    turned = _slow(np.cumsum(about) * step, step)  # at a resonance shafts twist further
+    turned = _slow(np.cumsum(about) * step, step)
     return OUTPUTS[column] if np.std(turned) > apart and np.std(about) > least else ""
 
 
