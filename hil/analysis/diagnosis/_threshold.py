@@ -44,6 +44,7 @@ CHECKS = {
     "transfer_functions": _TESTS.format("test_transfer_functions.py"),
     "screen": _TESTS.format("search/test_screen.py"),
     "tracking": _TESTS.format("search/test_tracking.py"),
+    "wandering": _TESTS.format("search/test_wandering.py"),
     "width": _TESTS.format("search/test_width.py"),
     "consequences": _TESTS.format("tell/test_consequences.py"),
     "drift": _TESTS.format("tell/test_drift.py"),

@@ -78,7 +78,7 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
 
 
 def _shaft_torque(torque: Array, motor_speed: Array, step: float, inertia: float) -> Array:
-    """What a motor gives to the shafts: its torque and, at a resonance much more, what slows its rotor down."""
+    """What a motor gives to the shafts: its torque, and at a resonance far more by its rotor's inertia."""
     return torque - inertia * np.gradient(motor_speed, step)
 
 

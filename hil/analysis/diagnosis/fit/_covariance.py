@@ -4,7 +4,7 @@ Covariances of least squares hold for white errors of known size. Errors of a fi
 slow, and what a formula has wrong is wrong again wherever the same happens. The sandwich estimator makes no
 assumption but that stretches of a few seconds know little of each other: it takes the spread of what each
 stretch alone would have the numbers do (H. White, Econometrica 48, 1980; clusters: Liang and Zeger,
-Biometrika 73, 1986).
+Biometrika 73, 1986). Where a number shows in few stretches, the spectrum of the errors says more.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.fit._coloured import coloured_spread
 from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
@@ -23,8 +24,9 @@ Array = npt.NDArray[np.float64]
 def standard_errors(problem: Problem, one: Fit) -> Array:
     """Standard error of each coordinate of a fit, the misfit that is left included.
 
-    The larger of two: that of white errors as large as those that are left, and that of the sandwich; with
-    it how far other fits lie that are as good, and what a number that no fit may move may be off by.
+    The largest of three: that of white errors as large as those that are left, that of errors with the
+    spectrum of those, and that of the sandwich; with it how far other fits lie that are as good, and what a
+    number that no fit may move may be off by.
     """
     own = np.hypot(_own_errors(problem, one), _held(one)) if one.standard is None else one.standard
     return own if one.scatter is None else np.hypot(own, one.scatter)
@@ -46,8 +48,9 @@ def _own_errors(problem: Problem, one: Fit) -> Array:
     """The same without other fits."""
     left = max(1.0, one.cost / max(problem.rows, 1))
     white = np.diag(one.covariance) * left
-    sandwich = np.diag(one.covariance @ _spread(problem, one) @ one.covariance)
-    return np.asarray(np.sqrt(np.maximum(np.maximum(white, sandwich), 0.0)))
+    spreads = (_spread(problem, one), coloured_spread(one.errors))
+    others = [np.diag(one.covariance @ spread @ one.covariance) for spread in spreads]
+    return np.asarray(np.sqrt(np.maximum.reduce([white, *others])))
 
 
 def _spread(problem: Problem, one: Fit) -> Array:
@@ -64,7 +67,6 @@ def _spread(problem: Problem, one: Fit) -> Array:
 def _gradients(errors: Errors, length: int) -> Array:
     """Gradient of each stretch of `length` blocks, initial values projected out: stretches x coordinates."""
     basis = np.linalg.qr(errors.by_start)[0] if np.any(errors.by_start) else np.zeros((len(errors.rows), 1))
-    slopes = errors.by_coordinate - basis @ (basis.T @ errors.by_coordinate)
-    pulls = slopes * (errors.rows - basis @ (basis.T @ errors.rows))[:, None]
+    pulls = errors.slopes * (errors.rows - basis @ (basis.T @ errors.rows))[:, None]
     firsts = np.arange(0, len(pulls), 3 * length)  # rows are blocks x 3 channels
     return np.asarray(np.add.reduceat(pulls, firsts, axis=0))

@@ -26,3 +26,11 @@ class Errors:
     def channels(self) -> Array:
         """The errors as blocks x 3."""
         return self.rows.reshape(-1, 3)
+
+    @property
+    def slopes(self) -> Array:
+        """`by_coordinate` without what initial values would take up."""
+        if not np.any(self.by_start):
+            return self.by_coordinate
+        basis = np.linalg.qr(self.by_start)[0]
+        return np.asarray(self.by_coordinate - basis @ (basis.T @ self.by_coordinate))

@@ -113,6 +113,14 @@ CLUSTER_S: Annotated[
 ] = 2.0
 CLUSTERS: Annotated[int, Means("stretches", "at least, of short recordings shorter ones", "covariance")] = 20
 
+SMOOTHED: Annotated[
+    float,
+    Means("factor in frequency", "of what a spectrum of errors is averaged over, either way", "covariance"),
+] = 1.25
+LEAST_LINES: Annotated[
+    int, Means("frequencies", "that it is averaged over at least, either way", "covariance")
+] = 8
+
 WHITENING_ORDER: Annotated[
     int, Means("blocks", "memory of the filters that make errors white", "whitening")
 ] = 16

@@ -335,6 +335,9 @@ SLOW_NOISE: Annotated[
 WINDOW_S: Annotated[
     float, Means("s", "of recording that says of each phase how well it fits", "tracking")
 ] = 0.1
+WALK_S: Annotated[
+    float, Means("s", "of a speed's errors that may know of each other, as an angle walks", "wandering")
+] = 1.0
 PHASES: Annotated[int, Means("phases", "on a turn", "tracking")] = 72
 REFINED: Annotated[int, Means("steps", "off the grid of phases", "tracking")] = 5
 LEAST_STEP: Annotated[

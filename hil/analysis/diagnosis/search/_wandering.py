@@ -3,7 +3,8 @@
 An angle integrated from a noisy speed is a random walk, and one that is counted by a ratio is as wrong as the
 ratio. Tracking turns every recording's angle to where the ripple says; a fit with these angles takes them for
 exact, and so its own standard errors of order and phase say next to nothing. What tells how far off both may
-be is how far the recordings had to be turned, each by itself.
+be is how far the recordings had to be turned, each by itself; and of an order, how far what is left of the
+speed takes the angle: tracking does not follow what the ripple is too weak to show.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._thresholds import SOON_S, WINDOW_S
+from hil.analysis.diagnosis.search._thresholds import SOON_S, WALK_S, WINDOW_S
 from hil.analysis.diagnosis.search._tracking import RIPPLES
 
 Array = npt.NDArray[np.float64]
@@ -36,7 +37,8 @@ def with_wandering(problem: Problem, best: Fit) -> Fit:
             _Turn.of(before[:, column], after[:, column], order, t.dt)
             for before, after, t in zip(measured, best.angles, problem.traces, strict=True)
         ]
-        off = {"order": np.hypot(_order_error(turns), order * _ratio_error(problem, best, channel))}
+        walked = max(_order_error(turns), order * _walk_error(problem, best, channel))
+        off = {"order": np.hypot(walked, order * _ratio_error(problem, best, channel))}
         off["phase_rad"] = _phase_error(turns, order)
         for index, c in enumerate(best.hypothesis.coordinates()):
             if c.term == term and c.name in off:
@@ -72,6 +74,24 @@ def _order_error(turns: list[_Turn]) -> float:
     alone = sum(float((a * d) @ (a * d)) for a, d in steps)
     together = sum(float(a @ d) ** 2 for a, d in steps) * _few(len(steps))
     return float(np.sqrt(max(alone, together)) / angles)
+
+
+def _walk_error(problem: Problem, best: Fit, channel: int) -> float:
+    """Relative standard error of angles, from what is left of the speed that they are integrated from."""
+    angles = walks = 0.0
+    for index, trace in enumerate(problem.traces):
+        read = channel if trace.has[channel] else 1 - channel
+        weight = float(problem.weights[index][read])
+        if weight <= 0.0:
+            continue
+        step = trace.dt * trace.block
+        length = max(1, round(WALK_S / step))
+        left, turned = best.errors[index].channels[:, read] / weight, trace.measured[:, read]
+        whole = len(left) // length * length
+        walk, angle = (v[:whole].reshape(-1, length).sum(axis=1) * step for v in (left, turned))
+        angles += float(angle @ angle)
+        walks += float((angle * walk) @ (angle * walk))
+    return float(np.sqrt(walks)) / angles if angles > 0.0 else 0.0
 
 
 def _phase_error(turns: list[_Turn], order: float) -> float:

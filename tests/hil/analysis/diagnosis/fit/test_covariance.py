@@ -43,6 +43,26 @@ def test_slow_noise_has_a_larger_one() -> None:
     assert standard_errors(problem, fitted_mean(noise))[0] == pytest.approx(expected, rel=0.4)
 
 
+def test_slow_noise_counts_in_full_where_a_number_shows_in_two_stretches() -> None:
+    """A limit that is reached twice: the fit made its pulls there cancel; other stretches know the noise."""
+    problem, pole, length = one_problem(seconds=20.0), 0.98, 150
+    shows = np.zeros(BLOCKS, dtype=bool)
+    shows[1000 : 1000 + length] = shows[3500 : 3500 + length] = True
+    lags = np.abs(np.subtract.outer(np.flatnonzero(shows), np.flatnonzero(shows)))
+    expected = np.sqrt(np.sum(pole**lags)) / (2 * length)
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        noise = np.sqrt(1 - pole**2) * lfilter([1.0], [1.0, -pole], rng.normal(size=BLOCKS))
+        fit = fitted_mean(noise)
+        rows, slopes = np.zeros(3 * BLOCKS), np.zeros((3 * BLOCKS, len(fit.theta)))
+        slopes[::3, 0] = shows
+        rows[::3] = noise - shows * noise[shows].mean()
+        covariance = fit.covariance * BLOCKS / (2 * length)
+        errors = (Errors(rows, slopes, np.zeros((3 * BLOCKS, 3))),)
+        fit = dataclasses.replace(fit, covariance=covariance, errors=errors, cost=float(rows @ rows))
+        assert standard_errors(problem, fit)[0] == pytest.approx(expected, rel=0.3)
+
+
 def test_a_misfit_counts_and_known_errors_win() -> None:
     problem = one_problem(seconds=20.0)
     noise = np.random.default_rng(3).normal(size=BLOCKS)

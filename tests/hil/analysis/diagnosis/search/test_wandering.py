@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._wandering import with_wandering
@@ -26,8 +27,20 @@ def several(problem: Problem) -> Problem:
     return dataclasses.replace(
         problem,
         traces=(trace,) * RECORDINGS,
+        weights=problem.weights * RECORDINGS,
         angles=(trace.angles(problem.gear_ratio),) * RECORDINGS,
     )
+
+
+def explained(problem: Problem) -> Fit:
+    """A fit of the ripple that leaves nothing of any recording."""
+    one = left(1.0, RIPPLE, rows=3)
+    count = len(one.theta)
+    errors = [
+        Errors(np.zeros(rows), np.zeros((rows, count)), np.zeros((rows, 3)))
+        for rows in (3 * len(t.measured) for t in problem.traces)
+    ]
+    return dataclasses.replace(one, errors=tuple(errors), angles=problem.angles)
 
 
 def tracked(problem: Problem, seed: int) -> tuple[Fit, float]:
@@ -38,7 +51,7 @@ def tracked(problem: Problem, seed: int) -> tuple[Fit, float]:
     step = round(0.1 / dt)
     turned = np.diff(angle[::step])
     off = sum(turned @ np.diff(w[::step]) for w in walks) / (RECORDINGS * turned @ turned)
-    fit = left(1.0, RIPPLE, rows=3)
+    fit = explained(problem)
     angles = []
     for walk in walks:
         one = problem.angles[0].copy()
@@ -64,7 +77,7 @@ def test_a_phase_is_known_as_well_as_the_recordings_agree() -> None:
     names = [c.name for c in left(1.0, RIPPLE, rows=3).hypothesis.coordinates()]
     shifts = np.array([0.3, -0.3, 0.1, -0.1, 0.2, -0.2])
     angles = [a + np.array([s / 3.0, 0.0]) for a, s in zip(problem.angles, shifts, strict=True)]
-    fit = dataclasses.replace(left(1.0, RIPPLE, rows=3), angles=tuple(angles))
+    fit = dataclasses.replace(explained(problem), angles=tuple(angles))
     scatter = with_wandering(problem, fit).scatter
     assert scatter is not None
     assert scatter[names.index("phase_rad")] == pytest.approx(np.std(shifts, ddof=1) / np.sqrt(RECORDINGS))
@@ -79,11 +92,41 @@ def test_an_angle_counted_by_the_gear_ratio_is_as_uncertain_as_that() -> None:
     measured[:, 1] = np.nan
     trace = dataclasses.replace(problem.traces[0], samples=samples, measured=measured)
     problem = dataclasses.replace(problem, traces=(trace,), angles=(trace.angles(problem.gear_ratio),))
-    fit = dataclasses.replace(left(1.0, RIPPLE, rows=3), angles=problem.angles)
+    fit = explained(problem)
     scatter = with_wandering(problem, fit).scatter
     assert scatter is not None
     index = [c.name for c in fit.hypothesis.coordinates()].index("order")
     assert scatter[index] == pytest.approx(3.0 * 0.015)
+
+
+def test_an_order_is_known_no_better_than_what_is_left_of_the_speed_lets_its_angle_walk() -> None:
+    """A ripple too weak to be followed: angles stay as they were, and are as wrong as before."""
+    problem = several(one_problem(seconds=8.0))
+    fit = explained(problem)
+    index = [c.name for c in fit.hypothesis.coordinates()].index("order")
+    period, weight = problem.traces[0].dt * problem.traces[0].block, problem.weights[0][1]
+    speed = problem.traces[0].measured[:, 1]
+    ratios = []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        errors, walked = [], 0.0
+        for one in fit.errors:
+            noise = rng.normal(0.0, 0.3, len(one.channels))
+            rows = one.channels.copy()
+            rows[:, 1] = noise * weight
+            errors.append(dataclasses.replace(one, rows=rows.ravel()))
+            walked += _slope(speed, noise, round(1.0 / period))
+        found = with_wandering(problem, dataclasses.replace(fit, errors=tuple(errors)))
+        assert found.scatter is not None
+        ratios.append(3.0 * walked / RECORDINGS / found.scatter[index])
+    assert 0.6 < np.sqrt(np.mean(np.square(ratios))) < 1.3
+
+
+def _slope(speed: np.ndarray, noise: np.ndarray, length: int) -> float:
+    """Relative error of an angle by least squares through its steps."""
+    whole = len(speed) // length * length
+    turned, off = (v[:whole].reshape(-1, length).sum(axis=1) for v in (speed, noise))
+    return float(turned @ off / (turned @ turned))
 
 
 def test_without_a_ripple_nothing_wanders() -> None:
