@@ -84,9 +84,8 @@ def _shaft_torque(torque: Array, motor_speed: Array, step: float, inertia: float
 
 def _on_by_turning(other: Array, column: int, step: float, least: float, apart: float) -> str:
     """The other speed, where it turns further than play and twist allow; even change may be drift."""
-    at = np.linspace(-1.0, 1.0, len(other))
-    about = other - np.polynomial.Legendre.fit(at, other, 1)(at)
-    turned = _slow(np.cumsum(about) * step, step)
+    about = _without_trend(other, 1)
+    turned = _without_trend(_slow(np.cumsum(other) * step, step), 2)
     return OUTPUTS[column] if np.std(turned) > apart and np.std(about) > least else ""
 
 
@@ -95,14 +94,17 @@ def _on_by_torque(part: Array, torque: Array, trace: Trace, least: float, moves:
     slow = _slow(torque, trace.dt * trace.block)  # a rotor that rattles in play takes the rest
     if np.std(slow) < max(least, TURNS_ON * float(moves[2])):
         return ""
-    at = np.linspace(-1.0, 1.0, len(part))
     for column in (0, 1):
         if trace.has[column]:
-            speed = part[:, column]
-            uneven = speed - np.polynomial.Legendre.fit(at, speed, 1)(at)
+            uneven = _without_trend(part[:, column], 1)
             if np.std(uneven) > max(5.0 * float(holds[column]), 0.2 * TURNS_ON * float(moves[column])):
                 return INPUT
     return ""
+
+
+def _without_trend(values: Array, degree: int) -> Array:
+    at = np.linspace(-1.0, 1.0, len(values))
+    return np.asarray(values - np.polynomial.Legendre.fit(at, values, degree)(at))
 
 
 def _slow(values: Array, step: float) -> Array:

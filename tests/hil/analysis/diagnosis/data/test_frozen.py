@@ -25,16 +25,22 @@ LEVELS = (0.15, 0.02, 1.5)
 
 
 def chirp(
-    model: Model = MODEL, noise: float = 1.0, speed: float = 10.0, amplitude: float = 30.0
+    model: Model = MODEL,
+    noise: float = 1.0,
+    speed: float = 10.0,
+    amplitude: float = 30.0,
+    highest_hz: float = 30.0,
+    seconds: float = 20.0,
 ) -> Recording:
-    torque = paper_plant.chirp(20.0, 0.1, 30.0, amplitude)
+    torque = paper_plant.chirp(seconds, 0.1, highest_hz, amplitude)
     start = Start(speed * model.parameters["gear_ratio"], speed, 0.0)
     seen = simulate(model, torque, 1e-3, start)
     rng = np.random.default_rng(0)
+    count = len(torque)
     noisy = {
-        c: seen[c] + noise * s * rng.standard_normal(20000) for c, s in zip(CHANNELS, LEVELS, strict=True)
+        c: seen[c] + noise * s * rng.standard_normal(count) for c, s in zip(CHANNELS, LEVELS, strict=True)
     }
-    return Recording({"time_s": np.arange(20000) / 1e3, TORQUE: torque, **noisy}, Path("chirp.csv"))
+    return Recording({"time_s": np.arange(count) / 1e3, TORQUE: torque, **noisy}, Path("chirp.csv"))
 
 
 @pytest.mark.parametrize("channel", CHANNELS)
@@ -83,6 +89,27 @@ def test_a_wheel_that_a_dyno_holds_is_data(amplitude: float) -> None:
     recording = chirp(held, amplitude=amplitude)
     refuse_frozen(trace_of(recording), np.array(LEVELS), held)
     assert examine(held, [recording])[0]
+
+
+@pytest.mark.parametrize("vehicle_inertia", [300.0, 600.0])
+@pytest.mark.parametrize("amplitude", [60.0, 100.0])
+@pytest.mark.parametrize("highest_hz", [20.0, 30.0, 50.0])
+@pytest.mark.parametrize("noise", [1.0, 2.0, 4.0])
+@pytest.mark.parametrize("damping", [4.0, 10.0, 16.0])
+def test_the_still_wheel_of_a_heavy_car_is_data_as_the_motor_swings_at_its_resonance(
+    vehicle_inertia: float, amplitude: float, highest_hz: float, noise: float, damping: float
+) -> None:
+    parameters = {
+        "motor_inertia": 0.021,
+        "gear_ratio": 9.95,
+        "shaft_stiffness": 6950.0,
+        "shaft_damping": damping,
+        "vehicle_inertia": vehicle_inertia,
+        "torque_delay": 0.007,
+    }
+    heavy = Model("two_inertia", parameters)
+    recording = chirp(heavy, noise=noise, speed=1.0, amplitude=amplitude, highest_hz=highest_hz, seconds=40.0)
+    assert examine(heavy, [recording])[0]
 
 
 @pytest.mark.parametrize("effect", EFFECTS)
