@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
@@ -24,5 +26,7 @@ def reweighted(problem: Problem, best: Fit) -> Fit:
         other = problem.whitened(whitening_of(best.errors))
         again = fit(other, best.hypothesis, best.starts, best.theta)
         best = fit(problem, best.hypothesis, again.starts, again.theta, rounds=0)
-        best = replace(best, standard=standard_errors(other, again), scatter=plain.scatter)
+        # other weights see the fast part of a misfit and think little of what is slow: neither knows it all
+        errors = np.maximum(standard_errors(other, again), standard_errors(problem, best))
+        best = replace(best, standard=errors, scatter=plain.scatter)
     return best if best.cost < MISS_WORSE**2 * plain.cost else plain

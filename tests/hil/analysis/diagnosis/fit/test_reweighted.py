@@ -2,7 +2,10 @@
 
 import dataclasses
 
+import numpy as np
+
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.fit._thresholds import MISS_WORSE
@@ -35,6 +38,7 @@ def test_a_fit_far_from_the_noise_keeps_its_plain_cost() -> None:
     plain = fit(problem, again.hypothesis, again.starts, again.theta, rounds=0)
     assert again.cost == plain.cost
     assert again.standard is not None
+    assert np.all(again.standard >= standard_errors(problem, plain))
     assert again.cost <= MISS_WORSE**2 * one.cost
 
 
