@@ -14,7 +14,7 @@ from hil.analysis.diagnosis.data._stated import stated_noise
 from hil.analysis.diagnosis.data._thresholds import COARSE_SAMPLE_S
 from hil.analysis.diagnosis.fit._allowance import UNBOUNDED, Allowance, OutOfTimeError
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, untold
-from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit._fit import fit, polished
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
@@ -117,7 +117,7 @@ def _diagnosed(
         if min(drop_of(found, index) for index in range(len(found.best.hypothesis.terms))) <= by_chance:
             verdict = "none" if found.evidence.closed(found.base) else "unknown"
     if verdict == "named":
-        found.best = with_wandering(problem, reweighted(problem, found.best))
+        found.best = with_wandering(problem, reweighted(problem, polished(problem, found.best)))
     if problem.functions and verdict == "unknown":
         notes.append(ASK_FOR_CHAIN)
     judged = Judged(problem, found, verdict, held, by_chance, asked.least, unfinished)

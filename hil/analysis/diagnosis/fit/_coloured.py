@@ -3,7 +3,8 @@
 Stretches of a few seconds (see `_covariance`) tell too little where a number shows in few of them: a limit
 that is reached twice is pulled in two stretches, and a fit has made these two pulls sum up to nothing. The
 spectrum is known from all of a recording, and says what errors of its kind would do there (the covariance of
-least squares under stationary errors; E. J. Hannan, Multiple Time Series, 1970, ch. VII).
+least squares under stationary errors; E. J. Hannan, Multiple Time Series, 1970, ch. VII). Towards the slowest
+errors it falls only because initial values and losses have been fitted to them: it is taken not to.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._errors import Errors
-from hil.analysis.diagnosis.fit._thresholds import LEAST_LINES, SMOOTHED
+from hil.analysis.diagnosis.fit._thresholds import FALLS_NOT, LEAST_LINES, SMOOTHED
 
 Array = npt.NDArray[np.float64]
 
@@ -29,6 +30,8 @@ def coloured_spread(of_recordings: Sequence[Errors]) -> Array:
     total = np.zeros((slopes[0].shape[2],) * 2)
     for channel in range(3):
         power = _power([one.channels[:, channel] for one in of_recordings], length)
+        slow = 1 + FALLS_NOT * length // longest
+        power[:slow] = np.maximum(power[:slow], power[slow // 2 : 2 * slow].mean())
         for each in slopes:
             lines = np.fft.rfft(each[:, channel], length, axis=0)
             total += np.real((lines.conj() * (power * twice)[:, None]).T @ lines) / length

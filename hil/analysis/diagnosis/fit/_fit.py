@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +12,7 @@ from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._least_squares import descent
 from hil.analysis.diagnosis.fit._normal import reduced
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, SAME_COST, WORTH_A_LEAP
+from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, POLISHED, SAME_COST, WORTH_A_LEAP
 from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
 
 Array = npt.NDArray[np.float64]
@@ -106,6 +106,12 @@ def fit(
         done,
         problem.angles,
     )
+
+
+def polished(problem: Problem, one: Fit) -> Fit:
+    """A fit that ended early, being one of many, taken on to where a step gains next to nothing."""
+    further = fit(problem, one.hypothesis, one.starts, one.theta, enough=POLISHED)
+    return replace(further, scatter=one.scatter) if further.total < one.total else one
 
 
 def cheapest(

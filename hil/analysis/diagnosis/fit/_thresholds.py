@@ -43,6 +43,10 @@ STEP: Annotated[
     float, Means("natural logarithm, or typical sizes", "finite difference of a coordinate", "hidden")
 ] = 1e-3
 MOST_ROUNDS: Annotated[int, Means("rounds", "of a fit at most", "hidden")] = 14
+POLISHED: Annotated[
+    float,
+    Means("squared error, noise variances", "the last step of the fit that is told gains less", "covariance"),
+] = 0.01
 WORTH_A_LEAP: Annotated[
     float,
     Means("squared error, noise variances", "a dead time in another sample must gain more", "whole_samples"),
@@ -117,6 +121,14 @@ SMOOTHED: Annotated[
     float,
     Means("factor in frequency", "of what a spectrum of errors is averaged over, either way", "covariance"),
 ] = 1.25
+FALLS_NOT: Annotated[
+    int,
+    Means(
+        "periods in the longest recording",
+        "slower errors are taken to be no weaker than faster ones: a fit has taken some of them up",
+        "covariance",
+    ),
+] = 30
 LEAST_LINES: Annotated[
     int, Means("frequencies", "that it is averaged over at least, either way", "covariance")
 ] = 8
