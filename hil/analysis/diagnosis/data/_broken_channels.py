@@ -67,7 +67,7 @@ def _dead(trace: Trace, column: int, traces: list[Trace]) -> None:
     if _below_resolution(trace, column, [t for t in traces if t is not trace and t.has[column]]):
         return
     raise BadInputError(
-        f"{OUTPUTS[column]} looks dead: it reads {values[0]:g} throughout",
+        f"{OUTPUTS[column]} looks dead: it reads {values[0] + 0.0:g} throughout",
         where=trace.source,
         fix="mend the channel, or leave it out of the recording",
     )
