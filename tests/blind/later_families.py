@@ -117,12 +117,23 @@ def _bouncing_backlash(rng: np.random.Generator, setting: Setting) -> Family:
     return Family("backlash", 1e-4, 0.03, of_size)
 
 
+def _torque_gain(rng: np.random.Generator, setting: Setting) -> Family:
+    del setting
+    sign = float(rng.choice([-1.0, 1.0]))
+
+    def of_size(size: float) -> Hidden:
+        return Hidden("torque_gain", {"torque_gain": 1.0 + sign * size}, (), {"gain": 1.0 + sign * size})
+
+    return Family("torque_gain", 1e-3, 0.6, of_size)
+
+
 LATER_FAMILIES: dict[str, Draw] = {
     "tyre_slip": _tyre_slip,
     "dyno_lag": _dyno_lag,
     "coulomb_friction:turn": _turning_friction,
     "backlash:damped": _damped_backlash,
     "backlash:restitution": _bouncing_backlash,
+    "torque_gain": _torque_gain,
 }
 
 #: Share of the usual noise: a vehicle hardly moves while its tyres twist, so that these show little of
@@ -134,4 +145,4 @@ def later_fits(subject: str, kind: str) -> bool:
     """A tyre slips, and a dyno follows, where the wheel is a body of its own."""
     if subject in ("tyre_slip", "dyno_lag"):
         return kind == "three_inertia"
-    return kind != "rigid" or subject == "coulomb_friction:turn"
+    return kind != "rigid" or subject in ("coulomb_friction:turn", "torque_gain")

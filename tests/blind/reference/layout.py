@@ -24,6 +24,7 @@ OFF: dict[str, float] = {
     "limit_nm": math.inf,
     "rate_nm_s": math.inf,
     "deadband_nm": 0.0,
+    "torque_gain": 1.0,
     # contact and shaft
     "half_gap": 0.0,
     "contact_form": 1.0,  # series, dissipative, Kelvin-Voigt, Hunt-Crossley: see contact.py

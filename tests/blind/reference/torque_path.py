@@ -40,6 +40,7 @@ def acting(p: Any, request: float, lagged: float, before: float, time_s: float, 
         asked = request + width
     else:
         asked = 0.0
+    asked *= p.torque_gain
     lagged = asked + (lagged - asked) * math.exp(-step_s / p.lag_s) if p.lag_s > 0.0 else asked
     torque = lagged * (1.0 - p.torque_fade * (1.0 - math.exp(-time_s / p.fade_time_s)))
     torque = min(max(torque, -p.limit_nm), p.limit_nm)

@@ -25,6 +25,7 @@ TORQUE = 5.0 + 20.0 * np.sin(2 * np.pi * (0.3 * TIME + 1.5 * TIME**2))
         EffectUse("torque_saturation", {"limit_nm": 12.0}),
         EffectUse("torque_rate_limit", {"limit_nm_s": 400.0}),
         EffectUse("torque_deadband", {"half_width_nm": 2.0}),
+        EffectUse("torque_gain", {"gain": 0.93}),
         EffectUse("backlash", {"half_gap_rad": 0.01}),
         EffectUse("shaft_cubic_stiffness", {"coefficient_nm_rad3": 1e5}),
         EffectUse("shaft_hysteresis", {"stiffness_nm_rad": 800.0, "slip_rad": 0.01}),

@@ -17,6 +17,7 @@ CONTRACT = {
     "torque_saturation": ("limit_nm",),
     "torque_rate_limit": ("limit_nm_s",),
     "torque_deadband": ("half_width_nm",),
+    "torque_gain": ("gain",),
     "backlash": (
         "half_gap_rad",
         "contact_damping_nms_rad",
