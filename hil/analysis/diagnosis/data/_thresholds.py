@@ -6,6 +6,15 @@ from typing import Annotated
 
 from hil.analysis.diagnosis._threshold import Means
 
+SPIKE_RANGES: Annotated[
+    float,
+    Means(
+        "of the range of 98 % of the readings", "a reading that jumps further and back is a glitch", "trace"
+    ),
+] = 3.0
+SPIKES: Annotated[
+    int, Means("readings", "of a channel that are left out as glitches; more are what it does", "trace")
+] = 20
 CLIPPED_SHARE: Annotated[
     float, Means("share of samples", "from this share at its end on a channel may be clipped", "bad_input")
 ] = 0.03

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.data._spikes import without_spikes
 from hil.analysis.diagnosis.data._thresholds import (
     EXCERPTS,
     FIRST_STAMPS,
@@ -227,6 +228,10 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
     missing = off > NEAR_SHARE * dt
     columns = [recording[INPUT], *(recording[c] for c in OUTPUTS if c in recording)]
     on_grid = [np.where(missing, np.interp(grid, time, values), values[nearest]) for values in columns]
+    given = [c for c in OUTPUTS if c in recording]
+    for index, channel in enumerate(given, start=1):
+        on_grid[index], said = without_spikes(on_grid[index], channel, dt)
+        notes += [said] if said else []
     torque = np.ascontiguousarray(on_grid[0])
     samples = np.full((len(grid), 3), np.nan)
     samples[:, [c in recording for c in OUTPUTS]] = np.column_stack([*on_grid[1:]])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, gap_map, made_worse
 from hil.analysis.diagnosis.data._sanity import Examined
 from hil.analysis.diagnosis.fit._covariance import standard_errors
-from hil.analysis.diagnosis.fit._fit import Fit, carried
+from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._simulated import settled_starts, simulated_samples
 from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
@@ -26,13 +26,17 @@ from hil.analysis.diagnosis.tell._consequences import consequences
 from hil.analysis.diagnosis.tell._drift import drifts
 from hil.analysis.diagnosis.tell._least import worth_naming
 from hil.analysis.diagnosis.tell._result import Considered, Diagnosis, NamedEffect, Overlay, Start, Verdict
-from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES
+from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES, SPOILT
 from hil.analysis.diagnosis.tell._words import Where, signature, where
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 
 Array = npt.NDArray[np.float64]
+
+NUMBERS_TRADE = (
+    "other numbers of the base model would only trade one channel's error for another's: it stays as it came"
+)
 
 
 @dataclass
@@ -59,6 +63,11 @@ class Judged:
         after = simulated_samples(problem, kept.hypothesis, kept.theta, kept.starts)
         before = self._nominal(problem)
         map_before, map_after = (gap_map(problem.traces, problem.noise, s) for s in (before, after))
+        if verdict == "unknown":
+            was, is_ = (channel_gaps(problem.traces, floor, shown) for shown in (before, after))
+            if _trades(was, is_) or (made_worse(map_before, map_after) and not _gains(was, is_)):
+                kept, after, map_after = self._as_it_came(problem), before, map_before
+                notes = [*notes, NUMBERS_TRADE]
         model = kept.hypothesis.model(kept.theta)
         updates, kept_parameters = self._updates(kept)
         model = model.with_parameters(**kept_parameters)
@@ -142,6 +151,13 @@ class Judged:
         """Channels that keep more than noise is proven to be."""
         gaps = self.found.evidence.gaps(kept)
         return tuple(channel for channel, gap in zip(OUTPUTS, gaps, strict=True) if gap > CHANNEL_NOISES)
+
+    def _as_it_came(self, problem: Problem) -> Fit:
+        """The base model with its own numbers, unfitted but for initial values."""
+        hypothesis = replace(self.found.base.hypothesis, far=False)
+        theta = hypothesis.start()
+        starts = settled_starts(problem, hypothesis, theta, self.found.base.starts)
+        return fit(problem, hypothesis, starts, theta, rounds=0)
 
     def _nominal(self, problem: Problem) -> list[Array]:
         """The base model as it came, from its best initial values."""
@@ -314,3 +330,13 @@ def _within_tolerance(use: EffectUse, base: dict[str, float]) -> bool:
     """Whether a parameter is off by no more than its stated calibration tolerance."""
     ratio = float(use.values["value"]) / base[str(use.values["parameter"])]
     return bool(abs(np.log(ratio)) <= TOLERANCE)
+
+
+def _trades(was: Mapping[str, ChannelGap], is_: Mapping[str, ChannelGap]) -> bool:
+    """Whether fitted numbers leave a channel clearly further from its measurement than it was."""
+    return any(is_[c].gap > SPOILT * was[c].gap and is_[c].noises > CHANNEL_NOISES for c in is_)
+
+
+def _gains(was: Mapping[str, ChannelGap], is_: Mapping[str, ChannelGap]) -> bool:
+    """Whether they bring any channel clearly nearer."""
+    return any(was[c].gap > SPOILT * is_[c].gap for c in is_)

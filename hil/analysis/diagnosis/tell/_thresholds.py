@@ -94,6 +94,14 @@ SHUT_NOISELESS: Annotated[
 CHANNEL_NOISES: Annotated[
     float, Means("gap over noise floor", "up to it a channel's gap is closed", "verdict")
 ] = 1.5
+SPOILT: Annotated[
+    float,
+    Means(
+        "of its gap before",
+        "numbers that leave a channel with more explain nothing: without a name the model stays as it came",
+        "verdict",
+    ),
+] = 1.1
 CHANNEL_SHUT: Annotated[
     float,
     Means(

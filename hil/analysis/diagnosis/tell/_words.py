@@ -101,13 +101,24 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
         at = "at whatever speed" if _speeds_differ(problem) else "at the one speed of these recordings"
         words.append(f"it is a line at {frequency[top]:.3g} Hz, {at}")
     else:
-        share = np.cumsum(density) / density.sum()
-        low, high = np.interp(BAND_SHARES, share, frequency)
+        low, high = _band(problem, fit, column, frequency)
         words.append(f"it lies between {low:.2g} and {high:.2g} Hz")
     by = np.nan_to_num(gaps.by_condition[:, column])
     words.append(f"it is strongest at: {CONDITIONS[int(np.argmax(by))]}")
     words.append(_dependence(problem, fit, column))
     return "; ".join(w for w in words if w)
+
+
+def _band(problem: Problem, fit: Fit, column: int, frequency: Array) -> tuple[float, float]:
+    """Where, in Hz, most of a channel's error is that is more than its noise, the slowest included."""
+    over = np.zeros(len(frequency))
+    for trace, errors in zip(problem.traces, fit.errors, strict=True):
+        period = trace.dt * trace.block
+        density = _density(errors.channels, period, frequency, False)[:, column]
+        over += len(errors.channels) * np.maximum(density - 2.0 * period, 0.0)  # white noise of variance 1
+    share = np.cumsum(over) / max(float(over.sum()), 1e-30)
+    low, high = np.interp(BAND_SHARES, share, frequency)
+    return float(low), float(high)
 
 
 def _speeds_differ(problem: Problem) -> bool:
