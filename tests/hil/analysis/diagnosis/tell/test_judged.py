@@ -2,17 +2,21 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
+from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._sanity import Examined
+from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.search._search import begun, search
-from hil.analysis.diagnosis.tell._judged import Judged
+from hil.analysis.diagnosis.tell._judged import NUMBERS_TRADE, Judged
 from hil.analysis.diagnosis.tell._result import NamedEffect
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
-from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
+from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem, recorded
 
 OFFSET = EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0})
 NOTHING_HELD = Examined([], np.full(3, np.nan), [])
@@ -49,3 +53,18 @@ def test_beside_a_law_that_leaves_more_than_noise_a_wrong_number_is_a_correction
     assert names == (["coulomb_friction"] if more else ["coulomb_friction", "parameter_mismatch"])
     assert ("motor_inertia" in told.parameter_updates) is more
     assert told.model.parameters["motor_inertia"] == pytest.approx(inertia, rel=0.02)
+
+
+def test_without_a_name_numbers_that_trade_one_channel_for_another_are_not_taken() -> None:
+    """A torque sensor with a low-pass filter of 4 ms, which no effect is: speeds were at their noise."""
+    recording, pole = recorded(seconds=8.0), np.exp(-1e-3 / 4e-3)
+    recording.channels[OUTPUTS[2]] = lfilter([1.0 - pole], [1.0, -pole], recording[OUTPUTS[2]])
+    traces = [trace_of(recording)]
+    levels = noise_levels(traces)
+    problem = problem_of(traces, levels, MODEL.parameters["gear_ratio"])
+    fitted = fit(problem, Hypothesis(MODEL))
+    told = Judged(problem, begun(problem, fitted), "unknown", NOTHING_HELD).diagnosis([], [], 1.0)
+    assert NUMBERS_TRADE in told.notes
+    assert told.model.parameters == MODEL.parameters
+    assert (told.parameter_updates, told.worse) == ({}, ())
+    assert told.gap_after == told.gap_before
