@@ -65,7 +65,9 @@ class Recording:
         raise BadInputError(
             f"has no channel '{name}'",
             where=str(self.source),
-            fix=f"it has: {', '.join(self.channels) or 'none'}",
+            fix=f"it has: {', '.join(self.channels)}; rename the one that holds it, in SI units"
+            if self.channels
+            else "it has: none",
         )
 
     def __contains__(self, name: object) -> bool:

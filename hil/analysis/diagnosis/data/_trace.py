@@ -24,9 +24,10 @@ from hil.analysis.diagnosis.data._thresholds import (
     START_SAMPLES,
     UNEVEN_SHARE,
 )
-from hil.core.channels import INPUT, OUTPUTS, TIME, WHEEL_ANGLE
+from hil.core.channels import CHANNELS, INPUT, OUTPUTS, TIME, WHEEL_ANGLE
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
+from hil.core.suggestion import closest
 from hil.plant import SENSOR_GAIN, SENSOR_OFFSET
 
 Array = npt.NDArray[np.float64]
@@ -216,7 +217,7 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
             where=where,
             fix="record longer; or is time_s in another unit?",
         )
-    notes = list(recording.notes)
+    notes = [*recording.notes, *_not_used(recording)]
     grid, dt = _even(time, dt)
     nearest = _nearest(time, grid)
     off = np.abs(time[nearest] - grid)
@@ -249,6 +250,16 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
         where,
         load=None if load is None else np.where(missing, np.interp(grid, time, load), load[nearest]),
     )
+
+
+def _not_used(recording: Recording) -> list[str]:
+    """What to say of channels whose names are nearly those that a diagnosis looks for."""
+    strange = [name for name in recording.channels if name not in CHANNELS]
+    return [
+        f"has no {channel}, and '{near}' is not used: if it is that, rename it"
+        for channel in OUTPUTS
+        if channel not in recording and (near := closest(channel, strange))
+    ]
 
 
 def _even(time: Array, dt: float) -> tuple[Array, float]:

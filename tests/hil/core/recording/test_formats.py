@@ -53,7 +53,10 @@ def test_a_recording_of_times_alone_is_written(tmp_path):
 def test_a_channel_that_is_not_there_is_told_with_those_that_are():
     with pytest.raises(BadInputError) as caught:
         recording()["oil_temperature_k"]
-    assert caught.value.fix == "it has: time_s, motor_torque_ref_nm, motor_speed_rad_s, own_channel"
+    assert caught.value.fix == (
+        "it has: time_s, motor_torque_ref_nm, motor_speed_rad_s, own_channel; "
+        "rename the one that holds it, in SI units"
+    )
     with pytest.raises(BadInputError, match="it has: none"):
         Recording({}, Path("memory"))["time_s"]
 

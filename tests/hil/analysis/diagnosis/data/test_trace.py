@@ -43,3 +43,13 @@ def test_too_slow_a_recording_is_refused() -> None:
     slow = {name: values[::30] for name, values in one.channels.items()}
     with pytest.raises(BadInputError, match="too slow for a driveline"):
         trace_of(dataclasses.replace(one, channels=slow))
+
+
+def test_a_channel_with_nearly_the_right_name_is_told() -> None:
+    recording = recorded()
+    recording.channels["motor_speed"] = recording.channels.pop("motor_speed_rad_s")
+    assert trace_of(recording).notes == (
+        "has no motor_speed_rad_s, and 'motor_speed' is not used: if it is that, rename it",
+    )
+    recording.channels["motor_torque_nm"] = recording.channels.pop("motor_speed")
+    assert trace_of(recording).notes == ()
