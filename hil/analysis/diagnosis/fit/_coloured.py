@@ -24,7 +24,7 @@ def coloured_spread(of_recordings: Sequence[Errors]) -> Array:
     """Covariance of the gradient of the sum of squared errors: coordinates x coordinates."""
     longest = max(len(one.channels) for one in of_recordings)
     length = 1 << (2 * longest - 1).bit_length()  # twice as long: a transform knows no end
-    slopes = [one.slopes.reshape(-1, 3, one.by_coordinate.shape[1]) for one in of_recordings]
+    slopes = [one.slopes.reshape(*one.channels.shape, one.by_coordinate.shape[1]) for one in of_recordings]
     twice = np.full(length // 2 + 1, 2.0)  # a real signal's lines stand for two each, but for the outermost
     twice[[0, -1]] = 1.0
     total = np.zeros((slopes[0].shape[2],) * 2)

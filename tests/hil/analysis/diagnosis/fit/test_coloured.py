@@ -54,3 +54,8 @@ def test_recordings_of_any_length_count_together() -> None:
         np.diag(whole.by_coordinate.T @ whole.by_coordinate + half.by_coordinate.T @ half.by_coordinate),
         rel=0.3,
     )
+
+
+def test_without_any_number_nothing_is_pulled() -> None:
+    whole = errors_of(np.random.default_rng(0).normal(size=BLOCKS), 1)
+    assert coloured_spread([Errors(whole.rows, whole.by_coordinate[:, :0], whole.by_start)]).shape == (0, 0)
