@@ -92,12 +92,11 @@ def test_a_wheel_that_a_dyno_holds_is_data(amplitude: float) -> None:
 
 
 @pytest.mark.parametrize("vehicle_inertia", [300.0, 600.0])
-@pytest.mark.parametrize("amplitude", [60.0, 100.0])
 @pytest.mark.parametrize("highest_hz", [20.0, 30.0, 50.0])
-@pytest.mark.parametrize("noise", [1.0, 2.0, 4.0])
-@pytest.mark.parametrize("damping", [4.0, 10.0, 16.0])
+@pytest.mark.parametrize("noise", [2.0, 4.0])
+@pytest.mark.parametrize("damping", [4.0, 10.0])
 def test_the_still_wheel_of_a_heavy_car_is_data_as_the_motor_swings_at_its_resonance(
-    vehicle_inertia: float, amplitude: float, highest_hz: float, noise: float, damping: float
+    vehicle_inertia: float, highest_hz: float, noise: float, damping: float
 ) -> None:
     parameters = {
         "motor_inertia": 0.021,
@@ -108,7 +107,7 @@ def test_the_still_wheel_of_a_heavy_car_is_data_as_the_motor_swings_at_its_reson
         "torque_delay": 0.007,
     }
     heavy = Model("two_inertia", parameters)
-    recording = chirp(heavy, noise=noise, speed=1.0, amplitude=amplitude, highest_hz=highest_hz, seconds=40.0)
+    recording = chirp(heavy, noise=noise, speed=1.0, amplitude=100.0, highest_hz=highest_hz, seconds=40.0)
     assert examine(heavy, [recording])[0]
 
 
