@@ -40,6 +40,8 @@ def with_wandering(problem: Problem, best: Fit) -> Fit:
         walked = max(_order_error(turns), order * _walk_error(problem, best, channel))
         off = {"order": np.hypot(walked, order * _ratio_error(problem, best, channel))}
         off["phase_rad"] = _phase_error(turns, order)
+        if len(turns) == 1:  # no other recording disagrees with it
+            off["phase_rad"] = max(off["phase_rad"], order * _walk(problem, best, channel))
         for index, c in enumerate(best.hypothesis.coordinates()):
             if c.term == term and c.name in off:
                 scatter[index] = np.hypot(scatter[index], off[c.name])
@@ -92,6 +94,18 @@ def _walk_error(problem: Problem, best: Fit, channel: int) -> float:
         angles += float(angle @ angle)
         walks += float((angle * walk) @ (angle * walk))
     return float(np.sqrt(walks)) / angles if angles > 0.0 else 0.0
+
+
+def _walk(problem: Problem, best: Fit, channel: int) -> float:
+    """How far, in rad rms, what is left of its speed takes the angle of the first recording."""
+    trace = problem.traces[0]
+    read = channel if trace.has[channel] else 1 - channel
+    weight = float(problem.weights[0][read])
+    if weight <= 0.0:
+        return 0.0
+    ratio = problem.gear_ratio ** (channel - read) if channel != read else 1.0
+    left = best.errors[0].channels[:, read] / (weight * ratio)
+    return float(np.sqrt(np.mean(np.cumsum(left * trace.dt * trace.block) ** 2)))
 
 
 def _phase_error(turns: list[_Turn], order: float) -> float:

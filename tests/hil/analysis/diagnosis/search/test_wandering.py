@@ -122,6 +122,29 @@ def test_an_order_is_known_no_better_than_what_is_left_of_the_speed_lets_its_ang
     assert 0.6 < np.sqrt(np.mean(np.square(ratios))) < 1.3
 
 
+@pytest.mark.parametrize("measured", [0, 1])
+def test_in_one_recording_alone_a_phase_is_known_no_better_than_its_angle_walks(measured: int) -> None:
+    problem = one_problem(seconds=8.0)
+    trace = problem.traces[0]
+    gone = np.isnan(trace.samples) | (np.arange(3) == 1 - measured)
+    lone = dataclasses.replace(
+        trace,
+        samples=np.where(gone, np.nan, trace.samples),
+        measured=np.where(gone[: len(trace.measured)], np.nan, trace.measured),
+    )
+    problem = dataclasses.replace(problem, traces=(lone,))
+    fit = explained(problem)
+    off = np.zeros((len(trace.measured), 3))
+    ratio = problem.gear_ratio if measured == 0 else 1.0
+    off[:, measured] = 0.02 * ratio  # rad/s at the wheel: 0.16 rad in the end, evenly gained
+    rows = (off * problem.weights[0]).ravel()
+    fit = dataclasses.replace(fit, errors=(dataclasses.replace(fit.errors[0], rows=rows),))
+    scatter = with_wandering(problem, fit).scatter
+    assert scatter is not None
+    index = [c.name for c in fit.hypothesis.coordinates()].index("phase_rad")
+    assert scatter[index] == pytest.approx(3.0 * 0.16 / np.sqrt(3.0), rel=0.01)
+
+
 def _slope(speed: np.ndarray, noise: np.ndarray, length: int) -> float:
     """Relative error of an angle by least squares through its steps."""
     whole = len(speed) // length * length
