@@ -81,6 +81,8 @@ class Judged:
         if verdict == "named" and not effects:
             # Small corrections were all that was found: do they explain the data?
             verdict = "none" if self.found.evidence.closed(kept) else "unknown"
+        if verdict == "none":
+            notes = [*notes, *_held_out_open(held_after)]
         overlays = tuple(
             Overlay(t.name, t.dt, t.torque, t.samples, b, a)
             for t, b, a in zip(problem.traces, before, after, strict=True)
@@ -340,3 +342,13 @@ def _trades(was: Mapping[str, ChannelGap], is_: Mapping[str, ChannelGap]) -> boo
 def _gains(was: Mapping[str, ChannelGap], is_: Mapping[str, ChannelGap]) -> bool:
     """Whether they bring any channel clearly nearer."""
     return any(was[c].gap > SPOILT * is_[c].gap for c in is_)
+
+
+def _held_out_open(gaps: Mapping[str, ChannelGap]) -> list[str]:
+    """What to say where recordings that no fit has seen disagree, and those that were fitted do not."""
+    return [
+        f"held-out recordings leave {gap.noises:.3g} times its noise in {channel}: something is missing that "
+        "the recordings fitted do not show; give those held out as recordings too"
+        for channel, gap in gaps.items()
+        if gap.noises > 2.0 * CHANNEL_NOISES
+    ]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from hil.analysis.diagnosis.data._gap import ChannelGap
 from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._sanity import Examined
 from hil.analysis.diagnosis.data._trace import trace_of
@@ -11,7 +12,7 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.search._search import begun, search
-from hil.analysis.diagnosis.tell._judged import NUMBERS_TRADE, Judged
+from hil.analysis.diagnosis.tell._judged import NUMBERS_TRADE, Judged, _held_out_open
 from hil.analysis.diagnosis.tell._result import NamedEffect
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
@@ -68,3 +69,11 @@ def test_without_a_name_numbers_that_trade_one_channel_for_another_are_not_taken
     assert told.model.parameters == MODEL.parameters
     assert (told.parameter_updates, told.worse) == ({}, ())
     assert told.gap_after == told.gap_before
+
+
+def test_held_out_recordings_that_disagree_are_told_beside_none() -> None:
+    told = _held_out_open({OUTPUTS[0]: ChannelGap(0.02, 0.01), OUTPUTS[2]: ChannelGap(0.1, 0.01)})
+    assert len(told) == 1
+    assert told[0].startswith(
+        f"held-out recordings leave 10 times its noise in {OUTPUTS[2]}: something is missing"
+    )
