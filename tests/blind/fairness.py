@@ -56,8 +56,7 @@ def standard_errors_off(
     """
     off = {}
     for id, values in answer.effects:
-        about = values.get("channel") or values.get("parameter")
-        label = f"{id}({about})" if about else id
+        label = label_of(id, values)
         if id not in SAME_NUMBERS or label not in named:
             continue
         entry = entries[named.index(label)]
@@ -70,6 +69,12 @@ def standard_errors_off(
                 miss = (miss + math.pi) % (2.0 * math.pi) - math.pi
             off[f"{label}.{name}"] = miss / float(error)
     return off
+
+
+def label_of(id: str, values: Mapping[str, Any]) -> str:
+    """The name, with the channel or parameter that it is about: another channel is another answer."""
+    about = values.get("channel") or values.get("parameter")
+    return f"{id}({about})" if about else id
 
 
 def holds(standard_errors: float) -> bool:

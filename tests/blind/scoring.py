@@ -10,7 +10,7 @@ from typing import Any
 from hil.core.channels import OUTPUTS
 from tests.blind.casefiles import Answer
 from tests.blind.diagnosing import Reply
-from tests.blind.fairness import judged_gaps, standard_errors_off
+from tests.blind.fairness import judged_gaps, label_of, standard_errors_off
 from tests.blind.families import FAMILIES
 from tests.blind.later_families import LATER_FAMILIES
 from tests.blind.specs import Spec
@@ -73,8 +73,8 @@ def score(spec: Spec, kind: str, answer: Answer, reply: Reply) -> Score:
     diagnosis = reply.diagnosis
     entries: list[dict[str, Any]] = diagnosis.get("effects", [])
     verdict = "failed" if reply.failure else str(diagnosis.get("verdict"))
-    hidden = [_label(id, values) for id, values in answer.effects]
-    named = [_label(e["id"], e.get("parameters", {})) for e in entries]
+    hidden = [label_of(id, values) for id, values in answer.effects]
+    named = [label_of(e["id"], e.get("parameters", {})) for e in entries]
     # a name that the registry does not have is neither right nor wrong
     judged = [
         (float(e.get("confidence", 1.0)), n in hidden)
@@ -128,15 +128,9 @@ def honest_rivals(hidden: Sequence[str], diagnosis: Mapping[str, Any]) -> bool:
     pair = rivals[:2]
     if len(pair) < 2 or len(diagnosis.get("effects", [])) > 1:
         return False
-    names = [_label(one["id"], one.get("parameters", {})) for one in pair]
+    names = [label_of(one["id"], one.get("parameters", {})) for one in pair]
     tests = any(one.get("separating_test") for one in pair)
     return tests and hidden[0] in names and float(pair[0].get("confidence", 0.0)) < _SURE
-
-
-def _label(id: str, values: Values) -> str:
-    """The name, with the channel or parameter that it is about: another channel is another answer."""
-    about = values.get("channel") or values.get("parameter")
-    return f"{id}({about})" if about else id
 
 
 def _parameter_errors(
@@ -144,7 +138,7 @@ def _parameter_errors(
 ) -> dict[str, float]:
     errors = {}
     for id, values in answer.effects:
-        label = _label(id, values)
+        label = label_of(id, values)
         if label not in named:
             continue  # right by saying nothing, or as one of two rivals
         found = entries[named.index(label)]["parameters"]

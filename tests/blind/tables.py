@@ -145,18 +145,21 @@ def _parameters(scores: Sequence[Score]) -> str:
     errors: dict[str, list[float]] = {}
     for one in scores:
         for name, error in one.parameter_errors.items():
-            effect, parameter = name.split("(")[0].split(".")[0], name.split(".")[-1]
-            errors.setdefault(f"{effect}.{parameter}", []).append(error)
+            errors.setdefault(_number(name), []).append(error)
     rows = [[name, len(values), *_quantiles(values)] for name, values in sorted(errors.items())]
     return _table(["parameter", "cases", "median error", "95th percentile"], rows)
+
+
+def _number(name: str) -> str:
+    """`effect.number`, whatever channel or parameter the effect is about."""
+    return f"{name.split('(')[0].split('.')[0]}.{name.split('.')[-1]}"
 
 
 def _intervals(scores: Sequence[Score]) -> str:
     found: dict[str, list[float]] = {}
     for one in scores:
         for name, off in one.standard_errors_off.items():
-            effect, number = name.split("(")[0].split(".")[0], name.split(".")[-1]
-            found.setdefault(f"{effect}.{number}", []).append(off)
+            found.setdefault(_number(name), []).append(off)
     rows = [
         [name, len(offs), f"{100 * float(np.mean([holds(off) for off in offs])):.0f}", f"{_rms(offs):.2f}"]
         for name, offs in sorted(found.items())

@@ -56,10 +56,15 @@ class Scene(Protocol):
 Probes = Callable[[Scene], Iterator[Probe]]
 
 
+def around(rest: float, name: str, unit: float, lower: float, upper: float, **others: float | str) -> Probe:
+    """An effect that is linear in `name`, around `rest`, where it does nothing."""
+    direction = Direction({**others, name: rest + unit}, lower, upper)
+    return Probe((direction,), lambda a: {**others, name: rest + float(a[0]) * unit})
+
+
 def scaled(name: str, unit: float, lower: float, upper: float, **others: float | str) -> Probe:
     """An effect that is linear in `name`, around zero."""
-    direction = Direction({**others, name: unit}, lower, upper)
-    return Probe((direction,), lambda a: {**others, name: float(a[0]) * unit})
+    return around(0.0, name, unit, lower, upper, **others)
 
 
 def fixed(**values: Any) -> Probe:
@@ -86,8 +91,4 @@ def ripple(order: float, unit: float) -> Probe:
 
 def reading(channel: str, name: str, rest: float, unit: float, lower: float, upper: float) -> Probe:
     """A sensor effect of one channel, linear around a true reading, which is at `rest`."""
-
-    def start(a: Sequence[float]) -> Values:
-        return {"channel": channel, name: rest + unit * float(a[0])}
-
-    return Probe((Direction({"channel": channel, name: rest + unit}, lower, upper),), start)
+    return around(rest, name, unit, lower, upper, channel=channel)

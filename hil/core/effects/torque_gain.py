@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from hil.core.effects._effect import Effect, Least, Parameter, Stage
 from hil.core.effects._law import Law, Values
-from hil.core.effects._probe import Direction, Probe, Scene
+from hil.core.effects._probe import Probe, Scene, around
 
 
 def _scale(torque: float, values: Values) -> float:
@@ -15,7 +15,7 @@ def _scale(torque: float, values: Values) -> float:
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
-    yield Probe((Direction({"gain": 1.01}, -60.0, 180.0),), lambda a: {"gain": 1.0 + 0.01 * float(a[0])})
+    yield around(1.0, "gain", 0.01, -60.0, 180.0)
 
 
 EFFECT = Effect(

@@ -46,7 +46,7 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
     scale = np.array([1.0 / gear_ratio, 1.0, 1.0])
     values = trace.measured * scale
     torque = trace.torque[: len(values) * trace.block].reshape(len(values), trace.block).mean(axis=1)
-    pulls = _shaft_torque(torque, values[:, 0] / scale[0], step, inertia) * gear_ratio
+    pulls = _shaft_torque(torque, trace.measured[:, 0], step, inertia) * gear_ratio
     moves = np.std(values, axis=0)
     holds = np.maximum(HOLDS_NOISE * noise * scale / np.sqrt(trace.block), HOLDS_SHARE * moves)
     steps = np.array(

@@ -227,15 +227,15 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
             note += f", with a gap of {gap.max():.3g} s at {time[int(np.argmax(gap))]:.3g} s bridged"
         notes.append(note)
     missing = off > NEAR_SHARE * dt
-    columns = [recording[INPUT], *(recording[c] for c in OUTPUTS if c in recording)]
-    on_grid = [np.where(missing, np.interp(grid, time, values), values[nearest]) for values in columns]
     given = [c for c in OUTPUTS if c in recording]
+    columns = [recording[INPUT], *(recording[c] for c in given)]
+    on_grid = [np.where(missing, np.interp(grid, time, values), values[nearest]) for values in columns]
     for index, channel in enumerate(given, start=1):
         on_grid[index], said = without_spikes(on_grid[index], channel, dt)
         notes += [said] if said else []
     torque = np.ascontiguousarray(on_grid[0])
     samples = np.full((len(grid), 3), np.nan)
-    samples[:, [c in recording for c in OUTPUTS]] = np.column_stack([*on_grid[1:]])
+    samples[:, [c in given for c in OUTPUTS]] = np.column_stack([*on_grid[1:]])
     block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
     return Trace(
         name or recording.source.stem,

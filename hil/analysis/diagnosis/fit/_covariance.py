@@ -66,7 +66,6 @@ def _spread(problem: Problem, one: Fit) -> Array:
 
 def _gradients(errors: Errors, length: int) -> Array:
     """Gradient of each stretch of `length` blocks, initial values projected out: stretches x coordinates."""
-    basis = np.linalg.qr(errors.by_start)[0] if np.any(errors.by_start) else np.zeros((len(errors.rows), 1))
-    pulls = errors.slopes * (errors.rows - basis @ (basis.T @ errors.rows))[:, None]
+    pulls = errors.slopes * errors.without_starts(errors.rows)[:, None]
     firsts = np.arange(0, len(pulls), 3 * length)  # rows are blocks x 3 channels
     return np.asarray(np.add.reduceat(pulls, firsts, axis=0))

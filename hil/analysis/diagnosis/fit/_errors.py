@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -30,7 +31,15 @@ class Errors:
     @property
     def slopes(self) -> Array:
         """`by_coordinate` without what initial values would take up."""
+        return self.without_starts(self.by_coordinate)
+
+    def without_starts(self, values: Array) -> Array:
+        """`values` (rows, or rows x any) without what initial values would take up."""
         if not np.any(self.by_start):
-            return self.by_coordinate
-        basis = np.linalg.qr(self.by_start)[0]
-        return np.asarray(self.by_coordinate - basis @ (basis.T @ self.by_coordinate))
+            return values
+        return np.asarray(values - self._of_starts @ (self._of_starts.T @ values))
+
+    @cached_property
+    def _of_starts(self) -> Array:
+        """Orthonormal, rows x initial values."""
+        return np.asarray(np.linalg.qr(self.by_start)[0])

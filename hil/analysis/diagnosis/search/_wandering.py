@@ -81,16 +81,11 @@ def _order_error(turns: list[_Turn]) -> float:
 def _walk_error(problem: Problem, best: Fit, channel: int) -> float:
     """Relative standard error of angles, from what is left of the speed that they are integrated from."""
     angles = walks = 0.0
-    for index, trace in enumerate(problem.traces):
-        read = channel if trace.has[channel] else 1 - channel
-        weight = float(problem.weights[index][read])
-        if weight <= 0.0:
-            continue
-        step = trace.dt * trace.block
+    for index in range(len(problem.traces)):
+        speed, left, step = _speed(problem, best, index, channel)
         length = max(1, round(WALK_S / step))
-        left, turned = best.errors[index].channels[:, read] / weight, trace.measured[:, read]
         whole = len(left) // length * length
-        walk, angle = (v[:whole].reshape(-1, length).sum(axis=1) * step for v in (left, turned))
+        walk, angle = (v[:whole].reshape(-1, length).sum(axis=1) * step for v in (left, speed))
         angles += float(angle @ angle)
         walks += float((angle * walk) @ (angle * walk))
     return float(np.sqrt(walks)) / angles if angles > 0.0 else 0.0
@@ -98,14 +93,23 @@ def _walk_error(problem: Problem, best: Fit, channel: int) -> float:
 
 def _walk(problem: Problem, best: Fit, channel: int) -> float:
     """How far, in rad rms, what is left of its speed takes the angle of the first recording."""
-    trace = problem.traces[0]
+    _, left, step = _speed(problem, best, 0, channel)
+    return float(np.sqrt(np.mean(np.cumsum(left * step) ** 2)))
+
+
+def _speed(problem: Problem, best: Fit, index: int, channel: int) -> tuple[Array, Array, float]:
+    """Speed that an angle is integrated from and what is left of it, block means in rad/s of the angle; s.
+
+    The other speed by the gear ratio where `channel` was not measured; nothing where neither counts.
+    """
+    trace = problem.traces[index]
     read = channel if trace.has[channel] else 1 - channel
-    weight = float(problem.weights[0][read])
+    ratio, weight = problem.gear_ratio ** (read - channel), float(problem.weights[index][read])
+    step = trace.dt * trace.block
     if weight <= 0.0:
-        return 0.0
-    ratio = problem.gear_ratio ** (channel - read) if channel != read else 1.0
-    left = best.errors[0].channels[:, read] / (weight * ratio)
-    return float(np.sqrt(np.mean(np.cumsum(left * trace.dt * trace.block) ** 2)))
+        none = np.zeros(len(trace.measured))
+        return none, none, step
+    return ratio * trace.measured[:, read], ratio * best.errors[index].channels[:, read] / weight, step
 
 
 def _phase_error(turns: list[_Turn], order: float) -> float:

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
-from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._fit import Fit
-from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.tell._thresholds import DRAWN_MODELS
 from hil.core.model import Model
 
+Array = npt.NDArray[np.float64]
 
-def as_likely(problem: Problem, kept: Fit) -> list[Model]:
+
+def as_likely(kept: Fit, errors: Array) -> list[Model]:
     """Models drawn from what a fit knows of its numbers, within their bounds; the same ones every time.
 
-    Standard errors are those that count the misfit that is left, correlations those of the fit.
+    Args:
+        errors: standard errors of the coordinates, that count the misfit that is left; correlations are those
+            of the fit.
     """
     coordinates = kept.hypothesis.coordinates()
     if not coordinates:
         return []
-    errors = standard_errors(problem, kept)
     plain = np.sqrt(np.maximum(np.diag(kept.covariance), 1e-300))
     scaled = kept.covariance * np.outer(errors / plain, errors / plain)
     values, axes = np.linalg.eigh(scaled)

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._gap import ChannelGap, GapMap, channel_gaps, gap_map, made_worse
 from hil.analysis.diagnosis.data._sanity import Examined
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
@@ -60,21 +61,29 @@ class Judged:
         problem = self.problem
         colouring = self.found.evidence.colouring(self.found.best)
         floor = problem.floor * colouring
+        given = self._as_it_came(problem)
+        before = simulated_samples(problem, *given)
         after = simulated_samples(problem, kept.hypothesis, kept.theta, kept.starts)
-        before = self._nominal(problem)
         map_before, map_after = (gap_map(problem.traces, problem.noise, s) for s in (before, after))
-        if verdict == "unknown":
-            was, is_ = (channel_gaps(problem.traces, floor, shown) for shown in (before, after))
-            if _trades(was, is_) or (made_worse(map_before, map_after) and not _gains(was, is_)):
-                kept, after, map_after = self._as_it_came(problem), before, map_before
-                notes = [*notes, NUMBERS_TRADE]
+        gap_before, gap_after = (channel_gaps(problem.traces, floor, s) for s in (before, after))
+        worse = made_worse(map_before, map_after)
+        if verdict == "unknown" and (
+            _trades(gap_before, gap_after) or (worse and not _gains(gap_before, gap_after))
+        ):
+            hypothesis, theta, starts = given
+            kept = fit(problem, hypothesis, starts, theta, rounds=0)
+            after, map_after, gap_after, worse = before, map_before, gap_before, []
+            notes = [*notes, NUMBERS_TRADE]
+        errors = standard_errors(problem, kept)
         model = kept.hypothesis.model(kept.theta)
-        updates, kept_parameters = self._updates(kept)
+        updates, kept_parameters = self._updates(kept, errors)
         model = model.with_parameters(**kept_parameters)
         tail = tuple(rounded) if verdict == "named" else ()
         model = model.with_effects(*_lasting(model), *tail)
         held_before, held_after = self._held(kept)
-        effects = self._effects(kept, after, map_before, map_after, rounded) if verdict == "named" else ()
+        effects = (
+            self._effects(kept, errors, after, map_before, map_after, rounded) if verdict == "named" else ()
+        )
         traces = problem.traces
         small = [e for e in effects if not worth_naming(e.use, traces, self.least, base.hypothesis.base)]
         effects = tuple(e for e in effects if e not in small)
@@ -87,7 +96,6 @@ class Judged:
             Overlay(t.name, t.dt, t.torque, t.samples, b, a)
             for t, b, a in zip(problem.traces, before, after, strict=True)
         )
-        gap_after = channel_gaps(problem.traces, floor, after)
         return Diagnosis(
             verdict=verdict,
             base=base.hypothesis.base,
@@ -96,7 +104,7 @@ class Judged:
             parameter_updates=updates | _as_corrections(small),
             alternatives=alternatives_of(self.found, verdict),
             considered=self._considered(kept),
-            gap_before=channel_gaps(problem.traces, floor, before),
+            gap_before=gap_before,
             gap_after=gap_after,
             holdout_before=held_before,
             holdout_after=held_after,
@@ -107,18 +115,17 @@ class Judged:
             notes=(*notes, *(drifts(problem, after) if verdict == "none" else ())),
             seconds=seconds,
             by_chance=self.by_chance,
-            consequences=consequences(base.hypothesis.base, model, as_likely(self.problem, kept)),
-            start=self._start(kept, floor),
+            consequences=consequences(base.hypothesis.base, model, as_likely(kept, errors)),
+            start=self._start(kept, errors, floor),
             open_channels=self._open(kept),
             unfinished=self.unfinished,
-            worse=tuple(made_worse(map_before, map_after)),
+            worse=tuple(worse),
         )
 
-    def _start(self, kept: Fit, floor: Array) -> Start | None:
+    def _start(self, kept: Fit, errors: Array, floor: Array) -> Start | None:
         """The numbers that had to change where the base model was far off, as they are in the end."""
         if not kept.hypothesis.far:
             return None
-        errors = standard_errors(self.problem, kept)
         given, new = kept.hypothesis.base.parameters, kept.hypothesis.model(kept.theta).parameters
         wrong = moved(kept)
         parameters = {
@@ -154,19 +161,11 @@ class Judged:
         gaps = self.found.evidence.gaps(kept)
         return tuple(channel for channel, gap in zip(OUTPUTS, gaps, strict=True) if gap > CHANNEL_NOISES)
 
-    def _as_it_came(self, problem: Problem) -> Fit:
-        """The base model with its own numbers, unfitted but for initial values."""
+    def _as_it_came(self, problem: Problem) -> tuple[Hypothesis, Array, list[Array]]:
+        """The base model with its own numbers, and the initial values that suit it best."""
         hypothesis = replace(self.found.base.hypothesis, far=False)
         theta = hypothesis.start()
-        starts = settled_starts(problem, hypothesis, theta, self.found.base.starts)
-        return fit(problem, hypothesis, starts, theta, rounds=0)
-
-    def _nominal(self, problem: Problem) -> list[Array]:
-        """The base model as it came, from its best initial values."""
-        hypothesis = self.found.base.hypothesis
-        theta = hypothesis.start()
-        starts = settled_starts(problem, hypothesis, theta, self.found.base.starts)
-        return simulated_samples(problem, hypothesis, theta, starts)
+        return hypothesis, theta, settled_starts(problem, hypothesis, theta, self.found.base.starts)
 
     def _held(self, kept: Fit) -> tuple[dict[str, ChannelGap], dict[str, ChannelGap]]:
         if not self.holdout.traces:
@@ -195,9 +194,10 @@ class Judged:
             gaps.append(channel_gaps(problem.traces, problem.floor, shown))
         return gaps[0], gaps[1]
 
-    def _updates(self, kept: Fit) -> tuple[dict[str, tuple[float, float, float]], dict[str, float]]:
+    def _updates(
+        self, kept: Fit, errors: Array
+    ) -> tuple[dict[str, tuple[float, float, float]], dict[str, float]]:
         """Corrections of base parameters beyond what noise explains, and all parameters as fitted."""
-        errors = standard_errors(self.problem, kept)
         model = kept.hypothesis.model(kept.theta)
         base = kept.hypothesis.base.parameters
         wrong = {
@@ -220,13 +220,13 @@ class Judged:
     def _effects(
         self,
         kept: Fit,
+        errors: Array,
         after: list[Array],
         map_before: GapMap,
         map_after: GapMap,
         rounded: list[EffectUse],
     ) -> tuple[NamedEffect, ...]:
         uses = kept.hypothesis.model(kept.theta).effects[len(kept.hypothesis.base.effects) :]
-        errors = standard_errors(self.problem, kept)
         named = []
         for index, use in enumerate(uses):
             if use.id == "parameter_mismatch" and self._correction(use, kept):

@@ -14,15 +14,14 @@ from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 def test_drawn_models_scatter_as_the_fit_is_known() -> None:
     problem = one_problem()
     kept = search(problem, Hypothesis(MODEL), lambda text: None).best
-    drawn = as_likely(problem, kept)
+    known = standard_errors(problem, kept)
+    drawn = as_likely(kept, known)
     given = kept.hypothesis.model(kept.theta).parameters
-    errors = dict(
-        zip((c.name for c in kept.hypothesis.coordinates()), standard_errors(problem, kept), strict=True)
-    )
+    errors = dict(zip((c.name for c in kept.hypothesis.coordinates()), known, strict=True))
     for name in ("shaft_stiffness", "vehicle_inertia"):
         scatter = np.std([np.log(one.parameters[name] / given[name]) for one in drawn], ddof=1)
         assert scatter == pytest.approx(errors[name], rel=0.35), name
-    again = as_likely(problem, kept)
+    again = as_likely(kept, known)
     assert [one.parameters for one in again] == [one.parameters for one in drawn]
 
 
