@@ -32,6 +32,7 @@ _HEADLINES = {
     "none": "The model explains the data to the noise",
     "unknown": "A gap that no known effect closes",
 }
+_HELD_OUT = "Recordings held out disagree with the model"
 _MOST_CONSIDERED = 20
 _MOST_WORSE = 3
 _HALF_INTERVAL = 1.96  # of 95 %, in standard errors
@@ -46,6 +47,8 @@ def headline(found: Diagnosis) -> str:
     """The verdict in one line."""
     if found.unfinished:
         return f"Unfinished: {found.unfinished}"
+    if found.verdict == "unknown" and found.held_out_open and not found.open_channels:
+        return _HELD_OUT
     names = ", ".join(EFFECTS[e.use.id].title.lower() for e in found.effects)
     return _HEADLINES[found.verdict].format(names=names)
 

@@ -142,10 +142,7 @@ def _plainer(far: Found) -> Found:
     hypothesis = far.best.hypothesis
     if is_far(far.best) or len(wrong) + len(hypothesis.terms) > MOST_EFFECTS:
         return far
-    terms = list(hypothesis.terms)
-    values = hypothesis.model(far.best.theta).parameters
-    terms += [EffectUse("parameter_mismatch", {"parameter": n, "value": values[n]}) for n in wrong]
-    near = replace(hypothesis, terms=tuple(terms), far=False)
+    near = replace(hypothesis, terms=(*hypothesis.terms, *_told(far.best, wrong)), far=False)
     problem = far.evidence.problem.with_angles(far.best.angles)
     told = fit(problem, near, far.best.starts, carried(far.best, near))
     base = fit(problem, replace(near, terms=(), open=()))
@@ -153,3 +150,15 @@ def _plainer(far: Found) -> Found:
     found.best, found.steps = told, far.steps
     found.evidence.rounding = far.evidence.rounding
     return found if found.settled else far
+
+
+def _told(far: Fit, wrong: Sequence[str]) -> list[EffectUse]:
+    """Wrong numbers as effects of a model that is near: dead time that it lacks has a name of its own."""
+    given, values = far.hypothesis.base.parameters, far.hypothesis.model(far.theta).parameters
+    more = {name: values[name] - given[name] for name in wrong}
+    return [
+        EffectUse("dead_time", {"extra_delay_s": more[name]})
+        if name == "torque_delay" and more[name] > 0.0 and "dead_time" not in far.hypothesis.ids
+        else EffectUse("parameter_mismatch", {"parameter": name, "value": values[name]})
+        for name in wrong
+    ]

@@ -123,6 +123,8 @@ class Diagnosis:
     start: Start | None = None
     #: Channels whose gap stays above what is proven to be noise.
     open_channels: tuple[str, ...] = ()
+    #: The same of recordings held out; under `named` only those that keep over a tenth of their gap's power.
+    held_out_open: tuple[str, ...] = ()
     #: Why the search ended before it was through, if it did: this is what was known by then.
     unfinished: str = ""
     #: Where the model given back is further off than the one that came, in words.
@@ -154,6 +156,7 @@ class Diagnosis:
             "holdout_gap": _gaps(self.holdout_before, self.holdout_after),
             "map": _map(self.map_before, self.map_after),
             "open_channels": list(self.open_channels),
+            "held_out_open": list(self.held_out_open),
             "made_worse": list(self.worse),
             "remaining_gap": self.signature,
             "considered": [

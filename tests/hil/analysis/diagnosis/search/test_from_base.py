@@ -7,7 +7,7 @@ import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit
-from hil.analysis.diagnosis.search._from_base import is_far, moved, search_from_base
+from hil.analysis.diagnosis.search._from_base import _told, is_far, moved, search_from_base
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
@@ -63,3 +63,13 @@ def test_what_moved_is_more_than_its_tolerance_and_its_error() -> None:
 def test_far_are_many_numbers_and_not_one() -> None:
     assert not is_far(off(shaft_stiffness=0.5, motor_inertia=0.5))
     assert is_far(off(shaft_stiffness=0.5, motor_inertia=0.5, wheel_inertia=0.4, vehicle_inertia=-0.3))
+
+
+def test_dead_time_that_a_near_model_lacks_has_a_name_of_its_own() -> None:
+    own = MODEL.parameters["torque_delay"]
+    late, early = (
+        _told(off(torque_delay=by, gear_ratio=0.1), ["torque_delay", "gear_ratio"]) for by in (0.5, -0.5)
+    )
+    assert [use.id for use in late] == ["dead_time", "parameter_mismatch"]
+    assert late[0].values["extra_delay_s"] == pytest.approx(own * (np.exp(0.5) - 1.0))
+    assert [use.values.get("parameter") for use in early] == ["torque_delay", "gear_ratio"]

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from hil.analysis.diagnosis.data._gap import ChannelGap
 from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._sanity import Examined
 from hil.analysis.diagnosis.data._trace import trace_of
@@ -12,7 +11,8 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.search._search import begun, search
-from hil.analysis.diagnosis.tell._judged import NUMBERS_TRADE, Judged, _held_out_open
+from hil.analysis.diagnosis.tell._given_back import NUMBERS_TRADE
+from hil.analysis.diagnosis.tell._judged import Judged
 from hil.analysis.diagnosis.tell._result import NamedEffect
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
@@ -71,9 +71,28 @@ def test_without_a_name_numbers_that_trade_one_channel_for_another_are_not_taken
     assert told.gap_after == told.gap_before
 
 
-def test_held_out_recordings_that_disagree_are_told_beside_none() -> None:
-    told = _held_out_open({OUTPUTS[0]: ChannelGap(0.02, 0.01), OUTPUTS[2]: ChannelGap(0.1, 0.01)})
-    assert len(told) == 1
-    assert told[0].startswith(
-        f"held-out recordings leave 10 times its noise in {OUTPUTS[2]}: something is missing"
-    )
+def held(problem, *effects: EffectUse) -> Examined:
+    """A recording held out, of an axle with `effects`."""
+    return Examined([trace_of(recorded(*effects, seed=2))], problem.floor, [])
+
+
+def test_none_is_not_said_while_recordings_held_out_disagree() -> None:
+    """What only they show, here an offset that the fitted ones have not, is a gap like any other."""
+    problem = one_problem()
+    found = begun(problem, fit(problem, Hypothesis(MODEL)))
+    calm = Judged(problem, found, "none", held(problem)).diagnosis([], [], 1.0)
+    assert (calm.verdict, calm.held_out_open, calm.signature) == ("none", (), "")
+    told = Judged(problem, found, "none", held(problem, OFFSET)).diagnosis([], [], 1.0)
+    assert (told.verdict, told.open_channels) == ("unknown", ())
+    assert OUTPUTS[2] in told.held_out_open
+    assert told.signature.startswith("held-out recordings leave")
+
+
+def test_a_name_beside_which_recordings_held_out_disagree_comes_with_a_note() -> None:
+    problem = one_problem(OFFSET)
+    found = search(problem, Hypothesis(MODEL), lambda text: None)
+    more = EffectUse("sensor_offset", {"channel": OUTPUTS[0], "offset": 5.0})
+    told = Judged(problem, found, "named", held(problem, OFFSET, more)).diagnosis([], [], 1.0)
+    assert told.verdict == "named"
+    assert OUTPUTS[0] in told.held_out_open
+    assert any(note.startswith("held-out recordings leave") for note in told.notes)
