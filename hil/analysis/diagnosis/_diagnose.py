@@ -7,8 +7,11 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from hil.analysis.diagnosis._asked import Asked
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
+from hil.analysis.diagnosis.data._noise import cancelling, rising
 from hil.analysis.diagnosis.data._sanity import examined
 from hil.analysis.diagnosis.data._stated import stated_noise
 from hil.analysis.diagnosis.data._thresholds import COARSE_SAMPLE_S
@@ -84,7 +87,7 @@ def _diagnosed(
     show("reading the noise")
     seen = examined(model, recordings)
     held = examined(model, holdout, seen.traces)
-    traces, noise = seen.traces, seen.noise
+    traces = seen.traces
     notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + seen.notes
     notes += [
         f"{t.name} is sampled at {1.0 / t.dt:.4g} Hz: torque between samples is not known, and a gap "
@@ -92,11 +95,14 @@ def _diagnosed(
         for t in traces
         if t.dt > COARSE_SAMPLE_S
     ]
-    rounded = grids(traces, noise)
+    rounded = grids(traces, seen.noise)
+    means = cancelling(traces, seen.noise)
+    noise = rising(traces, means, seen.noise)
+    held = replace(held, noise=np.where(np.isfinite(means), noise, held.noise))
     allowance = Allowance(asked.at_most_s)
     problem = problem_of(
         traces,
-        coarse_noise(noise, rounded),
+        np.where(np.isfinite(means), means, coarse_noise(noise, rounded)),
         gear_ratio_of(model) or 1.0,
         floor=noise,
         stated=asked.noise,

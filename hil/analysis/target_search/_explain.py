@@ -10,7 +10,7 @@ import numpy as np
 
 from hil.analysis.target_search._conditions import Condition, conditions_of
 from hil.analysis.target_search._plausible import candidates
-from hil.analysis.target_search._search import Search
+from hil.analysis.target_search._search import Found, Search
 from hil.analysis.target_search._separating import Separating, separating
 from hil.analysis.target_search._targets import Targets
 from hil.analysis.target_search._trial import CarryOut, Guess, Outcome, Trial, guess_at
@@ -20,6 +20,8 @@ from hil.core.suggestion import did_you_mean
 
 #: Rivals that are told.
 RIVALS = 4
+#: Guesses of each that are tried on all conditions until one holds them.
+_CHECKED = 6
 
 
 @dataclass(frozen=True)
@@ -146,10 +148,7 @@ def explain(
     search = Search(trial, evaluations, seed, show, stopped)
     search.carry_out(every)
     show("checking the best", None)
-    rivals = [
-        _rival(tuple(c.id for c in found.chosen), guess_at(found.point, found.chosen), trial)
-        for found in search.best[:RIVALS]
-    ]
+    rivals = [_of_set(search.places(found.chosen, _CHECKED), trial) for found in search.best[:RIVALS]]
     rivals.sort(key=lambda rival: (len(rival.missed), rival.cost))
     test = None
     if len(rivals) > 1:
@@ -158,6 +157,17 @@ def explain(
     start = _rival(("model as it came",), Guess({}, {}), trial)
     searched = tuple(candidate.id for candidate in every)
     return Explanation(targets, start, tuple(rivals), test, searched, search.done, search.interrupted)
+
+
+def _of_set(places: Sequence[Found], trial: Trial) -> Rival:
+    """The first guess of a set that holds every condition, identification too, or misses the fewest."""
+    rivals = []
+    for found in places:
+        names = tuple(candidate.id for candidate in found.chosen)
+        rivals.append(_rival(names, guess_at(found.point, found.chosen), trial))
+        if not rivals[-1].missed:
+            break
+    return min(rivals, key=lambda rival: (len(rival.missed), rival.cost))
 
 
 def _rival(names: tuple[str, ...], guess: Guess, trial: Trial) -> Rival:

@@ -24,9 +24,8 @@ SETTLED_SHARE = 0.05
 _SHAFT_TORQUE = "shaft_torque_nm"
 _BAND_HZ = (0.05, 30.0)
 _FREQUENCIES = 200
-_NO_FIGURES = 9.0  # cost of a guess that gives none: a factor of 20 in a figure
-_ORDERED_BY = 0.02  # by how much, relative, the search wants one segment below the other
-_WEIGHTS = {"early": 0.5, "ordering": 0.3, "settling": 2.0, "response": 1.0}
+_NO_FIGURES = 1e4  # cost of a guess that gives none, and the most of any: five times a figure
+_NEAR = 0.02  # of a limit: a guess that comes nearer is no safe one
 
 
 class Predicted(Protocol):
@@ -93,25 +92,33 @@ class Outcome:
     prediction: Predicted | None = None
 
     def cost(self, targets: Targets) -> float:
-        """Sum of squares of what is wrong, figures by their logarithm: 0 when all is as wanted."""
+        """Sum of squares of what is wrong, each over what is allowed: a condition that just holds adds 1.
+
+        Figures are to be met, by their logarithm. What only must not be exceeded costs nothing until it comes
+        near its limit.
+        """
         total = 0.0
+        allowed = math.log1p(targets.tolerance)
         for name, wanted in targets.values.items():
-            figure, early = self.figures[name], self.early[name]
-            if figure is None or figure <= 0.0:
-                return _NO_FIGURES
-            total += math.log(figure / wanted) ** 2
-            if early is not None and early > 0.0:
-                total += _WEIGHTS["early"] * math.log(figure / early) ** 2
-        for ratio in self.ratios.values():
-            if ratio is not None and ratio > 0.0:
-                total += _WEIGHTS["ordering"] * max(0.0, math.log(ratio) + _ORDERED_BY) ** 2
-        for deviation in self.unsettled.values():
-            total += _WEIGHTS["settling"] * max(0.0, deviation - SETTLED_SHARE) ** 2
+            for figure in (self.figures[name], *([self.early[name]] if targets.first_seconds else [])):
+                if figure is None or figure <= 0.0:
+                    return _NO_FIGURES
+                total += (math.log(figure / wanted) / allowed) ** 2
+        limited = [ratio for ratio in self.ratios.values() if ratio is not None]
+        limited += [deviation / SETTLED_SHARE for deviation in self.unsettled.values()]
         if targets.response:
             for name, found in self.misfit.items():
-                for value, limit in zip(found, targets.response.within[name], strict=True):
-                    total += _WEIGHTS["response"] * max(0.0, value / limit - 1.0) ** 2
+                limited += [
+                    value / most for value, most in zip(found, targets.response.within[name], strict=True)
+                ]
+        total += sum(_beyond(share) for share in limited)
         return min(total, _NO_FIGURES)
+
+
+def _beyond(share: float) -> float:
+    """What a share of a limit costs: 1 at it, in proportion beyond, where squares would drown the figures."""
+    by = max(0.0, share - 1.0 + _NEAR) / _NEAR
+    return by**2 if by < 1.0 else 2.0 * by - 1.0
 
 
 class Trial:

@@ -32,7 +32,7 @@ def command(
             help="look at this effect, or 'controller', and at no other; may be repeated",
         ),
     ] = None,
-    evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="predicted runs to spend")] = 700,
+    evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="predicted runs to spend")] = 2000,
     seed: Annotated[int, typer.Option(min=0, help="of the scattered guesses")] = 0,
     out: Annotated[
         Path | None, typer.Option(help="directory for the results; default: out/explain-NNN")

@@ -1,6 +1,8 @@
 """What brings a predicted run to target figures: sizes, targets, search, conditions and what is told."""
 
+import itertools
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +17,8 @@ from hil.analysis.target_search import (
     files_of,
     read_targets,
 )
+from hil.analysis.target_search._search import Search
+from hil.analysis.target_search._trial import Outcome
 from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, load_model, model_from_dict
@@ -78,7 +82,9 @@ def test_the_base_model_at_its_own_figure_costs_nothing():
     figure = trial.of(Guess({}, {})).figures[PEAK]
     assert figure is not None
     assert trial.of(Guess({}, {})).cost(targets(figure, first_seconds=0.7)) == pytest.approx(0.0)
-    assert trial.of(Guess({}, {})).cost(targets(2.0 * figure)) == pytest.approx(np.log(2.0) ** 2)
+    assert trial.of(Guess({}, {})).cost(targets(2.0 * figure)) == pytest.approx(
+        (np.log(2.0) / np.log(1.05)) ** 2
+    )
 
 
 def test_a_guess_that_cannot_be_carried_out_has_no_figure_and_a_high_cost():
@@ -86,7 +92,38 @@ def test_a_guess_that_cannot_be_carried_out_has_no_figure_and_a_high_cost():
     refused = Guess({}, {"wheel_radius": -1.0})
     outcome = trial.of(refused)
     assert outcome.figures == {PEAK: None}
-    assert outcome.cost(trial.targets) == 9.0
+    assert outcome.cost(trial.targets) == 1e4
+
+
+def test_a_condition_at_its_limit_costs_as_much_as_a_figure_at_its_own_and_one_well_within_nothing():
+    wanted = targets(400.0, settles={"s": 0.1})
+    at = {"figures": {PEAK: 400.0}, "early": {PEAK: None}, "misfit": {}}
+    assert Outcome(**at, ratios={"a": 0.97}, unsettled={"s": 0.03}).cost(wanted) == 0.0
+    assert Outcome(**at, ratios={"a": 1.0}, unsettled={"s": 0.05}).cost(wanted) == pytest.approx(2.0)
+    late = Outcome({PEAK: 400.0 * 1.05}, {PEAK: None}, {"a": 1.02}, {}, {})
+    assert late.cost(wanted) == pytest.approx(1.0 + 3.0)
+
+
+def test_where_a_figure_has_many_hollows_the_deepest_is_found():
+    """One that no descent from the scattered guesses finds, with the looks that it has."""
+
+    class Hollows:
+        targets = None
+
+        def of(self, guess):
+            order = guess.effects["wheel_order_disturbance"]["order"]
+            return SimpleNamespace(
+                cost=lambda _: float(1.0 - np.cos(20.0 * (order - 4.4)) + (order - 4.4) ** 2)
+            )
+
+    ripple = next(c for c in candidates(BASE, 326.0, {}) if c.id == "wheel_order_disturbance")
+    search = Search(Hollows(), 300, 1, lambda text, share: None, lambda: False)
+    search.carry_out((ripple,))
+    assert search.best[0].cost < 1e-3
+    assert search.done <= 310
+    places = search.places((ripple,), 5)
+    assert [one.cost for one in places] == sorted(one.cost for one in places)
+    assert all(np.max(np.abs(a.point - b.point)) > 0.02 for a, b in itertools.combinations(places, 2))
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy import signal
 
-from hil.analysis.diagnosis.data._thresholds import FLOOR_BAND
+from hil.analysis.diagnosis.data._thresholds import CANCELLING, FLOOR_BAND
 from hil.analysis.diagnosis.data._trace import Trace
 
 Array = npt.NDArray[np.float64]
@@ -20,17 +20,69 @@ def noise_levels(traces: Sequence[Trace]) -> Array:
     The median over frequency and over recordings leaves out lines and blows. NaN for a channel that no
     recording has.
     """
-    levels = np.full((len(traces), 3), np.nan)
-    for row, trace in enumerate(traces):
-        rate = 1.0 / trace.dt
-        for column in np.flatnonzero(trace.has).tolist():
-            length = min(1024, len(trace.samples))
-            f, density = signal.welch(trace.samples[:, column], rate, nperseg=length, average="median")
-            inside = (f >= FLOOR_BAND[0] * rate) & (f <= FLOOR_BAND[1] * rate)
-            levels[row, column] = np.sqrt(np.median(density[inside]) * rate / 2.0)
+    return _pooled(
+        [[_level(t.samples[:, c], t.dt) if t.has[c] else np.nan for c in range(3)] for t in traces]
+    )
+
+
+def cancelling(traces: Sequence[Trace], noise: Array) -> Array:
+    """Noise per sample as block means show it, shape (3,): NaN unless it is clearly less than `noise`.
+
+    Errors of neighbouring samples cancel where a speed is the difference of an encoder's positions: its
+    noise grows with frequency, and means of some samples know the speed far better than white noise would
+    let them.
+    """
+    shown = _pooled(
+        [
+            [
+                _level(t.measured[:, c], t.dt * t.block) * np.sqrt(t.block) if t.has[c] else np.nan
+                for c in range(3)
+            ]
+            for t in traces
+        ]
+    )
+    return np.where(shown < CANCELLING * noise, shown, np.nan)
+
+
+def rising(traces: Sequence[Trace], means: Array, noise: Array) -> Array:
+    """Standard deviation per sample of noise that grows with frequency, like `noise` elsewhere; shape (3,).
+
+    Its spectrum above that of block means counts as it is. Below it, power in proportion to the square of the
+    frequency has a third of what it has there: `means`, from `cancelling`, squared.
+    """
+    levels = [
+        [_risen(t, c, float(means[c])) if t.has[c] and np.isfinite(means[c]) else np.nan for c in range(3)]
+        for t in traces
+    ]
+    risen = _pooled(levels)
+    return np.where(np.isfinite(risen), risen, noise)
+
+
+def _risen(trace: Trace, column: int, means: float) -> float:
+    f, density = _spectrum(trace.samples[:, column], trace.dt)
+    above = f > 0.5 / (trace.dt * trace.block)
+    share = float(np.mean(above))
+    return float(np.sqrt(share * np.mean(density[above]) * 0.5 / trace.dt + (1.0 - share) * means**2 / 3.0))
+
+
+def _level(values: Array, step: float) -> float:
+    """Standard deviation of a sample of what the top of the spectrum shows; `step` in s."""
+    f, density = _spectrum(values, step)
+    inside = (f >= FLOOR_BAND[0] / step) & (f <= FLOOR_BAND[1] / step)
+    return float(np.sqrt(np.median(density[inside]) * 0.5 / step))
+
+
+def _spectrum(values: Array, step: float) -> tuple[Array, Array]:
+    f, density = signal.welch(values, 1.0 / step, nperseg=min(1024, len(values)), average="median")
+    return f, density
+
+
+def _pooled(levels: Sequence[Sequence[float]]) -> Array:
+    """Median of each column over the rows that have it; NaN where none has."""
+    rows = np.array(levels)
     pooled = np.full(3, np.nan)
     for column in range(3):
-        known = levels[np.isfinite(levels[:, column]), column]
+        known = rows[np.isfinite(rows[:, column]), column]
         if known.size:
             pooled[column] = float(np.median(known))
     return pooled

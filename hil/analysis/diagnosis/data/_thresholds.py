@@ -153,6 +153,14 @@ LEAST_LEVELS: Annotated[int, Means("levels", "fewer show no grid", "grid")] = 4
 FLOOR_BAND: Annotated[
     tuple[float, float], Means("of the sample rate", "above all modes: what is left there is noise", "noise")
 ] = (0.25, 0.48)
+CANCELLING: Annotated[
+    float,
+    Means(
+        "of the noise per sample",
+        "below it block means show that errors of neighbouring samples cancel: a differentiated position",
+        "noise",
+    ),
+] = 0.75
 
 INVERTED: Annotated[float, Means("correlation", "below it a channel is inverted", "bad_input")] = -0.5
 RELATED: Annotated[

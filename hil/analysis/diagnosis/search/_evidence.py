@@ -108,7 +108,7 @@ class Evidence:
 def split_of(problem: Problem, one: Fit) -> Split:
     """Physics and noise in the errors of a fit, no more noise than is proven, no less than is white."""
     parts = split(problem.traces, problem.weights, [errors.channels for errors in one.errors])
-    white = np.nan_to_num(problem.floor / problem.noise) ** 2
+    white = np.nan_to_num(np.minimum(problem.floor / problem.noise, 1.0)) ** 2
     return parts.within(problem.proven, WHITE_AT_LEAST * white)
 
 
