@@ -8,14 +8,16 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from hil.analysis.diagnosis._asked import Asked
 from hil.analysis.diagnosis.data._grid import coarse_noise, grids
 from hil.analysis.diagnosis.data._noise import cancelling, rising
-from hil.analysis.diagnosis.data._sanity import examined
+from hil.analysis.diagnosis.data._sanity import Examined, examined
 from hil.analysis.diagnosis.data._stated import stated_noise
-from hil.analysis.diagnosis.data._thresholds import COARSE_SAMPLE_S
+from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._allowance import UNBOUNDED, Allowance, OutOfTimeError
+from hil.analysis.diagnosis.fit._between_samples import likelier_requests
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, untold
 from hil.analysis.diagnosis.fit._fit import fit, polished
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
@@ -33,6 +35,8 @@ from hil.analysis.plausible import refuse_same_data, within_floating_point
 from hil.core.model import EffectUse, Model
 from hil.core.recording import Recording
 from hil.plant import gear_ratio_of
+
+Array = npt.NDArray[np.float64]
 
 ASK_FOR_CHAIN = (
     "transfer functions have no parts: what is missing inside the axle (play, friction, a mount, a tyre) "
@@ -85,32 +89,9 @@ def _diagnosed(
 ) -> Diagnosis:
     began = time.perf_counter()
     show("reading the noise")
-    seen = examined(model, recordings)
-    held = examined(model, holdout, seen.traces)
-    traces = seen.traces
-    notes = [f"{t.name}: {n}" for t in traces for n in t.notes] + seen.notes
-    notes += [
-        f"{t.name} is sampled at {1.0 / t.dt:.4g} Hz: torque between samples is not known, and a gap "
-        "at changes of torque may be no more than that"
-        for t in traces
-        if t.dt > COARSE_SAMPLE_S
-    ]
-    rounded = grids(traces, seen.noise)
-    means = cancelling(traces, seen.noise)
-    noise = rising(traces, means, seen.noise)
-    held = replace(held, noise=np.where(np.isfinite(means), noise, held.noise))
-    allowance = Allowance(asked.at_most_s)
-    problem = problem_of(
-        traces,
-        np.where(np.isfinite(means), means, coarse_noise(noise, rounded)),
-        gear_ratio_of(model) or 1.0,
-        floor=noise,
-        stated=asked.noise,
-        allowance=allowance,
-        functions=model.transfer_functions,
-    )
-    found, unfinished = _searched(problem, Hypothesis(model, held=untold(traces)), rounded, show)
-    allowance.lift()
+    base, problem, held, rounded, notes = _made_ready(model, recordings, holdout, asked)
+    found, unfinished = _searched(problem, base, rounded, show)
+    problem.allowance.lift()
     if unfinished == OUT_OF_TIME:
         unfinished = f"{asked.at_most_s / 60.0:.3g} min of processor time were up (--at-most)"
     problem = replace(problem, traces=found.evidence.problem.traces, angles=found.best.angles)
@@ -128,6 +109,39 @@ def _diagnosed(
         notes.append(ASK_FOR_CHAIN)
     judged = Judged(problem, found, verdict, held, by_chance, asked.least, unfinished)
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)
+
+
+def _made_ready(
+    model: Model, recordings: Sequence[Recording], holdout: Sequence[Recording], asked: Asked
+) -> tuple[Hypothesis, Problem, Examined, list[EffectUse], list[str]]:
+    """The base model, what is to be fitted and what is held out, roundings of channels, notes on the data."""
+    seen = examined(model, recordings)
+    held = examined(model, holdout, seen.traces)
+    base = Hypothesis(model, held=untold(seen.traces))
+    rounded = grids(seen.traces, seen.noise)
+    means = cancelling(seen.traces, seen.noise)
+    noise = rising(seen.traces, means, seen.noise)
+
+    weighed = np.where(np.isfinite(means), means, coarse_noise(noise, rounded))
+
+    def problem_with(traces: Sequence[Trace], unsure: float | Array = 0.0) -> Problem:
+        return problem_of(
+            traces,
+            np.hypot(weighed, unsure),
+            gear_ratio_of(model) or 1.0,
+            floor=np.hypot(noise, unsure),
+            stated=asked.noise,
+            allowance=Allowance(asked.at_most_s),
+            functions=model.transfer_functions,
+        )
+
+    taken, unseen = (
+        likelier_requests(t, base, lambda trace: problem_with([trace])) for t in (seen.traces, held.traces)
+    )
+    level = np.hypot(np.where(np.isfinite(means), noise, held.noise), unseen.unsure)
+    held = replace(held, traces=unseen.traces, noise=level)
+    notes = [f"{t.name}: {n}" for t in taken.traces for n in t.notes] + seen.notes + taken.notes
+    return base, problem_with(taken.traces, taken.unsure), held, rounded, notes
 
 
 def _searched(

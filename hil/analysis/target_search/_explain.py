@@ -21,7 +21,7 @@ from hil.core.suggestion import did_you_mean
 #: Rivals that are told.
 RIVALS = 4
 #: Guesses of each that are tried on all conditions until one holds them.
-_CHECKED = 6
+_CHECKED = 24
 
 
 @dataclass(frozen=True)

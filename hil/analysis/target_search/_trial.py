@@ -25,6 +25,7 @@ _SHAFT_TORQUE = "shaft_torque_nm"
 _BAND_HZ = (0.05, 30.0)
 _FREQUENCIES = 200
 _NO_FIGURES = 1e4  # cost of a guess that gives none, and the most of any: five times a figure
+_MISSED = 10.0  # slope of the cost of a condition that is missed, five times that of one that just holds
 _NEAR = 0.02  # of a limit: a guess that comes nearer is no safe one
 
 
@@ -92,10 +93,10 @@ class Outcome:
     prediction: Predicted | None = None
 
     def cost(self, targets: Targets) -> float:
-        """Sum of squares of what is wrong, each over what is allowed: a condition that just holds adds 1.
+        """Sum of what is wrong, each over what is allowed: a condition that just holds adds 1.
 
         Figures are to be met, by their logarithm. What only must not be exceeded costs nothing until it comes
-        near its limit.
+        near its limit. A condition that is missed costs far more than how well others hold.
         """
         total = 0.0
         allowed = math.log1p(targets.tolerance)
@@ -103,7 +104,7 @@ class Outcome:
             for figure in (self.figures[name], *([self.early[name]] if targets.first_seconds else [])):
                 if figure is None or figure <= 0.0:
                     return _NO_FIGURES
-                total += (math.log(figure / wanted) / allowed) ** 2
+                total += _cost(abs(math.log(figure / wanted)) / allowed)
         limited = [ratio for ratio in self.ratios.values() if ratio is not None]
         limited += [deviation / SETTLED_SHARE for deviation in self.unsettled.values()]
         if targets.response:
@@ -111,14 +112,13 @@ class Outcome:
                 limited += [
                     value / most for value, most in zip(found, targets.response.within[name], strict=True)
                 ]
-        total += sum(_beyond(share) for share in limited)
+        total += sum(_cost(max(0.0, share - 1.0 + _NEAR) / _NEAR) for share in limited)
         return min(total, _NO_FIGURES)
 
 
-def _beyond(share: float) -> float:
-    """What a share of a limit costs: 1 at it, in proportion beyond, where squares would drown the figures."""
-    by = max(0.0, share - 1.0 + _NEAR) / _NEAR
-    return by**2 if by < 1.0 else 2.0 * by - 1.0
+def _cost(share: float) -> float:
+    """What a share of what is allowed costs: its square, steeply more than 1 beyond."""
+    return share**2 if share < 1.0 else 1.0 + _MISSED * (share - 1.0)
 
 
 class Trial:

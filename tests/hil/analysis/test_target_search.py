@@ -3,6 +3,7 @@
 import itertools
 from pathlib import Path
 from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -83,7 +84,7 @@ def test_the_base_model_at_its_own_figure_costs_nothing():
     assert figure is not None
     assert trial.of(Guess({}, {})).cost(targets(figure, first_seconds=0.7)) == pytest.approx(0.0)
     assert trial.of(Guess({}, {})).cost(targets(2.0 * figure)) == pytest.approx(
-        (np.log(2.0) / np.log(1.05)) ** 2
+        1.0 + 10.0 * (np.log(2.0) / np.log(1.05) - 1.0)
     )
 
 
@@ -97,11 +98,11 @@ def test_a_guess_that_cannot_be_carried_out_has_no_figure_and_a_high_cost():
 
 def test_a_condition_at_its_limit_costs_as_much_as_a_figure_at_its_own_and_one_well_within_nothing():
     wanted = targets(400.0, settles={"s": 0.1})
-    at = {"figures": {PEAK: 400.0}, "early": {PEAK: None}, "misfit": {}}
-    assert Outcome(**at, ratios={"a": 0.97}, unsettled={"s": 0.03}).cost(wanted) == 0.0
-    assert Outcome(**at, ratios={"a": 1.0}, unsettled={"s": 0.05}).cost(wanted) == pytest.approx(2.0)
+    at: tuple[dict[str, float | None], dict[str, float | None]] = ({PEAK: 400.0}, {PEAK: None})
+    assert Outcome(*at, {"a": 0.97}, {"s": 0.03}, {}).cost(wanted) == 0.0
+    assert Outcome(*at, {"a": 1.0}, {"s": 0.05}, {}).cost(wanted) == pytest.approx(2.0)
     late = Outcome({PEAK: 400.0 * 1.05}, {PEAK: None}, {"a": 1.02}, {}, {})
-    assert late.cost(wanted) == pytest.approx(1.0 + 3.0)
+    assert late.cost(wanted) == pytest.approx(1.0 + 11.0)
 
 
 def test_where_a_figure_has_many_hollows_the_deepest_is_found():
@@ -117,7 +118,7 @@ def test_where_a_figure_has_many_hollows_the_deepest_is_found():
             )
 
     ripple = next(c for c in candidates(BASE, 326.0, {}) if c.id == "wheel_order_disturbance")
-    search = Search(Hollows(), 300, 1, lambda text, share: None, lambda: False)
+    search = Search(cast("Trial", Hollows()), 300, 1, lambda text, share: None, lambda: False)
     search.carry_out((ripple,))
     assert search.best[0].cost < 1e-3
     assert search.done <= 310

@@ -284,6 +284,9 @@ COARSE_SAMPLE_S: Annotated[
     float,
     Means("s", "with longer ones torque between samples is not known, and a note says so", "trace"),
 ] = 0.004
+STEPPED: Annotated[
+    float, Means("of the rms change from sample to sample", "a smaller median: the request is steps", "trace")
+] = 0.03
 SLOWEST_SAMPLE_S: Annotated[float, Means("s", "a recording sampled more slowly is refused", "bad_input")] = (
     0.02
 )

@@ -42,6 +42,23 @@ FAR_ROUNDS: Annotated[int, Means("rounds", "of each of these fits", "far")] = 8
 STEP: Annotated[
     float, Means("natural logarithm, or typical sizes", "finite difference of a coordinate", "hidden")
 ] = 1e-3
+SMOOTHER: Annotated[
+    float,
+    Means(
+        "of the squared error of a held request",
+        "a smooth one must leave less: requests are mostly held",
+        "trace",
+    ),
+] = 0.8
+UNSURE: Annotated[
+    tuple[float, float],
+    Means(
+        "of what a held and a smooth request do differently",
+        "so much of a coarsely sampled channel counts as not known: what is not smooth nor held does, and of "
+        "steps nobody knows when between two samples they came",
+        "trace",
+    ),
+] = (0.1, 1.0)
 MOST_ROUNDS: Annotated[int, Means("rounds", "of a fit at most", "hidden")] = 14
 POLISHED: Annotated[
     float,

@@ -181,10 +181,13 @@ def test_an_interrupt_before_anything_is_known_ends_the_diagnosis() -> None:
 
 
 @pytest.mark.slow
-def test_coarse_samples_are_said_to_hide_the_torque() -> None:
-    """With the right model no effect may be named because torque between samples is not known."""
-    some = recordings(Truth(), 1, short=True, only=SOME)
+@pytest.mark.parametrize("truth", [Truth(), Truth(saturation=20.0)], ids=["nothing", "saturation"])
+def test_every_tenth_sample_tells_nearly_as_much_and_says_what_it_hides(truth: Truth) -> None:
+    """Torque between samples is not known, which must neither be named nor spoil the model."""
+    some = recordings(truth, 1, short=True, only=SOME)
     coarse = [replace(r, channels={name: values[::10] for name, values in r.channels.items()}) for r in some]
     found = diagnose(MODEL, coarse)
-    assert names(found) == []
+    expected = ("none", []) if truth == Truth() else ("named", ["torque_saturation"])
+    assert (found.verdict, names(found)) == expected
+    assert not found.worse
     assert any("sampled at 100 Hz" in note for note in found.notes)
