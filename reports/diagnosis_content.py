@@ -60,11 +60,13 @@ def lead(found: Diagnosis) -> str:
     before, after = _over_noise(found.gap_before), _over_noise(found.gap_after)
     worst, left = max(before, key=lambda c: before[c]), max(after.values())
     name = channel_label(worst).text.lower()
+    held = max(_over_noise(found.holdout_after).values(), default=None)
+    also = "" if held is None else f", {held:.2f} times in recordings that no fit has seen"
     if found.verdict == "none":
-        return f"The gap is at most {left:.2f} times the noise."
+        return f"The gap is at most {left:.2f} times the noise{also}."
     return (
         f"The model as it came leaves a gap of up to {before[worst]:.3g} times the noise ({name}); the model "
-        f"given back leaves {left:.2f} times the noise at most."
+        f"given back leaves {left:.2f} times the noise at most{also}."
     )
 
 

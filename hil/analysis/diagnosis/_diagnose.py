@@ -23,11 +23,13 @@ from hil.analysis.diagnosis.fit._fit import fit, polished
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._reweighted import reweighted
 from hil.analysis.diagnosis.search._by_chance import most_by_chance
-from hil.analysis.diagnosis.search._foretold import left_out
+from hil.analysis.diagnosis.search._evidence import Evidence
+from hil.analysis.diagnosis.search._foretold import counted_after_all, left_out
 from hil.analysis.diagnosis.search._from_base import search_from_base
+from hil.analysis.diagnosis.search._hopping import hopped
 from hil.analysis.diagnosis.search._search import Found, begun, search, so_far
 from hil.analysis.diagnosis.search._wandering import with_wandering
-from hil.analysis.diagnosis.tell._confidence import drop_of
+from hil.analysis.diagnosis.tell._confidence import Sure, drop_of
 from hil.analysis.diagnosis.tell._judged import Judged
 from hil.analysis.diagnosis.tell._result import INTERRUPTED, OUT_OF_TIME, Diagnosis, Verdict
 from hil.analysis.diagnosis.tell._verdict import verdict_of
@@ -95,7 +97,6 @@ def _diagnosed(
     if unfinished == OUT_OF_TIME:
         unfinished = f"{asked.at_most_s / 60.0:.3g} min of processor time were up (--at-most)"
     problem = replace(problem, traces=found.evidence.problem.traces, angles=found.best.angles)
-    notes += left_out(problem)
     show("judging")
     verdict: Verdict = "unknown" if unfinished else verdict_of(found, bool(rounded))
     by_chance = None
@@ -103,12 +104,24 @@ def _diagnosed(
         by_chance = most_by_chance(problem, found.best)
         if min(drop_of(found, index) for index in range(len(found.best.hypothesis.terms))) <= by_chance:
             verdict = "none" if found.evidence.closed(found.base) else "unknown"
+    sure = Sure.of(found) if verdict == "named" else None
     if verdict == "named":
-        found.best = with_wandering(problem, reweighted(problem, polished(problem, found.best)))
+        problem = _with_care(problem, found)
+    notes += left_out(problem)
     if problem.functions and verdict == "unknown":
         notes.append(ASK_FOR_CHAIN)
-    judged = Judged(problem, found, verdict, held, by_chance, asked.least, unfinished)
+    judged = Judged(problem, found, verdict, held, by_chance, asked.least, unfinished, sure)
     return judged.diagnosis(rounded, notes, time.perf_counter() - began)
+
+
+def _with_care(problem: Problem, found: Found) -> Problem:
+    """What is named in `found` fitted to its end, to all that it foretells; where errors count then."""
+    if problem.partial:
+        problem, found.best = counted_after_all(problem, found.base, found.best)
+        found.evidence = Evidence(problem, found.base, found.evidence.rounding)
+    found.best = hopped(problem, found.best)
+    found.best = with_wandering(problem, reweighted(problem, polished(problem, found.best)))
+    return problem
 
 
 def _made_ready(

@@ -23,6 +23,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     FORETOLD_ROUNDS,
     FORETOLD_SAME,
     LEAST_FORETOLD,
+    MORE_FORETOLD,
     MOST_APART,
     MOST_OF_ERROR,
     MUCH_APART,
@@ -77,6 +78,23 @@ def where_foretold(
     return None if judged is None else (judged, one)
 
 
+def counted_after_all(problem: Problem, base: Fit, named: Fit) -> tuple[Problem, Fit]:
+    """`named` fitted wherever it foretells the motion itself: the law tried first may have foretold less.
+
+    Flanks that damp, or pull, forget how a motion began where those that only bounce do not.
+    """
+    whole = problem.judging_all()
+    flags = foretold_where(whole, fit(whole, base.hypothesis, base.starts, base.theta, rounds=0), named)
+    wider = whole if flags is None else whole.judging(flags)
+    if _judged(wider) < _judged(problem) + MORE_FORETOLD:
+        return problem, named
+    return wider, fit(wider, named.hypothesis, named.starts, named.theta)
+
+
+def _judged(problem: Problem) -> float:
+    return _share([trace.judged_blocks for trace in problem.traces])
+
+
 def left_out(problem: Problem) -> list[str]:
     """In words the stretches in which errors do not count."""
     words = []
@@ -85,8 +103,8 @@ def left_out(problem: Problem) -> list[str]:
             continue
         share = 100.0 * (1.0 - float(np.mean(trace.judged)))
         words.append(
-            f"{trace.name}: {share:.3g} % of it are not judged: no model foretells the motion there "
-            "(with a torque that is a thousandth off it is another)"
+            f"{trace.name}: {share:.3g} % of it are not judged: the model does not foretell its motion there "
+            "(with noise of a thousandth of the torque, or begun elsewhere in the play, it is another)"
         )
     return words
 

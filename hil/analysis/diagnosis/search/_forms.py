@@ -17,6 +17,7 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._places import placed
+from hil.analysis.diagnosis.search._race import nominal
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
     AS_GOOD,
@@ -36,13 +37,21 @@ def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
     """`best`, or its newest effect by the law of another author that leaves clearly less."""
     if not EFFECTS[best.hypothesis.ids[-1]].forms or evidence.closed(best):
         return best
-    first = by_likeliest_law(evidence, best)
-    problem = evidence.problem.with_angles(best.angles)
-    first = _widened(problem, fit(problem, first.hypothesis, first.starts, first.theta))
+    first = _by_likeliest_law_to_the_end(evidence, best)
+    if not evidence.settled(first) and not evidence.all_but(first):
+        # numbers of the base that a wrong law has bent lead no law back
+        plain = replace(best, theta=nominal(best.hypothesis, best.theta))
+        first = min(first, _by_likeliest_law_to_the_end(evidence, plain), key=rank)
     less = evidence.left(first) < FORM_LEAVES * evidence.left(best)
     if not less or evidence.between(best, first) < LEAST_EVIDENCE:
         return best
     return first if evidence.problem.partial else placed(evidence, first)
+
+
+def _by_likeliest_law_to_the_end(evidence: Evidence, best: Fit) -> Fit:
+    problem = evidence.problem.with_angles(best.angles)
+    first = by_likeliest_law(evidence, best)
+    return _widened(problem, fit(problem, first.hypothesis, first.starts, first.theta))
 
 
 def by_likeliest_law(evidence: Evidence, one: Fit) -> Fit:

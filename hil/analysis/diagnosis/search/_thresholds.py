@@ -193,6 +193,20 @@ MOST_OF_ERROR: Annotated[
         "foretold",
     ),
 ] = 0.5
+MORE_FORETOLD: Annotated[
+    float, Means("of all blocks", "that the law named foretells beyond the first: it is fitted anew", "blind")
+] = 0.01
+HOPS: Annotated[int, Means("fits", "from near the one that is told, of a play", "blind")] = 30
+HOPS_IN_VAIN: Annotated[
+    int, Means("fits", "in a row that find nothing lower: then it is the lowest", "blind")
+] = 10
+HOP_SIZES: Annotated[
+    tuple[float, float], Means("natural logarithm", "by which numbers are moved, standard deviation", "blind")
+] = (5e-5, 2e-3)
+HOLLOWS: Annotated[
+    float,
+    Means("of the least squared error", "hollows as deep say how well numbers are known", "blind"),
+] = 1.05
 LEAST_FORETOLD: Annotated[
     float, Means("of the recordings", "must be foretold: of less nothing is concluded", "foretold")
 ] = 0.4

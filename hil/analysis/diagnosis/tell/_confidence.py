@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from hil.analysis.diagnosis.fit._coordinates import key_of
@@ -145,3 +147,25 @@ def _others(found: Found, verdict: str) -> list[tuple[Fit, Fit, float]]:
 def _uses(one: Fit) -> list[tuple[EffectUse, tuple[str, str]]]:
     uses = one.hypothesis.model(one.theta).effects[len(one.hypothesis.base.effects) :]
     return [(use, key_of(use)) for use in uses]
+
+
+@dataclass(frozen=True)
+class Sure:
+    """How sure the names are, by the fits that the search compared: whatever is fitted anew afterwards.
+
+    Of each effect its confidence and what it takes off the squared error; other names for the gap.
+    """
+
+    confidences: tuple[float, ...]
+    drops: tuple[float, ...]
+    alternatives: tuple[Alternative, ...]
+
+    @classmethod
+    def of(cls, found: Found) -> Sure:
+        """Of the accepted hypothesis."""
+        each = range(len(found.best.hypothesis.terms))
+        return cls(
+            tuple(confidence_of(found, index) for index in each),
+            tuple(drop_of(found, index) for index in each),
+            alternatives_of(found, "named"),
+        )

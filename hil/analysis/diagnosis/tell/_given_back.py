@@ -15,7 +15,7 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._simulated import settled_starts, simulated_samples
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._result import Verdict
-from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES, SPOILT
+from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES, HALVED, SPOILT
 
 Array = npt.NDArray[np.float64]
 
@@ -48,9 +48,9 @@ class GivenBack:
 
     @property
     def trades(self) -> bool:
-        """Whether its numbers leave a channel further off, and no channel nearer for it."""
+        """Whether its numbers leave anything further off, and not every channel far nearer for it."""
         was, is_ = self.before.gaps, self.after.gaps
-        return _spoils(was, is_) or bool(self.worse and not _gains(was, is_))
+        return _spoils(was, is_) or bool(self.worse and not _halves(was, is_))
 
 
 def given_back(problem: Problem, found: Found, verdict: Verdict, floor: Array) -> tuple[GivenBack, list[str]]:
@@ -91,6 +91,6 @@ def _spoils(was: Mapping[str, ChannelGap], is_: Mapping[str, ChannelGap]) -> boo
     return any(is_[c].gap > SPOILT * was[c].gap and is_[c].noises > CHANNEL_NOISES for c in is_)
 
 
-def _gains(was: Mapping[str, ChannelGap], is_: Mapping[str, ChannelGap]) -> bool:
-    """Whether they bring any channel clearly nearer."""
-    return any(was[c].gap > SPOILT * is_[c].gap for c in is_)
+def _halves(was: Mapping[str, ChannelGap], is_: Mapping[str, ChannelGap]) -> bool:
+    """Whether they leave half at most of the gap of each channel that had more than noise."""
+    return all(is_[c].gap < HALVED * was[c].gap for c in is_ if was[c].noises > CHANNEL_NOISES)

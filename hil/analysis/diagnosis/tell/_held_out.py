@@ -2,39 +2,90 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
+import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._gap import ChannelGap, channel_gaps
 from hil.analysis.diagnosis.data._sanity import Examined
+from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._simulated import settled_starts, simulated_samples
 from hil.analysis.diagnosis.search._alignment import has_ripple
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.search._tracking import track
-from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES, SHUT_BY_LAW
+from hil.analysis.diagnosis.tell._result import Verdict
+from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S
+from hil.core.channels import OUTPUTS
 
+Array = npt.NDArray[np.float64]
 Gaps = dict[str, ChannelGap]
 
+_WHAT_TO_DO = (
+    "something is missing, or a number is wrong, that the recordings fitted do not show; give those held out "
+    "as recordings too, and hold others out"
+)
 
-def held_out_gaps(problem: Problem, holdout: Examined, found: Found, kept: Fit) -> tuple[Gaps, Gaps]:
-    """Gaps of the recordings held out, with the model as it came and with `kept`; both empty without any.
 
-    Only initial values are fitted to them and, with a ripple, the drift of the angle that it follows.
+@dataclass(frozen=True)
+class Event:
+    """The moment at which a held-out recording is furthest off: rms over `EVENT_S` in noise levels."""
+
+    channel: str
+    recording: str
+    time_s: float
+    noises: float
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """Gaps with the model as it came and with the one given back, empty without recordings held out."""
+
+    before: Gaps
+    after: Gaps
+    event: Event | None
+
+    @property
+    def open(self) -> tuple[str, ...]:
+        """Channels that keep more than noise, whatever the fitted ones say."""
+        return tuple(channel for channel, gap in self.after.items() if gap.noises > CHANNEL_NOISES)
+
+    def words(self, verdict: Verdict) -> str:
+        """What to say where they disagree, nothing where they do not, or nothing explains the fitted either.
+
+        A moment that is far off beside hours that are not counts where nothing is said to be missing; beside
+        a name, whose law may differ a little, only what counts in the whole.
+        """
+        if verdict == "unknown":
+            return ""
+        if self.open:
+            kept = ", ".join(f"{self.after[c].noises:.3g} times its noise in {c}" for c in self.open)
+            return f"held-out recordings leave {kept}: {_WHAT_TO_DO}"
+        if verdict == "none" and self.event is not None and self.event.noises > EVENT_NOISES:
+            e = self.event
+            return (
+                f"held-out recording {e.recording} is off by {e.noises:.3g} times the noise in {e.channel} "
+                f"at {e.time_s:.4g} s: {_WHAT_TO_DO}"
+            )
+        return ""
+
+
+def held_out(problem: Problem, holdout: Examined, found: Found, kept: Fit) -> HeldOut:
+    """What the model as it came and `kept` leave of the recordings held out.
+
+    Only initial values are fitted to them and, with a ripple, the drift of the angle that it follows. A
+    sensor is as noisy as it was in the recordings fitted: blows of a play reach where noise is read.
     """
     if not holdout.traces:
-        return {}, {}
-    noise = holdout.noise
-    colouring = found.evidence.colouring(found.best)
+        return HeldOut({}, {}, None)
+    noise = np.fmin(holdout.noise, np.where(np.isfinite(problem.noise), problem.floor, holdout.noise))
+    floor = noise * found.evidence.colouring(found.best)
     weighed = np.where(np.isfinite(problem.noise), problem.noise, noise)  # rounding included
-    unseen = problem_of(
-        holdout.traces,
-        weighed,
-        problem.gear_ratio,
-        floor=noise * colouring,
-        functions=problem.functions,
-    )
-    gaps = []
+    unseen = problem_of(holdout.traces, weighed, problem.gear_ratio, floor=floor, functions=problem.functions)
+    gaps, event = [], None
     for hypothesis, theta in (
         (found.base.hypothesis, found.base.hypothesis.start()),
         (kept.hypothesis, kept.theta),
@@ -45,27 +96,22 @@ def held_out_gaps(problem: Problem, holdout: Examined, found: Found, kept: Fit) 
             _, unseen = track(followed, hypothesis, theta, starts, order_known=True, phase_known=True)
             starts = settled_starts(unseen, hypothesis, theta, starts)
         shown = simulated_samples(unseen, hypothesis, theta, starts)
-        gaps.append(channel_gaps(unseen.traces, unseen.floor, shown))
-    return gaps[0], gaps[1]
+        gaps.append(channel_gaps(unseen.traces, floor, shown))
+        event = furthest(unseen.traces, np.fmax(floor, weighed), shown)
+    return HeldOut(gaps[0], gaps[1], event)
 
 
-def disagreeing(after: Gaps, before: Gaps | None = None) -> tuple[str, ...]:
-    """Channels of held-out recordings that keep more than noise, whatever the fitted ones say.
-
-    Args:
-        before: where effects are named, the gaps without them: a tenth of their power may stay, since
-            formulas and numbers that few recordings tell differ a little.
-    """
-    most = dict.fromkeys(after, CHANNEL_NOISES**2 - 1.0)
-    for channel, gap in (before or {}).items():
-        most[channel] = max(most[channel], (1.0 - SHUT_BY_LAW) * (gap.noises**2 - 1.0))
-    return tuple(channel for channel, gap in after.items() if gap.noises**2 - 1.0 > most[channel])
-
-
-def words_on(channels: tuple[str, ...], gaps: Gaps) -> str:
-    """What to say where recordings that were held out disagree."""
-    kept = ", ".join(f"{gaps[c].noises:.3g} times its noise in {c}" for c in channels)
-    return (
-        f"held-out recordings leave {kept}: something is missing, or a number is wrong, that the recordings "
-        "fitted do not show; give those held out as recordings too, and hold others out"
-    )
+def furthest(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -> Event | None:
+    """Where simulated channels (n x 3 each recording) are furthest off for a moment, in `noise` (3,)."""
+    found = None
+    for trace, values in zip(traces, simulated, strict=True):
+        length = max(1, round(EVENT_S / trace.dt))
+        error = np.where(trace.judged_samples[:, None], (trace.samples - values) / noise, 0.0)
+        count = len(error) // length
+        power = np.mean(error[: count * length].reshape(count, length, 3) ** 2, axis=1)
+        for column in np.flatnonzero(trace.has).tolist():
+            at = int(np.argmax(power[:, column]))
+            noises = float(np.sqrt(power[at, column]))
+            if found is None or noises > found.noises:
+                found = Event(OUTPUTS[column], trace.name, (at + 0.5) * length * trace.dt, noises)
+    return found

@@ -14,12 +14,12 @@ from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._as_likely import as_likely
-from hil.analysis.diagnosis.tell._confidence import alternatives_of
+from hil.analysis.diagnosis.tell._confidence import Sure, alternatives_of
 from hil.analysis.diagnosis.tell._consequences import consequences
 from hil.analysis.diagnosis.tell._corrections import as_corrections, started, updates
 from hil.analysis.diagnosis.tell._drift import drifts
 from hil.analysis.diagnosis.tell._given_back import GivenBack, given_back
-from hil.analysis.diagnosis.tell._held_out import disagreeing, held_out_gaps, words_on
+from hil.analysis.diagnosis.tell._held_out import held_out
 from hil.analysis.diagnosis.tell._least import worth_naming
 from hil.analysis.diagnosis.tell._named import considered, lasting, named_effects
 from hil.analysis.diagnosis.tell._result import Diagnosis, NamedEffect, Overlay, Verdict
@@ -44,6 +44,8 @@ class Judged:
     least: Mapping[str, float] = field(default_factory=dict)
     #: Why the search ended before it was through, if it did.
     unfinished: str = ""
+    #: How sure names are, where these were fitted anew since.
+    sure: Sure | None = None
 
     def diagnosis(self, rounded: list[EffectUse], notes: list[str], seconds: float) -> Diagnosis:
         """All of it. `rounded` are roundings of channels, `notes` what was done with the data."""
@@ -51,15 +53,15 @@ class Judged:
         floor = problem.floor * found.evidence.colouring(found.best)
         back, trading = given_back(problem, found, self.verdict, floor)
         errors = standard_errors(problem, back.kept)
-        named = named_effects(problem, found, back, errors, rounded) if self.verdict == "named" else ()
+        sure = self.sure or (Sure.of(found) if self.verdict == "named" else Sure((), (), ()))
+        named = named_effects(problem, found, sure, back, errors, rounded) if self.verdict == "named" else ()
         small = [e for e in named if not worth_naming(e.use, problem.traces, self.least, base)]
         effects = tuple(e for e in named if e not in small)
         closes = self._closes(effects, back.kept)
-        held_before, held_after = held_out_gaps(problem, self.holdout, found, back.kept)
-        held_open = disagreeing(held_after, held_before if closes == "named" else None)
+        held = held_out(problem, self.holdout, found, back.kept)
+        said = held.words(closes)
         # what no fit has seen and nothing explains is a gap like any other
-        verdict: Verdict = "unknown" if closes == "none" and held_open else closes
-        said = words_on(held_open, held_after) if held_open else ""
+        verdict: Verdict = "unknown" if closes == "none" and said else closes
         remaining = said if verdict != closes else self._signature(back) if verdict == "unknown" else ""
         model = back.kept.hypothesis.model(back.kept.theta)
         model = model.with_effects(*lasting(model), *(rounded if self.verdict == "named" else ()))
@@ -69,12 +71,12 @@ class Judged:
             model=model,
             effects=effects,
             parameter_updates=updates(found, back.kept, errors) | as_corrections(small),
-            alternatives=alternatives_of(found, verdict),
+            alternatives=sure.alternatives if verdict == "named" else alternatives_of(found, verdict),
             considered=considered(problem, found, back.kept),
             gap_before=back.before.gaps,
             gap_after=back.after.gaps,
-            holdout_before=held_before,
-            holdout_after=held_after,
+            holdout_before=held.before,
+            holdout_after=held.after,
             map_before=back.before.map,
             map_after=back.after.map,
             signature=remaining,
@@ -90,7 +92,7 @@ class Judged:
             consequences=consequences(base, model, as_likely(back.kept, errors)),
             start=started(problem, found, back.kept, errors, floor),
             open_channels=self._open(back.kept),
-            held_out_open=held_open,
+            held_out_open=held.open,
             unfinished=self.unfinished,
             worse=tuple(back.worse),
         )

@@ -12,7 +12,7 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._simulated import simulated_samples
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
-from hil.analysis.diagnosis.tell._confidence import confidence_of, drop_of
+from hil.analysis.diagnosis.tell._confidence import Sure
 from hil.analysis.diagnosis.tell._corrections import is_correction
 from hil.analysis.diagnosis.tell._given_back import GivenBack
 from hil.analysis.diagnosis.tell._result import Considered, NamedEffect
@@ -24,7 +24,12 @@ Array = npt.NDArray[np.float64]
 
 
 def named_effects(
-    problem: Problem, found: Found, back: GivenBack, errors: Array, rounded: Sequence[EffectUse]
+    problem: Problem,
+    found: Found,
+    sure: Sure,
+    back: GivenBack,
+    errors: Array,
+    rounded: Sequence[EffectUse],
 ) -> tuple[NamedEffect, ...]:
     """The effects of the model given back, each with its errors, its place and how sure its name is.
 
@@ -52,8 +57,7 @@ def named_effects(
             if use.id == "parameter_mismatch" and c.term < 0 and c.name == use.values["parameter"]:
                 standard["value"] = float(error) * float(use.values["value"])
         place = where(problem, without, back.after.samples, back.before.map, back.after.map)
-        sure, drop = confidence_of(found, index), drop_of(found, index)
-        named.append(NamedEffect(clean(use), standard, sure, place, drop))
+        named.append(NamedEffect(clean(use), standard, sure.confidences[index], place, sure.drops[index]))
     for use in rounded:
         place = Where(
             (str(use.values["channel"]),),

@@ -94,6 +94,18 @@ SHUT_NOISELESS: Annotated[
 CHANNEL_NOISES: Annotated[
     float, Means("gap over noise floor", "up to it a channel's gap is closed", "verdict")
 ] = 1.5
+EVENT_S: Annotated[
+    float,
+    Means("s", "over which a held-out recording may be far off: a limit met but once", "verdict"),
+] = 0.1
+EVENT_NOISES: Annotated[
+    float,
+    Means(
+        "noise levels",
+        "rms over that time from which on nothing explains it; noise itself never does",
+        "verdict",
+    ),
+] = 3.0
 SPOILT: Annotated[
     float,
     Means(

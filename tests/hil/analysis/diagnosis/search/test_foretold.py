@@ -54,4 +54,4 @@ def test_elsewhere_it_is_fitted_and_judged() -> None:
     assert np.exp(one.theta[-1]) == pytest.approx(0.03, rel=0.003)
     assert Evidence(judged, fit(judged, base.hypothesis)).share(one) > 0.99
     assert left_out(problem) == []
-    assert "no model foretells" in left_out(judged)[0]
+    assert "the model does not foretell" in left_out(judged)[0]

@@ -1,23 +1,54 @@
 """Recordings that no fit has seen: how much of them may stay."""
 
+import numpy as np
+import pytest
+
 from hil.analysis.diagnosis.data._gap import ChannelGap
-from hil.analysis.diagnosis.tell._held_out import disagreeing, words_on
+from hil.analysis.diagnosis.tell._held_out import Event, HeldOut, furthest
+from hil.core.channels import OUTPUTS
+from tests.hil.analysis.diagnosis.one_recording import NOISE, one_trace
+
+ONCE = Event(OUTPUTS[2], "steps", 12.3, 8.0)
 
 
-def gaps(**noises: float) -> dict[str, ChannelGap]:
-    return {channel: ChannelGap(0.01 * n, 0.01) for channel, n in noises.items()}
+def held(event: Event | None = None, **noises: float) -> HeldOut:
+    gaps = {channel: ChannelGap(0.01 * n, 0.01) for channel, n in noises.items()}
+    return HeldOut(gaps, gaps, event)
 
 
-def test_without_a_name_more_than_noise_is_too_much_however_large_the_gap_was() -> None:
-    assert disagreeing(gaps(a=1.4, b=1.6)) == ("b",)
+@pytest.mark.parametrize("verdict", ["none", "named"])
+def test_more_than_noise_is_told_whatever_the_verdict(verdict) -> None:
+    one = held(a=1.4, b=1.6)
+    assert one.open == ("b",)
+    assert one.words(verdict).startswith(
+        "held-out recordings leave 1.6 times its noise in b: something is missing"
+    )
+    assert one.words(verdict).endswith("give those held out as recordings too, and hold others out")
+    assert held(a=1.4).words(verdict) == ""
 
 
-def test_beside_a_name_a_tenth_of_the_gap_may_stay() -> None:
-    before = gaps(a=20.0, b=20.0, c=1.0)
-    assert disagreeing(gaps(a=6.0, b=7.0, c=1.6), before) == ("b", "c")
+def test_a_moment_that_is_far_off_counts_where_nothing_is_said_to_be_missing() -> None:
+    one = held(ONCE, a=1.1)
+    assert one.words("none").startswith(
+        f"held-out recording steps is off by 8 times the noise in {OUTPUTS[2]} at 12.3 s: something"
+    )
+    assert one.words("named") == ""
 
 
-def test_it_is_said_how_much_stays_and_what_to_do() -> None:
-    said = words_on(("b",), gaps(a=1.0, b=10.0))
-    assert said.startswith("held-out recordings leave 10 times its noise in b: something is missing")
-    assert said.endswith("give those held out as recordings too, and hold others out")
+def test_where_the_fitted_ones_are_not_explained_there_is_nothing_to_add() -> None:
+    assert held(ONCE, a=9.0).words("unknown") == ""
+
+
+def test_a_limit_that_is_met_once_is_the_moment_that_is_furthest_off() -> None:
+    trace = one_trace(seconds=8.0)
+    shown = trace.samples.copy()
+    noise = np.array(NOISE)
+    calm = furthest([trace], noise, [shown + np.random.default_rng(0).normal(size=shown.shape) * noise])
+    assert calm is not None
+    assert calm.noises < 1.5
+    shown[5000:5150, 2] += 8.0 * NOISE[2]
+    event = furthest([trace], noise, [shown])
+    assert event is not None
+    assert (event.channel, event.recording) == (OUTPUTS[2], trace.name)
+    assert event.time_s == pytest.approx(5.05)
+    assert event.noises == pytest.approx(8.0)

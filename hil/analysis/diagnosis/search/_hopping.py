@@ -1,0 +1,49 @@
+"""A play fitted past its false minima.
+
+Each time that flanks meet is a corner of the cost, so that its valley is full of small hollows: a descent
+ends in the next one, far from the bottom by its own standard errors. From where it is, moved a little at
+random, it often ends lower (basin hopping: Wales and Doye, J. Phys. Chem. A 101, 1997); and how far apart
+hollows lie that are nearly as deep is how well the numbers are known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.search._thresholds import HOLLOWS, HOP_SIZES, HOPS, HOPS_IN_VAIN
+from hil.core.effects import EFFECTS
+
+Array = npt.NDArray[np.float64]
+
+
+def hopped(problem: Problem, best: Fit) -> Fit:
+    """The lowest of fits from near `best`, with the scatter of those that are nearly as low.
+
+    `best` itself where none of its effects remembers a place. The same problem gives the same hops.
+    """
+    if not any(EFFECTS[id_].law.begin is not None for id_ in best.hypothesis.ids):
+        return best
+    problem = problem.with_angles(best.angles)
+    rng = np.random.default_rng(0)
+    moved = np.array([c.scale == "log" for c in best.hypothesis.coordinates()])
+    starts = problem.first_starts()
+    fits, vain = [best], 0
+    for number in range(HOPS):
+        lowest = min(fits, key=lambda one: one.total)
+        size = np.exp(rng.uniform(*np.log(HOP_SIZES)))
+        theta = lowest.theta + size * rng.normal(size=len(moved)) * moved
+        # the place in the play at the beginning is one of the corners
+        fits.append(fit(problem, best.hypothesis, lowest.starts if number % 2 else starts, theta))
+        vain = 0 if fits[-1].total < lowest.total else vain + 1
+        if vain == HOPS_IN_VAIN:
+            break
+    lowest = min(fits, key=lambda one: one.total)
+    near = [one.theta - lowest.theta for one in fits if one.total < HOLLOWS * lowest.total]
+    apart = np.sqrt(np.mean(np.square(near), axis=0))
+    scatter = apart if lowest.scatter is None else np.hypot(lowest.scatter, apart)
+    return replace(lowest, scatter=scatter)
