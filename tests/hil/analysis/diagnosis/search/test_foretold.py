@@ -8,6 +8,7 @@ from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._foretold import _holds_most, foretold_where, left_out, where_foretold
+from hil.analysis.diagnosis.search._hopping import hopped
 from tests.hil.analysis.diagnosis.one_recording import MODEL
 from tests.hil.analysis.diagnosis.played import SECONDS, supposed, with_play
 
@@ -51,6 +52,9 @@ def test_elsewhere_it_is_fitted_and_judged() -> None:
     judged, one = found
     assert judged.partial
     assert 0.5 * problem.rows < judged.rows < 0.95 * problem.rows
+    one = hopped(
+        judged, one
+    )  # a descent ends in a hollow beside the lowest, which one is a matter of rounding
     assert np.exp(one.theta[-1]) == pytest.approx(0.03, rel=0.003)
     assert Evidence(judged, fit(judged, base.hypothesis)).share(one) > 0.99
     assert left_out(problem) == []
