@@ -96,9 +96,10 @@ def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
 def parts(found: Diagnosis) -> list[Part]:
     """All sections in order; one without tables, maps, figures and text has nothing to tell."""
     overlay = shown_overlay(found)
+    first = Part("start", "Identified first", _start_text(found), _if_any(_start(found)))
     return [
         Part("glance", "At a glance", "", figures=(_bars(found),)),
-        Part("start", "Identified first", _start_text(found), _if_any(_start(found))),
+        *([first] if found.start is not None else []),
         Part("effects", "Effects named", _effects_text(found), _if_any(_effects(found))),
         Part(
             "gap",
