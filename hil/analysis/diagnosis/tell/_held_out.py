@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.data._gap import ChannelGap, channel_gaps
 from hil.analysis.diagnosis.data._sanity import Examined
+from hil.analysis.diagnosis.data._thresholds import SLOW_UNPROVEN
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._fit import Fit
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
@@ -48,10 +49,10 @@ class HeldOut:
     after: Gaps
     event: Event | None
 
-    @property
-    def open(self) -> tuple[str, ...]:
-        """Channels that keep more than noise, whatever the fitted ones say."""
-        return tuple(channel for channel, gap in self.after.items() if gap.noises > CHANNEL_NOISES)
+    def open(self, verdict: Verdict) -> tuple[str, ...]:
+        """Channels that keep more than noise, or where nothing is named, more than is proven to be noise."""
+        most = SLOW_UNPROVEN if verdict == "none" else CHANNEL_NOISES
+        return tuple(channel for channel, gap in self.after.items() if gap.noises > most)
 
     def words(self, verdict: Verdict) -> str:
         """What to say where they disagree, nothing where they do not, or nothing explains the fitted either.
@@ -61,8 +62,8 @@ class HeldOut:
         """
         if verdict == "unknown":
             return ""
-        if self.open:
-            kept = ", ".join(f"{self.after[c].noises:.3g} times its noise in {c}" for c in self.open)
+        if channels := self.open(verdict):
+            kept = ", ".join(f"{self.after[c].noises:.3g} times its noise in {c}" for c in channels)
             return f"held-out recordings leave {kept}: {_WHAT_TO_DO}"
         if verdict == "none" and self.event is not None and self.event.noises > EVENT_NOISES:
             e = self.event

@@ -92,7 +92,7 @@ class Judged:
             consequences=consequences(base, model, as_likely(back.kept, errors)),
             start=started(problem, found, back.kept, errors, floor),
             open_channels=self._open(back.kept),
-            held_out_open=held.open,
+            held_out_open=held.open(closes),
             unfinished=self.unfinished,
             worse=tuple(back.worse),
         )
