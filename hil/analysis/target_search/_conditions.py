@@ -30,13 +30,17 @@ _FREQUENCIES = 400
 
 @dataclass(frozen=True)
 class Condition:
-    """One thing that must hold: what was found, in `unit`, what is allowed, and whether it holds."""
+    """One thing that must hold: what was found, in `unit`, what is allowed, and whether it holds.
+
+    `identified` if an identification run tells it.
+    """
 
     name: str
     found: float | None
     limit: str
     unit: str
     holds: bool
+    identified: bool = False
 
 
 def conditions_of(guess: Guess, outcome: Outcome, trial: Trial) -> tuple[Condition, ...]:
@@ -110,4 +114,4 @@ def _response(guess: Guess, trial: Trial, wanted: ResponseTarget) -> Iterator[Co
             misfit = rms_misfit(response[OUTPUTS.index(name)], wanted.functions, name, frequency)
         for value, most, unit in zip(misfit, (most_db, most_deg), ("dB", "°"), strict=True):
             holds = value is not None and value <= most
-            yield Condition(f"identified response of {name}", value, f"≤ {most:g}", unit, holds)
+            yield Condition(f"identified response of {name}", value, f"≤ {most:g}", unit, holds, True)

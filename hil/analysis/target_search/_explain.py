@@ -160,12 +160,15 @@ def explain(
 
 
 def _of_set(places: Sequence[Found], trial: Trial) -> Rival:
-    """The first guess of a set that holds every condition, identification too, or misses the fewest."""
+    """The first guess of a set that holds every condition, identification too, or misses the fewest.
+
+    The search knows all conditions but what an identification run returns: others are tried for that alone.
+    """
     rivals = []
     for found in places:
         names = tuple(candidate.id for candidate in found.chosen)
         rivals.append(_rival(names, guess_at(found.point, found.chosen), trial))
-        if not rivals[-1].missed:
+        if not rivals[-1].missed or any(not condition.identified for condition in rivals[-1].missed):
             break
     return min(rivals, key=lambda rival: (len(rival.missed), rival.cost))
 
