@@ -57,9 +57,9 @@ def unit(text: str) -> str:
 
 
 def quantity(value: float | None, of: str, decimals: int | None = None, significant: int = 4) -> str:
-    """A number with its unit, kept together on one line."""
+    """A number with its unit, kept together on one line; a ratio, of unit 1, is the number alone."""
     text = number(value, decimals, significant)
-    return f"{text}{THIN}{unit(of)}" if of and text != DASH else text
+    return f"{text}{THIN}{unit(of)}" if of not in ("", "1") and text != DASH else text
 
 
 def file_size(count: int) -> str:

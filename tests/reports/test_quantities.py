@@ -38,6 +38,7 @@ def test_a_chosen_number_gains_no_digits(value: float, text: str) -> None:
 
 def test_a_quantity_keeps_number_and_unit_together() -> None:
     assert quantities.quantity(357.1, "N m") == "357.1\u202fN\u202fm"
+    assert quantities.quantity(0.95, "1") == "0.9500"
 
 
 def test_file_sizes() -> None:

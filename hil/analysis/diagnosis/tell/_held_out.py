@@ -62,16 +62,17 @@ class HeldOut:
         """
         if verdict == "unknown":
             return ""
+        said = []
         if channels := self.open(verdict):
             kept = ", ".join(f"{self.after[c].noises:.3g} times its noise in {c}" for c in channels)
-            return f"held-out recordings leave {kept}: {_WHAT_TO_DO}"
+            said.append(f"held-out recordings leave {kept}")
         if verdict == "none" and self.event is not None and self.event.noises > EVENT_NOISES:
             e = self.event
-            return (
+            said.append(
                 f"held-out recording {e.recording} is off by {e.noises:.3g} times the noise in {e.channel} "
-                f"at {e.time_s:.4g} s: {_WHAT_TO_DO}"
+                f"at {e.time_s:.4g} s"
             )
-        return ""
+        return f"{'; '.join(said)}: {_WHAT_TO_DO}" if said else ""
 
 
 def held_out(problem: Problem, holdout: Examined, found: Found, kept: Fit) -> HeldOut:
