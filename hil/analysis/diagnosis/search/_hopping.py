@@ -13,37 +13,41 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.diagnosis.fit._allowance import Allowance, OutOfTimeError
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
-from hil.analysis.diagnosis.search._thresholds import HOLLOWS, HOP_SIZES, HOPS, HOPS_IN_VAIN
+from hil.analysis.diagnosis.search._thresholds import HOLLOWS, HOP_SIZES, HOPPING_S, HOPS, HOPS_IN_VAIN
 from hil.core.effects import EFFECTS
 
 Array = npt.NDArray[np.float64]
 
 
 def hopped(problem: Problem, best: Fit) -> Fit:
-    """The lowest of fits from near `best`, with the scatter of those that are nearly as low.
+    """The lowest of fits from near `best`, with its scatter and that of those that are nearly as low.
 
-    `best` itself where none of its effects remembers a place. The same problem gives the same hops.
+    `best` itself where none of its effects remembers a place. The same problem gives the same hops, as many
+    as there is time for.
     """
     if not any(EFFECTS[id_].law.begin is not None for id_ in best.hypothesis.ids):
         return best
-    problem = problem.with_angles(best.angles)
+    problem = replace(problem.with_angles(best.angles), allowance=Allowance(HOPPING_S))
     rng = np.random.default_rng(0)
     moved = np.array([c.scale == "log" for c in best.hypothesis.coordinates()])
     starts = problem.first_starts()
-    fits, vain = [best], 0
+    lowest, found, vain = best, [(best.total, best.theta)], 0
     for number in range(HOPS):
-        lowest = min(fits, key=lambda one: one.total)
         size = np.exp(rng.uniform(*np.log(HOP_SIZES)))
         theta = lowest.theta + size * rng.normal(size=len(moved)) * moved
-        # the place in the play at the beginning is one of the corners
-        fits.append(fit(problem, best.hypothesis, lowest.starts if number % 2 else starts, theta))
-        vain = 0 if fits[-1].total < lowest.total else vain + 1
+        try:  # the place in the play at the beginning is one of the corners
+            one = fit(problem, best.hypothesis, lowest.starts if number % 2 else starts, theta)
+        except OutOfTimeError:
+            break
+        found.append((one.total, one.theta))
+        vain = 0 if one.total < lowest.total else vain + 1
+        lowest = min(lowest, one, key=lambda each: each.total)
         if vain == HOPS_IN_VAIN:
             break
-    lowest = min(fits, key=lambda one: one.total)
-    near = [one.theta - lowest.theta for one in fits if one.total < HOLLOWS * lowest.total]
+    near = [theta - lowest.theta for total, theta in found if total < HOLLOWS * lowest.total]
     apart = np.sqrt(np.mean(np.square(near), axis=0))
-    scatter = apart if lowest.scatter is None else np.hypot(lowest.scatter, apart)
+    scatter = apart if best.scatter is None else np.hypot(best.scatter, apart)
     return replace(lowest, scatter=scatter)

@@ -200,6 +200,7 @@ HOPS: Annotated[int, Means("fits", "from near the one that is told, of a play", 
 HOPS_IN_VAIN: Annotated[
     int, Means("fits", "in a row that find nothing lower: then it is the lowest", "blind")
 ] = 10
+HOPPING_S: Annotated[float, Means("s", "of processor time that these fits may take together", "blind")] = 45.0
 HOP_SIZES: Annotated[
     tuple[float, float], Means("natural logarithm", "by which numbers are moved, standard deviation", "blind")
 ] = (5e-5, 2e-3)
