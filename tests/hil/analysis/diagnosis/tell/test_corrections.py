@@ -1,0 +1,40 @@
+"""Numbers of the base model that were a little off, and effects too small for a name."""
+
+import pytest
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.fit._covariance import standard_errors
+from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.search._search import begun
+from hil.analysis.diagnosis.tell._corrections import as_corrections, is_correction, started, updates
+from hil.analysis.diagnosis.tell._result import NamedEffect
+from hil.analysis.diagnosis.tell._words import Where
+from hil.core.channels import OUTPUTS
+from hil.core.model import EffectUse
+from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
+
+INERTIA = MODEL.parameters["motor_inertia"]
+
+
+def test_a_number_that_noise_does_not_explain_is_told_as_it_was_and_is() -> None:
+    problem = one_problem()
+    found = begun(problem, fit(problem, Hypothesis(MODEL.with_parameters(motor_inertia=0.985 * INERTIA))))
+    told = updates(found, found.base, standard_errors(problem, found.base))
+    old, new, error = told["motor_inertia"]
+    assert old == pytest.approx(0.985 * INERTIA)
+    assert abs(new - INERTIA) < 4.0 * error
+    assert started(problem, found, found.base, standard_errors(problem, found.base), problem.floor) is None
+
+
+@pytest.mark.parametrize(("by", "small"), [(1.01, True), (1.1, False)])
+def test_within_its_tolerance_a_wrong_number_is_no_finding(by: float, small: bool) -> None:
+    problem = one_problem()
+    found = begun(problem, fit(problem, Hypothesis(MODEL)))
+    wrong = EffectUse("parameter_mismatch", {"parameter": "motor_inertia", "value": by * INERTIA})
+    assert is_correction(found, wrong, found.base) is small
+
+
+def test_an_effect_too_small_for_a_name_is_a_correction_from_where_it_does_nothing() -> None:
+    gain = EffectUse("sensor_gain", {"channel": OUTPUTS[2], "gain": 1.0004})
+    effect = NamedEffect(gain, {"gain": 1e-4}, 0.9, Where((OUTPUTS[2],), (0.0, 1.0), "elsewhere"))
+    assert as_corrections([effect]) == {f"sensor_gain.{OUTPUTS[2]}.gain": (1.0, 1.0004, 1e-4)}

@@ -1,0 +1,35 @@
+"""What is named, and what was looked at and is not."""
+
+import numpy as np
+import pytest
+
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.search._search import search
+from hil.analysis.diagnosis.tell._named import clean, considered, lasting
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS
+from hil.core.model import EffectUse
+from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
+
+
+def test_phases_lie_within_half_a_turn_and_what_was_not_fitted_is_left_out() -> None:
+    ripple = EffectUse("motor_order_ripple", {"order": 8.0, "amplitude_nm": 1.0, "phase_rad": 7.0})
+    assert clean(ripple).values["phase_rad"] == pytest.approx(7.0 - 2.0 * np.pi)
+    friction = EffectUse("coulomb_friction", EFFECTS["coulomb_friction"].completed({"torque_nm": 2.0}))
+    assert clean(friction).values == {"torque_nm": 2.0}
+
+
+def test_a_model_file_keeps_effects_and_no_wrong_number() -> None:
+    drag = EffectUse("viscous_drag", {"coefficient_nms_rad": 0.01})
+    wrong = EffectUse("parameter_mismatch", {"parameter": "motor_inertia", "value": 0.02})
+    assert lasting(MODEL.with_effects(drag, wrong)) == [drag]
+
+
+def test_what_was_not_named_comes_with_its_reason() -> None:
+    problem = one_problem(EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0}))
+    found = search(problem, Hypothesis(MODEL), lambda text: None)
+    rows = considered(problem, found, found.best)
+    assert ("sensor_offset", OUTPUTS[2]) not in {(row.id, row.about) for row in rows}
+    assert len(rows) > 3
+    assert all(row.reason for row in rows)
+    assert [row.score for row in rows] == sorted((row.score for row in rows), reverse=True)
