@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -20,9 +20,7 @@ def noise_levels(traces: Sequence[Trace]) -> Array:
     The median over frequency and over recordings leaves out lines and blows. NaN for a channel that no
     recording has.
     """
-    return _pooled(
-        [[_level(t.samples[:, c], t.dt) if t.has[c] else np.nan for c in range(3)] for t in traces]
-    )
+    return _pooled(traces, lambda t, c: _level(t.samples[:, c], t.dt))
 
 
 def cancelling(traces: Sequence[Trace], noise: Array) -> Array:
@@ -32,15 +30,7 @@ def cancelling(traces: Sequence[Trace], noise: Array) -> Array:
     noise grows with frequency, and means of some samples know the speed far better than white noise would
     let them.
     """
-    shown = _pooled(
-        [
-            [
-                _level(t.measured[:, c], t.dt * t.block) * np.sqrt(t.block) if t.has[c] else np.nan
-                for c in range(3)
-            ]
-            for t in traces
-        ]
-    )
+    shown = _pooled(traces, lambda t, c: _level(t.measured[:, c], t.dt * t.block) * np.sqrt(t.block))
     return np.where(shown < CANCELLING * noise, shown, np.nan)
 
 
@@ -50,11 +40,7 @@ def rising(traces: Sequence[Trace], means: Array, noise: Array) -> Array:
     Its spectrum above that of block means counts as it is. Below it, power in proportion to the square of the
     frequency has a third of what it has there: `means`, from `cancelling`, squared.
     """
-    levels = [
-        [_risen(t, c, float(means[c])) if t.has[c] and np.isfinite(means[c]) else np.nan for c in range(3)]
-        for t in traces
-    ]
-    risen = _pooled(levels)
+    risen = _pooled(traces, lambda t, c: _risen(t, c, float(means[c])) if np.isfinite(means[c]) else np.nan)
     return np.where(np.isfinite(risen), risen, noise)
 
 
@@ -77,14 +63,13 @@ def _spectrum(values: Array, step: float) -> tuple[Array, Array]:
     return f, density
 
 
-def _pooled(levels: Sequence[Sequence[float]]) -> Array:
-    """Median of each column over the rows that have it; NaN where none has."""
-    rows = np.array(levels)
+def _pooled(traces: Sequence[Trace], level: Callable[[Trace, int], float]) -> Array:
+    """Median of each channel's `level` over the recordings that have it, shape (3,); NaN where none has."""
     pooled = np.full(3, np.nan)
     for column in range(3):
-        known = rows[np.isfinite(rows[:, column]), column]
-        if known.size:
-            pooled[column] = float(np.median(known))
+        levels = np.array([level(trace, column) for trace in traces if trace.has[column]])
+        if np.isfinite(levels).any():
+            pooled[column] = float(np.median(levels[np.isfinite(levels)]))
     return pooled
 
 

@@ -87,7 +87,7 @@ def held_out(problem: Problem, holdout: Examined, found: Found, kept: Fit) -> He
     floor = noise * found.evidence.colouring(found.best)
     weighed = np.where(np.isfinite(problem.noise), problem.noise, noise)  # rounding included
     unseen = problem_of(holdout.traces, weighed, problem.gear_ratio, floor=floor, functions=problem.functions)
-    gaps, event = [], None
+    gaps = []
     for hypothesis, theta in (
         (found.base.hypothesis, found.base.hypothesis.start()),
         (kept.hypothesis, kept.theta),
@@ -99,8 +99,7 @@ def held_out(problem: Problem, holdout: Examined, found: Found, kept: Fit) -> He
             starts = settled_starts(unseen, hypothesis, theta, starts)
         shown = simulated_samples(unseen, hypothesis, theta, starts)
         gaps.append(channel_gaps(unseen.traces, floor, shown))
-        event = furthest(unseen.traces, np.fmax(floor, weighed), shown)
-    return HeldOut(gaps[0], gaps[1], event)
+    return HeldOut(gaps[0], gaps[1], furthest(unseen.traces, np.fmax(floor, weighed), shown))
 
 
 def furthest(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -> Event | None:
