@@ -9,7 +9,7 @@ import numpy as np
 
 from drivers.newest_frames import least_bytes
 from drivers.samples import Counting, Samples, Stream
-from hil.core.compiled import compiled, compiled_exactly
+from hil.core.compiled import compiled
 from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.signals import Signal, bits_at, number_at
 
@@ -193,7 +193,7 @@ def _count(payload, counter, state):  # type: ignore[no-untyped-def]
     return newest + ahead
 
 
-@compiled_exactly
+@compiled
 def _read(  # type: ignore[no-untyped-def]
     ids,
     flags,

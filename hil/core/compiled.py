@@ -1,4 +1,7 @@
-"""How hot functions are compiled: cached, IEEE division, contraction allowed.
+"""How hot functions are compiled: cached, IEEE division, rounded as Python rounds.
+
+Nothing is contracted or summed in another order: where contact comes and goes a last bit decides what comes
+next, and a diagnosis must not hang on which build of a kernel it ran.
 
 A compiled function carries the constants and the inlined functions of every module that it imports, but numba
 only looks at its own file to see whether a cached one is still good. Here it is good while that file and all
@@ -25,8 +28,6 @@ logger = logging.getLogger(__name__)
 _outside = ""
 
 _F = TypeVar("_F", bound=Callable[..., object])
-# No 'nnan' or 'ninf': limits that are off are infinite, and a diverged simulation must show as NaN.
-FAST = {"contract", "arcp", "reassoc", "nsz"}
 _IMPORT = re.compile(
     r"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(?:\(([^)]*)\)|([^\n(]*))|import[ \t]+([^\n]*))",
     re.MULTILINE,
@@ -38,11 +39,6 @@ _COMMENT = re.compile(r"#[^\n]*")
 def compiled(function: _F) -> Any:
     """Compile `function` with numba."""
     return _cached(function)
-
-
-def compiled_exactly(function: _F) -> Any:
-    """Compile `function` with numba so that it rounds as Python does."""
-    return _cached(function, fastmath=False)
 
 
 def inlined(function: _F) -> Any:
@@ -81,7 +77,7 @@ def depends_on(digest: str) -> None:
 
 
 def _cached(function: _F, **options: Any) -> Any:
-    dispatcher = njit(**{"error_model": "numpy", "fastmath": FAST, **options})(function)
+    dispatcher = njit(**{"error_model": "numpy", **options})(function)
     dispatcher._cache = _Cache(function)
     return dispatcher
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled, compiled_exactly
+from hil.core.compiled import compiled
 from hil.core.printable import printable
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ class Signal:
         return float(low), float(low + (1 << self.length) - 1)
 
 
-@compiled_exactly
+@compiled
 def _pack(values, scale, offset, low, high, shift, length, words):  # type: ignore[no-untyped-def]
     mask = ~np.uint64(0) >> np.uint64(64 - length)
     for i in range(values.shape[0]):
@@ -113,12 +113,12 @@ def _pack(values, scale, offset, low, high, shift, length, words):  # type: igno
         words[i] = (np.uint64(count) & mask) << np.uint64(shift)
 
 
-@compiled_exactly
+@compiled
 def _count_of(value, scale, offset, low, high):  # type: ignore[no-untyped-def]
     return np.int64(min(max(np.rint((value - offset) / scale), low), high))
 
 
-@compiled_exactly
+@compiled
 def payload_with(value, place, scale, offset, low, high):  # type: ignore[no-untyped-def]
     """A payload with only one signal set, as `Signal.encode` does; `place`, `low`, `high`: of the signal."""
     if place[4]:

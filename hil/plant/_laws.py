@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 
 from numba import njit
 
-from hil.core.compiled import FAST, depends_on
+from hil.core.compiled import depends_on
 from hil.core.effects import STRANGERS, Effect
 from hil.plant import _slots as P
 from hil.plant import _states as X
@@ -51,7 +51,7 @@ def _made(name: str) -> Any:
 
 
 def _compile(function: Callable[..., Any]) -> Any:
-    return njit(error_model="numpy", fastmath=FAST)(function)
+    return njit(error_model="numpy")(function)
 
 
 @cache

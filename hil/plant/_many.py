@@ -38,7 +38,7 @@ STARTS = 5
 
 
 def ideal_sensors(sets: int) -> Array:
-    """Sensors that read the truth, for each of the three channels: sets x 3 x (gain, offset, delay, step)."""
+    """Sensors that read the truth, for each of the three channels: sets x 3 x a sensor's numbers."""
     sensors = np.zeros((sets, len(CHANNELS), COLUMNS))
     sensors[:, :, GAIN] = 1.0
     return sensors
@@ -63,7 +63,7 @@ def simulate_many(
         starts: sets x 3: motor speed, wheel speed (rad/s), shaft torque (N m); or sets x 5, where three
             inertias begin in mid-motion: vehicle less wheel speed (rad/s), and the tyre's twist beyond what
             the shaft torque holds (rad).
-        sensors: sets x 3 channels x (gain, offset, delay in s, step), as from `ideal_sensors`.
+        sensors: sets x 3 channels x a sensor's numbers (`_sensors.SENSOR`), as from `ideal_sensors`.
         angles: n x 2, wheel and rotor angle in rad that ripples follow (as measured); when left out, the
             simulated ones.
         load_nm: shape (n,), brakes the wheels (the load where there is no wheel), straight from sample to

@@ -1,6 +1,6 @@
 """Effects between the truth and the recorded channel: one law for replay, for many models and for the bench.
 
-A sensor reads gain · truth(t - delay) + offset + noise, rounded to its step. A negative delay makes a
+A sensor reads gain · lagged truth(t - delay) + offset + noise, rounded to its step. A negative delay makes a
 recorded channel early; the bench, whose control acts on what it reads, cannot give that.
 """
 
@@ -26,6 +26,7 @@ GAIN = _column("gain", "1", "of the reading over the truth")
 OFFSET = _column("offset", "channel's", "added after the gain")
 DELAY = _column("delay_s", "s", "how late the channel is")
 STEP = _column("step", "channel's", "distance between readings; 0: not rounded")
+LAG = _column("lag_s", "s", "time constant of a first-order low-pass; 0: none")
 COLUMNS = len(SENSOR)
 
 
@@ -52,9 +53,26 @@ def reading(truth, noise, sensor):  # type: ignore[no-untyped-def]
     return value
 
 
+@inlined
+def lagged(y, before, now, lag, dt):  # type: ignore[no-untyped-def]
+    """A low-pass that was at `y`, a sample on: exact where truth goes straight from `before` to `now`."""
+    decay = math.exp(-dt / lag)
+    mean = (1.0 - decay) * lag / dt
+    return decay * y + (mean - decay) * before + (1.0 - mean) * now
+
+
 @compiled
-def record(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
-    """Means over `block` samples of what a sensor reads of `truth`, which holds its ends beyond them."""
+def _low_passed(truth, lag, dt):  # type: ignore[no-untyped-def]
+    """Before the first sample the truth was what it is there."""
+    out = np.empty(truth.shape[0])
+    out[0] = truth[0]
+    for k in range(1, truth.shape[0]):
+        out[k] = lagged(out[k - 1], truth[k - 1], truth[k], lag, dt)
+    return out
+
+
+@compiled
+def _means(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
     last = truth.shape[0] - 1
     whole, part = samples_late(sensor, dt)
     for b in range(out.shape[0]):
@@ -66,11 +84,20 @@ def record(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
         out[b] = total / block
 
 
+@compiled
+def record(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
+    """Means over `block` samples of what a sensor reads of `truth`, which holds its ends beyond them."""
+    if sensor[LAG] > 0.0 and truth.shape[0] > 0:
+        _means(_low_passed(truth, sensor[LAG], dt), sensor, dt, block, out)
+    else:
+        _means(truth, sensor, dt, block, out)
+
+
 def sensor_of(model: Model, channel: str) -> Array:
     """The row of a channel's sensor: its effects in a model together.
 
     Raises:
-        BadInputError: the channel is rounded twice.
+        BadInputError: the channel is rounded or low-passed twice.
     """
     row = np.zeros(COLUMNS)
     row[GAIN] = 1.0
@@ -82,7 +109,7 @@ def sensor_of(model: Model, channel: str) -> Array:
         value = float(use.values[effect.parameters[0].name])
         if column == GAIN:
             row[GAIN] *= value
-        elif column == STEP and row[STEP] > 0.0:
+        elif column in (STEP, LAG) and row[column] > 0.0:
             raise BadInputError(
                 f"effect '{use.id}' stands twice for '{channel}'",
                 fix="keep one of the two [[effects]] tables",
@@ -96,7 +123,7 @@ def bench_sensor(model: Model, channel: str, share: float = 1.0) -> Array:
     """The row of a sensor on the bench that sees `share` of a channel: 0.5 where two sides add up to it.
 
     Raises:
-        BadInputError: the channel is early, or rounded twice.
+        BadInputError: the channel is early, or rounded or low-passed twice.
     """
     row = sensor_of(model, channel)
     if row[DELAY] < 0.0:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.checksum import crc8_of
-from hil.core.compiled import compiled_exactly
+from hil.core.compiled import compiled
 from hil.core.conventions import TICK_S
 from hil.core.frames import FRAME, FrameBlock, longest_frame_s
 from hil.core.signals import FrameLayout, payload_with
@@ -81,7 +81,7 @@ class CyclicTraffic:
         return block
 
 
-@compiled_exactly
+@compiled
 def _fill(rows, first, tick_s, ends_s, checked, columns, places, numbers, times_s, payloads):  # type: ignore[no-untyped-def]
     for i in range(rows.shape[0]):
         for message in range(ends_s.shape[0]):

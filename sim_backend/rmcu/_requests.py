@@ -6,7 +6,7 @@ The state is two arrays, so that Python and compiled code change the same one.
 from __future__ import annotations
 
 from hil.core.checksum import crc8_of
-from hil.core.compiled import compiled_exactly
+from hil.core.compiled import compiled
 from hil.core.signals import bits_at, number_at
 from hil.plant.controller.memory import DRIVING_FORCE, FAULT, OFF, TORQUE
 
@@ -22,7 +22,7 @@ NONE, TIMEOUT, WRONG_COUNTER, WRONG_CRC, VEHICLE_SPEED, PARAMETERS = range(6)
 CRC_PLACE, COUNTER_PLACE, MODE_PLACE, TORQUE_PLACE = range(4)
 
 
-@compiled_exactly
+@compiled
 def take_request(payload, time_s, frame_id, places, scale, offset, whole, real):  # type: ignore[no-untyped-def]
     """A request frame that came at `time_s`; its torque is raw * `scale` + `offset`."""
     if bits_at(payload, places[CRC_PLACE]) != crc8_of(frame_id, payload):
@@ -43,7 +43,7 @@ def take_request(payload, time_s, frame_id, places, scale, offset, whole, real):
     real[REQUEST] = number_at(payload, places[TORQUE_PLACE]) * scale + offset if asked else 0.0
 
 
-@compiled_exactly
+@compiled
 def _change_mode(wanted, time_s, whole, real):  # type: ignore[no-untyped-def]
     if wanted == OFF:
         whole[MODE], whole[CAUSE] = OFF, NONE
@@ -59,12 +59,12 @@ def _change_mode(wanted, time_s, whole, real):  # type: ignore[no-untyped-def]
             whole[CAUSE] = NONE
 
 
-@compiled_exactly
+@compiled
 def _fail(cause, whole, real):  # type: ignore[no-untyped-def]
     whole[MODE], whole[CAUSE], real[REQUEST] = FAULT, cause, 0.0
 
 
-@compiled_exactly
+@compiled
 def supervise(time_s, whole, real):  # type: ignore[no-untyped-def]
     """Drop to fault, torque zero, when what the mode needs has become old."""
     if whole[MODE] == OFF or whole[MODE] == FAULT:
@@ -75,7 +75,7 @@ def supervise(time_s, whole, real):  # type: ignore[no-untyped-def]
         _fail(VEHICLE_SPEED, whole, real)
 
 
-@compiled_exactly
+@compiled
 def follow(  # type: ignore[no-untyped-def]
     first, tick_s, samples, payloads, frame_id, places, scale, offset, whole, real, modes, requests, codes
 ):

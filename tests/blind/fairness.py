@@ -18,7 +18,7 @@ _NORMAL_95 = 1.959964
 SAME_NUMBERS = (
     "dead_time", "actuator_lag", "torque_saturation", "torque_rate_limit", "torque_deadband", "torque_gain",
     "shaft_cubic_stiffness", "viscous_drag", "mount_mode", "tyre_compliance", "wheel_order_disturbance",
-    "motor_order_ripple", "running_resistance", "sensor_gain", "sensor_offset", "channel_skew",
+    "motor_order_ripple", "running_resistance", "sensor_gain", "sensor_offset", "channel_skew", "sensor_lag",
 )  # fmt: skip
 
 

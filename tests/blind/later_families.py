@@ -10,9 +10,11 @@ import math
 
 import numpy as np
 
+from hil.core.channels import OUTPUTS
 from tests.blind.families import Draw, Family, Hidden, Setting
 from tests.blind.reference.contact import DISSIPATIVE, SERIES
 from tests.blind.reference.tyre import CELLS
+from tests.blind.sensors import Sensor
 
 _WIDE_GAP = 0.003  # rad
 _WHEEL_RADIUS = 0.33  # m, what a model file means that says nothing
@@ -127,6 +129,17 @@ def _torque_gain(rng: np.random.Generator, setting: Setting) -> Family:
     return Family("torque_gain", 1e-3, 0.6, of_size)
 
 
+def _sensor_lag(rng: np.random.Generator, setting: Setting) -> Family:
+    del setting
+    channel = str(rng.choice(OUTPUTS))
+
+    def of_size(size: float) -> Hidden:
+        sensor = Sensor(channel, lag_s=size)
+        return Hidden("sensor_lag", {}, (sensor,), {"channel": channel, "time_constant_s": size})
+
+    return Family("sensor_lag", 1e-4, 0.1, of_size)
+
+
 LATER_FAMILIES: dict[str, Draw] = {
     "tyre_slip": _tyre_slip,
     "dyno_lag": _dyno_lag,
@@ -134,6 +147,7 @@ LATER_FAMILIES: dict[str, Draw] = {
     "backlash:damped": _damped_backlash,
     "backlash:restitution": _bouncing_backlash,
     "torque_gain": _torque_gain,
+    "sensor_lag": _sensor_lag,
 }
 
 #: Share of the usual noise: a vehicle hardly moves while its tyres twist, so that these show little of
@@ -145,4 +159,4 @@ def later_fits(subject: str, kind: str) -> bool:
     """A tyre slips, and a dyno follows, where the wheel is a body of its own."""
     if subject in ("tyre_slip", "dyno_lag"):
         return kind == "three_inertia"
-    return kind != "rigid" or subject in ("coulomb_friction:turn", "torque_gain")
+    return kind != "rigid" or subject in ("coulomb_friction:turn", "torque_gain", "sensor_lag")

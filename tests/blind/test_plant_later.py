@@ -17,6 +17,7 @@ from tests.blind.reference.contact import series_contact, shaft_torque
 from tests.blind.reference.friction import bristle_after, friction_torque
 from tests.blind.reference.layout import Constants, record
 from tests.blind.reference.tyre import CELLS, angle_behind, patch_after
+from tests.blind.sensors import Sensor
 
 Array = npt.NDArray[np.float64]
 
@@ -301,3 +302,12 @@ def test_squeeze_damping_takes_energy_by_the_cube_of_the_amplitude() -> None:
         works.append(np.trapezoid(torque, twist))
     assert works[0] == pytest.approx(8.0 / 3.0 * 3.0 * 40.0**2 * 0.01**3, rel=1e-4)
     assert works[1] == pytest.approx(8.0 * works[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("hertz", [0.5, 8.0, 30.0])
+def test_a_low_passed_channel_has_the_gain_and_phase_of_the_formula(hertz: float) -> None:
+    time_s, omega, lag_s = np.arange(8000) * SAMPLE_S, 2.0 * math.pi * hertz, 0.006
+    truth = np.sin(omega * time_s)
+    found = Sensor("motor_speed_rad_s", gain=2.0, lag_s=lag_s).read(truth, SAMPLE_S)
+    wanted = 2.0 * np.imag(np.exp(1j * omega * time_s) / (1.0 + 1j * omega * lag_s))
+    np.testing.assert_allclose(found[200:], wanted[200:], atol=2e-4)

@@ -82,7 +82,7 @@ class Law:
     steps: Callable[[Chain, Values, float], int] | None = None
     steady: Callable[[Any], Any] | None = None
     follows: Literal["wheel", "rotor"] | None = None
-    reads: Literal["gain", "offset", "delay_s", "step"] | None = None
+    reads: Literal["gain", "offset", "delay_s", "step", "lag_s"] | None = None
 
     @property
     def compiled(self) -> bool:

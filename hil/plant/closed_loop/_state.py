@@ -90,6 +90,6 @@ def state_at_rest(model: Model, wheel_radius_m: float, longest_step_s: float = L
         torques=np.zeros(T.HISTORY),
         drives=np.zeros((2, D.COLUMNS)),
         sensors=np.array([bench_sensor(model, channel, share) for channel, share in _SENSED]),
-        past=np.zeros((T.SENSORS, T.HISTORY)),
+        past=np.zeros((T.SENSORS, T.PAST)),
         noise=np.zeros(T.SENSORS + K.OUTPUT_COLUMNS),  # behind the noise is the tick's scratch room
     )

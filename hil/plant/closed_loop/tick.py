@@ -8,7 +8,7 @@ from hil.core.compiled import compiled
 from hil.plant import _kernel as K
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant._sensors import DELAY, GAIN, OFFSET, STEP, between, reading, samples_late
+from hil.plant._sensors import DELAY, GAIN, LAG, OFFSET, STEP, between, lagged, reading, samples_late
 from hil.plant.closed_loop import drive as D
 from hil.plant.controller import memory as M
 from hil.plant.controller.control import control
@@ -52,12 +52,16 @@ SENSOR_GAIN, SENSOR_OFFSET, SENSOR_STEP, SENSOR_DELAY = GAIN, OFFSET, STEP, DELA
 SLEWED, WAS_COUPLED, SLIP, RADIUS, V_HAT, LAST_TORQUE, INITIAL_SPEED, DRIVE_INERTIA, LONGEST_STEP = range(9)
 SCALARS = 9
 HISTORY = 2048
+PAST = HISTORY + 1  # what a sensor keeps: a ring of what it saw, and the truth of the sample before
 
 
 @compiled
 def _sense(value, noise, sensor, past, k, dt):  # type: ignore[no-untyped-def]
     """A sensor's reading from the ring of what it saw; never early, and late no longer than the ring."""
-    past[k % HISTORY] = value
+    seen = value
+    if sensor[LAG] > 0.0 and k > 0:
+        seen = lagged(past[(k - 1) % HISTORY], past[HISTORY], value, sensor[LAG], dt)
+    past[k % HISTORY], past[HISTORY] = seen, value
     whole, part = samples_late(sensor, dt)
     if whole > HISTORY - 2:
         whole, part = HISTORY - 2, 0.0

@@ -6,8 +6,8 @@ import pytest
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from hil.plant import bench_sensor, ideal_sensors, pack, simulate, simulate_many
-from hil.plant._sensors import sensor_of
-from hil.plant.closed_loop.tick import HISTORY, _sense
+from hil.plant._sensors import COLUMNS, GAIN, LAG, record, sensor_of
+from hil.plant.closed_loop.tick import PAST, _sense
 from sim_backend.bench import SimulatedBench, SimulationSettings
 from tests.benches_for_tests import SIM
 
@@ -36,13 +36,18 @@ def sensed(delay_s: float, *more: EffectUse) -> Model:
 
 
 def on_the_bench(truth: np.ndarray, sensor: np.ndarray) -> np.ndarray:
-    past = np.zeros(HISTORY)
+    past = np.zeros(PAST)
     return np.array([_sense(value, 0.0, sensor, past, k, DT) for k, value in enumerate(truth)])
 
 
+@pytest.mark.parametrize("lag_s", [0.0, 0.0007, 0.02])
 @pytest.mark.parametrize("delay_s", [0.0, 0.0004, 0.002, 0.0137])
-def test_replay_many_models_and_bench_read_the_same(delay_s):
-    model = sensed(delay_s, EffectUse("sensor_quantization", {"channel": CHANNEL, "step": 0.25}))
+def test_replay_many_models_and_bench_read_the_same(delay_s, lag_s):
+    model = sensed(
+        delay_s,
+        EffectUse("sensor_quantization", {"channel": CHANNEL, "step": 0.25}),
+        EffectUse("sensor_lag", {"channel": CHANNEL, "time_constant_s": lag_s}),
+    )
     torque = 40.0 * np.sin(0.02 * np.arange(400))
     torque[0] = 0.0
     truth = simulate(RIGID, torque, DT)[CHANNEL]
@@ -72,10 +77,34 @@ def test_a_bench_refuses_an_early_channel_when_it_opens():
         SimulatedBench(SimulationSettings(early, SIM.rmcu.dbc, SIM.dyno.eds))
 
 
-def test_a_channel_is_rounded_once():
-    step = EffectUse("sensor_quantization", {"channel": CHANNEL, "step": 0.25})
+@pytest.mark.parametrize("lag_s", [1e-5, 0.0005, 0.004, 0.5])
+def test_a_low_pass_follows_a_ramp_late_by_its_time_constant(lag_s):
+    time_s = np.arange(3000) * DT
+    sensor = np.zeros(COLUMNS)
+    sensor[GAIN], sensor[LAG] = 1.0, lag_s
+    found = np.empty(len(time_s))
+    record(3.0 * time_s, sensor, DT, 1, found)
+    ramp = 3.0 * (time_s - lag_s * (1.0 - np.exp(-time_s / lag_s)))
+    np.testing.assert_allclose(found, ramp, atol=1e-12)
+
+
+def test_a_low_pass_has_the_gain_and_phase_of_its_formula():
+    time_s, omega, lag_s = np.arange(20_000) * 1e-4, 2.0 * np.pi * 15.0, 0.01
+    sensor = np.zeros(COLUMNS)
+    sensor[GAIN], sensor[LAG] = 1.0, lag_s
+    found = np.empty(len(time_s))
+    record(np.sin(omega * time_s), sensor, 1e-4, 1, found)
+    wanted = np.imag(np.exp(1j * omega * time_s) / (1.0 + 1j * omega * lag_s))
+    np.testing.assert_allclose(found[5000:], wanted[5000:], atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("effect", "size"), [("sensor_quantization", "step"), ("sensor_lag", "time_constant_s")]
+)
+def test_a_channel_is_rounded_and_low_passed_once(effect, size):
+    use = EffectUse(effect, {"channel": CHANNEL, size: 0.25})
     with pytest.raises(BadInputError, match="stands twice for 'motor_speed_rad_s'"):
-        simulate(RIGID.with_effects(step, step), np.zeros(10), DT)
+        simulate(RIGID.with_effects(use, use), np.zeros(10), DT)
 
 
 def test_each_side_of_the_bench_reads_its_share():

@@ -64,7 +64,7 @@ class Trace:
         """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
 
         Where no speed was measured they stay at zero: no order can be seen. Gain and offset of `sensors`
-        (3 x 3, as of `ideal_sensors`) are taken out.
+        (as of `ideal_sensors`) are taken out.
         """
         motor, wheel = np.nan_to_num(self.samples[:, 0]), np.nan_to_num(self.samples[:, 1])
         if sensors is not None:

@@ -159,7 +159,7 @@ class Hypothesis:
         return model.with_effects(*self.base.effects, *uses)
 
     def packed(self, theta: Array) -> tuple[Array, Array]:
-        """Slots of the plant and sensors (3 x 3) at `theta`."""
+        """Slots of the plant, and the numbers of its three sensors, at `theta`."""
         model = self.model(theta)
         return pack(model), sensors_of(model)
 
@@ -176,7 +176,7 @@ def key_of(term: EffectUse) -> tuple[str, str]:
 
 
 def sensors_of(model: Model) -> Array:
-    """Gain, offset and delay of each channel (3 x 4) from a model's sensor effects; not its rounding."""
+    """The numbers of each channel's sensor (3 x as many) from a model's sensor effects; not its rounding."""
     sensors = np.stack([sensor_of(model, channel) for channel in OUTPUTS])
     sensors[:, SENSOR_STEP] = 0.0
     return sensors

@@ -20,7 +20,7 @@ from hil.analysis.diagnosis.tell._corrections import as_corrections, started, up
 from hil.analysis.diagnosis.tell._drift import drifts
 from hil.analysis.diagnosis.tell._given_back import GivenBack, given_back
 from hil.analysis.diagnosis.tell._held_out import held_out
-from hil.analysis.diagnosis.tell._least import worth_naming
+from hil.analysis.diagnosis.tell._least import belongs_to_filter, worth_naming
 from hil.analysis.diagnosis.tell._named import considered, lasting, named_effects
 from hil.analysis.diagnosis.tell._result import Diagnosis, NamedEffect, Overlay, Verdict
 from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES
@@ -55,7 +55,12 @@ class Judged:
         errors = standard_errors(problem, back.kept)
         sure = self.sure or (Sure.of(found) if self.verdict == "named" else Sure((), (), ()))
         named = named_effects(problem, found, sure, back, errors, rounded) if self.verdict == "named" else ()
-        small = [e for e in named if not worth_naming(e.use, problem.traces, self.least, base)]
+        uses, dt = [e.use for e in named], problem.traces[0].dt
+        small = [
+            e
+            for e in named
+            if not worth_naming(e.use, problem.traces, self.least, base) or belongs_to_filter(e.use, uses, dt)
+        ]
         effects = tuple(e for e in named if e not in small)
         closes = self._closes(effects, back.kept)
         held = held_out(problem, self.holdout, found, back.kept)

@@ -13,6 +13,19 @@ from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 
+_OF_A_FILTER = 0.55  # samples
+
+
+def belongs_to_filter(use: EffectUse, beside: Sequence[EffectUse], dt: float) -> bool:
+    """Whether a channel that is early is only what a filter that runs with the samples does.
+
+    Such a filter, y += share·(x - y), passes a share of the newest sample at once: a low-pass of its time
+    constant, but for an advance of half a sample.
+    """
+    if use.id != "channel_skew" or not -_OF_A_FILTER * dt <= float(use.values["delay_s"]) < 0.0:
+        return False
+    return any(e.id == "sensor_lag" and e.values["channel"] == use.values["channel"] for e in beside)
+
 
 def worth_naming(use: EffectUse, traces: Sequence[Trace], least: Mapping[str, float], base: Model) -> bool:
     """Whether an effect is at least as large as the smallest size worth a name.

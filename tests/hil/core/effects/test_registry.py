@@ -47,6 +47,7 @@ CONTRACT = {
     "sensor_gain": ("gain",),
     "sensor_offset": ("offset",),
     "channel_skew": ("delay_s",),
+    "sensor_lag": ("time_constant_s",),
     "sensor_quantization": ("step",),
     "parameter_mismatch": ("value",),
 }

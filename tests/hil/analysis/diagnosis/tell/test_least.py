@@ -2,7 +2,7 @@
 
 import pytest
 
-from hil.analysis.diagnosis.tell._least import worth_naming
+from hil.analysis.diagnosis.tell._least import belongs_to_filter, worth_naming
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_trace
@@ -32,3 +32,16 @@ def test_a_user_sets_another_size() -> None:
     skew = EffectUse("channel_skew", {"channel": OUTPUTS[2], "delay_s": 9.5e-6})
     assert worth_naming(skew, [one_trace()], {"channel_skew": 5e-6}, MODEL)
     assert not worth_naming(skew, [one_trace()], {"channel_skew": 1e-5}, MODEL)
+
+
+@pytest.mark.parametrize(
+    ("delay_s", "of_the_filter"), [(-5e-4, True), (-1e-4, True), (-8e-4, False), (5e-4, False)]
+)
+def test_a_channel_half_a_sample_early_beside_its_low_pass_is_a_digital_filter(
+    delay_s: float, of_the_filter: bool
+) -> None:
+    skew = EffectUse("channel_skew", {"channel": OUTPUTS[2], "delay_s": delay_s})
+    low_pass = EffectUse("sensor_lag", {"channel": OUTPUTS[2], "time_constant_s": 0.003})
+    elsewhere = EffectUse("sensor_lag", {"channel": OUTPUTS[0], "time_constant_s": 0.003})
+    assert belongs_to_filter(skew, [skew, low_pass], 1e-3) is of_the_filter
+    assert not belongs_to_filter(skew, [skew, elsewhere], 1e-3)
