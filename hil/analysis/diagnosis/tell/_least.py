@@ -8,12 +8,10 @@ import numpy as np
 
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
-from hil.analysis.diagnosis.tell._thresholds import TOLERANCES
+from hil.analysis.diagnosis.tell._thresholds import OF_A_FILTER, TOLERANCES
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
-
-_OF_A_FILTER = 0.55  # samples
 
 
 def belongs_to_filter(use: EffectUse, beside: Sequence[EffectUse], dt: float) -> bool:
@@ -22,7 +20,7 @@ def belongs_to_filter(use: EffectUse, beside: Sequence[EffectUse], dt: float) ->
     Such a filter, y += share·(x - y), passes a share of the newest sample at once: a low-pass of its time
     constant, but for an advance of half a sample.
     """
-    if use.id != "channel_skew" or not -_OF_A_FILTER * dt <= float(use.values["delay_s"]) < 0.0:
+    if use.id != "channel_skew" or not -OF_A_FILTER * dt <= float(use.values["delay_s"]) < 0.0:
         return False
     return any(e.id == "sensor_lag" and e.values["channel"] == use.values["channel"] for e in beside)
 

@@ -150,6 +150,14 @@ DRIFTS_NOISES: Annotated[
 SHARED: Annotated[
     float, Means("of one speed's slow error", "less apart from the other's: the axle moved so", "drift")
 ] = 0.5
+OF_A_FILTER: Annotated[
+    float,
+    Means(
+        "samples",
+        "a channel that is no earlier beside its own low-pass is a digital filter's: a correction",
+        "least",
+    ),
+] = 0.55
 TOLERANCES: Annotated[
     float,
     Means(
