@@ -63,6 +63,11 @@ class Hypothesis:
         return tuple(term.id for term in self.terms)
 
     @property
+    def remembers_place(self) -> bool:
+        """Whether an effect remembers a place, as a play does: its motion may be chaotic."""
+        return any(EFFECTS[id_].law.begin is not None for id_ in self.ids)
+
+    @property
     def of_many_laws(self) -> bool:
         """Whether formulas differ for any of its effects."""
         return any(EFFECTS[id_].many_laws for id_ in self.ids)

@@ -19,6 +19,7 @@ from hil.analysis.diagnosis.data._trace import Flags
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import SHAFT, Problem
 from hil.analysis.diagnosis.search._thresholds import (
+    AFTERMATH,
     CHAOTIC,
     FORETOLD_ROUNDS,
     FORETOLD_SAME,
@@ -47,6 +48,8 @@ def foretold_where(problem: Problem, base: Fit, one: Fit, *, fitted: bool = Fals
     plain = float(np.median(np.concatenate(_parted(problem, base))))
     parted = _parted(problem, one)
     apart = [w > MUCH_APART * plain for w in parted]
+    if fitted:
+        apart = _with_aftermath(one, apart)
     chaotic = _share([w > CHAOTIC * plain for w in parted])
     if chaotic == 0.0 or (chaotic < UNFORETOLD and not (fitted and _holds_most(problem, one, apart))):
         return None
@@ -107,6 +110,26 @@ def left_out(problem: Problem) -> list[str]:
             "(with noise of a thousandth of the torque, or begun elsewhere in the play, it is another)"
         )
     return words
+
+
+def _with_aftermath(one: Fit, apart: Sequence[Flags]) -> list[Flags]:
+    """These windows and what follows them, as long as a fit leaves far more there than in the middling one.
+
+    Motion that was chaotic for a while may come out of it another way, and go on so (a jump of a resonance).
+    """
+    powers = []
+    for errors, flags in zip(one.errors, apart, strict=True):
+        power = np.sum(errors.channels**2, axis=1)
+        length = max(1, len(power) // len(flags))
+        powers.append(power[: length * len(flags)].reshape(len(flags), -1).mean(axis=1))
+    much = AFTERMATH * float(np.median(np.concatenate(powers)))
+    wider = []
+    for power, flags in zip(powers, apart, strict=True):
+        after = flags.copy()
+        for index in range(1, len(after)):
+            after[index] |= after[index - 1] and power[index] > much
+        wider.append(after)
+    return wider
 
 
 def _holds_most(problem: Problem, one: Fit, apart: Sequence[Flags]) -> bool:

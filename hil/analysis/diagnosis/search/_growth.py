@@ -26,6 +26,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     AS_GOOD,
     CONTENDER,
     FAR,
+    FORETOLD_LEAVES,
     HOPE,
     LEAST_EVIDENCE,
     NEARLY,
@@ -34,7 +35,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     WORTH_POLISH,
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
-from hil.analysis.diagnosis.search._width import width_of
+from hil.analysis.diagnosis.search._trimmed import trimmed
 from hil.core.effects import EFFECTS
 
 Array = npt.NDArray[np.float64]
@@ -81,8 +82,8 @@ def grow(
     if step.fits:
         step.fits[:] = _contended(problem, evidence, step.fits)
         best = aligned(problem, step.fits[0])
-        if sought and width_of(best.hypothesis) is not None and not evidence.closed(best):
-            best, step.foretold = _foretold_at_best(problem, evidence, parent, best)
+        if sought and best.hypothesis.remembers_place and not evidence.closed(best):
+            best, step.foretold = _foretold_at_best(problem, evidence, best)
             if step.foretold:
                 return
         step.fits[0] = _polished(evidence, best)
@@ -153,20 +154,29 @@ def _foretold(problem: Problem, parent: Fit, scores: list[Score]) -> tuple[Probl
 
 
 def _foretold_at_best(
-    problem: Problem, evidence: Evidence, parent: Fit, best: Fit
+    problem: Problem, evidence: Evidence, best: Fit
 ) -> tuple[Fit, tuple[Problem, Fit] | None]:
     """`best`, and where alone it foretells the motion, if it does not nearly everywhere.
 
     A play that begins in the wrong place leaves as much, in the same few windows, as one that is chaotic
-    there: before these are given up it is tried from other places.
+    there: before these are given up it is tried from other places. And a play that was bent for them, or for
+    an effect found after it, does not show them: its numbers are taken from where they do not matter.
     """
-    found = where_foretold(problem, parent, best, fitted=True)
+    found = where_foretold(problem, evidence.base, best, fitted=True)
     if found is None:
-        return best, None
+        found = where_foretold(problem, evidence.base, trimmed(problem, best), fitted=True)
+        less = found is not None and _by_row(found[1]) < FORETOLD_LEAVES * _by_row(best)
+        return best, found if less else None
     other = places_of(evidence, best).best
     if rank(other) >= (1.0 - AS_GOOD) * rank(best):
         return best, found
-    return other, None if evidence.closed(other) else where_foretold(problem, parent, other, fitted=True)
+    return other, None if evidence.closed(other) else where_foretold(
+        problem, evidence.base, other, fitted=True
+    )
+
+
+def _by_row(one: Fit) -> float:
+    return one.total / one.rows
 
 
 def _polished(evidence: Evidence, best: Fit) -> Fit:

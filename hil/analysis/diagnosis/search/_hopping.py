@@ -17,7 +17,6 @@ from hil.analysis.diagnosis.fit._allowance import Allowance, OutOfTimeError
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._thresholds import HOLLOWS, HOP_SIZES, HOPPING_S, HOPS, HOPS_IN_VAIN
-from hil.core.effects import EFFECTS
 
 Array = npt.NDArray[np.float64]
 
@@ -28,7 +27,7 @@ def hopped(problem: Problem, best: Fit) -> Fit:
     `best` itself where none of its effects remembers a place. The same problem gives the same hops, as many
     as there is time for.
     """
-    if not any(EFFECTS[id_].law.begin is not None for id_ in best.hypothesis.ids):
+    if not best.hypothesis.remembers_place:
         return best
     problem = replace(problem.with_angles(best.angles), allowance=Allowance(HOPPING_S))
     rng = np.random.default_rng(0)

@@ -103,16 +103,11 @@ def finished(found: Found, show: Callable[[str], None]) -> Found:
     while advanced(found, show):
         pass
     found = _needed(found.evidence.problem, found)
-    if not found.evidence.problem.partial or any(_may_leave_out(id_) for id_ in found.best.hypothesis.ids):
+    if not found.evidence.problem.partial or found.best.hypothesis.remembers_place:
         return found
     show("looking at all of the recordings after all")
     found.everywhere = True
     return finished(_begin_again(found, found.evidence.problem.judging_all()), show)
-
-
-def _may_leave_out(effect: str) -> bool:
-    """Whether motion may be chaotic with this effect: it remembers a place."""
-    return EFFECTS[effect].law.begin is not None
 
 
 def so_far(known: Sequence[Found]) -> Found:

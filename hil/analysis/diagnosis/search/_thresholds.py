@@ -193,6 +193,26 @@ MOST_OF_ERROR: Annotated[
         "foretold",
     ),
 ] = 0.5
+TRIMMED_SHARE: Annotated[
+    float, Means("of the recordings", "that are explained best say what a model's numbers are", "foretold")
+] = 0.5
+TRIMMED_S: Annotated[float, Means("s", "of recording that is explained well or badly", "foretold")] = 0.5
+AFTERMATH: Annotated[
+    float,
+    Means(
+        "times the middling error",
+        "what is left after chaotic motion is its aftermath: it came out of it another way",
+        "foretold",
+    ),
+] = 10.0
+FORETOLD_LEAVES: Annotated[
+    float,
+    Means(
+        "times the error of a reading",
+        "is left where numbers that half of it agrees with foretell the motion: else all is judged",
+        "foretold",
+    ),
+] = 0.1
 MORE_FORETOLD: Annotated[
     float, Means("of all blocks", "that the law named foretells beyond the first: it is fitted anew", "blind")
 ] = 0.01
