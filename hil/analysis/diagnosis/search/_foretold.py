@@ -31,6 +31,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     PARTED_S,
     PLACES_NM,
     PUSH,
+    SOMEWHAT_APART,
     UNFORETOLD,
 )
 
@@ -49,7 +50,7 @@ def foretold_where(problem: Problem, base: Fit, one: Fit, *, fitted: bool = Fals
     parted = _parted(problem, one)
     apart = [w > MUCH_APART * plain for w in parted]
     if fitted:
-        apart = _with_aftermath(one, apart)
+        apart = _with_aftermath(one, apart, [w > SOMEWHAT_APART * plain for w in parted])
     chaotic = _share([w > CHAOTIC * plain for w in parted])
     if chaotic == 0.0 or (chaotic < UNFORETOLD and not (fitted and _holds_most(problem, one, apart))):
         return None
@@ -112,8 +113,9 @@ def left_out(problem: Problem) -> list[str]:
     return words
 
 
-def _with_aftermath(one: Fit, apart: Sequence[Flags]) -> list[Flags]:
-    """These windows and what follows them, as long as a fit leaves far more there than in the middling one.
+def _with_aftermath(one: Fit, apart: Sequence[Flags], somewhat: Sequence[Flags]) -> list[Flags]:
+    """These windows, with those `somewhat` apart in which a fit leaves far more than in the middling one, and
+    what follows them as long as it does.
 
     Motion that was chaotic for a while may come out of it another way, and go on so (a jump of a resonance).
     """
@@ -124,8 +126,8 @@ def _with_aftermath(one: Fit, apart: Sequence[Flags]) -> list[Flags]:
         powers.append(power[: length * len(flags)].reshape(len(flags), -1).mean(axis=1))
     much = AFTERMATH * float(np.median(np.concatenate(powers)))
     wider = []
-    for power, flags in zip(powers, apart, strict=True):
-        after = flags.copy()
+    for power, flags, less in zip(powers, apart, somewhat, strict=True):
+        after = flags | (less & (power > much))
         for index in range(1, len(after)):
             after[index] |= after[index - 1] and power[index] > much
         wider.append(after)

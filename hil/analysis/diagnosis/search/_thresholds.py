@@ -178,6 +178,14 @@ MUCH_APART: Annotated[
         "foretold",
     ),
 ] = 15.0
+SOMEWHAT_APART: Annotated[
+    float,
+    Means(
+        "times what it does to the plain model",
+        "a motion that is moved so far, and explained so badly, is chaotic",
+        "foretold",
+    ),
+] = 5.0
 MOST_APART: Annotated[
     float,
     Means("noise levels", "how an axle began in its play is not forgotten where it shows more", "foretold"),

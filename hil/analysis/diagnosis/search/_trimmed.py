@@ -14,6 +14,7 @@ import numpy.typing as npt
 from hil.analysis.diagnosis.data._trace import Flags
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._simulated import settled_starts
 from hil.analysis.diagnosis.search._thresholds import TRIMMED_S, TRIMMED_SHARE
 
 Array = npt.NDArray[np.float64]
@@ -23,7 +24,9 @@ def trimmed(problem: Problem, one: Fit) -> Fit:
     """`one` with the numbers that its better half of the recordings asks for; its errors are those of all."""
     problem = problem.with_angles(one.angles)
     there = fit(problem.judging(_best_explained(problem, one)), one.hypothesis, one.starts, one.theta)
-    return fit(problem, there.hypothesis, there.starts, there.theta, rounds=0)
+    # how a recording begins is told by how it begins, be it explained or not
+    starts = settled_starts(problem, one.hypothesis, there.theta, one.starts)
+    return fit(problem, one.hypothesis, starts, there.theta, rounds=0)
 
 
 def _best_explained(problem: Problem, one: Fit) -> list[Flags]:

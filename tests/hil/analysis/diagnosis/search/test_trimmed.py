@@ -41,4 +41,7 @@ def test_what_follows_chaotic_motion_is_its_aftermath_as_long_as_much_is_left():
     one = replace(one, errors=(replace(one.errors[0], rows=channels.ravel()),))
     apart = np.zeros(count, bool)
     apart[5] = True
-    assert np.flatnonzero(_with_aftermath(one, [apart])[0]).tolist() == [5, 6, 7, 8]
+    less = np.zeros(count, bool)
+    less[[2, 12]] = True
+    assert np.flatnonzero(_with_aftermath(one, [apart], [~less])[0]).tolist() == [5, 6, 7, 8]
+    assert np.flatnonzero(_with_aftermath(one, [apart], [less])[0]).tolist() == [5, 6, 7, 8, 12]
