@@ -118,8 +118,8 @@ def parts(found: Diagnosis) -> list[Part]:
         Part(
             "overlays",
             "Measured and simulated",
-            f"Recording {overlay.name}, which the new model changes most: {WINDOW_S:g} s where the old one "
-            "was worst, measured minus simulated there, and the spectra of the errors.",
+            f"What the new model changes most ({overlay.name}): {WINDOW_S:g} s where the old one was worst, "
+            "measured minus simulated there, and the spectra of the errors.",
             figures=overlay_figures(overlay),
         ),
         Part("parameters", "Parameters of the model", "", _if_any(_parameters(found))),
