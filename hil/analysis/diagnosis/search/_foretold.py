@@ -34,6 +34,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     SOMEWHAT_APART,
     UNFORETOLD,
 )
+from hil.analysis.diagnosis.search._trimmed import trimmed
 
 Array = npt.NDArray[np.float64]
 
@@ -85,10 +86,12 @@ def where_foretold(
 def counted_after_all(problem: Problem, base: Fit, named: Fit) -> tuple[Problem, Fit]:
     """`named` fitted wherever it foretells the motion itself: the law tried first may have foretold less.
 
-    Flanks that damp, or pull, forget how a motion began where those that only bounce do not.
+    Flanks that damp, or pull, forget how a motion began where those that only bounce do not. Its numbers are
+    taken from its better half: fitted with other stretches left out, they may miss that it is chaotic there.
     """
     whole = problem.judging_all()
-    flags = foretold_where(whole, fit(whole, base.hypothesis, base.starts, base.theta, rounds=0), named)
+    plain = fit(whole, base.hypothesis, base.starts, base.theta, rounds=0)
+    flags = foretold_where(whole, plain, trimmed(whole, named), fitted=True)
     wider = whole if flags is None else whole.judging(flags)
     if _judged(wider) < _judged(problem) + MORE_FORETOLD:
         return problem, named
