@@ -39,7 +39,7 @@ def read_csv(path: Path) -> Recording:
     """Read a CSV with one header line; messages name file, line and column.
 
     Raises:
-        BadInputError: no regular text file, no header line, a line with too few or too many cells, a
+        BadInputError: no regular text file, empty, no header line, a line with too few or too many cells, a
             cell of a known channel that is no number, or a layout that can be read in two ways.
     """
     with open_regular(path) as file:
@@ -84,7 +84,11 @@ class _Table:
         for block in self._blocks(file):
             self._take(block)
         if not self._header:
-            self._take_header(b"")
+            raise BadInputError(
+                "is empty",
+                where=str(self._path),
+                fix="a recording has a header line and a line for each sample",
+            )
         channels = {}
         for column in list(self._columns):
             channels[self._header[column]] = np.concatenate([*self._columns.pop(column), np.zeros(0)])

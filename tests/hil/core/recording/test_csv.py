@@ -45,6 +45,7 @@ def test_every_way_to_end_lines_and_to_quote_gives_the_same_table(text, tmp_path
 @pytest.mark.parametrize(
     ("text", "said"),
     [
+        ("", "is empty"),
         (HEADER, "0 samples"),
         (HEADER.removesuffix("\n"), "0 samples"),
         (HEADER + "0,1,2\n", "1 samples"),
