@@ -63,11 +63,19 @@ def lagged(y, before, now, lag, dt):  # type: ignore[no-untyped-def]
 
 @compiled
 def _low_passed(truth, lag, dt):  # type: ignore[no-untyped-def]
-    """Before the first sample the truth was what it is there."""
+    """Before the first sample the truth was what it is there.
+
+    Between samples it is a curve, and straight lines between them cut its crests by (ω dt)²/12: lines between
+    samples that are so much higher do not.
+    """
+    last = truth.shape[0] - 1
     out = np.empty(truth.shape[0])
-    out[0] = truth[0]
+    out[0] = before = truth[0]
     for k in range(1, truth.shape[0]):
-        out[k] = lagged(out[k - 1], truth[k - 1], truth[k], lag, dt)
+        bend = truth[k - 1] - 2.0 * truth[k] + truth[k + 1] if k < last else 0.0
+        now = truth[k] - bend / 12.0
+        out[k] = lagged(out[k - 1], before, now, lag, dt)
+        before = now
     return out
 
 
@@ -80,7 +88,11 @@ def _means(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
         for k in range(b * block, (b + 1) * block):
             newer = truth[min(max(k - whole, 0), last)]
             older = truth[min(max(k - whole - 1, 0), last)]
-            total += reading(between(newer, older, part), 0.0, sensor)
+            value = between(newer, older, part)
+            if part > 0.0:  # the truth is a curve, no line
+                outer = truth[min(max(k - whole + 1, 0), last)] + truth[min(max(k - whole - 2, 0), last)]
+                value -= 0.25 * part * (1.0 - part) * (outer - newer - older)
+            total += reading(value, 0.0, sensor)
         out[b] = total / block
 
 
