@@ -50,7 +50,7 @@ def command(
             metavar="MINUTES",
             help="Processor time of the search; then what is known so far is told, as unfinished.",
         ),
-    ] = 5.0,
+    ] = 10.0,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace an earlier diagnosis in --out.")
     ] = False,
