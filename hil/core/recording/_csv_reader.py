@@ -85,8 +85,8 @@ class _Table:
             self._take(block)
         if not self._header:
             raise BadInputError(
-                "is empty",
-                where=str(self._path),
+                "the file is empty",
+                where=f"{self._path}: line 1",
                 fix="a recording has a header line and a line for each sample",
             )
         channels = {}
