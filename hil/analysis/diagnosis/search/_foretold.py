@@ -34,7 +34,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     SOMEWHAT_APART,
     UNFORETOLD,
 )
-from hil.analysis.diagnosis.search._trimmed import trimmed
+from hil.analysis.diagnosis.search._trimmed import trimmed, window_means
 
 Array = npt.NDArray[np.float64]
 
@@ -51,7 +51,7 @@ def foretold_where(problem: Problem, base: Fit, one: Fit, *, fitted: bool = Fals
     parted = _parted(problem, one)
     apart = [w > MUCH_APART * plain for w in parted]
     if fitted:
-        apart = _with_aftermath(one, apart, [w > SOMEWHAT_APART * plain for w in parted])
+        apart = _with_aftermath(problem, one, apart, [w > SOMEWHAT_APART * plain for w in parted])
     chaotic = _share([w > CHAOTIC * plain for w in parted])
     if chaotic == 0.0 or (chaotic < UNFORETOLD and not (fitted and _holds_most(problem, one, apart))):
         return None
@@ -116,17 +116,19 @@ def left_out(problem: Problem) -> list[str]:
     return words
 
 
-def _with_aftermath(one: Fit, apart: Sequence[Flags], somewhat: Sequence[Flags]) -> list[Flags]:
+def _with_aftermath(
+    problem: Problem, one: Fit, apart: Sequence[Flags], somewhat: Sequence[Flags]
+) -> list[Flags]:
     """These windows, with those `somewhat` apart in which a fit leaves far more than in the middling one, and
     what follows them as long as it does.
 
     Motion that was chaotic for a while may come out of it another way, and go on so (a jump of a resonance).
     """
-    powers = []
-    for errors, flags in zip(one.errors, apart, strict=True):
-        power = np.sum(errors.channels**2, axis=1)
-        length = max(1, len(power) // len(flags))
-        powers.append(power[: length * len(flags)].reshape(len(flags), -1).mean(axis=1))
+    length = _blocks_of_window(problem)
+    powers = [
+        window_means(np.sum(errors.channels**2, axis=1), length)[: len(flags)]
+        for errors, flags in zip(one.errors, apart, strict=True)
+    ]
     much = AFTERMATH * float(np.median(np.concatenate(powers)))
     wider = []
     for power, flags, less in zip(powers, apart, somewhat, strict=True):

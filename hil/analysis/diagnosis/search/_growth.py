@@ -170,9 +170,9 @@ def _foretold_at_best(
     other = places_of(evidence, best).best
     if rank(other) >= (1.0 - AS_GOOD) * rank(best):
         return best, found
-    return other, None if evidence.closed(other) else where_foretold(
-        problem, evidence.base, other, fitted=True
-    )
+    if evidence.closed(other):
+        return other, None
+    return other, where_foretold(problem, evidence.base, other, fitted=True)
 
 
 def _by_row(one: Fit) -> float:

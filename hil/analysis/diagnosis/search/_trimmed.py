@@ -29,18 +29,18 @@ def trimmed(problem: Problem, one: Fit) -> Fit:
     return fit(problem, one.hypothesis, starts, there.theta, rounds=0)
 
 
+def window_means(power: Array, length: int) -> Array:
+    """Mean of each window, the last one shorter."""
+    starts = np.arange(0, len(power), length)
+    return np.asarray(np.add.reduceat(power, starts) / np.diff([*starts, len(power)]))
+
+
 def _best_explained(problem: Problem, one: Fit) -> list[Flags]:
     """Of each recording the blocks of those windows that together are the half with the least error."""
     length = max(1, round(TRIMMED_S / (problem.traces[0].dt * problem.traces[0].block)))
-    powers = [_in_windows(np.sum(errors.channels**2, axis=1), length) for errors in one.errors]
+    powers = [window_means(np.sum(errors.channels**2, axis=1), length) for errors in one.errors]
     limit = np.quantile(np.concatenate(powers), TRIMMED_SHARE)
     return [
         np.repeat(power <= limit, length)[: len(errors.channels)]
         for power, errors in zip(powers, one.errors, strict=True)
     ]
-
-
-def _in_windows(power: Array, length: int) -> Array:
-    """Mean of each window, the last one shorter."""
-    starts = np.arange(0, len(power), length)
-    return np.asarray(np.add.reduceat(power, starts) / np.diff([*starts, len(power)]))

@@ -6,7 +6,7 @@ import numpy as np
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
-from hil.analysis.diagnosis.search._foretold import _with_aftermath
+from hil.analysis.diagnosis.search._foretold import _blocks_of_window, _with_aftermath
 from hil.analysis.diagnosis.search._trimmed import trimmed
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
@@ -33,8 +33,8 @@ def test_a_stretch_that_is_not_the_models_bends_no_number():
 def test_what_follows_chaotic_motion_is_its_aftermath_as_long_as_much_is_left():
     problem = one_problem(seconds=8.0)
     one = fit(problem, Hypothesis(MODEL), rounds=0)
-    count = 16
-    length = len(one.errors[0].channels) // count
+    length = _blocks_of_window(problem)
+    count = len(one.errors[0].channels) // length
     channels = np.ones_like(one.errors[0].channels)
     channels[5 * length : 9 * length] = 20.0
     channels[12 * length : 13 * length] = 20.0
@@ -43,5 +43,5 @@ def test_what_follows_chaotic_motion_is_its_aftermath_as_long_as_much_is_left():
     apart[5] = True
     less = np.zeros(count, bool)
     less[[2, 12]] = True
-    assert np.flatnonzero(_with_aftermath(one, [apart], [~less])[0]).tolist() == [5, 6, 7, 8]
-    assert np.flatnonzero(_with_aftermath(one, [apart], [less])[0]).tolist() == [5, 6, 7, 8, 12]
+    assert np.flatnonzero(_with_aftermath(problem, one, [apart], [~less])[0]).tolist() == [5, 6, 7, 8]
+    assert np.flatnonzero(_with_aftermath(problem, one, [apart], [less])[0]).tolist() == [5, 6, 7, 8, 12]
