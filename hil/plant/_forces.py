@@ -18,15 +18,22 @@ _STANDSTILL_RAD_S = 1e-9  # what rounding leaves of zero
 
 
 @inlined
-def forces(m, chain, memories, p):  # type: ignore[no-untyped-def]
-    """What effects add: torques in N m, and the tyre's rate in rad/s; dry friction apart."""
-    return (
-        L.shaft_force(m, chain, memories, p),
-        L.rotor_loss(m, chain, memories, p),
-        L.vehicle_load(m, chain, memories, p),
-        L.tyre_force(m, chain, memories, p),
-        L.tyre_rate(m, chain, memories, p),
-    )
+def forces(m, chain, memories, p, acting):  # type: ignore[no-untyped-def]
+    """What effects add: torques in N m, and the tyre's rate in rad/s; dry friction apart.
+
+    `acting` is that of `acting_of`: laws of which none does anything are not asked one by one.
+    """
+    shaft, loss, load, tyre, rate = NONE
+    if acting.shaft:
+        shaft = L.shaft_force(m, chain, memories, p)
+    if acting.loss:
+        loss = L.rotor_loss(m, chain, memories, p)
+    if acting.load:
+        load = L.vehicle_load(m, chain, memories, p)
+    if acting.tyre:
+        tyre = L.tyre_force(m, chain, memories, p)
+        rate = L.tyre_rate(m, chain, memories, p)
+    return shaft, loss, load, tyre, rate
 
 
 @inlined

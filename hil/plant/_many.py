@@ -24,7 +24,7 @@ from hil.plant._friction import mean_friction
 from hil.plant._functions import respond_many
 from hil.plant._held_linear import step_matrices
 from hil.plant._kernel import as_tuple
-from hil.plant._motion import chain_of, motion_of, relative_speed
+from hil.plant._motion import acting_of, chain_of, motion_of, relative_speed
 from hil.plant._sensors import COLUMNS, GAIN, record
 from hil.plant._torque_path import over_samples
 from hil.plant._tuples import plus_product, plus_row, put
@@ -35,6 +35,7 @@ CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 SPEED, WHEEL, SHAFT = range(3)  # of the channels, and of a start
 VEHICLE, TYRE = 3, 4  # of a start alone
 STARTS = 5
+_CONSTANT, _BY_ANGLE, _BY_MOTION = range(3)  # what forces vary with; an angle alone may be known beforehand
 
 
 def ideal_sensors(sets: int) -> Array:
@@ -113,10 +114,10 @@ def _matrices(linear: bytes, dt: float, substeps: int) -> tuple[Array, Array, Ar
     return step_matrices(p, dt, substeps)
 
 
-def _parts(parameters: Array, dt: float) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
-    """In how many parts each model's samples are cut, and whether any of its forces depends on the motion."""
+def _parts(parameters: Array, dt: float) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """In how many parts each model's samples are cut, and what its forces vary with (`_CONSTANT` …)."""
     steps = np.ones(len(parameters), np.int64)
-    varies = np.zeros(len(parameters), bool)
+    varies = np.full(len(parameters), _CONSTANT, np.int64)
     for effect in P.ACTING:
         law, first = effect.law, P.FIRST[effect.id]
         own = parameters[:, first : first + len(effect.parameters)]
@@ -126,7 +127,8 @@ def _parts(parameters: Array, dt: float) -> tuple[npt.NDArray[np.int64], npt.NDA
         if not acts.any() or (law.shape is not None or law.slope is not None):
             continue
         steady = law.steady(tuple(own.T)) if law.steady is not None else False
-        varies |= acts & ~np.asarray(steady)
+        with_what = _BY_MOTION if law.follows is None else _BY_ANGLE
+        varies = np.where(acts & ~np.asarray(steady), np.maximum(varies, with_what), varies)
         if law.steps is not None:
             for index in np.flatnonzero(acts):
                 p = parameters[index]
@@ -187,13 +189,11 @@ def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type
 
 
 @inlined
-def _pushed(y, f, held, moves_tyre):  # type: ignore[no-untyped-def]
+def _pushed(y, f, held):  # type: ignore[no-untyped-def]
     """State with the effect of forces, by the rows of `held` (or `rising`)."""
     y = plus_row(plus_row(y, f[F.SHAFT], held, F.SHAFT), f[F.LOSS], held, F.LOSS)
     y = plus_row(y, f[F.LOAD], held, F.LOAD)
-    if moves_tyre:
-        y = plus_row(plus_row(y, f[F.TYRE], held, F.TYRE), f[F.TYRE_RATE], held, F.TYRE_RATE)
-    return y
+    return plus_row(plus_row(y, f[F.TYRE], held, F.TYRE), f[F.TYRE_RATE], held, F.TYRE_RATE)
 
 
 @inlined
@@ -207,61 +207,75 @@ def _braked(y, begins, rises, held, rising, has_wheel):  # type: ignore[no-untyp
 
 @compiled
 def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
-    acting, shown = drive
+    # What is none is added all the same, as zero: a state that goes two ways falls apart into scalars.
+    asked, shown = drive
     transition, column, held, rising = matrices
     x, memories = first
-    chain = chain_of(p)
-    dry, turns, moves_tyre, leaps = L.may_stick(p), L.turns(p), L.moves_tyre(p), L.leaps(p)
+    chain, acting = chain_of(p), acting_of(p)
+    turns, leaps = L.turns(p), L.leaps(p)
+    known = varies == _BY_ANGLE and angles.shape[0] > 0  # forces are, before the motion is
     gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
     friction = 0.0
     at = F.first_angles(angles, x, p)
     m = motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
-    f = F.forces(m, chain, memories, p)
+    f = F.forces(m, chain, memories, p, acting)
     has_wheel = chain.kind == P.THREE_INERTIA
     brakes, rises, foreseen = 0.0, 0.0, 0.0
-    for k in range(acting.shape[0]):
+    for k in range(asked.shape[0]):
         if load is not None:
             brakes = load[k]
             rises = (load[min(k + 1, load.shape[0] - 1)] - brakes) / substeps
-        new = acting[max(k - whole, 0)]
-        old = acting[max(k - whole - 1, 0)]
+        new = asked[max(k - whole, 0)]
+        old = asked[max(k - whole - 1, 0)]
         fine[k, SPEED] = relative_speed(x)
         fine[k, WHEEL] = x[X.WHEEL_SPEED]
-        fine[k, SHAFT] = F.shaft_torque(x, f, brakes, p, shown[k], dry)
+        fine[k, SHAFT] = F.shaft_torque(x, f, brakes, p, shown[k], acting.dry)
         for sub in range(substeps):
-            y = _pushed(_moved(x, sub, old, new, column, transition), f, held, moves_tyre)
+            y = _pushed(_moved(x, sub, old, new, column, transition), f, held)
             if load is not None:
                 y = _braked(y, brakes + sub * rises, rises, held, rising, has_wheel)
-            if leaps:
-                y = plus_row(y, foreseen, rising, F.SHAFT)
+            y = plus_row(y, foreseen, rising, F.SHAFT)
             before = relative_speed(x)
-            if dry:
+            if acting.dry:
                 level = F.level(before, chain, memories, p)
                 friction = mean_friction(before, relative_speed(y), gain, level)
-                y = plus_row(y, friction, held, F.LOSS)
-            if varies:
-                part = (sub + 1.0) / substeps
-                later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
-                n = motion_of(y, chain, memories, later[F.WHEEL], later[F.ROTOR], p)
+            y = plus_row(y, friction, held, F.LOSS)
+            if varies == _CONSTANT:
+                x = y
+                continue
+            part = (sub + 1.0) / substeps
+            later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
+            n = motion_of(y, chain, memories, later[F.WHEEL], later[F.ROTOR], p)
+            kept = memories
+            if acting.memory:
                 kept = L.remembered(m, n, chain, memories, p, h)
                 n = motion_of(y, chain, kept, later[F.WHEEL], later[F.ROTOR], p)
-                middle = 0.5 * (before + relative_speed(y))
-                changed = F.change(F.forces(n, chain, kept, p), f)
-                y = _pushed(y, changed, rising, moves_tyre)
-                if leaps:
-                    more, rise = L.shaft_leap(m, n, chain, memories, p, h)
-                    y = plus_row(plus_row(y, more, held, F.SHAFT), rise - foreseen, rising, F.SHAFT)
-                    foreseen = changed[F.SHAFT] if more == 0.0 and rise == 0.0 else 0.0
-                if dry:
-                    level = F.level(middle, chain, memories, p)
-                    free = relative_speed(y) + gain * friction
-                    y = plus_row(y, mean_friction(before, free, gain, level) - friction, held, F.LOSS)
+            middle = 0.5 * (before + relative_speed(y))
+            ends = F.forces(n, chain, kept, p, acting)
+            changed = F.change(ends, f)
+            more, rise = 0.0, 0.0
+            if leaps:
+                more, rise = L.shaft_leap(m, n, chain, memories, p, h)
+            y = _pushed(y, changed, rising)
+            y = plus_row(plus_row(y, more, held, F.SHAFT), rise - foreseen, rising, F.SHAFT)
+            if leaps:
+                foreseen = changed[F.SHAFT] if more == 0.0 and rise == 0.0 else 0.0
+            again = friction
+            if acting.dry:
+                level = F.level(middle, chain, memories, p)
+                again = mean_friction(before, relative_speed(y) + gain * friction, gain, level)
+            y = plus_row(y, again - friction, held, F.LOSS)
+            if known:
+                at, f = later, ends
+            else:
                 if turns:
                     at = F.angles_at(angles, k, part, x, y, at, h, p)
                 n = motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
-                memories = L.remembered(m, n, chain, memories, p, h)
-                m = motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
-                f = F.forces(m, chain, memories, p)
+                if acting.memory:
+                    memories = L.remembered(m, n, chain, memories, p, h)
+                    n = motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+                m = n
+                f = F.forces(m, chain, memories, p, acting)
             x = y
 
 
@@ -275,7 +289,7 @@ def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fi
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     _shown(acting, ends, dt, whole, p, shown)
     drive = (acting, shown)
-    if varies or L.pushes(p) or load is not None:
+    if varies != _CONSTANT or L.pushes(p) or load is not None:
         h = dt / substeps
         _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine)
     else:

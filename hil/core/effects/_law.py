@@ -61,7 +61,7 @@ class Law:
         remember: the memory after `h` seconds: (before, after, chain, memory, values, h); two motions.
         steps: in how many parts a sample of `dt` seconds is to be cut: (chain, values, dt).
         steady: whether forces are constant for these values: then they are not computed anew.
-        follows: the angle that the law follows; fits then use the measured one.
+        follows: the angle that the law follows, and nothing else of the motion; fits use the measured one.
         reads: which number of a sensor the effect changes.
     """
 

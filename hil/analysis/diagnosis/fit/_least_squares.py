@@ -9,9 +9,15 @@ import numpy.typing as npt
 from scipy.optimize import lsq_linear
 
 from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
-from hil.analysis.diagnosis.fit._normal import reduced, start_step
+from hil.analysis.diagnosis.fit._normal import promised_gain, reduced, start_step
 from hil.analysis.diagnosis.fit._problem import Linearised, Problem
-from hil.analysis.diagnosis.fit._thresholds import MOST_REFUSALS, TRIALS
+from hil.analysis.diagnosis.fit._thresholds import (
+    LONGER,
+    LONGEST,
+    MORE_THAN_PROMISED,
+    MOST_REFUSALS,
+    TRIALS,
+)
 
 Array = npt.NDArray[np.float64]
 
@@ -60,18 +66,21 @@ def descent(
     lower, upper = bounds
     theta, starts = np.clip(begin[0], lower, upper), begin[1]
     at = problem.linearised(hypothesis, theta, starts)
-    damping, refusals, done = 1e-6, 0, 0
+    damping, refusals, done, fresh, shares = 1e-6, 0, 0, True, TRIALS
     while done < rounds:
-        done += 1
         matrix, gradient = reduced(at.normals)
         matrix = matrix + np.diag(precision)
         gradient = gradient - precision * theta
         damped = matrix + damping * np.diag(np.maximum(np.diag(matrix), 1e-12))
         step = box_step(damped, gradient, lower - theta, upper - theta)
         step = _limited(step, coordinates)
-        tried_theta = [theta + share * step for share in TRIALS]
+        promised = promised_gain(at.normals, matrix, gradient, step)
+        if fresh and promised < enough:
+            break
+        done += 1
+        tried_theta = [np.clip(theta + share * step, lower, upper) for share in shares]
         tried_starts = [
-            np.stack([start + start_step(n, share * step) for share in TRIALS])
+            np.stack([start + start_step(n, moved - theta) for moved in tried_theta])
             for start, n in zip(starts, at.normals, strict=True)
         ]
         found = problem.costs([hypothesis.packed(t) for t in tried_theta], tried_starts)
@@ -79,15 +88,19 @@ def descent(
         best = int(np.argmin(totals))
         gain = at.cost + float(precision @ theta**2) - float(totals[best])
         if gain <= 0.0 or not np.isfinite(gain):
-            refusals += 1
+            refusals, fresh = refusals + 1, False
             damping = max(damping * 30.0, 1e-3)
             if refusals > MOST_REFUSALS or float(step @ matrix @ step) < enough:
                 break
             continue
         theta = tried_theta[best]
         starts = [s[best] for s in tried_starts]
-        damping = damping / 10.0 if best == 0 else damping * 3.0
-        at = problem.linearised(hypothesis, theta, starts)
+        share = shares[best]
+        damping = damping * 3.0 if share < 1.0 else damping / 10.0
+        # errors beyond noise bend the valley: where it is flatter than derivatives say, steps fall short
+        flat = share >= 1.0 and gain > MORE_THAN_PROMISED * promised
+        shares = (*TRIALS, min(LONGER * share, LONGEST)) if flat else TRIALS
+        at, fresh = problem.linearised(hypothesis, theta, starts), True
         if gain < enough:
             break
     return Reached(theta, starts, at, done)

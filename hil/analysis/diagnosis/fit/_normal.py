@@ -44,3 +44,16 @@ def start_step(n: Normal, step: Array) -> Array:
     """The best change of a recording's start when the shared coordinates change by `step`."""
     inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
     return np.asarray(inverse @ (n.start_gradient - n.between.T @ step))
+
+
+def promised_gain(normals: Sequence[Normal], matrix: Array, gradient: Array, step: Array) -> float:
+    """What a step of the shared coordinates, with the starts that suit it, takes off the squared errors.
+
+    `matrix` and `gradient` are the reduced ones, with what is known beforehand; derivatives stay as they are.
+    """
+    inverses = (np.linalg.pinv(n.start, rcond=1e-10, hermitian=True) for n in normals)
+    of_starts = sum(
+        float(n.start_gradient @ inverse @ n.start_gradient)
+        for n, inverse in zip(normals, inverses, strict=True)
+    )
+    return float(2.0 * gradient @ step - step @ matrix @ step) + of_starts

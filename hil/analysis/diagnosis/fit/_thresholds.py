@@ -73,6 +73,14 @@ SAME_COST: Annotated[
 ] = 1e-9
 
 TRIALS: Annotated[tuple[float, ...], Means("of a step", "tried in each round", "least_squares")] = (1.0, 0.35)
+MORE_THAN_PROMISED: Annotated[
+    float,
+    Means(
+        "of what derivatives promise", "a step that gains more may be longer the next time", "least_squares"
+    ),
+] = 1.5
+LONGER: Annotated[float, Means("times as long", "the step that is tried then as well", "least_squares")] = 3.0
+LONGEST: Annotated[float, Means("of a step", "is tried at most", "least_squares")] = 10.0
 MOST_REFUSALS: Annotated[int, Means("steps", "refused before a fit gives up", "least_squares")] = 4
 
 HUGE: Annotated[float, Means("noise levels", "errors of a diverged simulation are cut to it", "problem")] = (
