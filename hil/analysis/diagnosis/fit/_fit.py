@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis, key_of
+from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis.fit._errors import Errors
 from hil.analysis.diagnosis.fit._least_squares import descent
 from hil.analysis.diagnosis.fit._normal import reduced
-from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._problem import Linearised, Problem
 from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, POLISHED, SAME_COST, WORTH_A_LEAP
 from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
 
@@ -66,17 +66,18 @@ def fit(
     *,
     rounds: int = MOST_ROUNDS,
     enough: float = 1.0,
+    at: Linearised | None = None,
 ) -> Fit:
     """Minimise the simulation error of `hypothesis` from `theta` and `starts`.
 
     Args:
         enough: stop when a step gains less than this in the sum of squared errors.
+        at: the problem at `theta` and `starts`, where it is known already.
     """
-    coordinates = hypothesis.coordinates()
-    lower, upper = _bounds(coordinates)
+    lower, upper = bounds_of(hypothesis)
     theta = np.clip(hypothesis.start() if theta is None else theta, lower, upper)
     starts = [s.copy() for s in (starts or problem.first_starts())]
-    precision = np.array([problem.misfit / c.prior**2 for c in coordinates])
+    precision = precision_of(problem, hypothesis)
     by_samples = delay_by_samples(hypothesis, problem.traces[0].dt) if rounds else None
     done = 0
     while True:
@@ -86,10 +87,10 @@ def fit(
             leapt = cheapest(problem, hypothesis, tried, starts, precision, lead=WORTH_A_LEAP)
             if done and leapt is theta:
                 break
-            theta = leapt
+            theta, at = leapt, at if leapt is theta else None
             within = by_samples.within(theta, lower, upper)
-        reached = descent(problem, hypothesis, (theta, starts), within, precision, rounds - done, enough)
-        theta, starts, done = reached.theta, reached.starts, done + reached.rounds
+        reached = descent(problem, hypothesis, (theta, starts), within, precision, rounds - done, enough, at)
+        theta, starts, done, at = reached.theta, reached.starts, done + reached.rounds, reached.at
         if by_samples is None or done >= rounds:
             break
     matrix, _ = reduced(reached.at.normals)
@@ -106,6 +107,12 @@ def fit(
         done,
         problem.angles,
     )
+
+
+def fitted_on(problem: Problem, one: Fit, *, rounds: int = MOST_ROUNDS, enough: float = 1.0) -> Fit:
+    """`one`, a fit of this very problem that ended early, taken on from where it is."""
+    at = Linearised(one.cost, problem.normals(one.errors, one.starts), one.errors)
+    return fit(problem, one.hypothesis, one.starts, one.theta, rounds=rounds, enough=enough, at=at)
 
 
 def polished(problem: Problem, one: Fit) -> Fit:
@@ -165,5 +172,12 @@ def _inverse(matrix: Array) -> Array:
     return np.asarray(even * np.outer(scale, scale), dtype=float)
 
 
-def _bounds(coordinates: tuple[Coordinate, ...]) -> tuple[Array, Array]:
+def bounds_of(hypothesis: Hypothesis) -> tuple[Array, Array]:
+    """Lower and upper bounds of the coordinates."""
+    coordinates = hypothesis.coordinates()
     return np.array([c.lower for c in coordinates]), np.array([c.upper for c in coordinates])
+
+
+def precision_of(problem: Problem, hypothesis: Hypothesis) -> Array:
+    """How firmly what is known beforehand holds the coordinates, in squared errors."""
+    return np.array([problem.misfit / c.prior**2 for c in hypothesis.coordinates()])

@@ -60,12 +60,13 @@ def descent(
     precision: Array,
     rounds: int,
     enough: float,
+    at: Linearised | None = None,
 ) -> Reached:
-    """Levenberg-Marquardt within bounds, from coordinates and starts."""
+    """Levenberg-Marquardt within bounds, from coordinates and starts; `at` is the problem there, if known."""
     coordinates = hypothesis.coordinates()
     lower, upper = bounds
     theta, starts = np.clip(begin[0], lower, upper), begin[1]
-    at = problem.linearised(hypothesis, theta, starts)
+    at = at or problem.linearised(hypothesis, theta, starts)
     damping, refusals, done, fresh, shares = 1e-6, 0, 0, True, TRIALS
     while done < rounds:
         matrix, gradient = reduced(at.normals)

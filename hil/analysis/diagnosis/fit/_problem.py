@@ -185,14 +185,25 @@ class Problem:
 
     def costs(self, points: list[tuple[Array, Array]], starts: list[Array]) -> Array:
         """Sum of squared errors of several points (slots, sensors); `starts`: per recording, points x 3."""
+        return self.tried(points, starts)[0]
+
+    def tried(self, points: list[tuple[Array, Array]], starts: list[Array]) -> tuple[Array, list[Array]]:
+        """Like `costs`, with the errors themselves: per recording, points x rows."""
         slots = np.stack([p for p, _ in points])
         sensors = np.stack([s for _, s in points])
-        total = np.zeros(len(points))
+        total, rows = np.zeros(len(points)), []
         for index in range(len(self.traces)):
             simulated = self.outputs(index, slots, sensors, starts[index])
-            total += np.array([np.sum(self.errors(index, one) ** 2) for one in simulated])
-            total += (starts[index] ** 2) @ self.start_precision(index)
-        return total
+            rows.append(np.stack([self.errors(index, one).ravel() for one in simulated]))
+            total += np.sum(rows[-1] ** 2, axis=1) + (starts[index] ** 2) @ self.start_precision(index)
+        return total, rows
+
+    def normals(self, errors: Sequence[Errors], starts: Sequence[Array]) -> tuple[Normal, ...]:
+        """Normal equations of each recording, its initial values held as firmly as they are known."""
+        return tuple(
+            self._anchored(normal_equations(one.by_coordinate, one.by_start, one.rows), index, start)
+            for index, (one, start) in enumerate(zip(errors, starts, strict=True))
+        )
 
     def cheapest_start(self, trace: int, point: tuple[Array, Array], tried: Array) -> tuple[Array, float]:
         """Of the initial values `tried` (n x STARTS) of a recording those that cost least, and that cost."""
@@ -217,7 +228,7 @@ class Problem:
         signed = np.array(
             [c.step if v + c.step <= c.upper else -c.step for c, v in zip(coordinates, theta, strict=True)]
         )
-        cost, normals, errors = 0.0, [], []
+        cost, errors = 0.0, []
         for index, start in enumerate(starts):
             steps = self.start_steps()
             tried = np.tile(start, (len(slots), 1))
@@ -230,9 +241,8 @@ class Problem:
             shared = (change[: len(coordinates)] / signed[:, None]).T
             initial = (change[len(coordinates) :] / steps[:, None]).T
             cost += float(error @ error) + float(start**2 @ self.start_precision(index))
-            normals.append(self._anchored(normal_equations(shared, initial, error), index, start))
             errors.append(Errors(error, shared, initial))
-        return Linearised(cost, tuple(normals), tuple(errors))
+        return Linearised(cost, self.normals(errors, starts), tuple(errors))
 
     def _anchored(self, n: Normal, index: int, start: Array) -> Normal:
         precision = self.start_precision(index)

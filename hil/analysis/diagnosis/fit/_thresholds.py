@@ -60,6 +60,9 @@ UNSURE: Annotated[
     ),
 ] = (0.1, 1.0)
 MOST_ROUNDS: Annotated[int, Means("rounds", "of a fit at most", "hidden")] = 14
+SLIDE_ROUNDS: Annotated[
+    int, Means("rounds", "of a descent by another fit's derivatives, its first look included", "slide")
+] = 8
 POLISHED: Annotated[
     float,
     Means("squared error, noise variances", "the last step of the fit that is told gains less", "covariance"),

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
+from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit, fitted_on
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._hidden_speeds import with_hidden_speeds
 from hil.analysis.diagnosis.search._optional import little
@@ -63,7 +63,7 @@ def race(problem: Problem, step: Step) -> None:
     for index, one in enumerate(step.fits[first:], first):
         if one.rounds >= RACE_ROUNDS and one.total - floor < OUT_OF_RACE * (best - floor) + RACE_SLACK:
             enough = little(problem, one)
-            step.fits[index] = fit(problem, one.hypothesis, one.starts, one.theta, enough=enough)
+            step.fits[index] = fitted_on(problem, one, enough=enough)
 
 
 def _fallen(problem: Problem, fits: list[Fit], first: int) -> None:
@@ -75,7 +75,7 @@ def _fallen(problem: Problem, fits: list[Fit], first: int) -> None:
         return
     for index, one in enumerate(fits[first:], first):
         while one.rounds >= RACE_ROUNDS:
-            further = fit(problem, one.hypothesis, one.starts, one.theta, rounds=RACE_ROUNDS)
+            further = fitted_on(problem, one, rounds=RACE_ROUNDS)
             falls = further.total < STILL_FALLS * one.total
             fits[index] = one = further
             if not falls:

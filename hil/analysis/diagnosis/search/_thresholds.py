@@ -229,6 +229,9 @@ HOPS_IN_VAIN: Annotated[
     int, Means("fits", "in a row that find nothing lower: then it is the lowest", "blind")
 ] = 10
 HOPPING_S: Annotated[float, Means("s", "of processor time that these fits may take together", "blind")] = 45.0
+WORTH_A_FIT: Annotated[
+    float, Means("of the least squared error", "a hop that slides below it is fitted to its end", "hopping")
+] = 1.003
 HOP_SIZES: Annotated[
     tuple[float, float], Means("natural logarithm", "by which numbers are moved, standard deviation", "blind")
 ] = (5e-5, 2e-3)
