@@ -29,6 +29,8 @@ CHECKS = {
     "problem": _TESTS.format("fit/test_problem.py"),
     "covariance": _TESTS.format("fit/test_covariance.py"),
     "far": _TESTS.format("fit/test_far.py"),
+    "slide": _TESTS.format("fit/test_slide.py"),
+    "hopping": _TESTS.format("search/test_hopping.py"),
     "least_squares": _TESTS.format("fit/test_least_squares.py"),
     "whitening": _TESTS.format("fit/test_whitening.py"),
     "whole_samples": _TESTS.format("fit/test_whole_samples.py"),
