@@ -5,6 +5,8 @@ import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._least_squares import box_step, descent
+from hil.core.channels import OUTPUTS
+from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
 MATRIX = np.array([[2.0, 1.0], [1.0, 3.0]])
@@ -40,3 +42,18 @@ def test_a_descent_lowers_the_cost_and_keeps_to_its_rounds() -> None:
     assert reached.at.cost < 0.5 * first.cost
     assert reached.rounds <= 3
     assert np.all(np.abs(reached.theta) <= wide)
+
+
+def test_errors_far_beyond_noise_lead_to_one_minimum_from_either_side() -> None:
+    offset = EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0})
+    problem, hypothesis = one_problem(offset), Hypothesis(MODEL)
+    starts = problem.first_starts()
+    wide = np.full(len(hypothesis.start()), 0.5)
+    free = np.zeros(len(wide))
+    ends = [
+        descent(problem, hypothesis, (hypothesis.start() + by, starts), (-wide, wide), free, 40, 1e-3)
+        for by in (-0.03, 0.03)
+    ]
+    assert ends[0].at.cost > 10.0 * problem.rows
+    assert ends[0].at.cost == pytest.approx(ends[1].at.cost, rel=1e-6)
+    assert max(one.rounds for one in ends) < 40
