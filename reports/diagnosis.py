@@ -10,9 +10,14 @@ from typing import Literal
 from hil.analysis.diagnosis import Diagnosis
 from reports.diagnosis_content import headline, lead, parts
 from reports.origin import Origin
-from reports.parts import Page, page_html, page_pdf
+from reports.parts import Page, documents, page_html, page_pdf
 
 _Tone = Literal["pass", "error"]
+
+
+def diagnosis_documents(found: Diagnosis, title: str, origin: Origin | None = None) -> dict[str, bytes]:
+    """Both forms, by the names of their files."""
+    return documents(_page(found, title, origin))
 
 
 def diagnosis_html(found: Diagnosis, title: str, origin: Origin | None = None) -> str:

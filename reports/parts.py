@@ -8,6 +8,7 @@ from __future__ import annotations
 import base64
 import json
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from importlib import resources
 from typing import Any, Literal, Protocol
 
@@ -83,6 +84,11 @@ class Part:
     maps: tuple[Map, ...] = ()
     figures: tuple[Figure | Picture, ...] = ()
 
+    @cached_property
+    def drawn(self) -> dict[str, Any]:
+        """What templates are given; pictures are drawn once for screen and paper."""
+        return _as_data(self)
+
 
 @dataclass(frozen=True)
 class Page:
@@ -145,7 +151,7 @@ def page_pdf(page: Page) -> bytes:
         "lead": page.lead,
         "notes": list(page.notes),
         "mark": page.mark,
-        "parts": [_as_data(part) for part in page.parts],
+        "parts": [part.drawn for part in page.parts],
         "colors": {name: tone.light for name, tone in style.SURFACE.items()},
     }
     data = _spelled_out(data, _known_characters())
@@ -160,10 +166,11 @@ def page_pdf(page: Page) -> bytes:
 
 
 def _with_pictures(part: Part) -> dict[str, Any]:
-    data = _as_data(part)
-    for figure in data["figures"]:
-        figure["uri"] = "data:image/svg+xml;base64," + base64.b64encode(figure["svg"].encode()).decode()
-    return data
+    figures = [
+        {**one, "uri": "data:image/svg+xml;base64," + base64.b64encode(one["svg"].encode()).decode()}
+        for one in part.drawn["figures"]
+    ]
+    return {**part.drawn, "figures": figures}
 
 
 def _as_data(part: Part) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from hil.cli._place import results_in
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model, model_to_toml
 from hil.core.recording import Recording, driven_by_torque, read_recording
-from reports.diagnosis import diagnosis_html, diagnosis_pdf
+from reports.diagnosis import diagnosis_documents
 from reports.origin import Origin, origin_of
 from reports.quantities import chance
 
@@ -103,8 +103,7 @@ def output_files(found: Diagnosis, title: str, origin: Origin | None = None) -> 
     """Names and contents of all that the command writes."""
     files = {
         "model.toml": model_to_toml(found.model).encode(),
-        "report.html": diagnosis_html(found, title, origin).encode(),
-        "report.pdf": diagnosis_pdf(found, title, origin),
+        **diagnosis_documents(found, title, origin),
     }
     for a in found.alternatives:
         if a.plan and a.plan_text:
