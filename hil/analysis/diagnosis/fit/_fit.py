@@ -79,13 +79,13 @@ def fit(
     starts = [s.copy() for s in (starts or problem.first_starts())]
     precision = precision_of(problem, hypothesis)
     by_samples = delay_by_samples(hypothesis, problem.traces[0].dt) if rounds else None
-    done = 0
+    done, reached = 0, None
     while True:
         within = lower, upper
         if by_samples is not None:
             tried = [theta, *by_samples.leaps(theta, lower, upper)]
             leapt = cheapest(problem, hypothesis, tried, starts, precision, lead=WORTH_A_LEAP)
-            if done and leapt is theta:
+            if reached is not None and leapt is theta:
                 break
             theta, at = leapt, at if leapt is theta else None
             within = by_samples.within(theta, lower, upper)

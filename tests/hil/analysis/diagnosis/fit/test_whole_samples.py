@@ -107,3 +107,10 @@ def test_a_skew_of_just_a_sample_costs_more_than_dead_time(fitted):
     skew, late = (fitted(true, Hypothesis(MODEL, (use,)))[1] for use in guesses)
     assert skew.theta[-1] == pytest.approx(0.001, abs=2e-5)
     assert late.total < skew.total
+
+
+def test_a_fit_begun_where_another_ended_ends_at_once(fitted):
+    problem, one = fitted(MODEL, Hypothesis(MODEL))
+    again = fit(problem, one.hypothesis, one.starts, one.theta)
+    assert again.rounds == 0
+    assert again.total == pytest.approx(one.total)
