@@ -28,7 +28,6 @@ from hil.analysis.diagnosis.search._thresholds import (
     HOPELESS_GAP,
     HOPELESS_PROMISE,
     MOST_EFFECTS,
-    NUMBERS_HELP,
     NUMBERS_LEAVE,
 )
 from hil.core.model import EffectUse
@@ -104,7 +103,7 @@ def _better(near: Found, far: Found, show: Callable[[str], None]) -> Found:
     """What explains more of two searches, each as far as it is worth it; the near one where in doubt."""
     if not is_far(far.base):
         near = finished(near, show)
-        if near.settled or not _helped_by_numbers(near, far):
+        if near.settled:
             return near
     if near.steps and not far.settled:
         show("looking for an effect beside other numbers of the base model")
@@ -119,16 +118,6 @@ def _better(near: Found, far: Found, show: Callable[[str], None]) -> Found:
     near = finished(near, show)
     clearer = near.evidence.left(near.best) < FAR_BETTER * far.evidence.left(far.best)
     return near if near.settled or clearer else far
-
-
-def _helped_by_numbers(near: Found, far: Found) -> bool:
-    """Whether what was found near leaves clearly less once all numbers of the base model are free."""
-    best, freed = near.best, far.base
-    if best.hypothesis.terms:
-        hypothesis = replace(best.hypothesis, far=True)
-        problem = far.evidence.problem.with_angles(best.angles)
-        freed = fit(problem, hypothesis, best.starts, carried(best, hypothesis))
-    return near.evidence.left(freed) < NUMBERS_HELP * near.evidence.left(best)
 
 
 def moved(one: Fit, least: float = 0.0) -> list[str]:

@@ -346,10 +346,6 @@ HOPELESS_GAP: Annotated[
 HOPELESS_PROMISE: Annotated[
     float, Means("of the gap", "an effect that promises more is looked for before numbers are", "far")
 ] = 0.65
-NUMBERS_HELP: Annotated[
-    float,
-    Means("of what is left", "other numbers must leave less that an effect is looked for beside them", "far"),
-] = 0.7
 NUMBERS_LEAVE: Annotated[float, Means("of the gap", "numbers that leave less explain most", "far")] = 0.2
 ALONE: Annotated[
     float,

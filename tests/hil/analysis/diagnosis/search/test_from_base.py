@@ -6,16 +6,8 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._far import identified
-from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.search._from_base import (
-    _helped_by_numbers,
-    _told,
-    is_far,
-    moved,
-    search_from_base,
-)
-from hil.analysis.diagnosis.search._search import begun
+from hil.analysis.diagnosis.fit._fit import Fit
+from hil.analysis.diagnosis.search._from_base import _told, is_far, moved, search_from_base
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
@@ -81,11 +73,3 @@ def test_dead_time_that_a_near_model_lacks_has_a_name_of_its_own() -> None:
     assert [use.id for use in late] == ["dead_time", "parameter_mismatch"]
     assert late[0].values["extra_delay_s"] == pytest.approx(own * (np.exp(0.5) - 1.0))
     assert [use.values.get("parameter") for use in early] == ["torque_delay", "gear_ratio"]
-
-
-def test_numbers_that_help_are_those_that_leave_clearly_less() -> None:
-    for model, hidden, helps in ((FAR, (), True), (MODEL, (OFFSET,), False)):
-        problem = one_problem(*hidden, seconds=16.0)
-        near = begun(problem, fit(problem, Hypothesis(model)))
-        far = begun(*identified(problem, near.base.hypothesis))
-        assert _helped_by_numbers(near, far) == helps
