@@ -78,7 +78,8 @@ def test_a_phase_that_wanders_by_turns_is_followed(tmp_path):
     assert values["amplitude_nm"] == pytest.approx(0.7, rel=0.02)
     assert values["order"] == pytest.approx(12.0, abs=0.01)
     assert 12.0 * np.ptp(after.angles[0][:, 1] - measured) > np.pi
-    assert after.cost - problem.rows < 0.1 * (before.cost - problem.rows)  # slow noise stays
+    assert before.cost > 5.0 * problem.rows
+    assert after.cost < 1.55 * problem.rows  # slow noise stays
 
 
 def test_an_order_bent_by_drift_is_straightened_to_a_whole_one(tmp_path):
