@@ -90,7 +90,7 @@ def fit(
             theta, at = leapt, at if leapt is theta else None
             within = by_samples.within(theta, lower, upper)
         reached = descent(problem, hypothesis, (theta, starts), within, precision, rounds - done, enough, at)
-        theta, starts, done, at = reached.theta, reached.starts, done + reached.rounds, reached.at
+        theta, starts, done = reached.theta, reached.starts, done + reached.rounds
         if by_samples is None or done >= rounds:
             break
     matrix, _ = reduced(reached.at.normals)

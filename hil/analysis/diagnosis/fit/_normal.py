@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -21,6 +22,11 @@ class Normal:
     shared_gradient: Array
     start_gradient: Array
 
+    @cached_property
+    def start_inverse(self) -> Array:
+        """Pseudo-inverse of `start`: what a recording does not tell of its initial values stays."""
+        return np.asarray(np.linalg.pinv(self.start, rcond=1e-10, hermitian=True))
+
 
 def normal_equations(shared: Array, initial: Array, error: Array) -> Normal:
     """Products of derivatives and errors."""
@@ -34,16 +40,14 @@ def reduced(normals: Sequence[Normal]) -> tuple[Array, Array]:
     size = len(normals[0].shared_gradient)
     matrix, gradient = np.zeros((size, size)), np.zeros(size)
     for n in normals:
-        inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
-        matrix += n.shared - n.between @ inverse @ n.between.T
-        gradient += n.shared_gradient - n.between @ (inverse @ n.start_gradient)
+        matrix += n.shared - n.between @ n.start_inverse @ n.between.T
+        gradient += n.shared_gradient - n.between @ (n.start_inverse @ n.start_gradient)
     return matrix, gradient
 
 
 def start_step(n: Normal, step: Array) -> Array:
     """The best change of a recording's start when the shared coordinates change by `step`."""
-    inverse = np.linalg.pinv(n.start, rcond=1e-10, hermitian=True)
-    return np.asarray(inverse @ (n.start_gradient - n.between.T @ step))
+    return np.asarray(n.start_inverse @ (n.start_gradient - n.between.T @ step))
 
 
 def promised_gain(normals: Sequence[Normal], matrix: Array, gradient: Array, step: Array) -> float:
@@ -51,9 +55,5 @@ def promised_gain(normals: Sequence[Normal], matrix: Array, gradient: Array, ste
 
     `matrix` and `gradient` are the reduced ones, with what is known beforehand; derivatives stay as they are.
     """
-    inverses = (np.linalg.pinv(n.start, rcond=1e-10, hermitian=True) for n in normals)
-    of_starts = sum(
-        float(n.start_gradient @ inverse @ n.start_gradient)
-        for n, inverse in zip(normals, inverses, strict=True)
-    )
+    of_starts = sum(float(n.start_gradient @ n.start_inverse @ n.start_gradient) for n in normals)
     return float(2.0 * gradient @ step - step @ matrix @ step) + of_starts
