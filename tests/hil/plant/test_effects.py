@@ -64,6 +64,7 @@ def many(model: Model) -> np.ndarray:
 FORMS = [
     *((id_, {}) for id_ in USES),
     ("backlash", {"depth_damping_nms_rad2": 150.0}),
+    ("backlash", {"contact_damping_nms_rad": 10.0, "contact_depth_rad": 1e-3}),
     ("coulomb_friction", {"turn_rad": 0.0, "stribeck_torque_nm": 1.0, "stribeck_speed_rad_s": 6.0}),
     ("coulomb_friction", {"turn_rad": 0.02, "stribeck_torque_nm": 1.0, "bristle_damping_nms_rad": 0.4}),
 ]
@@ -80,10 +81,17 @@ def test_both_integrators_see_the_same_effect(id_, changes):
     assert np.all(between < 0.02 * effect + 1e-6 * np.std(plain, axis=0))
 
 
-@pytest.mark.parametrize("tension", [0.5, 1.0])
-def test_both_integrators_see_the_same_flanks_that_pull(tension):
-    """Torque leaps as they part, between two steps: it is seen a little sooner or later, speeds hardly."""
-    model = with_effect("backlash", tension=tension, depth_damping_nms_rad2=150.0)
+@pytest.mark.parametrize(
+    "flanks",
+    [
+        {"tension": 0.5, "depth_damping_nms_rad2": 150.0},
+        {"tension": 1.0, "depth_damping_nms_rad2": 150.0},
+        {"one_spring": 1.0, "contact_depth_rad": 1e-3},
+    ],
+)
+def test_both_integrators_see_the_same_blows(flanks):
+    """Torque changes as flanks meet and part, between two steps: a little sooner or later, speeds hardly."""
+    model = with_effect("backlash", **flanks)
     a, b, plain = stepped(model), many(model), stepped(THREE)
     between = np.sqrt(np.mean((a - b) ** 2, axis=0))
     effect = np.sqrt(np.mean((a - plain) ** 2, axis=0))
@@ -93,7 +101,11 @@ def test_both_integrators_see_the_same_flanks_that_pull(tension):
 @pytest.mark.parametrize(
     ("id_", "before", "spelt_out"),
     [
-        ("backlash", {}, {"depth_damping_nms_rad2": 0.0, "tension": 0.0}),
+        (
+            "backlash",
+            {},
+            {"depth_damping_nms_rad2": 0.0, "tension": 0.0, "contact_depth_rad": 0.0, "one_spring": 0.0},
+        ),
         (
             "coulomb_friction",
             {"stribeck_torque_nm": 0.5},

@@ -13,6 +13,7 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._thresholds import (
     ALL_BUT,
     ALL_BUT_NOISES,
+    LAWS_DIFFER,
     NEARLY_ALL,
     NOTHING,
     SIGMAS,
@@ -65,9 +66,10 @@ class Evidence:
         if self.closed(one):
             return True
         worst = self.worst(one)
+        little = LAWS_DIFFER if one.hypothesis.of_many_laws else SMALLISH
         return self.all_but(one) or (
             bool(one.hypothesis.terms)
-            and (worst < SMALL or (worst < SMALLISH and self.share(one) > NEARLY_ALL))
+            and (worst < SMALL or (worst < little and self.share(one) > NEARLY_ALL))
         )
 
     def all_but(self, one: Fit) -> bool:

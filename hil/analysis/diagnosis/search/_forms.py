@@ -35,10 +35,10 @@ Array = npt.NDArray[np.float64]
 
 def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
     """`best`, or its newest effect by the law of another author that leaves clearly less."""
-    if not EFFECTS[best.hypothesis.ids[-1]].forms or evidence.closed(best):
+    if not EFFECTS[best.hypothesis.ids[-1]].forms or evidence.settled(best):
         return best
     first = _by_likeliest_law_to_the_end(evidence, best)
-    if not evidence.settled(first) and not evidence.all_but(first):
+    if not evidence.settled(first):
         # numbers of the base that a wrong law has bent lead no law back
         plain = replace(best, theta=nominal(best.hypothesis, best.theta))
         first = min(first, _by_likeliest_law_to_the_end(evidence, plain), key=rank)
@@ -97,13 +97,15 @@ def _widened(problem: Problem, one: Fit) -> Fit:
 
 
 def _written(hypothesis: Hypothesis, form: Mapping[str, tuple[float, ...]]) -> Hypothesis:
-    """`hypothesis`, its newest effect by `form`: what a fit can move is open, the rest as it is given."""
+    """`hypothesis`, its newest effect by `form`, whose numbers alone are open of the optional ones."""
     newest = hypothesis.terms[-1]
     effect = EFFECTS[newest.id]
     given = {name: values[0] for name, values in form.items()}
     moved = {name for name in form if effect.parameter(name).fitted}
-    terms = (*hypothesis.terms[:-1], EffectUse(newest.id, {**newest.values, **given}))
-    return replace(hypothesis, terms=terms, open=tuple(sorted({*hypothesis.open, *moved})))
+    plain = {p.name: p.default for p in effect.parameters if p.optional}
+    terms = (*hypothesis.terms[:-1], EffectUse(newest.id, {**newest.values, **plain, **given}))
+    still = {*hypothesis.open} - {*plain}
+    return replace(hypothesis, terms=terms, open=tuple(sorted(still | moved)))
 
 
 def _is_newest(hypothesis: Hypothesis, c: Coordinate) -> bool:

@@ -82,7 +82,7 @@ def grow(
     if step.fits:
         step.fits[:] = _contended(problem, evidence, step.fits)
         best = aligned(problem, step.fits[0])
-        if sought and best.hypothesis.remembers_place and not evidence.closed(best):
+        if sought and best.hypothesis.remembers_place and not evidence.settled(best):
             best, step.foretold = _foretold_at_best(problem, evidence, best)
             if step.foretold:
                 return
@@ -170,7 +170,7 @@ def _foretold_at_best(
     other = places_of(evidence, best).best
     if rank(other) >= (1.0 - AS_GOOD) * rank(best):
         return best, found
-    if evidence.closed(other):
+    if evidence.settled(other):
         return other, None
     return other, where_foretold(problem, evidence.base, other, fitted=True)
 

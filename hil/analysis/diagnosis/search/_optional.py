@@ -50,11 +50,20 @@ def _told(problem: Problem, best: Fit) -> Fit:
         parameter = EFFECTS[best.hypothesis.terms[c.term].id].parameter(c.name)
         if abs(value - parameter.default) > UNTOLD_SIGMAS * error:
             continue
-        still = tuple(name for name in best.hypothesis.open if name != c.name)
-        fewer = replace(_with_value(best.hypothesis, c.term, c.name, parameter.default), open=still)
+        fewer = _closed(best.hypothesis, c.term, parameter)
         one = fit(problem, fewer, best.starts, carried(best, fewer), enough=little(problem, best))
         best = min(best, one, key=rank)
     return best
+
+
+def _closed(hypothesis: Hypothesis, index: int, parameter: Parameter) -> Hypothesis:
+    """Without that optional number of effect number `index`, and those that mean nothing without it."""
+    needless = [parameter]
+    needless += [p for p in EFFECTS[hypothesis.terms[index].id].parameters if p.beside == parameter.name]
+    for one in needless:
+        hypothesis = _with_value(hypothesis, index, one.name, one.default)
+    names = {one.name for one in needless}
+    return replace(hypothesis, open=tuple(name for name in hypothesis.open if name not in names))
 
 
 def _others(best: Fit, index: int, parameter: Parameter) -> list[float]:

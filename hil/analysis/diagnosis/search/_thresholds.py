@@ -53,6 +53,12 @@ SMALL: Annotated[
 SMALLISH: Annotated[
     float, Means("gap over noise floor", "the same, once 99 % of the gap are closed", "evidence")
 ] = 1.1
+LAWS_DIFFER: Annotated[
+    float,
+    Means(
+        "gap over noise floor", "the same for contact, dry friction and hysteresis: formulas differ", "blind"
+    ),
+] = 1.25
 WHITE_AT_LEAST: Annotated[
     float, Means("of the white noise", "is in any error: its level is known to a few per cent", "evidence")
 ] = 0.95

@@ -35,7 +35,7 @@ small = st.floats(-0.1, 0.1)
 def test_flanks_in_contact_push_and_never_pull(twist, rate, seat, damping):
     motion = STILL._replace(twist=twist, twist_rate=rate)
     linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
-    torque = linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, damping, 1.0, 0.0, 0.0))
+    torque = linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, damping, 1.0, 0.0, 0.0, 0.0, 0.0))
     assert torque * seat >= -1e-9
     free = CHAIN.shaft_stiffness * (twist - seat) + (CHAIN.shaft_damping + damping) * rate
     assert torque == pytest.approx(max(0.0, free) if seat > 0 else min(0.0, free), abs=1e-9)
@@ -45,10 +45,10 @@ def test_flanks_in_contact_push_and_never_pull(twist, rate, seat, damping):
 def test_within_the_gap_nothing_is_carried(twist, rate, seat):
     motion = STILL._replace(twist=twist, twist_rate=rate)
     linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
-    assert linear + BACKLASH.shaft(motion, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0)) == pytest.approx(
-        0.0, abs=1e-9
-    )
-    assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0)) == 0.0
+    assert linear + BACKLASH.shaft(
+        motion, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0, 0.0, 0.0)
+    ) == pytest.approx(0.0, abs=1e-9)
+    assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0, 0.0, 0.0)) == 0.0
 
 
 @pytest.mark.parametrize("restitution", [0.1, 0.2, 0.5, 0.9])
@@ -73,16 +73,16 @@ def test_what_gives_back_next_to_nothing_acts_as_a_tenth():
 
 
 def test_an_elastic_blow_has_no_damping_of_its_own():
-    elastic = (0.02, 7.0, 1.0, 0.0, 0.0)
+    elastic = (0.02, 7.0, 1.0, 0.0, 0.0, 0.0, 0.0)
     assert BACKLASH.prepare(CHAIN, elastic) == elastic
     two = CHAIN._replace(kind=TWO_INERTIA)
-    half = (0.02, 7.0, 0.5, 0.0, 0.0)
+    half = (0.02, 7.0, 0.5, 0.0, 0.0, 0.0, 0.0)
     assert BACKLASH.prepare(two, half)[1] > BACKLASH.prepare(CHAIN, half)[1] > 7.0
 
 
 def contact(twist: float, rate: float, seat: float, **others: float) -> float:
     """Torque in N m of shafts with a half gap of 0.02 rad."""
-    law = {"contact_damping_nms_rad": 0.0, "restitution": 1.0, "depth_damping_nms_rad2": 0.0, "tension": 0.0}
+    law = dict.fromkeys((p.name for p in EFFECTS["backlash"].parameters[1:]), 0.0) | {"restitution": 1.0}
     motion = STILL._replace(twist=twist, twist_rate=rate)
     linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
     return linear + float(BACKLASH.shaft(motion, CHAIN, seat, (0.02, *(law | others).values())))
@@ -109,10 +109,35 @@ def test_flanks_that_are_damped_by_their_depth_are_hunts_and_crossleys(depth, ra
     assert side * alone == pytest.approx(max(0.0, (6000.0 + factor * rate) * depth + 20.0 * rate), abs=1e-9)
 
 
+@given(
+    depth=st.floats(-0.05, 0.1),
+    rate=st.floats(-5, 5),
+    damping=st.floats(0, 100),
+    span=st.floats(1e-5, 0.05),
+    side=st.sampled_from([-1, 1]),
+)
+def test_damping_sets_in_over_the_depth_beyond_where_untwisted_shafts_meet(depth, rate, damping, span, side):
+    """A seat at the flank, the twist anywhere: shafts may still be wound the other way."""
+    law = {"contact_damping_nms_rad": damping, "contact_depth_rad": span}
+    share = min(max(depth / span, 0.0), 1.0)
+    step = 3.0 * share**2 - 2.0 * share**3
+    got = contact(side * (0.02 + depth), side * rate, side * 0.02, **law)
+    assert side * got == pytest.approx(max(0.0, 6000.0 * depth + (20.0 + damping * step) * rate), abs=1e-9)
+    whole = contact(side * (0.02 + depth), side * rate, side * 0.02, **law, one_spring=1.0)
+    assert side * whole == pytest.approx(max(0.0, 6000.0 * depth + (20.0 + damping) * step * rate), abs=1e-9)
+
+
+@given(twist=small)
+def test_one_spring_is_untwisted_at_once_when_it_is_free(twist):
+    motion = STILL._replace(twist=twist)
+    seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, (0.02, 5.0, 1.0, 0.0, 0.0, 1e-3, 1.0), 1e-4)
+    assert seat == min(max(twist, -0.02), 0.02)
+
+
 @given(twist=small)
 def test_shafts_under_tension_are_in_contact_where_their_twist_is_beyond_the_gap(twist):
     motion = STILL._replace(twist=twist)
-    seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, (0.02, 5.0, 1.0, 0.0, 1.0), 1e-4)
+    seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, (0.02, 5.0, 1.0, 0.0, 1.0, 0.0, 0.0), 1e-4)
     assert seat == min(max(twist, -0.02), 0.02)
 
 

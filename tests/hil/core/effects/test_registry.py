@@ -24,6 +24,8 @@ CONTRACT = {
         "restitution",
         "depth_damping_nms_rad2",
         "tension",
+        "contact_depth_rad",
+        "one_spring",
     ),
     "shaft_cubic_stiffness": ("coefficient_nm_rad3",),
     "shaft_hysteresis": ("stiffness_nm_rad", "slip_rad"),
