@@ -21,6 +21,8 @@ from hil.analysis.diagnosis.search._race import nominal
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
     AS_GOOD,
+    FORM_FROM,
+    FORM_HOPE,
     FORM_LEAVES,
     FORM_ROUNDS,
     LEAST_EVIDENCE,
@@ -37,20 +39,25 @@ def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
     """`best`, or its newest effect by the law of another author that leaves clearly less."""
     if not EFFECTS[best.hypothesis.ids[-1]].forms or evidence.settled(best):
         return best
-    first = _by_likeliest_law_to_the_end(evidence, best)
+    if evidence.share(best) < FORM_FROM:  # something else is missing: no law makes up for that
+        return best
+    first = _by_likeliest_law_to_the_end(evidence, best, best)
     if not evidence.settled(first):
         # numbers of the base that a wrong law has bent lead no law back
         plain = replace(best, theta=nominal(best.hypothesis, best.theta))
-        first = min(first, _by_likeliest_law_to_the_end(evidence, plain), key=rank)
+        first = min(first, _by_likeliest_law_to_the_end(evidence, plain, best), key=rank)
     less = evidence.left(first) < FORM_LEAVES * evidence.left(best)
     if not less or evidence.between(best, first) < LEAST_EVIDENCE:
         return best
     return first if evidence.problem.partial else placed(evidence, first)
 
 
-def _by_likeliest_law_to_the_end(evidence: Evidence, best: Fit) -> Fit:
-    problem = evidence.problem.with_angles(best.angles)
-    first = by_likeliest_law(evidence, best)
+def _by_likeliest_law_to_the_end(evidence: Evidence, one: Fit, best: Fit) -> Fit:
+    """Begun from `one`; not to its end where it leaves clearly more than `best` after a few rounds."""
+    problem = evidence.problem.with_angles(one.angles)
+    first = by_likeliest_law(evidence, one)
+    if rank(first) > FORM_HOPE * rank(best):
+        return first
     return _widened(problem, fit(problem, first.hypothesis, first.starts, first.theta))
 
 

@@ -77,7 +77,8 @@ def grow(
     step.scores += scores
     if not scores or scores[0].gain >= max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
         race(problem, step)
-        step.fits += _of_other_laws(evidence, step.fits)
+        if not parent.hypothesis.terms:
+            step.fits += _of_other_laws(evidence, step.fits)
     step.fits.sort(key=lambda f: f.total + price(f))
     if step.fits:
         step.fits[:] = _contended(problem, evidence, step.fits)

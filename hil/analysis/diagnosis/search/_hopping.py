@@ -4,7 +4,7 @@ Each time that flanks meet is a corner of the cost, so that its valley is full o
 ends in the next one, far from the bottom by its own standard errors. From where it is, moved a little at
 random, it often ends lower (basin hopping: Wales and Doye, J. Phys. Chem. A 101, 1997); and how far apart
 hollows lie that are nearly as deep is how well the numbers are known. Each hop slides down by the derivatives
-of the lowest fit, and is fitted where it comes near it.
+of the lowest fit, and is fitted where it comes below it.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from hil.analysis.diagnosis.fit._allowance import Allowance, OutOfTimeError
 from hil.analysis.diagnosis.fit._fit import Fit, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._slide import Slid, slid
+from hil.analysis.diagnosis.search._optional import little
 from hil.analysis.diagnosis.search._thresholds import (
     HOLLOWS,
     HOP_SIZES,
     HOPPING_S,
     HOPS,
     HOPS_IN_VAIN,
-    WORTH_A_FIT,
 )
 
 Array = npt.NDArray[np.float64]
@@ -48,15 +48,14 @@ def hopped(problem: Problem, best: Fit) -> Fit:
         theta = lowest.theta + size * rng.normal(size=len(moved)) * moved
         try:  # the place in the play at the beginning is one of the corners
             one: Slid | Fit = slid(problem, lowest, theta, lowest.starts if number % 2 else starts)
-            if one.total < WORTH_A_FIT * lowest.total:
-                one = fit(problem, best.hypothesis, one.starts, one.theta)
+            if one.total < lowest.total:
+                one = fit(problem, best.hypothesis, one.starts, one.theta, enough=little(problem, lowest))
         except OutOfTimeError:
             break
         found.append((one.total, one.theta))
-        if isinstance(one, Fit) and one.total < lowest.total:
-            lowest, vain = one, 0
-            continue
-        vain += 1
+        vain = 0 if one.total < lowest.total - little(problem, lowest) else vain + 1
+        if isinstance(one, Fit):
+            lowest = min(lowest, one, key=lambda each: each.total)
         if vain == HOPS_IN_VAIN:
             break
     near = [theta - lowest.theta for total, theta in found if total < HOLLOWS * lowest.total]

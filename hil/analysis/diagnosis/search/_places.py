@@ -88,7 +88,8 @@ def told(evidence: Evidence, places: Places) -> Fit:
     problem = evidence.problem.with_angles(best.angles)
     if max(abs(one.theta[index] - best.theta[index]) for one in _as_good(fits)) > UNTOLD_WIDTH:
         middle = [_begun(problem, best, index, width) for width in _from_the_middle(problem, best, index)]
-        fits = fits + _fitted(problem, best, middle)
+        likely = sorted(middle, key=lambda one: one.total)[:PLACES_TRIED]
+        fits = fits + _fitted(problem, best, likely)
         best = min(_as_good(fits), key=lambda one: _off_the_middle(problem, one))
         return replace(best, scatter=np.max(_away(best, fits), axis=0))  # any of them, and those beyond
     return replace(best, scatter=np.sqrt(np.mean(_away(best, fits) ** 2, axis=0)))

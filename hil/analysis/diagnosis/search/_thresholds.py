@@ -232,12 +232,9 @@ MORE_FORETOLD: Annotated[
 ] = 0.01
 HOPS: Annotated[int, Means("fits", "from near the one that is told, of a play", "blind")] = 30
 HOPS_IN_VAIN: Annotated[
-    int, Means("fits", "in a row that find nothing lower: then it is the lowest", "blind")
+    int, Means("fits", "in a row that find nothing clearly lower: then it is the lowest", "blind")
 ] = 10
 HOPPING_S: Annotated[float, Means("s", "of processor time that these fits may take together", "blind")] = 45.0
-WORTH_A_FIT: Annotated[
-    float, Means("of the least squared error", "a hop that slides below it is fitted to its end", "hopping")
-] = 1.003
 HOP_SIZES: Annotated[
     tuple[float, float], Means("natural logarithm", "by which numbers are moved, standard deviation", "blind")
 ] = (5e-5, 2e-3)
@@ -285,6 +282,14 @@ OPTIONAL_LEAVES: Annotated[
 FORM_LEAVES: Annotated[
     float, Means("of the remaining gap", "the law of another author must leave less", "hidden")
 ] = 0.5
+FORM_FROM: Annotated[
+    float,
+    Means("of the whole gap", "an effect that closes less lacks another one, not another law", "blind"),
+] = 0.85
+FORM_HOPE: Annotated[
+    float,
+    Means("times what the usual law leaves", "a law that leaves more after these rounds is not it", "blind"),
+] = 1.2
 FORM_ROUNDS: Annotated[
     int, Means("rounds", "after which one other author's law goes on, the one that leaves least", "laws")
 ] = 5
