@@ -21,7 +21,6 @@ from hil.analysis.diagnosis.search._race import nominal
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
     AS_GOOD,
-    FORM_FROM,
     FORM_HOPE,
     FORM_LEAVES,
     FORM_ROUNDS,
@@ -38,8 +37,6 @@ Array = npt.NDArray[np.float64]
 def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
     """`best`, or its newest effect by the law of another author that leaves clearly less."""
     if not EFFECTS[best.hypothesis.ids[-1]].forms or evidence.settled(best):
-        return best
-    if evidence.share(best) < FORM_FROM:  # something else is missing: no law makes up for that
         return best
     first = _by_likeliest_law_to_the_end(evidence, best, best)
     if not evidence.settled(first):

@@ -27,6 +27,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     CONTENDER,
     FAR,
     FORETOLD_LEAVES,
+    FORM_FROM,
     HOPE,
     LEAST_EVIDENCE,
     NEARLY,
@@ -193,10 +194,15 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
         )
         best = _from_sizes(evidence, best, nominal(best.hypothesis, best.theta), own, OTHER_SIZES)
     if evidence.problem.partial:
-        return by_other_laws(evidence, best)
+        return _by_other_laws(evidence, best)
     begun = places_of(evidence, best)
-    other = by_other_laws(evidence, begun.best)  # a law that is not right tells no width from another
+    other = _by_other_laws(evidence, begun.best)  # a law that is not right tells no width from another
     return other if other is not begun.best else told(evidence, begun)
+
+
+def _by_other_laws(evidence: Evidence, best: Fit) -> Fit:
+    """`best`, or its newest effect by another author's law, where nothing else seems to be missing."""
+    return best if evidence.share(best) < FORM_FROM else by_other_laws(evidence, best)
 
 
 def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors: tuple[float, ...]) -> Fit:

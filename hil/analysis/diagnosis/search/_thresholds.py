@@ -232,7 +232,7 @@ MORE_FORETOLD: Annotated[
 ] = 0.01
 HOPS: Annotated[int, Means("fits", "from near the one that is told, of a play", "blind")] = 30
 HOPS_IN_VAIN: Annotated[
-    int, Means("fits", "in a row that find nothing clearly lower: then it is the lowest", "blind")
+    int, Means("fits", "in a row that find nothing clearly lower: then it is the lowest", "hopping")
 ] = 10
 HOPPING_S: Annotated[float, Means("s", "of processor time that these fits may take together", "blind")] = 45.0
 HOP_SIZES: Annotated[
