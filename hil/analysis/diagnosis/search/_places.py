@@ -150,7 +150,7 @@ def _from_the_middle(problem: Problem, best: Fit, index: int) -> list[float]:
     play = _Play.of(best, index)
     torques = [float(s[SHAFT]) for s, rests in zip(best.starts, problem.resting, strict=True) if rests]
     shares = [play.place(torque, 1.0) / play.gap for torque in torques]
-    return [1.0 + way for share in shares for way in (-share, share) if way > -MOST_OF_PLAY]
+    return sorted({1.0 + way for share in shares for way in (-share, share) if way > -MOST_OF_PLAY})
 
 
 @dataclass(frozen=True)

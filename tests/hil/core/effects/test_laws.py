@@ -85,7 +85,8 @@ def contact(twist: float, rate: float, seat: float, **others: float) -> float:
     law = dict.fromkeys((p.name for p in EFFECTS["backlash"].parameters[1:]), 0.0) | {"restitution": 1.0}
     motion = STILL._replace(twist=twist, twist_rate=rate)
     linear = CHAIN.shaft_stiffness * twist + CHAIN.shaft_damping * rate
-    return linear + float(BACKLASH.shaft(motion, CHAIN, seat, (0.02, *(law | others).values())))
+    values = BACKLASH.prepare(CHAIN, (0.02, *(law | others).values()))
+    return linear + float(BACKLASH.shaft(motion, CHAIN, seat, values))
 
 
 @given(
@@ -130,7 +131,8 @@ def test_damping_sets_in_over_the_depth_beyond_where_untwisted_shafts_meet(depth
 @given(twist=small)
 def test_one_spring_is_untwisted_at_once_when_it_is_free(twist):
     motion = STILL._replace(twist=twist)
-    seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, (0.02, 5.0, 1.0, 0.0, 0.0, 1e-3, 1.0), 1e-4)
+    values = BACKLASH.prepare(CHAIN, (0.02, 5.0, 1.0, 0.0, 0.0, 1e-3, 1.0))
+    seat = BACKLASH.remember(STILL, motion, CHAIN, 0.01, values, 1e-4)
     assert seat == min(max(twist, -0.02), 0.02)
 
 
