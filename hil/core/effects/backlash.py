@@ -71,8 +71,8 @@ def damping_of(restitution: float, chain: Chain) -> float:
 def _prepare(chain: Chain, values: Values) -> Values:
     """What the laws below are told, so that they need not ask, which takes longer.
 
-    In place of the restitution stands the least share of a damping that flanks have as they touch, of the depth
-    its inverse in 1/rad, of one spring the shafts' own damping that is not whole at once, in N m s/rad.
+    In place of the restitution stands the least share of a damping that flanks have as they touch, of the
+    depth its inverse in 1/rad, of one spring the shafts' own damping that is not whole at once, in N m s/rad.
     """
     half_gap, contact_damping, restitution, depth_damping, tension, depth, one_spring = values
     if restitution < 1.0:
