@@ -5,6 +5,8 @@ import pytest
 
 from hil.core.model import EffectUse, Model
 from hil.plant import Start, ideal_sensors, pack, simulate, simulate_many
+from tests.blind.experiments import Experiment
+from tests.blind.plant import Truth, true_outputs
 
 PLAIN = Model(
     kind="two_inertia",
@@ -105,3 +107,20 @@ def test_contact_never_pulls(kernel):
     lost = np.flatnonzero(np.abs(out[:, 2]) < 1e-9)
     assert lost.size > 5
     assert np.ptp(out[lost[1:5], 0]) < 1e-3
+
+
+@pytest.mark.parametrize(("form", "one_spring"), [(1.0, 0.0), (2.0, 1.0)], ids=["in series", "one spring"])
+def test_flanks_of_another_author_need_the_depth_over_which_their_damping_sets_in(form, one_spring):
+    """By another integrator, 40 steps a sample, and with another rise: depth / (depth + 2e-4 rad)."""
+    laws = {"half_gap": 0.001, "contact_form": form, "contact_depth": 2e-4, "contact_damping": 15.0}
+    torque = chirp(12.0)
+    experiment = Experiment("test", torque, np.zeros_like(torque))
+    theirs = true_outputs(Truth(PLAIN.kind, dict(PLAIN.parameters), laws), experiment)[1]
+    at_once: dict[str, float | str] = {"half_gap_rad": 0.001, "contact_damping_nms_rad": 15.0}
+    over_depth = at_once | {"contact_depth_rad": 6e-4, "one_spring": one_spring}
+    off = [
+        np.std(many(PLAIN.with_effects(EffectUse("backlash", law)), torque, (0.0, 0.0, 0.0)) - theirs, axis=0)
+        for law in (at_once, over_depth)
+    ]
+    assert np.all(off[1] < 0.5 * off[0])
+    assert np.all(off[1] < 0.02 * np.std(theirs, axis=0))

@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._far import identified
 from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
@@ -18,9 +20,12 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
 from hil.analysis.diagnosis.search._alignment import with_base_angles
 from hil.analysis.diagnosis.search._probes import delay_is_free
+from hil.analysis.diagnosis.search._race import freed
+from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._search import Found, advanced, begun, finished
 from hil.analysis.diagnosis.search._thresholds import (
+    COMES_NEAR,
     FAR_BETTER,
     FAR_MOVED,
     FAR_SHARE,
@@ -55,7 +60,7 @@ def search_from_base(
         return near
     show("scoring effects")
     scores = screen(problem, near.base)
-    far = None
+    far, tried = None, None
     if _hopeless(near, scores):
         far = _identified(near, rounded, show)
         known.append(far)
@@ -63,14 +68,14 @@ def search_from_base(
             found = _plainer(finished(far, show))
             if found.settled:
                 return found
-            far = _anew(far)
+            far, tried = _anew(far), far
     advanced(near, show, scores)
     if near.settled:
         return finished(near, show)
     far = far or _identified(near, rounded, show)
     known.append(far)
     near.numbers = far.base
-    return _better(near, far, show)
+    return _better(near, far, tried, show)
 
 
 def _identified(near: Found, rounded: Sequence[EffectUse], show: Callable[[str], None]) -> Found:
@@ -99,8 +104,12 @@ def _explains(start: Fit, near: Found) -> bool:
     return is_far(start) and near.evidence.left(start) < NUMBERS_LEAVE * near.evidence.left(near.base)
 
 
-def _better(near: Found, far: Found, show: Callable[[str], None]) -> Found:
-    """What explains more of two searches, each as far as it is worth it; the near one where in doubt."""
+def _better(near: Found, far: Found, tried: Found | None, show: Callable[[str], None]) -> Found:
+    """What explains more of two searches, each as far as it is worth it; the near one where in doubt.
+
+    Args:
+        tried: the far one as it ended when nothing was known of effects beside the given numbers.
+    """
     if not is_far(far.base):
         near = finished(near, show)
         if near.settled:
@@ -109,7 +118,10 @@ def _better(near: Found, far: Found, show: Callable[[str], None]) -> Found:
         show("looking for an effect beside other numbers of the base model")
         numbers = {"parameter_mismatch"} | ({"dead_time"} if delay_is_free(far.base) else set())
         promising = [f for f in near.steps[0].fits if not numbers & {*f.hypothesis.ids}]
-        advanced(far, show, beside=promising)
+        if tried is None or _leads_elsewhere(tried, promising):
+            advanced(far, show, beside=promising)
+        else:
+            far = tried
     if near.evidence.left(far.best) > FAR_BETTER * near.evidence.left(near.best):
         return finished(near, show)
     far = _plainer(finished(far, show))
@@ -118,6 +130,15 @@ def _better(near: Found, far: Found, show: Callable[[str], None]) -> Found:
     near = finished(near, show)
     clearer = near.evidence.left(near.best) < FAR_BETTER * far.evidence.left(far.best)
     return near if near.settled or clearer else far
+
+
+def _leads_elsewhere(tried: Found, promising: Sequence[Fit]) -> bool:
+    """Whether an effect that is `promising` comes near what the search that was `tried` began with."""
+    if not tried.steps:
+        return True
+    first = tried.steps[0]
+    enough = COMES_NEAR * min((rank(one) for one in first.fits), default=np.inf)
+    return any(rank(freed(tried.evidence.problem, first.parent, one)) < enough for one in promising)
 
 
 def moved(one: Fit, least: float = 0.0) -> list[str]:

@@ -342,6 +342,14 @@ PROBE_DIVERGED: Annotated[
 FAR_BETTER: Annotated[
     float, Means("of the remaining gap", "a base identified anew must leave less to be preferred", "far")
 ] = 0.5
+COMES_NEAR: Annotated[
+    float,
+    Means(
+        "times what the best effect beside other numbers leaves",
+        "an effect that was found beside the given ones must leave less to be looked at there anew",
+        "blind",
+    ),
+] = 1.5
 FAR_MOVED: Annotated[
     float, Means("natural logarithm", "a parameter that moves further was far off", "far")
 ] = 0.1

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit
-from hil.analysis.diagnosis.search._from_base import _told, is_far, moved, search_from_base
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.search._from_base import _leads_elsewhere, _told, is_far, moved, search_from_base
+from hil.analysis.diagnosis.search._search import advanced, begun
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, left, one_problem
@@ -42,6 +43,17 @@ def test_an_effect_is_found_behind_far_numbers() -> None:
     found = search_from_base(one_problem(friction, seconds=16.0), Hypothesis(FAR), silent)
     assert found.best.hypothesis.far
     assert found.best.hypothesis.ids == ("coulomb_friction",)
+
+
+def test_what_a_search_has_tried_is_not_tried_again_for_an_effect_that_explains_far_less() -> None:
+    friction = EffectUse("coulomb_friction", {"torque_nm": 3.0})
+    problem = one_problem(friction)
+    found = begun(problem, fit(problem, Hypothesis(MODEL, far=True)))
+    advanced(found, silent)
+    assert found.best.hypothesis.ids == ("coulomb_friction",)
+    assert _leads_elsewhere(found, [found.best])
+    assert not _leads_elsewhere(found, [fit(problem, Hypothesis(MODEL, (OFFSET,)), rounds=0)])
+    assert _leads_elsewhere(begun(problem, found.base), [])
 
 
 def off(**by: float) -> Fit:

@@ -60,6 +60,38 @@ def test_flanks_that_pull_are_found_from_flanks_that_do_not(law: dict[str, float
         assert values[name] == pytest.approx(value, rel=0.1)
 
 
+def test_damping_that_sets_in_over_a_depth_is_found() -> None:
+    law = {"half_gap_rad": 0.01, "contact_damping_nms_rad": 30.0, "contact_depth_rad": 2e-3}
+    problem = one_problem(use("backlash", **law))
+    evidence, one = fitted(problem, use("backlash", half_gap_rad=0.01))
+    found = refined(problem, evidence, one)
+    assert evidence.closed(found)
+    values = values_of(found)
+    assert values["half_gap_rad"] == pytest.approx(0.01, rel=0.02)
+    assert values["contact_damping_nms_rad"] == pytest.approx(30.0, rel=0.1)
+
+
+def test_dissipation_that_begins_with_the_force_is_found() -> None:
+    problem = one_problem(use("backlash", half_gap_rad=0.01, contact_depth_rad=1e-3, one_spring=1.0))
+    evidence, one = fitted(problem, use("backlash", half_gap_rad=0.01))
+    assert not evidence.closed(one)
+    found = by_other_laws(evidence, one)
+    values = values_of(found)
+    assert (values["one_spring"], evidence.closed(found)) == (1.0, True)
+    assert values["half_gap_rad"] == pytest.approx(0.01, rel=0.02)
+    assert 1e-4 < values["contact_depth_rad"] < 3e-3  # it is passed within a sample or two
+
+
+def test_a_depth_means_nothing_without_the_damping_that_it_is_of() -> None:
+    told = use("backlash", half_gap_rad=0.01)
+    problem = one_problem(told)
+    damped = use("backlash", half_gap_rad=0.01, contact_damping_nms_rad=1e-3, contact_depth_rad=5e-4)
+    evidence, one = fitted(problem, damped, "contact_damping_nms_rad", "contact_depth_rad")
+    found = refined(problem, evidence, one)
+    assert found.hypothesis.open == ()
+    assert values_of(found)["contact_depth_rad"] == 0.0
+
+
 def test_an_effect_whose_own_law_leaves_noise_alone_is_tried_by_no_other() -> None:
     told = use("backlash", half_gap_rad=0.01)
     problem = one_problem(told)
