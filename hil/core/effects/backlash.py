@@ -317,7 +317,7 @@ EFFECT = Effect(
     abrupt=True,
     many_laws=True,
     forms=(
-        {"tension": (1.0,), "contact_damping_nms_rad": (0.0, 10.0, 50.0)},
+        {"tension": (1.0,), "contact_damping_nms_rad": (0.0, *_DAMPINGS_NMS_RAD)},
         {"tension": (1.0,), "depth_damping_nms_rad2": (30.0, 300.0, 3000.0)},
         {"one_spring": (1.0,), "contact_depth_rad": (2e-4, 1e-3)},
     ),

@@ -186,9 +186,7 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
     effect = EFFECTS[best.hypothesis.ids[-1]]
     if not effect.abrupt or evidence.share(best) < WORTH_POLISH:
         return best
-    if (
-        not evidence.all_but(best) and not evidence.settled(best) and not best.hypothesis.far
-    ):  # far numbers have no nominal ones
+    if not evidence.settled(best) and not best.hypothesis.far:  # far numbers have no nominal ones
         own = next(
             i for i, c in enumerate(best.hypothesis.coordinates()) if c.term == len(best.hypothesis.terms) - 1
         )
