@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
+from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit, fitted_on
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._places import placed
@@ -21,7 +21,9 @@ from hil.analysis.diagnosis.search._race import nominal
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
     AS_GOOD,
+    FORM_FIRST,
     FORM_HOPE,
+    FORM_HOPELESS,
     FORM_LEAVES,
     FORM_ROUNDS,
     LEAST_EVIDENCE,
@@ -39,7 +41,7 @@ def by_other_laws(evidence: Evidence, best: Fit) -> Fit:
     if not EFFECTS[best.hypothesis.ids[-1]].forms or evidence.settled(best):
         return best
     first = _by_likeliest_law_to_the_end(evidence, best, best)
-    if not evidence.settled(first):
+    if not evidence.settled(first) and rank(first) < FORM_HOPELESS * rank(best):
         # numbers of the base that a wrong law has bent lead no law back
         plain = replace(best, theta=nominal(best.hypothesis, best.theta))
         first = min(first, _by_likeliest_law_to_the_end(evidence, plain, best), key=rank)
@@ -55,7 +57,7 @@ def _by_likeliest_law_to_the_end(evidence: Evidence, one: Fit, best: Fit) -> Fit
     first = by_likeliest_law(evidence, one)
     if rank(first) > FORM_HOPE * rank(best):
         return first
-    return _widened(problem, fit(problem, first.hypothesis, first.starts, first.theta))
+    return _widened(problem, fitted_on(problem, first))
 
 
 def by_likeliest_law(evidence: Evidence, one: Fit) -> Fit:
@@ -84,7 +86,10 @@ def _by(evidence: Evidence, best: Fit, form: Mapping[str, tuple[float, ...]]) ->
     if (width := width_of(hypothesis)) is not None:
         likely = with_likely_width(problem, hypothesis, first, best.starts, width)
         first = cheapest(problem, hypothesis, [first, likely], best.starts)
-    return fit(problem, hypothesis, best.starts, first, rounds=FORM_ROUNDS)
+    one = fit(problem, hypothesis, best.starts, first, rounds=FORM_FIRST)
+    if rank(one) > FORM_HOPELESS * rank(best):
+        return one
+    return fitted_on(problem, one, rounds=FORM_ROUNDS - FORM_FIRST)
 
 
 def _widened(problem: Problem, one: Fit) -> Fit:

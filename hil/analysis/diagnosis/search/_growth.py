@@ -17,9 +17,9 @@ from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._foretold import where_foretold
 from hil.analysis.diagnosis.search._forms import by_likeliest_law, by_other_laws
-from hil.analysis.diagnosis.search._optional import little, refined
+from hil.analysis.diagnosis.search._optional import promising, refined
 from hil.analysis.diagnosis.search._places import places_of, told
-from hil.analysis.diagnosis.search._race import Step, chosen, freed, nominal, race, with_moved, with_width
+from hil.analysis.diagnosis.search._race import Step, beside_parent, chosen, freed, nominal, race, with_width
 from hil.analysis.diagnosis.search._rank import price, rank
 from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._thresholds import (
@@ -33,6 +33,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     NEARLY,
     OTHER_SIZES,
     PLAIN,
+    STRAIGHT,
     WORTH_POLISH,
 )
 from hil.analysis.diagnosis.search._tracking import RIPPLES, tracked_gain
@@ -47,6 +48,7 @@ def grow(
     step: Step,
     scores: list[Score] | None = None,
     beside: Sequence[Fit] = (),
+    rivals: Sequence[Fit] = (),
     *,
     everywhere: bool = False,
 ) -> None:
@@ -55,40 +57,49 @@ def grow(
     Args:
         scores: of `screen`, where these are known already.
         beside: fits with one effect more that other numbers led to, to be fitted on from where they are.
+        rivals: fits with as many effects that were found beside other parents.
         everywhere: errors count in all of the recordings, whatever an effect foretells.
     """
     parent = step.parent
-    if adds_ripple(parent.hypothesis):
-        problem = evidence.problem.with_angles(parent.angles)
-    else:
-        problem = evidence.problem.following(parent.hypothesis, parent.theta)
+    problem = _problem_of(evidence, parent)
     blocks = problem.rows / max(problem.channels, 1)
     scores = screen(problem, parent) if scores is None else scores
-    sought = not (problem.partial or everywhere)
-    if sought:
-        step.foretold = _foretold(problem, parent, scores)
+    if not (problem.partial or everywhere):
+        step.foretold = _foretold(problem, step, scores)
         if step.foretold:
             return
     step.fits += [freed(problem, parent, one) for one in beside]
-    found = any(evidence.share(one) > NEARLY for one in step.fits)
+    found = any(evidence.share(one) > NEARLY for one in (*step.fits, *rivals))
     if not found and (not scores or scores[0].gain < PLAIN * evidence.left(parent) * blocks):
         if not parent.hypothesis.far:  # far numbers say nothing of what is missing
-            scores = _better(scores, screen(problem, _straightened(problem, parent), parent.total))
+            scores = _better(scores, _scored_straightened(problem, parent))
         scores = _better(scores, _followed(problem, parent, scores))
     step.scores += scores
     if not scores or scores[0].gain >= max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
-        race(problem, step)
+        race(problem, step, rivals)
         if not parent.hypothesis.terms:
             step.fits += _of_other_laws(evidence, step.fits)
     step.fits.sort(key=lambda f: f.total + price(f))
-    if step.fits:
-        step.fits[:] = _contended(problem, evidence, step.fits)
-        best = aligned(problem, step.fits[0])
-        if sought and best.hypothesis.remembers_place and not evidence.settled(best):
-            best, step.foretold = _foretold_at_best(problem, evidence, best)
-            if step.foretold:
-                return
-        step.fits[0] = _polished(evidence, best)
+
+
+def finish(evidence: Evidence, step: Step, *, everywhere: bool = False) -> None:
+    """The best fit of `step` taken on with care: optional numbers, angles, other sizes, places and laws."""
+    problem = _problem_of(evidence, step.parent)
+    step.fits[:] = _contended(problem, evidence, step.fits)
+    best = aligned(problem, step.fits[0])
+    sought = not (problem.partial or everywhere)
+    if sought and best.hypothesis.remembers_place and not evidence.settled(best):
+        best, step.foretold = _foretold_at_best(problem, evidence, best)
+        if step.foretold:
+            return
+    step.fits[0] = _polished(evidence, best)
+
+
+def _problem_of(evidence: Evidence, parent: Fit) -> Problem:
+    """The problem with the angles that ripples beside `parent` follow."""
+    if adds_ripple(parent.hypothesis):
+        return evidence.problem.with_angles(parent.angles)
+    return evidence.problem.following(parent.hypothesis, parent.theta)
 
 
 def _of_other_laws(evidence: Evidence, fits: list[Fit]) -> list[Fit]:
@@ -99,11 +110,11 @@ def _of_other_laws(evidence: Evidence, fits: list[Fit]) -> list[Fit]:
     best = min(fits, key=rank, default=None)
     if best is None or evidence.settled(best) or evidence.share(best) > NEARLY:
         return []
-    return [
-        by_likeliest_law(evidence, one)
-        for one in fits
-        if one is not best and EFFECTS[one.hypothesis.ids[-1]].forms
-    ]
+    with_forms = [one for one in fits if EFFECTS[one.hypothesis.ids[-1]].forms]
+    likeliest = min(with_forms, key=rank, default=best)
+    if likeliest is best or evidence.share(likeliest) < WORTH_POLISH:
+        return []
+    return [by_likeliest_law(evidence, likeliest)]
 
 
 def _contended(problem: Problem, evidence: Evidence, fits: list[Fit]) -> list[Fit]:
@@ -127,10 +138,16 @@ def _followed(problem: Problem, parent: Fit, scores: list[Score]) -> list[Score]
     return [Score(use, tracked_gain(problem, parent, use)) for use in ripples]
 
 
-def _straightened(problem: Problem, parent: Fit) -> Fit:
-    """`parent` with nominal base parameters: bent ones make up for what is missing, and hide it."""
+def _scored_straightened(problem: Problem, parent: Fit) -> list[Score]:
+    """Scores beside nominal base parameters: bent ones make up for what is missing, and hide it.
+
+    None where nominal ones leave so much that derivatives say nothing of what is missing beside them.
+    """
     theta = nominal(parent.hypothesis, parent.theta)
-    return fit(problem, parent.hypothesis, parent.starts, theta, rounds=0)
+    plain = fit(problem, parent.hypothesis, parent.starts, theta, rounds=0)
+    if plain.total - problem.rows > STRAIGHT * max(parent.total - problem.rows, 0.0):
+        return []
+    return screen(problem, plain, parent.total)
 
 
 def _better(scores: list[Score], others: list[Score]) -> list[Score]:
@@ -142,13 +159,15 @@ def _better(scores: list[Score], others: list[Score]) -> list[Score]:
     return sorted(best.values(), key=lambda s: -s.gain)
 
 
-def _foretold(problem: Problem, parent: Fit, scores: list[Score]) -> tuple[Problem, Fit] | None:
+def _foretold(problem: Problem, step: Step, scores: list[Score]) -> tuple[Problem, Fit] | None:
     """Where the promising effects foretell the motion: the first that does not everywhere, fitted there."""
+    parent = step.parent
     for score in chosen(scores):
-        hypothesis = with_moved(parent.hypothesis.with_term(score.use))
+        hypothesis = beside_parent(parent, score.use)
         theta = with_width(problem, parent, hypothesis)
         if theta is None:
             continue
+        step.widths.append((score.use, theta))
         one = fit(problem, hypothesis, parent.starts, theta, rounds=0)
         if found := where_foretold(problem, parent, one):
             return found
@@ -209,6 +228,5 @@ def _from_sizes(evidence: Evidence, best: Fit, theta: Array, index: int, factors
     for factor in factors:
         other = theta.copy()
         other[index] += np.log(factor)
-        starts, enough = evidence.base.starts, little(problem, best)
-        best = min(best, fit(problem, best.hypothesis, starts, other, enough=enough), key=rank)
+        best = min(best, promising(problem, best, best.hypothesis, evidence.base.starts, other), key=rank)
     return best

@@ -7,14 +7,17 @@ from dataclasses import replace
 from itertools import product
 
 import numpy as np
+import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
+from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit, fitted_on
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._hidden_speeds import with_hidden_speeds
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
+    FORM_HOPE,
+    FORM_ROUNDS,
     LEAST_EVIDENCE,
     LITTLE_GAINED,
     OPTIONAL_LEAVES,
@@ -23,14 +26,15 @@ from hil.analysis.diagnosis.search._thresholds import (
 from hil.core.effects import EFFECTS, Parameter
 from hil.core.model import EffectUse
 
+Array = npt.NDArray[np.float64]
+
 
 def refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
     """Optional numbers of the effects, and choices between forms of their laws, where they pay."""
     for index, term in enumerate(best.hypothesis.terms):
         for parameter in EFFECTS[term.id].parameters:
-            of_form = bool(parameter.choices or parameter.beside)
-            if of_form and evidence.closed(best):  # nothing that another form could explain
-                continue
+            if evidence.closed(best):  # nothing that another number or form could explain
+                break
             tried = [_chosen_as(problem, best, index, parameter, v) for v in _others(best, index, parameter)]
             if parameter.opens and parameter.name not in best.hypothesis.open:
                 tried.append(_opened(problem, best, index, parameter))
@@ -76,7 +80,7 @@ def _others(best: Fit, index: int, parameter: Parameter) -> list[float]:
 def _chosen_as(problem: Problem, best: Fit, index: int, parameter: Parameter, value: float) -> Fit:
     """`best` with another choice."""
     hypothesis = _with_value(best.hypothesis, index, parameter.name, value)
-    return fit(problem, hypothesis, best.starts, carried(best, hypothesis), enough=little(problem, best))
+    return promising(problem, best, hypothesis, best.starts, carried(best, hypothesis))
 
 
 def _with_value(hypothesis: Hypothesis, index: int, name: str, value: float) -> Hypothesis:
@@ -101,7 +105,15 @@ def _opened(problem: Problem, best: Fit, index: int, parameter: Parameter) -> Fi
         tried.append(other)
     first = cheapest(problem, hypothesis, tried, best.starts)
     starts = with_hidden_speeds(problem, hypothesis, first, best.starts)
-    return fit(problem, hypothesis, starts, first, enough=little(problem, best))
+    return promising(problem, best, hypothesis, starts, first)
+
+
+def promising(problem: Problem, best: Fit, hypothesis: Hypothesis, starts: list[Array], theta: Array) -> Fit:
+    """A fit from there that may be better than `best`; given up after a few rounds where it is not near."""
+    one = fit(problem, hypothesis, starts, theta, rounds=FORM_ROUNDS)
+    if rank(one) > FORM_HOPE * rank(best):
+        return one
+    return fitted_on(problem, one, enough=little(problem, best))
 
 
 def little(problem: Problem, one: Fit) -> float:

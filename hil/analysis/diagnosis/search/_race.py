@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +18,7 @@ from hil.analysis.diagnosis.search._screen import Score
 from hil.analysis.diagnosis.search._thresholds import (
     FAR,
     FREED_SIZES,
+    IN_VAIN,
     LEAST_EVIDENCE,
     OUT_OF_RACE,
     PROMISING,
@@ -46,19 +48,28 @@ class Step:
     scores: list[Score]
     fits: list[Fit]
     foretold: tuple[Problem, Fit] | None = None
+    #: Coordinates with the likeliest width of those effects for which it was looked for.
+    widths: list[tuple[EffectUse, Array]] = field(default_factory=list)
 
 
-def race(problem: Problem, step: Step) -> None:
-    """Fit the promising effects beside what `step` has; the hopeless are given up after a few rounds."""
+def race(problem: Problem, step: Step, rivals: Sequence[Fit] = ()) -> None:
+    """Fit the promising effects beside what `step` has; the hopeless are given up after a few rounds.
+
+    Args:
+        rivals: fits with as many effects beside other parents: the same effects are not fitted again where
+            it makes no difference in which order they were found, and what is far behind one is hopeless.
+    """
     first = len(step.fits)
     known = {one.hypothesis.keys[-1] for one in step.fits} if problem.partial else set()
+    same = {frozenset(one.hypothesis.keys) for one in rivals if not one.hypothesis.remembers_place}
     for score in chosen(step.scores):
-        if score.key in known:
-            continue  # fitted already, with more care
-        step.fits.append(grown(problem, step.parent, score.use, RACE_ROUNDS))
+        if score.key in known or frozenset({*step.parent.hypothesis.keys, score.key}) in same:
+            continue  # fitted already
+        likely = next((theta for use, theta in step.widths if use == score.use), None)
+        step.fits.append(grown(problem, step.parent, score.use, RACE_ROUNDS, likely))
     floor = float(problem.rows)
     _fallen(problem, step.fits, first)
-    against = step.fits if problem.partial else step.fits[first:]
+    against = [*rivals, *(step.fits if problem.partial else step.fits[first:])]
     best = min((f.total for f in against), default=floor)
     for index, one in enumerate(step.fits[first:], first):
         if one.rounds >= RACE_ROUNDS and one.total - floor < OUT_OF_RACE * (best - floor) + RACE_SLACK:
@@ -91,19 +102,20 @@ def chosen(scores: list[Score]) -> list[Score]:
     ]
 
 
-def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int) -> Fit:
+def grown(problem: Problem, parent: Fit, use: EffectUse, rounds: int, likely: Array | None = None) -> Fit:
     """`parent` with one effect more, refitted from the most promising of a few sizes.
 
     The base model's parameters may have been bent to make up for what is missing: their nominal values are
     tried as well.
+
+    Args:
+        likely: coordinates with the likeliest width of a play, where they are known already.
     """
-    hypothesis = with_moved(parent.hypothesis.with_term(use))
-    if hypothesis.far:
-        hypothesis = _either_way(hypothesis)
+    hypothesis = beside_parent(parent, use)
     bent = carried(parent, hypothesis)
     firsts = [bent] if hypothesis.far else [bent, nominal(hypothesis, bent)]
     tried = [t for theta in firsts for t in _sizes(hypothesis, theta)]
-    likely = with_width(problem, parent, hypothesis)
+    likely = with_width(problem, parent, hypothesis) if likely is None else likely
     if likely is not None:
         tried.append(likely)
     first = cheapest(problem, hypothesis, tried, parent.starts, inert=parent.cost)
@@ -118,14 +130,22 @@ def freed(problem: Problem, parent: Fit, other: Fit) -> Fit:
     rotor that sticks: they begin at smaller sizes as well.
     """
     hypothesis = _either_way(replace(other.hypothesis, far=parent.hypothesis.far))
-    theta = carried(other, hypothesis)
+    theta, enough = carried(other, hypothesis), little(problem, parent)
     if not EFFECTS[hypothesis.ids[-1]].many_laws:
-        return fit(problem, hypothesis, other.starts, theta)
+        return fit(problem, hypothesis, other.starts, theta, enough=enough)
     own = next(i for i, c in enumerate(hypothesis.coordinates()) if c.term == len(hypothesis.terms) - 1)
     sizes = [_sized(hypothesis, theta, own, factor) for factor in FREED_SIZES]
-    begun = [fit(problem, hypothesis, other.starts, one, rounds=RACE_ROUNDS) for one in sizes]
+    begun = [fit(problem, hypothesis, other.starts, one, rounds=RACE_ROUNDS, enough=enough) for one in sizes]
     best = min(begun, key=rank)
-    return fit(problem, hypothesis, best.starts, best.theta)
+    if best.total - problem.rows > IN_VAIN * (parent.total - problem.rows):
+        return best
+    return fitted_on(problem, best, enough=enough)
+
+
+def beside_parent(parent: Fit, use: EffectUse) -> Hypothesis:
+    """The hypothesis of `parent` with one effect more, and those of its numbers open that are worth it."""
+    hypothesis = with_moved(parent.hypothesis.with_term(use))
+    return _either_way(hypothesis) if hypothesis.far else hypothesis
 
 
 def _either_way(hypothesis: Hypothesis) -> Hypothesis:

@@ -18,7 +18,7 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried, fit
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._alignment import with_base_angles
 from hil.analysis.diagnosis.search._evidence import Evidence
-from hil.analysis.diagnosis.search._growth import grow
+from hil.analysis.diagnosis.search._growth import finish, grow
 from hil.analysis.diagnosis.search._quantization import rounding_of
 from hil.analysis.diagnosis.search._race import Step
 from hil.analysis.diagnosis.search._rank import doubted, rank
@@ -32,7 +32,9 @@ from hil.analysis.diagnosis.search._thresholds import (
     LEAST_SO_FAR,
     MOST_EFFECTS,
     NEARLY,
+    OUT_OF_RACE,
     PARENTS,
+    RACE_SLACK,
     RIVAL,
 )
 from hil.core.effects import EFFECTS
@@ -58,6 +60,8 @@ class Found:
     numbers: Fit | None = None
     #: Errors count everywhere: what was left out for an effect that was not found is not left out again.
     everywhere: bool = False
+    #: Fits whose effects were found to be all needed, or that this led to.
+    needed: Fit | None = None
 
     @property
     def clear(self) -> bool:
@@ -102,7 +106,8 @@ def finished(found: Found, show: Callable[[str], None]) -> Found:
     """
     while advanced(found, show):
         pass
-    found = _needed(found.evidence.problem, found)
+    if found.needed is not found.best:
+        found.needed = found.best = _needed(found.evidence, found.best)
     if not found.evidence.problem.partial or found.best.hypothesis.remembers_place:
         return found
     show("looking at all of the recordings after all")
@@ -143,13 +148,20 @@ def advanced(
     else:
         show(f"looking for effect 1 of at most {MOST_EFFECTS}")
     before, steps = list(found.steps), []
+    rivals: list[Fit] = []
     for parent in parents:
         steps.append(Step(parent, [], []))
         found.steps = [*before, *steps]  # what is known by then if the search is ended from outside
-        grow(found.evidence, steps[-1], scores, beside, everywhere=found.everywhere)
-        if chaotic := steps[-1].foretold:
-            show("looking at what can be foretold alone")
-            return advanced(_begin_again(found, chaotic[0]), show, beside=[chaotic[1]] * (number == 0))
+        grow(found.evidence, steps[-1], scores, beside, rivals, everywhere=found.everywhere)
+        if steps[-1].foretold:
+            return _advanced_where_foretold(found, steps[-1], show)
+        rivals += steps[-1].fits
+    for step in _worth_care(found.evidence.problem, steps):
+        finish(found.evidence, step, everywhere=found.everywhere)
+        if step.foretold:
+            return _advanced_where_foretold(found, step, show)
+        if found.evidence.settled(step.fits[0]):
+            break
     found.steps = before + sorted(steps, key=lambda s: min((rank(f) for f in s.fits), default=np.inf))
     led = found.frontier[0]
     found.frontier = frontier = _distinct([one for s in steps for one in s.fits])
@@ -164,6 +176,25 @@ def advanced(
             enough = RIVAL * found.evidence.left(found.best)
             found.frontier = [f for f in frontier if found.evidence.left(f) <= enough]
     return True
+
+
+def _worth_care(problem: Problem, steps: Sequence[Step]) -> list[Step]:
+    """Steps whose best fit may still become the best of all, most promising first."""
+    ranked = sorted((step for step in steps if step.fits), key=lambda step: rank(step.fits[0]))
+    if not ranked:
+        return []
+    floor = float(problem.rows)
+    near = OUT_OF_RACE * (ranked[0].fits[0].total - floor) + RACE_SLACK
+    return [step for step in ranked if step.fits[0].total - floor <= near]
+
+
+def _advanced_where_foretold(found: Found, step: Step, show: Callable[[str], None]) -> bool:
+    """`advanced` anew, where alone an effect of `step` foretells the motion."""
+    assert step.foretold is not None
+    problem, one = step.foretold
+    show("looking at what can be foretold alone")
+    beside = [] if step.parent.hypothesis.terms else [one]
+    return advanced(_begin_again(found, problem), show, beside=beside)
 
 
 def _begin_again(found: Found, problem: Problem) -> Found:
@@ -218,13 +249,12 @@ def stands_alone(evidence: Evidence, base: Fit, one: Fit, others: Sequence[Fit])
     return share > ALONE and max(rest, default=0.0) < HALF_AS_GOOD * share
 
 
-def _needed(problem: Problem, found: Found) -> Found:
-    """Drop effects that the later ones made needless."""
-    best = found.best
+def _needed(evidence: Evidence, best: Fit) -> Fit:
+    """`best`, or without an effect that the later ones made needless."""
+    problem = evidence.problem.with_angles(best.angles)
     for index in range(len(best.hypothesis.terms) - 1):
         fewer = best.hypothesis.without(index)
-        tried = fit(problem.with_angles(best.angles), fewer, best.starts, carried(best, fewer))
-        if found.evidence.closed(tried) or not earned(found.evidence, tried, best):
-            found.best = tried
-            return found
-    return found
+        tried = fit(problem, fewer, best.starts, carried(best, fewer))
+        if evidence.closed(tried) or not earned(evidence, tried, best):
+            return tried
+    return best

@@ -107,6 +107,10 @@ PLAIN: Annotated[
     float,
     Means("of the remaining gap", "if no score promises it, nominal parameters are tried too", "hidden"),
 ] = 0.5
+STRAIGHT: Annotated[
+    float,
+    Means("times what is left", "nominal parameters that leave more say nothing of what lacks", "hidden"),
+] = 30.0
 HOPE: Annotated[
     float, Means("of the remaining gap", "the best linearised score must promise it", "hidden")
 ] = 0.1
@@ -255,6 +259,10 @@ OTHER_SIZES: Annotated[
     tuple[float, ...],
     Means("factor", "sizes of an abrupt effect that are fitted from: it has false minima", "hidden"),
 ] = (0.75, 1.0, 1.3)
+IN_VAIN: Annotated[
+    float,
+    Means("of the error beyond noise", "friction or play beside them that leaves more is given up", "race"),
+] = 0.97
 FREED_SIZES: Annotated[
     tuple[float, ...],
     Means("factor", "the same once the base model's numbers are free: wrong ones bent the size", "race"),
@@ -290,6 +298,10 @@ FORM_HOPE: Annotated[
     float,
     Means("times what the usual law leaves", "a law that leaves more after these rounds is not it", "blind"),
 ] = 1.2
+FORM_FIRST: Annotated[int, Means("rounds", "after which a law is given up that is far behind", "laws")] = 2
+FORM_HOPELESS: Annotated[
+    float, Means("times what the usual law leaves", "a law that leaves more then is far behind", "laws")
+] = 5.0
 FORM_ROUNDS: Annotated[
     int, Means("rounds", "after which one other author's law goes on, the one that leaves least", "laws")
 ] = 5
