@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis.fit._errors import Errors
-from hil.analysis.diagnosis.fit._least_squares import descent
+from hil.analysis.diagnosis.fit._least_squares import Hopeless, descent
 from hil.analysis.diagnosis.fit._normal import reduced
 from hil.analysis.diagnosis.fit._problem import Linearised, Problem
 from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, POLISHED, SAME_COST, WORTH_A_LEAP
@@ -67,12 +67,14 @@ def fit(
     rounds: int = MOST_ROUNDS,
     enough: float = 1.0,
     at: Linearised | None = None,
+    hopeless: Hopeless | None = None,
 ) -> Fit:
     """Minimise the simulation error of `hypothesis` from `theta` and `starts`.
 
     Args:
         enough: stop when a step gains less than this in the sum of squared errors.
         at: the problem at `theta` and `starts`, where it is known already.
+        hopeless: when to give up.
     """
     lower, upper = bounds_of(hypothesis)
     theta = np.clip(hypothesis.start() if theta is None else theta, lower, upper)
@@ -89,7 +91,8 @@ def fit(
                 break
             theta, at = leapt, at if leapt is theta else None
             within = by_samples.within(theta, lower, upper)
-        reached = descent(problem, hypothesis, (theta, starts), within, precision, rounds - done, enough, at)
+        begin = theta, starts
+        reached = descent(problem, hypothesis, begin, within, precision, rounds - done, enough, at, hopeless)
         theta, starts, done = reached.theta, reached.starts, done + reached.rounds
         if by_samples is None or done >= rounds:
             break

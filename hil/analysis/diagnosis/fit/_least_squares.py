@@ -52,6 +52,14 @@ class Reached:
     rounds: int
 
 
+@dataclass(frozen=True)
+class Hopeless:
+    """A descent that leaves more than `total` after so many rounds is given up."""
+
+    rounds: int
+    total: float
+
+
 def descent(
     problem: Problem,
     hypothesis: Hypothesis,
@@ -61,6 +69,7 @@ def descent(
     rounds: int,
     enough: float,
     at: Linearised | None = None,
+    hopeless: Hopeless | None = None,
 ) -> Reached:
     """Levenberg-Marquardt within bounds, from coordinates and starts; `at` is the problem there, if known."""
     coordinates = hypothesis.coordinates()
@@ -69,6 +78,8 @@ def descent(
     at = at or problem.linearised(hypothesis, theta, starts)
     damping, refusals, done, fresh, shares = 1e-6, 0, 0, True, TRIALS
     while done < rounds:
+        if hopeless and done == hopeless.rounds and at.cost + float(precision @ theta**2) > hopeless.total:
+            break
         matrix, gradient = reduced(at.normals)
         matrix = matrix + np.diag(precision)
         gradient = gradient - precision * theta

@@ -10,13 +10,14 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit, fitted_on
+from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit
+from hil.analysis.diagnosis.fit._least_squares import Hopeless
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._hidden_speeds import with_hidden_speeds
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._thresholds import (
-    FORM_HOPE,
+    FORM_HOPELESS,
     FORM_ROUNDS,
     LEAST_EVIDENCE,
     LITTLE_GAINED,
@@ -33,8 +34,9 @@ def refined(problem: Problem, evidence: Evidence, best: Fit) -> Fit:
     """Optional numbers of the effects, and choices between forms of their laws, where they pay."""
     for index, term in enumerate(best.hypothesis.terms):
         for parameter in EFFECTS[term.id].parameters:
-            if evidence.closed(best):  # nothing that another number or form could explain
-                break
+            of_form = bool(parameter.choices or parameter.beside)
+            if of_form and evidence.closed(best):  # nothing that another form could explain
+                continue
             tried = [_chosen_as(problem, best, index, parameter, v) for v in _others(best, index, parameter)]
             if parameter.opens and parameter.name not in best.hypothesis.open:
                 tried.append(_opened(problem, best, index, parameter))
@@ -110,10 +112,8 @@ def _opened(problem: Problem, best: Fit, index: int, parameter: Parameter) -> Fi
 
 def promising(problem: Problem, best: Fit, hypothesis: Hypothesis, starts: list[Array], theta: Array) -> Fit:
     """A fit from there that may be better than `best`; given up after a few rounds where it is not near."""
-    one = fit(problem, hypothesis, starts, theta, rounds=FORM_ROUNDS)
-    if rank(one) > FORM_HOPE * rank(best):
-        return one
-    return fitted_on(problem, one, enough=little(problem, best))
+    hopeless = Hopeless(FORM_ROUNDS, FORM_HOPELESS * best.total)
+    return fit(problem, hypothesis, starts, theta, enough=little(problem, best), hopeless=hopeless)
 
 
 def little(problem: Problem, one: Fit) -> float:

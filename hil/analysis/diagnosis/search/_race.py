@@ -130,16 +130,16 @@ def freed(problem: Problem, parent: Fit, other: Fit) -> Fit:
     rotor that sticks: they begin at smaller sizes as well.
     """
     hypothesis = _either_way(replace(other.hypothesis, far=parent.hypothesis.far))
-    theta, enough = carried(other, hypothesis), little(problem, parent)
+    theta = carried(other, hypothesis)
     if not EFFECTS[hypothesis.ids[-1]].many_laws:
-        return fit(problem, hypothesis, other.starts, theta, enough=enough)
+        return fit(problem, hypothesis, other.starts, theta)
     own = next(i for i, c in enumerate(hypothesis.coordinates()) if c.term == len(hypothesis.terms) - 1)
     sizes = [_sized(hypothesis, theta, own, factor) for factor in FREED_SIZES]
-    begun = [fit(problem, hypothesis, other.starts, one, rounds=RACE_ROUNDS, enough=enough) for one in sizes]
+    begun = [fit(problem, hypothesis, other.starts, one, rounds=RACE_ROUNDS) for one in sizes]
     best = min(begun, key=rank)
     if best.total - problem.rows > IN_VAIN * (parent.total - problem.rows):
         return best
-    return fitted_on(problem, best, enough=enough)
+    return fit(problem, hypothesis, best.starts, best.theta)
 
 
 def beside_parent(parent: Fit, use: EffectUse) -> Hypothesis:

@@ -25,6 +25,7 @@ from hil.analysis.diagnosis.search._rank import doubted, rank
 from hil.analysis.diagnosis.search._screen import Score
 from hil.analysis.diagnosis.search._thresholds import (
     ALONE,
+    FAR,
     HALF_AS_GOOD,
     LEAST_EVIDENCE,
     LEAST_SHARE,
@@ -156,7 +157,7 @@ def advanced(
         if steps[-1].foretold:
             return _advanced_where_foretold(found, steps[-1], show)
         rivals += steps[-1].fits
-    for step in _worth_care(found.evidence.problem, steps):
+    for step in worth_care(found.evidence.problem, steps):
         finish(found.evidence, step, everywhere=found.everywhere)
         if step.foretold:
             return _advanced_where_foretold(found, step, show)
@@ -178,11 +179,14 @@ def advanced(
     return True
 
 
-def _worth_care(problem: Problem, steps: Sequence[Step]) -> list[Step]:
-    """Steps whose best fit may still become the best of all, most promising first."""
+def worth_care(problem: Problem, steps: Sequence[Step]) -> list[Step]:
+    """Steps whose best fit may still become the best of all, most promising first.
+
+    Far from the noise that is each of them: friction explains little there without its optional numbers.
+    """
     ranked = sorted((step for step in steps if step.fits), key=lambda step: rank(step.fits[0]))
-    if not ranked:
-        return []
+    if not ranked or ranked[0].fits[0].total > FAR * problem.rows:
+        return ranked
     floor = float(problem.rows)
     near = OUT_OF_RACE * (ranked[0].fits[0].total - floor) + RACE_SLACK
     return [step for step in ranked if step.fits[0].total - floor <= near]

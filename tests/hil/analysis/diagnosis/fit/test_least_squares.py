@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._least_squares import box_step, descent
+from hil.analysis.diagnosis.fit._least_squares import Hopeless, box_step, descent
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
@@ -42,6 +42,18 @@ def test_a_descent_lowers_the_cost_and_keeps_to_its_rounds() -> None:
     assert reached.at.cost < 0.5 * first.cost
     assert reached.rounds <= 3
     assert np.all(np.abs(reached.theta) <= wide)
+
+
+@pytest.mark.parametrize(("leaves", "ends"), [(0.0, True), (np.inf, False)])
+def test_a_descent_that_is_far_behind_is_given_up(leaves: float, ends: bool) -> None:
+    problem, hypothesis = one_problem(), Hypothesis(MODEL)
+    theta = hypothesis.start() + 0.02
+    within, free = (theta - 0.1, theta + 0.1), np.zeros(len(theta))
+    begin = theta, problem.first_starts()
+    reached = descent(
+        problem, hypothesis, begin, within, free, 4, 0.0, hopeless=Hopeless(1, leaves * problem.rows)
+    )
+    assert (reached.rounds == 1) is ends
 
 
 def test_errors_far_beyond_noise_lead_to_one_minimum_from_either_side() -> None:

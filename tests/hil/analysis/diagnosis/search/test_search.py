@@ -8,8 +8,9 @@ from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.fit._problem import problem_of
-from hil.analysis.diagnosis.search._race import grown
-from hil.analysis.diagnosis.search._search import begun, earned, finished, following, search
+from hil.analysis.diagnosis.search._race import Step, grown, race
+from hil.analysis.diagnosis.search._screen import Score
+from hil.analysis.diagnosis.search._search import begun, earned, finished, following, search, worth_care
 from hil.analysis.diagnosis.search._thresholds import FAR
 from hil.core.channels import OUTPUTS, TIME
 from hil.core.model import EffectUse
@@ -72,6 +73,27 @@ def test_an_effect_is_grown_from_its_best_size() -> None:
     base = search(one_problem(), Hypothesis(MODEL), lambda text: None).base
     one = grown(problem, base, EffectUse("actuator_lag", {"time_constant_s": 0.007}), 3)
     assert np.exp(one.theta[-1]) == pytest.approx(0.01, rel=0.2)
+
+
+@pytest.mark.parametrize(("beyond", "steps"), [(5900.0, 2), (6100.0, 1)])
+def test_only_what_is_not_far_behind_is_fitted_with_care(beyond: float, steps: int) -> None:
+    problem = one_problem(LAG)
+    near, far = (left(problem.rows + more, use) for more, use in ((2000.0, LAG), (beyond, DELAY)))
+    raced = [Step(POOR, [], [far]), Step(POOR, [], []), Step(POOR, [], [near])]
+    worth = worth_care(problem, raced)
+    assert [step.fits[0] for step in worth] == [near, far][:steps]
+
+
+def test_effects_that_were_fitted_beside_another_parent_are_not_fitted_again() -> None:
+    problem = one_problem(LAG)
+    base = search(one_problem(), Hypothesis(MODEL), lambda text: None).base
+    beside_lag = grown(problem, base, LAG, 3)
+    both = grown(problem, beside_lag, OFFSET, 3)
+    step = Step(grown(problem, base, OFFSET, 3), [Score(LAG, 1e6)], [])
+    race(problem, step, [both])
+    assert step.fits == []
+    race(problem, step)
+    assert [frozenset(one.hypothesis.keys) for one in step.fits] == [frozenset(both.hypothesis.keys)]
 
 
 def test_what_was_left_out_for_an_effect_that_is_not_found_is_judged_after_all() -> None:
