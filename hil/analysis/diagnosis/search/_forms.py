@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, carried, cheapest, fit, fitted_on
+from hil.analysis.diagnosis.fit._least_squares import Hopeless
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._places import placed
@@ -86,10 +87,8 @@ def _by(evidence: Evidence, best: Fit, form: Mapping[str, tuple[float, ...]]) ->
     if (width := width_of(hypothesis)) is not None:
         likely = with_likely_width(problem, hypothesis, first, best.starts, width)
         first = cheapest(problem, hypothesis, [first, likely], best.starts)
-    one = fit(problem, hypothesis, best.starts, first, rounds=FORM_FIRST)
-    if rank(one) > FORM_HOPELESS * rank(best):
-        return one
-    return fitted_on(problem, one, rounds=FORM_ROUNDS - FORM_FIRST)
+    hopeless = Hopeless(FORM_FIRST, FORM_HOPELESS * best.total)
+    return fit(problem, hypothesis, best.starts, first, rounds=FORM_ROUNDS, hopeless=hopeless)
 
 
 def _widened(problem: Problem, one: Fit) -> Fit:
