@@ -46,9 +46,9 @@ def inlined(function: _F) -> Any:
     return _cached(function, forceinline=True)
 
 
-def compiled_parallel(function: _F) -> Any:
-    """Compile `function` with its prange loops spread over threads."""
-    return _cached(function, parallel=True)
+def compiled_without_lock(function: _F) -> Any:
+    """Compile `function` to run beside other threads: it holds no lock of the interpreter."""
+    return _cached(function, nogil=True)
 
 
 @intrinsic  # type: ignore[untyped-decorator]

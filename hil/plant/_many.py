@@ -8,14 +8,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from numba import prange
 
 from hil.core.chain import Chain
-from hil.core.compiled import compiled, compiled_parallel, inlined
+from hil.core.compiled import compiled, compiled_without_lock, inlined
 from hil.core.model import TransferFunction
+from hil.core.side_by_side import side_by_side, threads
 from hil.plant import _forces as F
 from hil.plant import _laws as L
 from hil.plant import _slots as P
@@ -35,6 +36,7 @@ CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
 SPEED, WHEEL, SHAFT = range(3)  # of the channels, and of a start
 VEHICLE, TYRE = 3, 4  # of a start alone
 STARTS = 5
+_PARTS_PER_THREAD = 4
 _CONSTANT, _BY_ANGLE, _BY_MOTION = range(3)  # what forces vary with; an angle alone may be known beforehand
 
 
@@ -90,21 +92,36 @@ def simulate_many(
         transition[index], held[index], rising[index] = matrices[0], matrices[2], matrices[3]
         torque[index, : 2 * used] = matrices[1].reshape(-1, X.LINEAR_STATES)
     out = np.empty((sets, len(torque_nm) // block, len(CHANNELS)))
-    _run_all(
-        np.ascontiguousarray(torque_nm, dtype=float),
-        dt,
-        np.ascontiguousarray(parameters),
-        begin,
-        np.ascontiguousarray(sensors, dtype=float),
-        block,
-        substeps,
-        varies,
-        (transition, torque, held, rising),
-        np.zeros((0, 2)) if angles is None else np.ascontiguousarray(angles, dtype=float),
-        None if load_nm is None else np.ascontiguousarray(load_nm, dtype=float),
-        out,
-    )
+    torque_nm = np.ascontiguousarray(torque_nm, dtype=float)
+    parameters, sensors = np.ascontiguousarray(parameters), np.ascontiguousarray(sensors, dtype=float)
+    angles = np.zeros((0, 2)) if angles is None else np.ascontiguousarray(angles, dtype=float)
+    load_nm = None if load_nm is None else np.ascontiguousarray(load_nm, dtype=float)
+
+    def run(part: slice) -> None:
+        _run_all(
+            torque_nm,
+            dt,
+            parameters[part],
+            begin[part],
+            sensors[part],
+            block,
+            substeps[part],
+            varies[part],
+            (transition[part], torque[part], held[part], rising[part]),
+            angles,
+            load_nm,
+            out[part],
+        )
+
+    side_by_side(run, _shared_out(sets))
     return out
+
+
+def _shared_out(sets: int) -> list[slice]:
+    """Parts of about the same number of sets: a few for each thread, as some sets take longer."""
+    parts = 1 if threads() < 2 else max(1, min(sets, _PARTS_PER_THREAD * threads()))
+    ends = [sets * part // parts for part in range(parts + 1)]
+    return [slice(*both) for both in pairwise(ends)]
 
 
 @lru_cache(maxsize=512)
@@ -296,22 +313,33 @@ def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fi
         _run_linear(drive, whole, p, first[0], substeps, matrices[1], matrices[0], fine)
 
 
-@compiled_parallel
+@inlined
+def _alike(rows, s):  # type: ignore[no-untyped-def]
+    """Whether a row is the one before it."""
+    for i in range(rows.shape[1]):  # noqa: SIM110 - no generators in compiled code
+        if rows[s, i] != rows[s - 1, i]:
+            return False
+    return True
+
+
+@compiled_without_lock
 def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, matrices, angles, load, out):  # type: ignore[no-untyped-def]
     transition, column, held, rising = matrices
-    for s in prange(parameters.shape[0]):
-        fine = np.empty((torque.shape[0], 3))
-        _run(
-            torque,
-            dt,
-            parameters[s],
-            starts[s],
-            substeps[s],
-            varies[s],
-            (transition[s], column[s], held[s], rising[s]),
-            angles,
-            load,
-            fine,
-        )
+    fine = np.empty((torque.shape[0], 3))
+    for s in range(parameters.shape[0]):
+        # sets that differ in their sensors alone move alike
+        if s == 0 or not (_alike(parameters, s) and _alike(starts, s)):
+            _run(
+                torque,
+                dt,
+                parameters[s],
+                starts[s],
+                substeps[s],
+                varies[s],
+                (transition[s], column[s], held[s], rising[s]),
+                angles,
+                load,
+                fine,
+            )
         for channel in range(fine.shape[1]):
             record(fine[:, channel], sensors[s, channel], dt, block, out[s, :, channel])

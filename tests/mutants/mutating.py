@@ -17,7 +17,7 @@ from cosmic_ray.plugins import get_operator, operator_names
 
 #: Decorators of functions that numba compiles: they have tests by closed forms, and each mutant would be
 #: compiled anew.
-COMPILED = ("compiled", "inlined", "compiled_parallel", "njit")
+COMPILED = ("compiled", "inlined", "compiled_without_lock", "njit")
 _STARRED = ("parameters", "param", "argument", "arglist", "lambdef")
 _ARITHMETIC = ("Add", "Sub", "Mul", "Div", "FloorDiv", "Mod", "Pow")
 

@@ -30,6 +30,7 @@ from hil.analysis.diagnosis.fit._thresholds import (
     STEP,
 )
 from hil.core.model import TransferFunction
+from hil.core.side_by_side import side_by_side
 from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
@@ -191,11 +192,15 @@ class Problem:
         """Like `costs`, with the errors themselves: per recording, points x rows."""
         slots = np.stack([p for p, _ in points])
         sensors = np.stack([s for _, s in points])
-        total, rows = np.zeros(len(points)), []
-        for index in range(len(self.traces)):
+
+        def errors(index: int) -> Array:
             simulated = self.outputs(index, slots, sensors, starts[index])
-            rows.append(np.stack([self.errors(index, one).ravel() for one in simulated]))
-            total += np.sum(rows[-1] ** 2, axis=1) + (starts[index] ** 2) @ self.start_precision(index)
+            return np.stack([self.errors(index, one).ravel() for one in simulated])
+
+        rows = side_by_side(errors, range(len(self.traces)))
+        total = np.zeros(len(points))
+        for index, own in enumerate(rows):
+            total += np.sum(own**2, axis=1) + (starts[index] ** 2) @ self.start_precision(index)
         return total, rows
 
     def normals(self, errors: Sequence[Errors], starts: Sequence[Array]) -> tuple[Normal, ...]:
@@ -228,9 +233,10 @@ class Problem:
         signed = np.array(
             [c.step if v + c.step <= c.upper else -c.step for c, v in zip(coordinates, theta, strict=True)]
         )
-        cost, errors = 0.0, []
-        for index, start in enumerate(starts):
-            steps = self.start_steps()
+        steps = self.start_steps()
+
+        def derived(index: int) -> tuple[float, Errors]:
+            start = starts[index]
             tried = np.tile(start, (len(slots), 1))
             tried[len(points) :] += np.diag(steps)
             simulated = self.outputs(index, slots, sensors, tried)
@@ -240,9 +246,11 @@ class Problem:
             change[~(np.abs(change).max(axis=1) < DIVERGED)] = 0.0
             shared = (change[: len(coordinates)] / signed[:, None]).T
             initial = (change[len(coordinates) :] / steps[:, None]).T
-            cost += float(error @ error) + float(start**2 @ self.start_precision(index))
-            errors.append(Errors(error, shared, initial))
-        return Linearised(cost, self.normals(errors, starts), tuple(errors))
+            cost = float(error @ error) + float(start**2 @ self.start_precision(index))
+            return cost, Errors(error, shared, initial)
+
+        costs, errors = zip(*side_by_side(derived, range(len(starts))), strict=True)
+        return Linearised(sum(costs), self.normals(errors, starts), errors)
 
     def _anchored(self, n: Normal, index: int, start: Array) -> Normal:
         precision = self.start_precision(index)
