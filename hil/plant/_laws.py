@@ -51,7 +51,8 @@ def _made(name: str) -> Any:
 
 
 def _compile(function: Callable[..., Any]) -> Any:
-    return njit(error_model="numpy")(function)
+    """Into its callers: as a function by itself it would be handed some hundred numbers, at each step."""
+    return njit(error_model="numpy", forceinline=True)(function)
 
 
 @cache

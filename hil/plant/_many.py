@@ -271,7 +271,7 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
             ends = F.forces(n, chain, kept, p, acting)
             changed = F.change(ends, f)
             more, rise = 0.0, 0.0
-            if leaps:
+            if leaps and kept != memories:  # what stays where it was does not leap
                 more, rise = L.shaft_leap(m, n, chain, memories, p, h)
             y = _pushed(y, changed, rising)
             y = plus_row(plus_row(y, more, held, F.SHAFT), rise - foreseen, rising, F.SHAFT)

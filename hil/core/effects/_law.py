@@ -57,7 +57,7 @@ class Law:
         begin: the memory at a start with a shaft torque: (torque, chain, values).
         leap: what `shaft` is within a step beyond a straight line between its ends, where it sets in or ends
             there: (before, after, chain, memory, values, h), two motions and the seconds between them; torque
-            at the beginning, and its rise.
+            at the beginning, and its rise. Not asked where the memory stays what it was: nothing leaps then.
         remember: the memory after `h` seconds: (before, after, chain, memory, values, h); two motions.
         steps: in how many parts a sample of `dt` seconds is to be cut: (chain, values, dt).
         steady: whether forces are constant for these values: then they are not computed anew.

@@ -157,12 +157,11 @@ def _touching(seat: float, half_gap: float) -> float:
 
 def _parted(before: Motion, after: Motion, chain: Chain, seat: float, values: Values) -> float:
     """Share of a step after which flanks part: where spring and dampings, less what they may pull, are 0."""
-    begins, ends = _unpulled(before, chain, seat, values), _unpulled(after, chain, seat, values)
-    if seat < 0.0:
-        begins, ends = -begins, -ends
-    if ends >= 0.0:
+    ends = _unpulled(after, chain, seat, values)
+    if ends == 0.0 or (ends > 0.0) == (seat >= 0.0):
         return 1.0
-    return begins / (begins - ends) if begins > 0.0 else 0.0
+    begins = _unpulled(before, chain, seat, values)
+    return begins / (begins - ends) if begins != 0.0 and (begins > 0.0) == (seat >= 0.0) else 0.0
 
 
 def _unpulled(motion: Motion, chain: Chain, seat: float, values: Values) -> float:

@@ -12,7 +12,7 @@ from hil.core.chain import Chain
 from hil.core.effects._effect import Effect, Memory, Parameter, Stage
 from hil.core.effects._law import Law, Motion, Values
 from hil.core.effects._probe import Probe, Scene, scaled
-from hil.core.effects._smooth import tanh
+from hil.core.effects._smooth import tanh_over
 
 
 def _shaft(motion: Motion, chain: Chain, slip: float, values: Values) -> float:
@@ -22,12 +22,13 @@ def _shaft(motion: Motion, chain: Chain, slip: float, values: Values) -> float:
 def _remember(before: Motion, after: Motion, chain: Chain, slip: float, values: Values, h: float) -> float:
     v = 0.5 * (before.twist_rate + after.twist_rate)
     largest = values[1]
-    ratio = slip / largest
+    inverse = 1.0 / largest
+    ratio = slip * inverse
     if ratio * v <= 0.0:
         slip += h * v
     else:
-        rise = tanh(h * v / largest)
-        slip = largest * (ratio + rise) / (1.0 + ratio * rise)
+        above, below = tanh_over(h * v * inverse)  # (ratio + tanh) / (1 + ratio·tanh) by one division
+        slip = largest * (ratio * below + above) / (below + ratio * above)
     return min(max(slip, -largest), largest)
 
 
