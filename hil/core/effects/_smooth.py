@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-
 _SURELY_ONE = 20.0
 
 

@@ -51,6 +51,23 @@ def test_within_the_gap_nothing_is_carried(twist, rate, seat):
     assert BACKLASH.stretch(twist, CHAIN, seat, (0.02, 10.0, 1.0, 0.0, 0.0, 0.0, 0.0)) == 0.0
 
 
+@given(
+    twists=st.tuples(small, small),
+    rates=st.tuples(st.floats(-5, 5), st.floats(-5, 5)),
+    seat=st.floats(-0.02, 0.02) | st.sampled_from([-0.02, 0.02]),
+    depth=st.sampled_from([0.0, 5e-4]),
+    tension=st.sampled_from([0.0, 1.0]),
+)
+def test_nothing_leaps_where_the_seat_stays(twists, rates, seat, depth, tension):
+    """Kernels do not ask for a leap then."""
+    values = BACKLASH.prepare(CHAIN, (0.02, 30.0, 1.0, 0.0, tension, depth, 0.0))
+    before, after = (
+        STILL._replace(twist=twist, twist_rate=rate) for twist, rate in zip(twists, rates, strict=True)
+    )
+    given = before, after, CHAIN, seat, values, 1e-3
+    assert BACKLASH.remember(*given) != seat or BACKLASH.leap(*given) == (0.0, 0.0)
+
+
 @pytest.mark.parametrize("restitution", [0.1, 0.2, 0.5, 0.9])
 def test_a_blow_gives_back_the_share_of_speed_that_restitution_says(restitution):
     """A mass on a damped spring that lets go once it would pull, by an integrator of others."""
