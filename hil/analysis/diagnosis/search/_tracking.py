@@ -193,12 +193,13 @@ def _windows(problem: Problem, model: Model, position: int, index: int, start: A
     def cut(values: Array) -> Array:
         """Windows x rows x channels; a speed without its straight line, which earlier windows gave it."""
         parts = values[: count * length].reshape(count, length, 3).copy()
-        parts[:, :, :2] -= np.einsum("nk,mk,wmc->wnc", line, line, parts[:, :, :2])
+        parts[:, :, :2] -= line @ (line.T @ parts[:, :, :2])
         return parts
 
     parts = np.stack([cut(one) for one in ripple])
-    own = np.einsum("awnc,bwnc->wab", parts, parts)
-    seen = np.einsum("awnc,wnc->wa", parts, cut(error))
+    by_window = parts.swapaxes(0, 1).reshape(count, len(parts), -1)  # rows of all channels in one
+    own = by_window @ by_window.swapaxes(1, 2)
+    seen = (by_window @ cut(error).reshape(count, -1, 1))[:, :, 0]
     middles = (np.arange(count) + 0.5) * length
     samples = np.minimum((middles * trace.block).astype(int), len(trace.torque) - 1)
     angle = problem.angles[index][samples, RIPPLES[use.id][0]]
