@@ -1,0 +1,82 @@
+"""Many models for one torque, as fits of a diagnosis simulate them: time per sample, by law.
+
+`python -m benchmarks.many_models`: twelve models of three inertias, 28 s at 1 kHz, on one thread and on all;
+best of turns taken alternately. For the linear model python-control's `forced_response` beside it.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import control
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.model import EffectUse, Model, load_model
+from hil.core.side_by_side import threads
+from hil.engine.bench_file import shipped
+from hil.plant import ideal_sensors, linear_system, pack, simulate_many
+
+Array = npt.NDArray[np.float64]
+
+MODELS, SAMPLES, DT, TURNS = 12, 28_000, 1e-3, 7
+LAWS: Mapping[str, tuple[EffectUse, ...]] = {
+    "linear": (),
+    "dry friction": (EffectUse("coulomb_friction", {"torque_nm": 1.5}),),
+    "cubic stiffness": (EffectUse("shaft_cubic_stiffness", {"coefficient_nm_rad3": 1e4}),),
+    "play": (EffectUse("backlash", {"half_gap_rad": 0.02}),),
+    "play, damped flanks": (
+        EffectUse(
+            "backlash", {"half_gap_rad": 0.02, "contact_damping_nms_rad": 30.0, "contact_depth_rad": 5e-4}
+        ),
+    ),
+    "hysteresis": (EffectUse("shaft_hysteresis", {"stiffness_nm_rad": 500.0, "slip_rad": 0.004}),),
+}
+
+
+def main() -> None:
+    if threads() > 1:  # they are counted once for a process
+        one = {**os.environ, "NUMBA_NUM_THREADS": "1"}
+        subprocess.run([sys.executable, "-m", "benchmarks.many_models"], env=one, check=True)
+    print(f"{MODELS} models, {SAMPLES} samples, threads: {threads()}; ns for each sample of a model")
+    model = load_model(shipped("three_inertia.toml"))
+    time_s = np.arange(SAMPLES) * DT
+    torque = 30 + 120 * np.sin(np.pi * (1.0 + 0.5 * time_s) * time_s) * np.sin(0.8 * time_s)
+    runs: dict[str, Callable[[], object]] = {
+        name: many(replace(model, effects=effects), torque) for name, effects in LAWS.items()
+    }
+    for name, seconds in best_of(runs).items():
+        print(f"  {name:24}{seconds / (MODELS * SAMPLES) * 1e9:8.1f}")
+    system = linear_system(replace(model, effects=()))
+    forced = control.ss(system.a, system.b[:, :1], system.c, system.d[:, :1])
+    alone = best_of({"": lambda: control.forced_response(forced, time_s, torque)})[""]
+    print(f"  {'linear, python-control':24}{alone / SAMPLES * 1e9:8.1f}")
+
+
+def many(model: Model, torque: Array) -> Callable[[], object]:
+    """A run of models that differ a little."""
+    parameters = np.repeat(np.array(pack(model))[None], MODELS, 0)
+    parameters[:, 0] *= 1.0 + 1e-3 * np.arange(MODELS)
+    starts, sensors = np.zeros((MODELS, 3)), ideal_sensors(MODELS)
+    return lambda: simulate_many(parameters, torque, DT, starts, sensors, 4)
+
+
+def best_of(runs: Mapping[str, Callable[[], object]]) -> dict[str, float]:
+    """Shortest of some turns of each, in s; the first turn, which may compile, does not count."""
+    best = dict.fromkeys(runs, np.inf)
+    for turn in range(TURNS + 1):
+        for name, run in runs.items():
+            begun = time.perf_counter()
+            run()
+            if turn:
+                best[name] = min(best[name], time.perf_counter() - begun)
+    return best
+
+
+if __name__ == "__main__":
+    main()
