@@ -162,7 +162,7 @@ class Problem:
 
         Args:
             simulated: sets x blocks x 3.
-            used_up: nobody else wants `simulated`: its memory is taken, as new memory takes longer than the sums.
+            used_up: nobody else wants `simulated`: its memory is taken, as new memory costs more than sums.
 
         Returns:
             (sets - 1) x blocks x 3, 0 where errors do not count.
