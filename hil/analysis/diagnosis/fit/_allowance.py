@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 import time
 
+from hil.analysis.diagnosis.fit._thresholds import LOOK_S
+
 
 class OutOfTimeError(Exception):
     """A search has used up what it was allowed."""
-
-
-_LOOK_S = 0.02  # on the clock, between looks at the processor time: on some machines each takes a millisecond
 
 
 class Allowance:
@@ -34,7 +33,7 @@ class Allowance:
             return
         if time.process_time() > self._ends:
             raise OutOfTimeError
-        self._looks_again = now + _LOOK_S
+        self._looks_again = now + LOOK_S
 
     def lift(self) -> None:
         """Let what comes now take as long as it takes."""
