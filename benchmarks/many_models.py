@@ -1,7 +1,7 @@
 """Many models for one torque, as fits of a diagnosis simulate them: time per sample, by law.
 
 `python -m benchmarks.many_models`: twelve models of three inertias, 28 s at 1 kHz, on one thread and on all;
-best of turns taken alternately. For the linear model python-control's `forced_response` beside it.
+best of some turns. For the linear model python-control's `forced_response` beside it.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
@@ -17,6 +16,7 @@ import control
 import numpy as np
 import numpy.typing as npt
 
+from benchmarks.plant import best_of
 from hil.core.model import EffectUse, Model, load_model
 from hil.core.side_by_side import threads
 from hil.engine.bench_file import shipped
@@ -24,7 +24,7 @@ from hil.plant import ideal_sensors, linear_system, pack, simulate_many
 
 Array = npt.NDArray[np.float64]
 
-MODELS, SAMPLES, DT, TURNS = 12, 28_000, 1e-3, 7
+MODELS, SAMPLES, DT, TURNS = 12, 28_000, 1e-3, 15
 LAWS: Mapping[str, tuple[EffectUse, ...]] = {
     "linear": (),
     "dry friction": (EffectUse("coulomb_friction", {"torque_nm": 1.5}),),
@@ -50,12 +50,12 @@ def main() -> None:
     runs: dict[str, Callable[[], object]] = {
         name: many(replace(model, effects=effects), torque) for name, effects in LAWS.items()
     }
-    for name, seconds in best_of(runs).items():
-        print(f"  {name:24}{seconds / (MODELS * SAMPLES) * 1e9:8.1f}")
+    for name, run in runs.items():
+        print(f"  {name:24}{best_of(run, TURNS) / (MODELS * SAMPLES) * 1e6:8.1f}")
     system = linear_system(replace(model, effects=()))
     forced = control.ss(system.a, system.b[:, :1], system.c, system.d[:, :1])
-    alone = best_of({"": lambda: control.forced_response(forced, time_s, torque)})[""]
-    print(f"  {'linear, python-control':24}{alone / SAMPLES * 1e9:8.1f}")
+    alone = best_of(lambda: control.forced_response(forced, time_s, torque))
+    print(f"  {'linear, python-control':24}{alone / SAMPLES * 1e6:8.1f}")
 
 
 def many(model: Model, torque: Array) -> Callable[[], object]:
@@ -64,18 +64,6 @@ def many(model: Model, torque: Array) -> Callable[[], object]:
     parameters[:, 0] *= 1.0 + 1e-3 * np.arange(MODELS)
     starts, sensors = np.zeros((MODELS, 3)), ideal_sensors(MODELS)
     return lambda: simulate_many(parameters, torque, DT, starts, sensors, 4)
-
-
-def best_of(runs: Mapping[str, Callable[[], object]]) -> dict[str, float]:
-    """Shortest of some turns of each, in s; the first turn, which may compile, does not count."""
-    best = dict.fromkeys(runs, np.inf)
-    for turn in range(TURNS + 1):
-        for name, run in runs.items():
-            begun = time.perf_counter()
-            run()
-            if turn:
-                best[name] = min(best[name], time.perf_counter() - begun)
-    return best
 
 
 if __name__ == "__main__":

@@ -119,7 +119,7 @@ def simulate_many(
 
 def _shared_out(sets: int) -> list[slice]:
     """Parts of about the same number of sets: a few for each thread, as some sets take longer."""
-    parts = 1 if threads() < 2 else max(1, min(sets, _PARTS_PER_THREAD * threads()))
+    parts = min(sets, _PARTS_PER_THREAD * threads())
     ends = [sets * part // parts for part in range(parts + 1)]
     return [slice(*both) for both in pairwise(ends)]
 

@@ -45,9 +45,15 @@ def between(newer, older, part):  # type: ignore[no-untyped-def]
 
 
 @inlined
+def unrounded(truth, noise, sensor):  # type: ignore[no-untyped-def]
+    """What a sensor makes of the truth at its instant, but for rounding."""
+    return truth * sensor[GAIN] + sensor[OFFSET] + noise
+
+
+@inlined
 def reading(truth, noise, sensor):  # type: ignore[no-untyped-def]
     """What a sensor makes of the truth at its instant: scaled, shifted, noisy, rounded."""
-    value = truth * sensor[GAIN] + sensor[OFFSET] + noise
+    value = unrounded(truth, noise, sensor)
     if sensor[STEP] > 0.0:
         value = round(value / sensor[STEP]) * sensor[STEP]
     return value
@@ -83,12 +89,12 @@ def _low_passed(truth, lag, dt):  # type: ignore[no-untyped-def]
 def _means(truth, sensor, dt, block, out):  # type: ignore[no-untyped-def]
     last = truth.shape[0] - 1
     whole, part = samples_late(sensor, dt)
-    in_time = whole == 0 and part == 0.0 and sensor[STEP] <= 0.0
+    plain = whole == 0 and part == 0.0 and sensor[STEP] <= 0.0
     for b in range(out.shape[0]):
         total = 0.0
-        if in_time:
+        if plain:  # most are: what late or rounded ones ask takes half of a linear model's time
             for k in range(b * block, (b + 1) * block):
-                total += truth[k] * sensor[GAIN] + sensor[OFFSET]
+                total += unrounded(truth[k], 0.0, sensor)
             out[b] = total / block
             continue
         for k in range(b * block, (b + 1) * block):

@@ -33,7 +33,6 @@ CHECKS = {
     "hopping": _TESTS.format("search/test_hopping.py"),
     "least_squares": _TESTS.format("fit/test_least_squares.py"),
     "whitening": _TESTS.format("fit/test_whitening.py"),
-    "allowance": _TESTS.format("fit/test_allowance.py"),
     "whole_samples": _TESTS.format("fit/test_whole_samples.py"),
     "alignment": _TESTS.format("search/test_alignment.py"),
     "by_chance": _TESTS.format("search/test_by_chance.py"),

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -82,6 +85,18 @@ def test_ctrl_c_in_the_calling_thread_ends_it() -> None:
         side_by_side(function, range(1000))
 
 
+FORKED = """import os
+from hil.core.side_by_side import side_by_side, threads
+assert threads() == 3
+assert side_by_side(abs, range(-100, 0)) == list(range(100, 0, -1))
+child = os.fork()
+if child == 0:
+    os._exit(0 if side_by_side(abs, range(-100, 0)) == list(range(100, 0, -1)) else 1)
+assert os.waitpid(child, 0)[1] == 0
+"""
+
+
 def test_a_forked_process_has_threads_of_its_own() -> None:
     """A pool's threads do not come along with a fork: who asked would wait for ever."""
-    assert module._pool(1) is not module._pool(2)
+    environment = {**os.environ, "NUMBA_NUM_THREADS": "3"}
+    subprocess.run([sys.executable, "-c", FORKED], env=environment, check=True, timeout=60)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 import time
 
-from hil.analysis.diagnosis.fit._thresholds import LOOK_S
-
 
 class OutOfTimeError(Exception):
     """A search has used up what it was allowed."""
@@ -20,7 +18,6 @@ class Allowance:
 
     def __init__(self, seconds: float = math.inf) -> None:
         self._ends = time.process_time() + seconds
-        self._looks_again = -math.inf
 
     def check(self) -> None:
         """Go on, or not.
@@ -28,12 +25,8 @@ class Allowance:
         Raises:
             OutOfTimeError: all of it is used up.
         """
-        now = time.perf_counter()
-        if now < self._looks_again:
-            return
         if time.process_time() > self._ends:
             raise OutOfTimeError
-        self._looks_again = now + LOOK_S
 
     def lift(self) -> None:
         """Let what comes now take as long as it takes."""

@@ -157,17 +157,16 @@ class Problem:
         error[: self.traces[trace].lead_blocks] = 0.0
         return self._counted(trace, self._whitened(error))
 
-    def changes(self, trace: int, simulated: Array, *, used_up: bool = False) -> Array:
+    def changes(self, trace: int, simulated: Array) -> Array:
         """Weighted change of the channels of one recording from the first of `simulated` to each other.
 
         Args:
             simulated: sets x blocks x 3.
-            used_up: nobody else wants `simulated`: its memory is taken, as new memory costs more than sums.
 
         Returns:
             (sets - 1) x blocks x 3, 0 where errors do not count.
         """
-        change = np.subtract(simulated[1:], simulated[0], out=simulated[1:] if used_up else None)
+        change = simulated[1:] - simulated[0]
         change *= self.weights[trace]
         change[:, : self.traces[trace].lead_blocks] = 0.0
         if self.whitening is not None:
@@ -242,7 +241,7 @@ class Problem:
             tried[len(points) :] += np.diag(steps)
             simulated = self.outputs(index, slots, sensors, tried)
             error = self.errors(index, simulated[0]).ravel()
-            change = self.changes(index, simulated, used_up=True).reshape(len(slots) - 1, -1)
+            change = self.changes(index, simulated).reshape(len(slots) - 1, -1)
             # a diverged simulation: no derivative that could be followed
             change[~(np.abs(change).max(axis=1) < DIVERGED)] = 0.0
             shared = (change[: len(coordinates)] / signed[:, None]).T

@@ -180,12 +180,6 @@ COINCIDENCE: Annotated[
         "whole_samples",
     ),
 ] = 50.0
-LOOK_S: Annotated[
-    float,
-    Means(
-        "s", "between looks at what is left of an allowance: on some machines each takes one ms", "allowance"
-    ),
-] = 0.02
 LEAPS: Annotated[tuple[int, ...], Means("samples", "that a dead time is tried to leap", "whole_samples")] = (
     -4,
     -3,

@@ -127,7 +127,7 @@ def products(
         shared, initial = fit.errors[index].by_coordinate, fit.errors[index].by_start
         starts = np.tile(fit.starts[index], (len(packed), 1))
         simulated = problem.outputs(index, slots, sensors, starts)
-        change = problem.changes(index, simulated, used_up=True).reshape(len(packed) - 1, -1)
+        change = problem.changes(index, simulated).reshape(len(packed) - 1, -1)
         diverged = ~(np.abs(change).max(axis=1) < PROBE_DIVERGED)
         change[diverged] = 0.0
         basis = np.linalg.qr(initial)[0] if np.any(initial) else np.zeros((len(error), 1))
