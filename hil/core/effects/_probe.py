@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, Protocol
 
 Values = dict[str, float | str]
@@ -24,10 +24,20 @@ class Direction:
 
 @dataclass(frozen=True)
 class Probe:
-    """An effect near one size: its response is Σ αᵢ·directionᵢ; `start` makes values from the αs."""
+    """An effect near one size: its response is Σ αᵢ·directionᵢ; `start` makes values from the αs.
+
+    One that is not `first` is looked at only where the most promising of those that are stands at its
+    `place` among sizes, or next to it.
+    """
 
     directions: tuple[Direction, ...]
     start: Callable[[Sequence[float]], Values]
+    place: int = 0
+    first: bool = True
+
+    def at(self, place: int, *, first: bool) -> Probe:
+        """The same, standing there."""
+        return replace(self, place=place, first=first)
 
 
 class Scene(Protocol):

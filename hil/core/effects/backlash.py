@@ -219,11 +219,13 @@ def _steps(chain: Chain, values: Values, dt: float) -> int:
 def _probes(scene: Scene) -> Iterator[Probe]:
     for step in range(_SIZES):
         gap = 2e-4 * 600.0 ** (step / (_SIZES - 1))
-        yield sized("half_gap_rad", gap, 0.2, restitution=1.0, tension=0.0)
+        bouncing = sized("half_gap_rad", gap, 0.2, restitution=1.0, tension=0.0)
+        yield bouncing.at(step, first=step % 2 == 0)
         for damping in _DAMPINGS_NMS_RAD if step % 2 == 0 else ():
-            yield sized(
+            damped = sized(
                 "half_gap_rad", gap, 0.2, contact_damping_nms_rad=damping, contact_depth_rad=_DEPTH_RAD
             )
+            yield damped.at(step, first=damping == _DAMPINGS_NMS_RAD[0])
 
 
 def _derived(values: Mapping[str, float]) -> dict[str, float]:

@@ -19,11 +19,13 @@ def _bushes(chain: dict[str, float], values: Mapping[str, Any]) -> None:
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
+    """First heavy and light housings by turns: beside either, the frequency shows."""
     for step in range(16):
         omega = 2.0 * math.pi * 2.5 * 16.0 ** (step / 15)
         for damping in (0.04, 0.12, 0.35):
-            for inertia in (3.0, 30.0):
-                yield _mounted(omega, damping, inertia)
+            for turn, inertia in enumerate((3.0, 30.0)):
+                first = damping == 0.12 and step % 2 == turn
+                yield _mounted(omega, damping, inertia).at(step, first=first)
 
 
 def _mounted(omega: float, damping: float, inertia: float) -> Probe:

@@ -22,7 +22,7 @@ from hil.analysis.diagnosis.fit._thresholds import (
 )
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
-from hil.core.model import EffectUse, Model, parameter_names
+from hil.core.model import EffectUse, Model, kind_of, parameter_names
 from hil.plant import SENSOR_STEP, pack, sensor_of
 
 Array = npt.NDArray[np.float64]
@@ -61,6 +61,11 @@ class Hypothesis:
     def ids(self) -> tuple[str, ...]:
         """Effect ids in order."""
         return tuple(term.id for term in self.terms)
+
+    @property
+    def kind(self) -> str:
+        """Of the plant: an effect may add an inertia to the base model's."""
+        return kind_of(self.base.kind, [*self.base.effects, *self.terms])
 
     @property
     def remembers_place(self) -> bool:

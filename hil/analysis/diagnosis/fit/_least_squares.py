@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,7 @@ from hil.analysis.diagnosis.fit._coordinates import Coordinate, Hypothesis
 from hil.analysis.diagnosis.fit._normal import promised_gain, reduced, start_step
 from hil.analysis.diagnosis.fit._problem import Linearised, Problem
 from hil.analysis.diagnosis.fit._thresholds import (
+    AS_PROMISED,
     LONGER,
     LONGEST,
     MORE_THAN_PROMISED,
@@ -73,12 +75,14 @@ def descent(
 ) -> Reached:
     """Levenberg-Marquardt within bounds, from coordinates and starts; `at` is the problem there, if known."""
     coordinates = hypothesis.coordinates()
+    valley = _Valley(problem, hypothesis, *bounds, precision)
     lower, upper = bounds
     theta, starts = np.clip(begin[0], lower, upper), begin[1]
     at = at or problem.linearised(hypothesis, theta, starts)
     damping, refusals, done, fresh, shares = 1e-6, 0, 0, True, TRIALS
     while done < rounds:
-        if hopeless and done == hopeless.rounds and at.cost + float(precision @ theta**2) > hopeless.total:
+        now = at.cost + valley.price(theta)
+        if hopeless and done == hopeless.rounds and now > hopeless.total:
             break
         matrix, gradient = reduced(at.normals)
         matrix = matrix + np.diag(precision)
@@ -90,32 +94,65 @@ def descent(
         if fresh and promised < enough:
             break
         done += 1
-        tried_theta = [np.clip(theta + share * step, lower, upper) for share in shares]
-        tried_starts = [
-            np.stack([start + start_step(n, moved - theta) for moved in tried_theta])
-            for start, n in zip(starts, at.normals, strict=True)
-        ]
-        found = problem.costs([hypothesis.packed(t) for t in tried_theta], tried_starts)
-        totals = found + np.array([float(precision @ t**2) for t in tried_theta])
-        best = int(np.argmin(totals))
-        gain = at.cost + float(precision @ theta**2) - float(totals[best])
+        went = valley.along(step, shares[:1], Reached(theta, starts, at, done))
+        if len(shares) > len(TRIALS) or not now - went.total > AS_PROMISED * promised:
+            rest = valley.along(step, shares[1:], Reached(theta, starts, at, done))
+            went = min(went, rest, key=lambda way: way.total)
+        gain = now - went.total
         if gain <= 0.0 or not np.isfinite(gain):
             refusals, fresh = refusals + 1, False
             damping = max(damping * 30.0, 1e-3)
             if refusals > MOST_REFUSALS or float(step @ matrix @ step) < enough:
                 break
             continue
-        theta = tried_theta[best]
-        starts = [s[best] for s in tried_starts]
-        share = shares[best]
-        damping = damping * 3.0 if share < 1.0 else damping / 10.0
+        theta, starts = went.theta, went.starts
+        damping = damping * 3.0 if went.share < 1.0 else damping / 10.0
         # errors beyond noise bend the valley: where it is flatter than derivatives say, steps fall short
-        flat = share >= 1.0 and gain > MORE_THAN_PROMISED * promised
-        shares = (*TRIALS, min(LONGER * share, LONGEST)) if flat else TRIALS
-        at, fresh = problem.linearised(hypothesis, theta, starts), True
+        flat = went.share >= 1.0 and gain > MORE_THAN_PROMISED * promised
+        shares = (*TRIALS, min(LONGER * went.share, LONGEST)) if flat else TRIALS
+        at, fresh = problem.linearised(hypothesis, theta, starts, went.shown), True
         if gain < enough:
             break
     return Reached(theta, starts, at, done)
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Where a share of a step leads: the sum of squared errors there, and what is simulated."""
+
+    share: float
+    theta: Array
+    starts: list[Array]
+    total: float
+    shown: list[Array]
+
+
+@dataclass(frozen=True)
+class _Valley:
+    """What a descent goes down in."""
+
+    problem: Problem
+    hypothesis: Hypothesis
+    lower: Array
+    upper: Array
+    precision: Array
+
+    def price(self, theta: Array) -> float:
+        """Of coordinates that are off what is known of them beforehand."""
+        return float(self.precision @ theta**2)
+
+    def along(self, step: Array, shares: Sequence[float], here: Reached) -> _Way:
+        """The best of several shares of a step, each with the starts that suit it."""
+        moved = [np.clip(here.theta + share * step, self.lower, self.upper) for share in shares]
+        starts = [
+            np.stack([start + start_step(n, theta - here.theta) for theta in moved])
+            for start, n in zip(here.starts, here.at.normals, strict=True)
+        ]
+        tried = self.problem.tried([self.hypothesis.packed(theta) for theta in moved], starts)
+        totals = tried.costs + np.array([self.price(theta) for theta in moved])
+        best = int(np.argmin(totals))
+        each, shown = ([one[best] for one in of] for of in (starts, tried.shown))
+        return _Way(shares[best], moved[best], each, float(totals[best]), shown)
 
 
 def _limited(step: Array, coordinates: tuple[Coordinate, ...]) -> Array:

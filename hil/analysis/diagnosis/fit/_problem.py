@@ -35,10 +35,22 @@ from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
 
-#: Free initial values of each recording: motor speed, wheel speed, shaft torque, and where it begins in
+#: Initial values of each recording: motor speed, wheel speed, shaft torque, and where it begins in
 #: mid-motion vehicle less wheel speed and the tyre's own twist.
 STARTS = 5
-MOTOR, WHEEL, SHAFT = range(3)  # of these the first
+MOTOR, WHEEL, SHAFT, VEHICLE, TYRE = range(STARTS)
+
+
+@dataclass(frozen=True)
+class Tried:
+    """Points that were simulated: the sum of squared errors of each, and per recording what they showed.
+
+    `rows` are points x rows, the errors; `shown` points x blocks x 3, the channels.
+    """
+
+    costs: Array
+    rows: list[Array]
+    shown: list[Array]
 
 
 @dataclass(frozen=True)
@@ -186,22 +198,24 @@ class Problem:
 
     def costs(self, points: list[tuple[Array, Array]], starts: list[Array]) -> Array:
         """Sum of squared errors of several points (slots, sensors); `starts`: per recording, points x 3."""
-        return self.tried(points, starts)[0]
+        return self.tried(points, starts).costs
 
-    def tried(self, points: list[tuple[Array, Array]], starts: list[Array]) -> tuple[Array, list[Array]]:
-        """Like `costs`, with the errors themselves: per recording, points x rows."""
+    def tried(self, points: list[tuple[Array, Array]], starts: list[Array]) -> Tried:
+        """Like `costs`, with what the points showed."""
         slots = np.stack([p for p, _ in points])
         sensors = np.stack([s for _, s in points])
 
-        def errors(index: int) -> Array:
+        def errors(index: int) -> tuple[Array, Array]:
             simulated = self.outputs(index, slots, sensors, starts[index])
-            return np.stack([self.errors(index, one).ravel() for one in simulated])
+            return np.stack([self.errors(index, one).ravel() for one in simulated]), simulated
 
-        rows = side_by_side(errors, range(len(self.traces)))
+        rows, shown = (
+            list(each) for each in zip(*side_by_side(errors, range(len(self.traces))), strict=True)
+        )
         total = np.zeros(len(points))
         for index, own in enumerate(rows):
             total += np.sum(own**2, axis=1) + (starts[index] ** 2) @ self.start_precision(index)
-        return total, rows
+        return Tried(total, rows, shown)
 
     def normals(self, errors: Sequence[Errors], starts: Sequence[Array]) -> tuple[Normal, ...]:
         """Normal equations of each recording, its initial values held as firmly as they are known."""
@@ -220,37 +234,57 @@ class Problem:
         least = int(np.argmin(costs))
         return tried[least], float(costs[least])
 
-    def linearised(self, hypothesis: Hypothesis, theta: Array, starts: list[Array]) -> Linearised:
-        """Errors and their derivatives at `theta` and `starts`, by finite differences."""
+    def linearised(
+        self,
+        hypothesis: Hypothesis,
+        theta: Array,
+        starts: list[Array],
+        shown: Sequence[Array] | None = None,
+    ) -> Linearised:
+        """Errors and their derivatives at `theta` and `starts`, by finite differences.
+
+        Args:
+            shown: of each recording the channels (blocks x 3) that are simulated there, where known already.
+        """
         coordinates = hypothesis.coordinates()
-        points = [hypothesis.packed(theta)]
-        for index, c in enumerate(coordinates):
-            moved = theta.copy()
-            moved[index] += c.step if theta[index] + c.step <= c.upper else -c.step
-            points.append(hypothesis.packed(moved))
-        slots = np.stack([p for p, _ in points] + [points[0][0]] * STARTS)
-        sensors = np.stack([s for _, s in points] + [points[0][1]] * STARTS)
+        here = hypothesis.packed(theta)
         signed = np.array(
             [c.step if v + c.step <= c.upper else -c.step for c, v in zip(coordinates, theta, strict=True)]
         )
+        moved = [hypothesis.packed(theta + one) for one in np.diag(signed)]
         steps = self.start_steps()
 
         def derived(index: int) -> tuple[float, Errors]:
-            start = starts[index]
-            tried = np.tile(start, (len(slots), 1))
-            tried[len(points) :] += np.diag(steps)
+            start, free = starts[index], self.free_starts(index, hypothesis)
+            points = [*([here] if shown is None else []), *moved, *[here] * len(free)]
+            tried = np.tile(start, (len(points), 1))
+            tried[len(points) - len(free) :] += np.diag(steps)[free]
+            slots, sensors = (np.stack(each) for each in zip(*points, strict=True))
             simulated = self.outputs(index, slots, sensors, tried)
+            if shown is not None:
+                simulated = np.concatenate([shown[index][None], simulated])
             error = self.errors(index, simulated[0]).ravel()
-            change = self.changes(index, simulated).reshape(len(slots) - 1, -1)
+            change = self.changes(index, simulated).reshape(len(simulated) - 1, -1)
             # a diverged simulation: no derivative that could be followed
             change[~(np.abs(change).max(axis=1) < DIVERGED)] = 0.0
-            shared = (change[: len(coordinates)] / signed[:, None]).T
-            initial = (change[len(coordinates) :] / steps[:, None]).T
+            shared = (change[: len(moved)] / signed[:, None]).T
+            initial = np.zeros((len(error), STARTS))
+            initial[:, free] = (change[len(moved) :] / steps[free][:, None]).T
             cost = float(error @ error) + float(start**2 @ self.start_precision(index))
             return cost, Errors(error, shared, initial)
 
         costs, errors = zip(*side_by_side(derived, range(len(starts))), strict=True)
         return Linearised(sum(costs), self.normals(errors, starts), errors)
+
+    def free_starts(self, trace: int, hypothesis: Hypothesis) -> list[int]:
+        """Which of a recording's initial values a plant has that may be others than `first_starts` says.
+
+        A tyre that holds an axle at rest is not twisted, and the vehicle stands.
+        """
+        if self.functions is None and hypothesis.kind == "rigid":
+            return [MOTOR]
+        tyre = hypothesis.kind == "three_inertia" and not self.resting[trace]
+        return [MOTOR, WHEEL, SHAFT, VEHICLE, TYRE] if tyre else [MOTOR, WHEEL, SHAFT]
 
     def _anchored(self, n: Normal, index: int, start: Array) -> Normal:
         precision = self.start_precision(index)

@@ -45,14 +45,14 @@ def slid(problem: Problem, near: Fit, theta: Array, starts: list[Array]) -> Slid
     for _ in range(SLIDE_ROUNDS):
         thetas = [theta + share * step for share in shares]
         each = [np.stack([s + share * d for share in shares]) for s, d in zip(starts, steps, strict=True)]
-        totals, rows = problem.tried([near.hypothesis.packed(t) for t in thetas], each)
-        totals += np.array([float(precision @ t**2) for t in thetas])
+        tried = problem.tried([near.hypothesis.packed(t) for t in thetas], each)
+        totals = tried.costs + np.array([float(precision @ t**2) for t in thetas])
         best = int(np.argmin(totals))
         if not totals[best] < now:
             break
         theta, starts, now = thetas[best], [one[best] for one in each], float(totals[best])
         errors = tuple(
-            Errors(r[best], e.by_coordinate, e.by_start) for r, e in zip(rows, near.errors, strict=True)
+            Errors(r[best], e.by_coordinate, e.by_start) for r, e in zip(tried.rows, near.errors, strict=True)
         )
         normals = problem.normals(errors, starts)
         matrix, gradient = reduced(normals)

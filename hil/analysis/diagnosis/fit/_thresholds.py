@@ -76,6 +76,14 @@ SAME_COST: Annotated[
 ] = 1e-9
 
 TRIALS: Annotated[tuple[float, ...], Means("of a step", "tried in each round", "least_squares")] = (1.0, 0.35)
+AS_PROMISED: Annotated[
+    float,
+    Means(
+        "of what derivatives promise",
+        "a whole step that gains more is taken: a part gains less",
+        "least_squares",
+    ),
+] = 0.75
 MORE_THAN_PROMISED: Annotated[
     float,
     Means(

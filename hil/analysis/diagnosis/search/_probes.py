@@ -22,6 +22,11 @@ class Candidate:
     probe: Probe
 
     @property
+    def key(self) -> tuple[str, str]:
+        """Id and channel."""
+        return key_of(self.along(self.directions[0]))
+
+    @property
     def directions(self) -> tuple[Direction, ...]:
         """Of the probe."""
         return self.probe.directions

@@ -14,7 +14,7 @@ from hil.analysis.diagnosis.fit._fit import Fit, carried
 from hil.analysis.diagnosis.fit._least_squares import box_step
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.search._probes import Candidate, mismatches, probes
-from hil.analysis.diagnosis.search._thresholds import PROBE_DIVERGED, SCORED_MISMATCH
+from hil.analysis.diagnosis.search._thresholds import LOOKED_AT_CLOSELY, PROBE_DIVERGED, SCORED_MISMATCH
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
@@ -22,10 +22,14 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Score:
-    """An effect at its most promising size; `gain` is the expected drop of the sum of squared errors."""
+    """An effect at its most promising size; `gain` is the expected drop of the sum of squared errors.
+
+    `place` is that of its probe.
+    """
 
     use: EffectUse
     gain: float
+    place: int = 0
 
     @property
     def key(self) -> tuple[str, str]:
@@ -39,6 +43,26 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
     Gains count from the total `against`; from what the parameters alone can reach if None.
     """
     candidates = probes(problem, fit)
+    best = _scored(problem, fit, [c for c in candidates if c.probe.first], against)
+    if near := _near(best, candidates):
+        for score in _scored(problem, fit, near, against).values():
+            _keep(best, score)
+    return sorted(best.values(), key=lambda s: -s.gain)
+
+
+def _near(best: Mapping[tuple[str, str], Score], candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Probes that are not looked at first, beside the best of those that promise something."""
+    least = LOOKED_AT_CLOSELY * max((score.gain for score in best.values()), default=0.0)
+    places = {score.key: score.place for score in best.values() if score.gain > least}
+    return [
+        c for c in candidates if not c.probe.first and abs(c.probe.place - places.get(c.key, np.inf)) <= 1
+    ]
+
+
+def _scored(
+    problem: Problem, fit: Fit, candidates: list[Candidate], against: float | None
+) -> dict[tuple[str, str], Score]:
+    """Every effect at the best of these probes, and every parameter that may be wrong."""
     errors = {index: one.rows[:, None] for index, one in enumerate(fit.errors)}
     matrix, gradients = products(problem, fit, candidates, errors)
     gradient = gradients[:, 0]
@@ -57,7 +81,7 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
         low = np.concatenate([lower, [d.lower for d in probe.directions]])
         high = np.concatenate([upper, [d.upper for d in probe.directions]])
         gain, amounts = _gain(matrix, gradient, low, high, columns)
-        _keep(best, Score(probe.use(amounts[base:].tolist()), gain - rest))
+        _keep(best, Score(probe.use(amounts[base:].tolist()), gain - rest, probe.probe.place))
     for use, index in mismatch_columns(fit.hypothesis):
         low, high = lower.copy(), upper.copy()
         low[index], high[index] = -SCORED_MISMATCH, SCORED_MISMATCH
@@ -68,7 +92,7 @@ def screen(problem: Problem, fit: Fit, against: float | None = None) -> list[Sco
         gain, step = _gain(freed, pull, low, high, np.arange(base))
         value = float(use.values["value"]) * float(np.exp(fit.theta[index] + step[index]))
         _keep(best, Score(EffectUse(use.id, {**use.values, "value": value}), gain - rest))
-    return sorted(best.values(), key=lambda s: -s.gain)
+    return best
 
 
 def _keep(best: dict[tuple[str, str], Score], score: Score) -> None:

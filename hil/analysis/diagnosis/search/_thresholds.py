@@ -347,6 +347,14 @@ ROUNDING_MARGIN: Annotated[
 SCORED_MISMATCH: Annotated[
     float, Means("natural logarithm", "how far a wrong parameter's score may reach linearly", "screen")
 ] = 0.5
+LOOKED_AT_CLOSELY: Annotated[
+    float,
+    Means(
+        "of the best score",
+        "an effect whose first sizes promise more is looked at closely; five times as much was found there",
+        "screen",
+    ),
+] = 0.05
 PROBE_DIVERGED: Annotated[
     float, Means("noise levels", "a larger response is a diverged probe and scores nothing", "screen")
 ] = 1e8

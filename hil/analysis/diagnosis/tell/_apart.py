@@ -6,7 +6,7 @@ test tells them apart by what is left of the difference once the numbers have be
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,15 +18,15 @@ from hil.core.model import Model, parameter_names
 Array = npt.NDArray[np.float64]
 
 
-def apart(one: Model, other: Model, played: Callable[[Model], Array], noise: Array) -> Array:
+def apart(one: Model, other: Model, played: Callable[[Sequence[Model]], Array], noise: Array) -> Array:
     """What `one`, its numbers fitted anew, leaves of what `other` shows: (samples, channels), noise levels.
 
     Args:
-        played: outputs of a model in the test, samples x channels.
+        played: outputs of models in the test, models x samples x channels.
         noise: standard deviation of each channel per sample.
     """
-    first, second = played(one) / noise, played(other) / noise
-    columns = [np.ravel((played(model) / noise - first) / NUMBERS_STEP) for model in _moved(one)]
+    first, second, *moved = played([one, other, *_moved(one)]) / noise
+    columns = [np.ravel((shown - first) / NUMBERS_STEP) for shown in moved]
     starts = np.eye(first.shape[1])  # an initial speed that nobody knows shifts a channel
     columns += [np.ravel(np.broadcast_to(channel, first.shape)) for channel in starts]
     rows = np.nan_to_num(np.column_stack(columns))

@@ -5,6 +5,7 @@ What is simulated is what the plan itself will play, sample by sample.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import yaml
 
+from hil.analysis.diagnosis.fit._coordinates import sensors_of
 from hil.analysis.diagnosis.tell._apart import apart
 from hil.analysis.diagnosis.tell._thresholds import (
     DURATION_S,
@@ -26,9 +28,8 @@ from hil.analysis.diagnosis.tell._thresholds import (
     TELLS,
     WHEEL_RADIUS_M,
 )
-from hil.core.channels import OUTPUTS
 from hil.core.model import Model
-from hil.plant import Start, gear_ratio_of, simulate
+from hil.plant import gear_ratio_of, pack, simulate_many
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SAMPLE_TIME_S, Excitation, HoldSpeed
 
@@ -87,7 +88,7 @@ def separating_plan(
     for name in _WORDS:
         for share in SHARES:
             test = _test(name, share * torque_nm, names)
-            a, b = _outputs(one, test), _outputs(other, test)
+            a, b = _outputs(test, (one, other))
             if all(_within(o, speed_rad_s, most_shaft) for o in (a, b)):
                 candidates.append((_rms(((a - b) / noise)[:, np.isfinite(noise)]), test))
                 break
@@ -121,20 +122,23 @@ def _best(
     return level, chosen
 
 
-def _measured(test: _Test, measured: npt.NDArray[np.bool_], model: Model) -> Array:
-    return _outputs(model, test)[:, measured]
+def _measured(test: _Test, measured: npt.NDArray[np.bool_], models: Sequence[Model]) -> Array:
+    return _outputs(test, models)[:, :, measured]
 
 
 def _rms(errors: Array) -> float:
     return float(np.sqrt(np.mean(np.sum(np.nan_to_num(errors) ** 2, axis=1))))
 
 
-def _outputs(model: Model, test: _Test) -> Array:
-    """Outputs of a model in a test, samples x 3."""
-    start = Start(test.speed * (gear_ratio_of(model) or 1.0), test.speed, 0.0, 0.0)
-    simulated = simulate(model, test.torque, SAMPLE_TIME_S, start)
-    unknown = np.zeros(len(test.torque))  # functions need not have every output
-    return np.column_stack([simulated.get(c, unknown) for c in OUTPUTS])
+def _outputs(test: _Test, models: Sequence[Model]) -> Array:
+    """Outputs of models in a test, models x samples x 3; 0 for one that a model does not have."""
+    slots, sensors = np.stack([pack(model) for model in models]), np.stack([sensors_of(m) for m in models])
+    starts = [(test.speed * (gear_ratio_of(model) or 1.0), test.speed, 0.0) for model in models]
+    torque = np.concatenate([[0.0], test.torque])  # what has acted before the first sample
+    played = simulate_many(
+        slots, torque, SAMPLE_TIME_S, np.array(starts), sensors, functions=models[0].transfer_functions
+    )
+    return played[:, 1:]
 
 
 def _within(outputs: Array, speed: float, shaft: float) -> bool:

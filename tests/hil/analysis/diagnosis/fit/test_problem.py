@@ -8,14 +8,21 @@ import pytest
 
 from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import problem_of
+from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._simulated import settled_starts
 from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.model import Model, parameter_names
 from hil.core.recording import Recording
 from hil.plant import simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE, one_problem, one_trace
 
 RATIO = MODEL.parameters["gear_ratio"]
+
+
+def moving_problem() -> Problem:
+    """The one recording, begun in mid-motion."""
+    away = dataclasses.replace(one_trace(), start=np.array([100.0, 12.0, 0.0]))
+    return problem_of([away], np.array(NOISE), RATIO)
 
 
 def test_the_true_model_leaves_one_noise_variance_a_row() -> None:
@@ -40,6 +47,30 @@ def test_a_derivative_is_what_the_error_does() -> None:
     assert change == pytest.approx(0.01 * at.errors[0].by_coordinate[:, index], abs=0.02 * np.ptp(change))
 
 
+def test_derivatives_are_the_same_where_the_simulation_is_known_already() -> None:
+    problem, hypothesis = one_problem(), Hypothesis(MODEL)
+    theta, starts = hypothesis.start(), problem.first_starts()
+    tried = problem.tried([hypothesis.packed(theta)], [np.stack(starts)])
+    anew = problem.linearised(hypothesis, theta, starts)
+    known = problem.linearised(hypothesis, theta, starts, [tried.shown[0][0]])
+    assert known.cost == anew.cost == pytest.approx(tried.costs[0])
+    assert np.array_equal(known.errors[0].by_coordinate, anew.errors[0].by_coordinate)
+    assert np.array_equal(known.errors[0].by_start, anew.errors[0].by_start)
+
+
+def test_a_recording_begins_as_its_plant_can() -> None:
+    problem, away = one_problem(), moving_problem()
+    chain = Hypothesis(MODEL)
+    assert chain.kind == "three_inertia"
+    assert problem.free_starts(0, chain) == [0, 1, 2]
+    assert away.free_starts(0, chain) == [0, 1, 2, 3, 4]
+    for kind, free in (("two_inertia", [0, 1, 2]), ("rigid", [0])):
+        model = Model(kind, {name: MODEL.parameters.get(name, 1.0) for name in parameter_names(kind)})
+        assert away.free_starts(0, Hypothesis(model)) == free
+        shown = away.linearised(Hypothesis(model), Hypothesis(model).start(), away.first_starts())
+        assert np.flatnonzero(np.any(shown.errors[0].by_start, axis=0)).tolist() == free
+
+
 def test_a_channel_that_is_missing_weighs_nothing() -> None:
     trace = one_trace()
     measured = trace.measured.copy()
@@ -59,8 +90,7 @@ def test_an_axle_at_rest_is_held_there() -> None:
     problem = one_problem()
     assert problem.resting == (True,)
     assert np.all(problem.start_precision(0)[:2] > 0.0)
-    away = dataclasses.replace(problem.traces[0], start=np.array([100.0, 12.0, 0.0]))
-    moving = problem_of([away], np.array(NOISE), RATIO)
+    moving = moving_problem()
     assert moving.resting == (False,)
     assert np.all(moving.start_precision(0)[:3] == 0.0)
     assert np.all(moving.start_precision(0)[3:] < 0.1 * problem.start_precision(0)[3:])

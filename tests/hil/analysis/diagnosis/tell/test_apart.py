@@ -19,7 +19,8 @@ def _played(model: Model) -> np.ndarray:
 
 
 def _rms(one: Model, other: Model) -> float:
-    return float(np.sqrt(np.mean(apart(one, other, _played, NOISE) ** 2)))
+    left = apart(one, other, lambda models: np.stack([_played(model) for model in models]), NOISE)
+    return float(np.sqrt(np.mean(left**2)))
 
 
 @pytest.mark.parametrize("name", ["motor_inertia", "shaft_stiffness", "vehicle_inertia"])

@@ -10,12 +10,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.diagnosis.tell._separating import _WORDS, _test, separating_plan
+from hil.analysis.diagnosis.tell._separating import _WORDS, _outputs, _test, separating_plan
+from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse, Model, save_model
 from hil.core.recording import driven_by_torque, read_recording, write_recording
 from hil.engine import RunRequest, run_plan
 from hil.plant import Start, simulate
 from test_plans import load_plan
+from test_plans.steps import SAMPLE_TIME_S
 from tests.benches_for_tests import sim_bench
 from tests.hil.analysis.diagnosis.reference_plant import BASE, Truth, recordings
 
@@ -86,6 +88,19 @@ def test_both_models_keep_the_limits_that_were_given() -> None:
             out = simulate(model, test.torque, 1e-3, Start(test.speed * BASE["gear_ratio"], test.speed))
             assert np.max(np.abs(out["wheel_speed_rad_s"])) <= speed
             assert np.max(np.abs(out["shaft_torque_nm"])) <= (shaft or 2.5 * BASE["gear_ratio"] * torque)
+
+
+@pytest.mark.parametrize("name", _WORDS)
+def test_models_side_by_side_show_what_each_shows_alone(name: str) -> None:
+    test = _test(name, 30.0, NAMES)
+    friction = MODEL.with_effects(FRICTION)
+    for model, shown, share in zip(
+        (MODEL, friction), _outputs(test, (MODEL, friction)), (1e-8, 5e-3), strict=True
+    ):
+        start = Start(test.speed * BASE["gear_ratio"], test.speed, 0.0, 0.0)
+        alone = simulate(model, test.torque, SAMPLE_TIME_S, start)
+        for channel, values in zip(OUTPUTS[:2], shown.T, strict=False):
+            assert values == pytest.approx(alone[channel], abs=share * np.max(np.abs(alone[channel])))
 
 
 @pytest.mark.slow
