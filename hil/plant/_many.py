@@ -297,6 +297,31 @@ def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, l
 
 
 @compiled
+def _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine):  # type: ignore[no-untyped-def]
+    """As `_run_forced`, by forces on shaft and rotor that measured angles tell before the motion is."""
+    asked, shown = drive
+    transition, column, held, rising = matrices
+    x, memories = first
+    chain, acting = chain_of(p), acting_of(p)
+    at = F.first_angles(angles, x, p)
+    f = F.forces(motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p), chain, memories, p, acting)
+    for k in range(asked.shape[0]):
+        new = asked[max(k - whole, 0)]
+        old = asked[max(k - whole - 1, 0)]
+        fine[k, SPEED] = relative_speed(x)
+        fine[k, WHEEL] = x[X.WHEEL_SPEED]
+        fine[k, SHAFT] = F.shaft_torque(x, f, 0.0, p, shown[k], False)
+        for sub in range(substeps):
+            at = F.angles_at(angles, k, (sub + 1.0) / substeps, x, x, at, h, p)
+            m = motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+            ends = F.forces(m, chain, memories, p, acting)
+            y = _moved(x, sub, old, new, column, transition)
+            y = plus_row(plus_row(y, f[F.SHAFT], held, F.SHAFT), ends[F.SHAFT] - f[F.SHAFT], rising, F.SHAFT)
+            x = plus_row(plus_row(y, f[F.LOSS], held, F.LOSS), ends[F.LOSS] - f[F.LOSS], rising, F.LOSS)
+            f = ends
+
+
+@compiled
 def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
     """One model over the whole recording into `fine` (n x 3)."""
     p = as_tuple(vector)
@@ -306,8 +331,12 @@ def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fi
     whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
     _shown(acting, ends, dt, whole, p, shown)
     drive = (acting, shown)
-    if varies != _CONSTANT or L.pushes(p) or load is not None:
-        h = dt / substeps
+    h = dt / substeps
+    known = varies == _BY_ANGLE and angles.shape[0] > 0 and load is None
+    does = acting_of(p)
+    if known and not (does.dry or does.load or does.tyre or does.memory):
+        _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine)
+    elif varies != _CONSTANT or L.pushes(p) or load is not None:
         _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine)
     else:
         _run_linear(drive, whole, p, first[0], substeps, matrices[1], matrices[0], fine)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 from hil.core.chain import Chain
 from hil.core.effects._effect import Effect, Parameter, Stage
 from hil.core.effects._law import Law, Motion, Values
 from hil.core.effects._probe import Probe, Scene, ripple
+from hil.core.effects._smooth import sine
 
 
 def _loss(motion: Motion, chain: Chain, memory: float, values: Values) -> float:
     order, amplitude, phase = values
-    return -amplitude * math.sin(order * motion.rotor_angle + phase)
+    return -amplitude * sine(order * motion.rotor_angle + phase)
 
 
 def _probes(scene: Scene) -> Iterator[Probe]:
