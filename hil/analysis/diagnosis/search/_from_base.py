@@ -9,7 +9,7 @@ nowhere.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,12 +20,13 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
 from hil.analysis.diagnosis.search._alignment import with_base_angles
 from hil.analysis.diagnosis.search._probes import delay_is_free
-from hil.analysis.diagnosis.search._race import freed
+from hil.analysis.diagnosis.search._race import Step, freed
 from hil.analysis.diagnosis.search._rank import rank
 from hil.analysis.diagnosis.search._screen import Score, screen
-from hil.analysis.diagnosis.search._search import Found, advanced, begun, finished
+from hil.analysis.diagnosis.search._search import Found, advanced, begun, cared, finished, raced
 from hil.analysis.diagnosis.search._thresholds import (
     COMES_NEAR,
+    FAR,
     FAR_BETTER,
     FAR_MOVED,
     FAR_SHARE,
@@ -60,22 +61,45 @@ def search_from_base(
         return near
     show("scoring effects")
     scores = screen(problem, near.base)
-    far, tried = None, None
-    if _hopeless(near, scores):
-        far = _identified(near, rounded, show)
-        known.append(far)
-        if _explains(far.base, near):
-            found = _plainer(finished(far, show))
-            if found.settled:
-                return found
-            far, tried = _anew(far), far
-    advanced(near, show, scores)
+    numbers = _Numbers(near, rounded, known)
+    if _hopeless(near, scores) and (found := numbers.alone(show)):
+        return found
+    if steps := raced(near, show, scores):
+        if _far_from_noise(near, steps) and (found := numbers.alone(show)):
+            return found
+        cared(near, steps, show)
     if near.settled:
         return finished(near, show)
-    far = far or _identified(near, rounded, show)
-    known.append(far)
+    far = numbers.far(show)
     near.numbers = far.base
-    return _better(near, far, tried, show)
+    return _better(near, far, numbers.tried, show)
+
+
+@dataclass
+class _Numbers:
+    """The base model identified anew, beside a search from the `near` one: once, and only where asked for."""
+
+    near: Found
+    rounded: Sequence[EffectUse]
+    known: list[Found]
+    tried: Found | None = None
+    _far: Found | None = None
+
+    def far(self, show: Callable[[str], None]) -> Found:
+        """A search from the base model identified anew, nothing looked for yet."""
+        if self._far is None:
+            self._far = _identified(self.near, self.rounded, show)
+            self.known.append(self._far)
+        return self._far
+
+    def alone(self, show: Callable[[str], None]) -> Found | None:
+        """What is found from other numbers, if these alone explain most and nothing is missing then."""
+        if self._far is not None or not _explains(self.far(show).base, self.near):
+            return None
+        self.tried = self.far(show)
+        found = _plainer(finished(self.tried, show))
+        self._far = _anew(self.tried)
+        return found if found.settled else None
 
 
 def _identified(near: Found, rounded: Sequence[EffectUse], show: Callable[[str], None]) -> Found:
@@ -97,6 +121,12 @@ def _hopeless(near: Found, scores: Sequence[Score]) -> bool:
     gap = near.evidence.left(near.base) * problem.rows / max(problem.channels, 1)
     promised = max((score.gain for score in scores), default=0.0)
     return near.evidence.worst(near.base) > HOPELESS_GAP and promised < HOPELESS_PROMISE * gap
+
+
+def _far_from_noise(near: Found, steps: Sequence[Step]) -> bool:
+    """Whether what wins a race beside the given numbers is far from the noise."""
+    best = min((rank(one) for step in steps for one in step.fits), default=np.inf)
+    return not steps[-1].foretold and best > FAR * near.evidence.problem.rows
 
 
 def _explains(start: Fit, near: Found) -> bool:

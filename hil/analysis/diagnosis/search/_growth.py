@@ -29,6 +29,7 @@ from hil.analysis.diagnosis.search._thresholds import (
     FORETOLD_LEAVES,
     FORM_FROM,
     HOPE,
+    HOPE_FURTHER,
     LEAST_EVIDENCE,
     NEARLY,
     OTHER_SIZES,
@@ -75,7 +76,8 @@ def grow(
             scores = _better(scores, _scored_straightened(problem, parent))
         scores = _better(scores, _followed(problem, parent, scores))
     step.scores += scores
-    if not scores or scores[0].gain >= max(HOPE * evidence.left(parent) * blocks, LEAST_EVIDENCE):
+    hope = HOPE_FURTHER if parent.hypothesis.terms else HOPE
+    if not scores or scores[0].gain >= max(hope * evidence.left(parent) * blocks, LEAST_EVIDENCE):
         race(problem, step, rivals)
         if not parent.hypothesis.terms:
             step.fits += _of_other_laws(evidence, step.fits)

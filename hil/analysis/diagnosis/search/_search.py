@@ -136,27 +136,50 @@ def advanced(
         scores: of a first effect, where these are known already.
         beside: other fits with a first effect, to be fitted on from where they are.
     """
+    steps = raced(found, show, scores, beside)
+    return bool(steps) and cared(found, steps, show)
+
+
+def raced(
+    found: Found,
+    show: Callable[[str], None],
+    scores: list[Score] | None = None,
+    beside: Sequence[Fit] = (),
+) -> list[Step]:
+    """The first half of `advanced`: steps with the promising effects fitted roughly; none if there are none.
+
+    The last one ends the race where alone one of its effects foretells the motion.
+    """
     number = found.effects
     if number == MOST_EFFECTS or found.settled:
-        return False
+        return []
     parents = [
         f for f in found.frontier[: PARENTS[number]] if found.evidence.share(f) >= LEAST_SO_FAR[number]
     ]
     if not parents:
-        return False
+        return []
     if number:
         show(f"looking for effect {number + 1} beside {' or '.join(f.hypothesis.ids[-1] for f in parents)}")
     else:
         show(f"looking for effect 1 of at most {MOST_EFFECTS}")
-    before, steps = list(found.steps), []
+    before: list[Step] = list(found.steps)
+    steps: list[Step] = []
     rivals: list[Fit] = []
     for parent in parents:
         steps.append(Step(parent, [], []))
         found.steps = [*before, *steps]  # what is known by then if the search is ended from outside
         grow(found.evidence, steps[-1], scores, beside, rivals, everywhere=found.everywhere)
         if steps[-1].foretold:
-            return _advanced_where_foretold(found, steps[-1], show)
+            break
         rivals += steps[-1].fits
+    return steps
+
+
+def cared(found: Found, steps: list[Step], show: Callable[[str], None]) -> bool:
+    """The second half: the best of the race fitted with care, and named if it earns that."""
+    if steps[-1].foretold:
+        return _advanced_where_foretold(found, steps[-1], show)
+    number, before = found.effects, found.steps[: -len(steps)]
     for step in worth_care(found.evidence.problem, steps):
         finish(found.evidence, step, everywhere=found.everywhere)
         if step.foretold:

@@ -114,6 +114,14 @@ STRAIGHT: Annotated[
 HOPE: Annotated[
     float, Means("of the remaining gap", "the best linearised score must promise it", "hidden")
 ] = 0.1
+HOPE_FURTHER: Annotated[
+    float,
+    Means(
+        "of the remaining gap",
+        "the same beside effects that were found: of 19 hidden pairs the second promises 0.75 or more",
+        "blind",
+    ),
+] = 0.3
 SIZES: Annotated[
     tuple[float, ...],
     Means("factor", "sizes of an effect that are tried, around what its probe says", "hidden"),

@@ -7,7 +7,15 @@ import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import Fit, fit
-from hil.analysis.diagnosis.search._from_base import _leads_elsewhere, _told, is_far, moved, search_from_base
+from hil.analysis.diagnosis.search._from_base import (
+    _far_from_noise,
+    _leads_elsewhere,
+    _told,
+    is_far,
+    moved,
+    search_from_base,
+)
+from hil.analysis.diagnosis.search._race import Step
 from hil.analysis.diagnosis.search._search import advanced, begun
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
@@ -35,6 +43,16 @@ def test_a_far_model_with_nothing_missing_gets_no_effect() -> None:
     assert found.best.hypothesis.far
     assert found.best.hypothesis.keys == ()
     assert found.settled
+
+
+@pytest.mark.parametrize(("beyond", "far"), [(1.0, False), (100.0, True)])
+def test_numbers_come_before_care_where_what_wins_a_race_is_far_from_the_noise(
+    beyond: float, far: bool
+) -> None:
+    problem = one_problem(OFFSET)
+    near = begun(problem, fit(problem, Hypothesis(MODEL), rounds=0))
+    winner = left(beyond * problem.rows, OFFSET)
+    assert _far_from_noise(near, [Step(near.base, [], [winner])]) is far
 
 
 @pytest.mark.slow

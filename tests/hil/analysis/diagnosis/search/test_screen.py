@@ -5,7 +5,7 @@ import pytest
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.search._probes import probes
-from hil.analysis.diagnosis.search._screen import mismatch_columns, probe_columns, screen
+from hil.analysis.diagnosis.search._screen import _near, _scored, mismatch_columns, probe_columns, screen
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
@@ -35,3 +35,21 @@ def test_a_wrong_parameter_frees_its_own_column() -> None:
     names = [c.name for c in hypothesis.coordinates()]
     freed = {use.values["parameter"]: names[index] for use, index in mismatch_columns(hypothesis)}
     assert freed == {name: name for name in names if name != "torque_delay"}
+
+
+def test_an_effect_of_many_sizes_is_looked_at_closely_where_it_promises_something() -> None:
+    mount = EffectUse(
+        "mount_mode",
+        {"housing_inertia_kg_m2": 4.0, "mount_stiffness_nm_rad": 1.6e4, "mount_damping_nms_rad": 180.0},
+    )
+    for hidden, closely in ((mount, True), (OFFSET, False)):
+        problem = one_problem(hidden)
+        base = fit(problem, Hypothesis(MODEL), rounds=1)
+        every = probes(problem, base)
+        first = _scored(problem, base, [c for c in every if c.probe.first], None)
+        found = {score.key: score for score in screen(problem, base)}
+        best = _scored(problem, base, [c for c in every if c.id == "mount_mode"], None)["mount_mode", ""]
+        assert bool([c for c in _near(first, every) if c.id == "mount_mode"]) is closely
+        if closely:
+            assert found["mount_mode", ""].gain == pytest.approx(best.gain, rel=0.02)
+            assert best.gain > first["mount_mode", ""].gain
