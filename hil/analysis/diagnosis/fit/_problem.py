@@ -279,11 +279,13 @@ class Problem:
     def free_starts(self, trace: int, hypothesis: Hypothesis) -> list[int]:
         """Which of a recording's initial values a plant has that may be others than `first_starts` says.
 
-        A tyre that holds an axle at rest is not twisted, and the vehicle stands.
+        A tyre that holds an axle at rest is not twisted, and the vehicle stands; but where a play begins in
+        its gap is told by a torque that twists a tyre, and does not act there.
         """
         if self.functions is None and hypothesis.kind == "rigid":
             return [MOTOR]
-        tyre = hypothesis.kind == "three_inertia" and not self.resting[trace]
+        moves = hypothesis.remembers_place or not self.resting[trace]
+        tyre = moves and hypothesis.kind == "three_inertia"
         return [MOTOR, WHEEL, SHAFT, VEHICLE, TYRE] if tyre else [MOTOR, WHEEL, SHAFT]
 
     def _anchored(self, n: Normal, index: int, start: Array) -> Normal:

@@ -11,7 +11,7 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._problem import Problem, problem_of
 from hil.analysis.diagnosis.fit._simulated import settled_starts
 from hil.core.channels import INPUT, OUTPUTS, TIME
-from hil.core.model import Model, parameter_names
+from hil.core.model import EffectUse, Model, parameter_names
 from hil.core.recording import Recording
 from hil.plant import simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE, one_problem, one_trace
@@ -63,7 +63,9 @@ def test_a_recording_begins_as_its_plant_can() -> None:
     chain = Hypothesis(MODEL)
     assert chain.kind == "three_inertia"
     assert problem.free_starts(0, chain) == [0, 1, 2]
-    assert away.free_starts(0, chain) == [0, 1, 2, 3, 4]
+    play = Hypothesis(MODEL, (EffectUse("backlash", {"half_gap_rad": 0.01}),))
+    for one, with_tyre in ((away, chain), (problem, play)):
+        assert one.free_starts(0, with_tyre) == [0, 1, 2, 3, 4]
     for kind, free in (("two_inertia", [0, 1, 2]), ("rigid", [0])):
         model = Model(kind, {name: MODEL.parameters.get(name, 1.0) for name in parameter_names(kind)})
         assert away.free_starts(0, Hypothesis(model)) == free
