@@ -80,6 +80,7 @@ def descent(
     theta, starts = np.clip(begin[0], lower, upper), begin[1]
     at = at or problem.linearised(hypothesis, theta, starts)
     damping, refusals, done, fresh, shares = 1e-6, 0, 0, True, TRIALS
+    smooth = not hypothesis.remembers_place  # a play's valley is rugged: a part of a step may gain more
     while done < rounds:
         now = at.cost + valley.price(theta)
         if hopeless and done == hopeless.rounds and now > hopeless.total:
@@ -94,10 +95,10 @@ def descent(
         if fresh and promised < enough:
             break
         done += 1
-        went = valley.along(step, shares[:1], Reached(theta, starts, at, done))
-        if len(shares) > len(TRIALS) or not now - went.total > AS_PROMISED * promised:
-            rest = valley.along(step, shares[1:], Reached(theta, starts, at, done))
-            went = min(went, rest, key=lambda way: way.total)
+        here = Reached(theta, starts, at, done)
+        went = valley.along(step, shares[:1] if smooth else shares, here)
+        if smooth and (len(shares) > len(TRIALS) or not now - went.total > AS_PROMISED * promised):
+            went = min(went, valley.along(step, shares[1:], here), key=lambda way: way.total)
         gain = now - went.total
         if gain <= 0.0 or not np.isfinite(gain):
             refusals, fresh = refusals + 1, False

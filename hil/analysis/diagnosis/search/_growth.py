@@ -17,6 +17,7 @@ from hil.analysis.diagnosis.search._alignment import adds_ripple, aligned
 from hil.analysis.diagnosis.search._evidence import Evidence
 from hil.analysis.diagnosis.search._foretold import where_foretold
 from hil.analysis.diagnosis.search._forms import by_likeliest_law, by_other_laws
+from hil.analysis.diagnosis.search._hopping import hopped
 from hil.analysis.diagnosis.search._optional import promising, refined
 from hil.analysis.diagnosis.search._places import places_of, told
 from hil.analysis.diagnosis.search._race import Step, beside_parent, chosen, freed, nominal, race, with_width
@@ -216,7 +217,10 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
         return _by_other_laws(evidence, best)
     begun = places_of(evidence, best)
     other = _by_other_laws(evidence, begun.best)  # a law that is not right tells no width from another
-    return other if other is not begun.best else told(evidence, begun)
+    best = other if other is not begun.best else told(evidence, begun)
+    if evidence.settled(best) or evidence.share(best) < NEARLY:
+        return best
+    return hopped(evidence.problem, best)  # next to nothing is missing: a false minimum, maybe
 
 
 def _by_other_laws(evidence: Evidence, best: Fit) -> Fit:
