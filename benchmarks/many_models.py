@@ -36,6 +36,7 @@ LAWS: Mapping[str, tuple[EffectUse, ...]] = {
         ),
     ),
     "hysteresis": (EffectUse("shaft_hysteresis", {"stiffness_nm_rad": 500.0, "slip_rad": 0.004}),),
+    "ripple": (EffectUse("motor_order_ripple", {"order": 6.0, "amplitude_nm": 2.0, "phase_rad": 0.3}),),
 }
 
 
@@ -50,6 +51,9 @@ def main() -> None:
     runs: dict[str, Callable[[], object]] = {
         name: many(replace(model, effects=effects), torque) for name, effects in LAWS.items()
     }
+    turned = np.cumsum(80.0 + 40.0 * np.sin(time_s)) * DT
+    angles = np.column_stack([turned / model.parameters["gear_ratio"], turned])
+    runs["ripple, measured angle"] = many(replace(model, effects=LAWS["ripple"]), torque, angles)
     for name, run in runs.items():
         print(f"  {name:24}{best_of(run, TURNS) / (MODELS * SAMPLES) * 1e6:8.1f}")
     system = linear_system(replace(model, effects=()))
@@ -58,12 +62,12 @@ def main() -> None:
     print(f"  {'linear, python-control':24}{alone / SAMPLES * 1e6:8.1f}")
 
 
-def many(model: Model, torque: Array) -> Callable[[], object]:
-    """A run of models that differ a little."""
+def many(model: Model, torque: Array, angles: Array | None = None) -> Callable[[], object]:
+    """A run of models that differ a little; `angles` are what ripples follow, their own if None."""
     parameters = np.repeat(np.array(pack(model))[None], MODELS, 0)
     parameters[:, 0] *= 1.0 + 1e-3 * np.arange(MODELS)
     starts, sensors = np.zeros((MODELS, 3)), ideal_sensors(MODELS)
-    return lambda: simulate_many(parameters, torque, DT, starts, sensors, 4)
+    return lambda: simulate_many(parameters, torque, DT, starts, sensors, 4, angles)
 
 
 if __name__ == "__main__":
