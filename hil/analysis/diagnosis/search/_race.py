@@ -55,6 +55,8 @@ class Step:
 def race(problem: Problem, step: Step, rivals: Sequence[Fit] = ()) -> None:
     """Fit the promising effects beside what `step` has; the hopeless are given up after a few rounds.
 
+    The one that promises most is not, as long as it falls.
+
     Args:
         rivals: fits with as many effects beside other parents: the same effects are not fitted again where
             it makes no difference in which order they were found, and what is far behind one is hopeless.
@@ -70,11 +72,12 @@ def race(problem: Problem, step: Step, rivals: Sequence[Fit] = ()) -> None:
     floor = float(problem.rows)
     _fallen(problem, step.fits, first)
     against = [*rivals, *(step.fits if problem.partial else step.fits[first:])]
-    best = min((f.total for f in against), default=floor)
+    enough = OUT_OF_RACE * (min((f.total for f in against), default=floor) - floor) + RACE_SLACK
+    if step.fits[first:] and step.fits[first].total - floor >= enough:
+        step.fits[first] = _falling(problem, step.fits[first])  # numbers that were bent have a long way back
     for index, one in enumerate(step.fits[first:], first):
-        if one.rounds >= RACE_ROUNDS and one.total - floor < OUT_OF_RACE * (best - floor) + RACE_SLACK:
-            enough = little(problem, one)
-            step.fits[index] = fitted_on(problem, one, enough=enough)
+        if one.rounds >= RACE_ROUNDS and one.total - floor < enough:
+            step.fits[index] = fitted_on(problem, one, enough=little(problem, one))
 
 
 def _fallen(problem: Problem, fits: list[Fit], first: int) -> None:
@@ -85,12 +88,18 @@ def _fallen(problem: Problem, fits: list[Fit], first: int) -> None:
     if min((f.total for f in fits[first:]), default=0.0) < FAR * problem.rows:
         return
     for index, one in enumerate(fits[first:], first):
-        while one.rounds >= RACE_ROUNDS:
-            further = fitted_on(problem, one, rounds=RACE_ROUNDS)
-            falls = further.total < STILL_FALLS * one.total
-            fits[index] = one = further
-            if not falls:
-                break
+        fits[index] = _falling(problem, one)
+
+
+def _falling(problem: Problem, one: Fit) -> Fit:
+    """`one` fitted on as long as a few rounds more take off much."""
+    while one.rounds >= RACE_ROUNDS:
+        further = fitted_on(problem, one, rounds=RACE_ROUNDS)
+        falls = further.total < STILL_FALLS * one.total
+        one = further
+        if not falls:
+            break
+    return one
 
 
 def chosen(scores: list[Score]) -> list[Score]:
