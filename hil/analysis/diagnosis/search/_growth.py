@@ -26,6 +26,7 @@ from hil.analysis.diagnosis.search._screen import Score, screen
 from hil.analysis.diagnosis.search._thresholds import (
     AS_GOOD,
     CONTENDER,
+    FALSE_MINIMUM,
     FAR,
     FORETOLD_LEAVES,
     FORM_FROM,
@@ -95,7 +96,13 @@ def finish(evidence: Evidence, step: Step, *, everywhere: bool = False) -> None:
         best, step.foretold = _foretold_at_best(problem, evidence, best)
         if step.foretold:
             return
-    step.fits[0] = _polished(evidence, best)
+    step.fits[0] = _past_false_minima(evidence, _polished(evidence, best))
+
+
+def _past_false_minima(evidence: Evidence, best: Fit) -> Fit:
+    """`best`; of a play that closes nearly all, and leaves little but not noise, the lowest near it."""
+    little = evidence.share(best) > NEARLY and best.total < FALSE_MINIMUM * best.rows
+    return hopped(evidence.problem, best) if little and not evidence.settled(best) else best
 
 
 def _problem_of(evidence: Evidence, parent: Fit) -> Problem:
@@ -217,10 +224,7 @@ def _polished(evidence: Evidence, best: Fit) -> Fit:
         return _by_other_laws(evidence, best)
     begun = places_of(evidence, best)
     other = _by_other_laws(evidence, begun.best)  # a law that is not right tells no width from another
-    best = other if other is not begun.best else told(evidence, begun)
-    if evidence.settled(best) or evidence.share(best) < NEARLY:
-        return best
-    return hopped(evidence.problem, best)  # next to nothing is missing: a false minimum, maybe
+    return other if other is not begun.best else told(evidence, begun)
 
 
 def _by_other_laws(evidence: Evidence, best: Fit) -> Fit:

@@ -242,6 +242,14 @@ FORETOLD_LEAVES: Annotated[
 MORE_FORETOLD: Annotated[
     float, Means("of all blocks", "that the law named foretells beyond the first: it is fitted anew", "blind")
 ] = 0.01
+FALSE_MINIMUM: Annotated[
+    float,
+    Means(
+        "noise powers",
+        "a play that leaves less may be in a false minimum: more lacks another effect",
+        "hopping",
+    ),
+] = 5.0
 HOPS: Annotated[int, Means("fits", "from near the one that is told, of a play", "blind")] = 30
 HOPS_IN_VAIN: Annotated[
     int, Means("fits", "in a row that find nothing clearly lower: then it is the lowest", "hopping")
