@@ -44,8 +44,7 @@ class GapBars:
     def alternative_text(self) -> str:
         """The picture in words."""
         said = [
-            f"{r.name}: before {quantities.number(r.before)} %, after {quantities.number(r.after)} %, "
-            f"noise {quantities.number(r.noise)} %"
+            f"{r.name}: before {_percent(r.before)}, after {_percent(r.after)}, noise {_percent(r.noise)}"
             for r in self.rows
         ]
         return f"{self.title.plain()}. " + "; ".join(said) + "."
@@ -81,7 +80,7 @@ class GapBars:
                 color = style.SERIES[_ROLES[when]].light
                 axes.barh(at, size, _BAR, color=color, label=f"model {when}" if index == 0 else None)
                 axes.annotate(
-                    f"{quantities.number(float(f'{size:.3g}'))} %", (size, at), (2, 0),
+                    _percent(size), (size, at), (2, 0),
                     textcoords="offset points", va="center",
                 )  # fmt: skip
             axes.plot(
@@ -96,3 +95,8 @@ class GapBars:
         axes.grid(visible=False, axis="y")
         axes.set_xlim(0.0, max((max(r.before, r.after, r.noise) for r in self.rows), default=1.0) or 1.0)
         axes.set_xlabel("measured minus simulated, % of the signal (rms)", labelpad=2)
+
+
+def _percent(value: float) -> str:
+    """As the tables of a diagnosis have it."""
+    return f"{quantities.number(value, significant=3)} %"
