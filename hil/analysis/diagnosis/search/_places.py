@@ -27,7 +27,6 @@ from hil.analysis.diagnosis.search._thresholds import (
     PLACES_NM,
     PLACES_TRIED,
     PLACES_WORTH,
-    SAME_WIDTH,
     UNTOLD_WIDTH,
     WIDTHS,
 )
@@ -74,10 +73,7 @@ def places_of(evidence: Evidence, best: Fit) -> Places:
     for _ in range(PLACE_ROUNDS):
         fits += _fitted(problem, best, _promising(problem, best, index))
         first = min(fits, key=rank)
-        if (
-            rank(first) > (1.0 - AS_GOOD) * rank(best)
-            or abs(first.theta[index] - best.theta[index]) < SAME_WIDTH
-        ):
+        if rank(first) > (1.0 - AS_GOOD) * rank(best):
             break
         best = first
     return Places(min(fits, key=rank), fits)

@@ -157,14 +157,6 @@ PLACES_FINE: Annotated[int, Means("places", "between which a way to a flank is l
 MOST_OF_PLAY: Annotated[
     float, Means("of a play", "that a way from its middle must leave, less than all of it", "hidden")
 ] = 0.9
-SAME_WIDTH: Annotated[
-    float,
-    Means(
-        "natural logarithm",
-        "a width that moves less leads to no other widths and places than before",
-        "hidden",
-    ),
-] = 0.03
 UNTOLD_WIDTH: Annotated[
     float, Means("natural logarithm", "a width that may lie so far off is told from the middle", "hidden")
 ] = 0.1
