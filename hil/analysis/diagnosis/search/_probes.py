@@ -11,7 +11,7 @@ from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._thresholds import STEP
 from hil.analysis.diagnosis.search._scene import Recorded
 from hil.core.effects import EFFECTS, Direction, Probe
-from hil.core.model import EffectUse, kind_of, parameter_names
+from hil.core.model import EffectUse, parameter_names
 
 
 @dataclass(frozen=True)
@@ -47,17 +47,16 @@ def probes(problem: Problem, fit: Fit) -> list[Candidate]:
     """Probes of every effect that can still be added to the hypothesis of `fit`."""
     scene = Recorded(problem, fit)
     taken = set(fit.hypothesis.keys) | {key_of(use) for use in fit.hypothesis.base.effects}
-    kind = kind_of(fit.hypothesis.base.kind, [*fit.hypothesis.base.effects, *fit.hypothesis.terms])
     found = []
     for effect in EFFECTS.values():
-        if effect.probes is None or kind not in effect.needs or (effect.id, "") in taken:
+        if effect.probes is None or fit.hypothesis.kind not in effect.needs or (effect.id, "") in taken:
             continue
         if effect.id == "dead_time" and delay_is_free(fit):
             continue
         for probe in effect.probes(scene):
-            name = str(probe.directions[0].values.get("channel", ""))
-            if (effect.id, name) not in taken:
-                found.append(Candidate(effect.id, probe))
+            candidate = Candidate(effect.id, probe)
+            if candidate.key not in taken:
+                found.append(candidate)
     return found
 
 
