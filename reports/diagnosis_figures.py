@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import signal
 
 from hil.analysis.diagnosis import Diagnosis, Overlay
+from hil.analysis.power_density import power_density
 from hil.core.channels import CHANNELS, OUTPUTS
 from reports.figure import Figure, Trace
 from reports.labels import Label, channel_label
@@ -73,9 +73,9 @@ def _in_frequency(o: Overlay, column: int, channel: str) -> Figure:
     traces = []
     for name, simulated, role in (("error before", o.before, "phase"), ("error after", o.after, "gain")):
         error = o.measured[:, column] - simulated[:, column]
-        f, density = signal.welch(error, 1 / o.dt, nperseg=min(4096, len(error)))
+        f, density = power_density(error[:, None], o.dt, min(4096, len(error)))
         inside = (f > 0.2) & (f < 100.0)
-        traces.append(Trace(Label(name), f[inside], np.sqrt(density[inside]), role))
+        traces.append(Trace(Label(name), f[inside], np.sqrt(density[inside, 0]), role))
     unit = f"{CHANNELS[channel].unit}/√Hz"
     title = Label(f"{channel_label(channel).text}, spectrum of the error")
     return Figure(

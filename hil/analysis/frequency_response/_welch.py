@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy import fft, signal
+from scipy import fft
 
 from hil.analysis.frequency_response._experiment import Experiment
 from hil.analysis.frequency_response._quality import UnfitDataError
@@ -54,7 +54,7 @@ def averaged_spectra(
     frequency = fft.rfftfreq(count, step)
     wanted = (frequency >= from_hz * (1 - 1e-9)) & (frequency <= to_hz * (1 + 1e-9))
     frequency = frequency[wanted]
-    window = signal.windows.hann(count, sym=False)
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(count) / count)
     scale = step / np.sqrt(step * float(np.sum(window**2)))
     suu, syy, syu, windows = _sums(experiments, window * scale, wanted)
     if windows < _LEAST_WINDOWS or frequency.size == 0:
@@ -103,8 +103,9 @@ def _sums(
         output = np.diff(experiment.outputs, axis=1)
         for start in range(0, len(input_) - count + 1, count // 2):
             part = slice(start, start + count)
-            u = fft.rfft(signal.detrend(input_[part], type="constant") * window)[wanted]
-            y = fft.rfft(signal.detrend(output[:, part], type="constant") * window)[:, wanted] * undo
+            u = fft.rfft((input_[part] - input_[part].mean()) * window)[wanted]
+            about = output[:, part] - output[:, part].mean(axis=1, keepdims=True)
+            y = fft.rfft(about * window)[:, wanted] * undo
             suu += np.abs(u) ** 2
             syy += np.abs(y) ** 2
             syu += y * u.conj()

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import stats
+from scipy import special
 
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification._fit import Fit, expected_deviation, fit
@@ -154,4 +154,4 @@ def _ljung_box(residual: npt.NDArray[np.complex128]) -> float:
         correlation = abs(np.sum(residual[lag:] * residual[:-lag].conj())) / power
         # A complex correlation coefficient has variance 1/n, half of it in each part.
         statistic += 2 * count * (count + 2) / (count - lag) * correlation**2
-    return float(stats.chi2.sf(statistic, 2 * lags))
+    return float(special.chdtrc(2 * lags, statistic))

@@ -6,6 +6,8 @@ turn by the same angle but for play and twist; and where shaft torque stays, spe
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -103,8 +105,14 @@ def _on_by_torque(part: Array, torque: Array, trace: Trace, least: float, moves:
 
 
 def _without_trend(values: Array, degree: int) -> Array:
-    at = np.linspace(-1.0, 1.0, len(values))
-    return np.asarray(values - np.polynomial.Legendre.fit(at, values, degree)(at))
+    basis = _trends(len(values), degree)
+    return np.asarray(values - basis @ (basis.T @ values))
+
+
+@lru_cache(maxsize=64)
+def _trends(count: int, degree: int) -> Array:
+    """An orthonormal basis of what polynomials up to `degree` are at `count` points, one a column."""
+    return np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, count), degree))[0]
 
 
 def _slow(values: Array, step: float) -> Array:

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from hil.analysis.diagnosis.data._thresholds import CANCELLING, FLOOR_BAND
 from hil.analysis.diagnosis.data._trace import Trace
+from hil.analysis.power_density import power_density
 
 Array = npt.NDArray[np.float64]
 
@@ -59,8 +59,8 @@ def _level(values: Array, step: float) -> float:
 
 
 def _spectrum(values: Array, step: float) -> tuple[Array, Array]:
-    f, density = signal.welch(values, 1.0 / step, nperseg=min(1024, len(values)), average="median")
-    return f, density
+    f, density = power_density(values[:, None], step, min(1024, len(values)), average="median")
+    return f, density[:, 0]
 
 
 def _pooled(traces: Sequence[Trace], level: Callable[[Trace, int], float]) -> Array:

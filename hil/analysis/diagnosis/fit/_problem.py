@@ -8,7 +8,6 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import lfilter
 
 from hil.analysis.diagnosis.data._proven import proven_noise
 from hil.analysis.diagnosis.data._thresholds import LITTLE_TORQUE
@@ -194,7 +193,8 @@ class Problem:
         """Errors (blocks x 3) through each channel's whitening filter, if there is one."""
         if self.whitening is None:
             return error
-        return np.column_stack([lfilter(w, [1.0], error[:, c]) for c, w in enumerate(self.whitening)])
+        count = len(error)
+        return np.column_stack([np.convolve(w, error[:, c])[:count] for c, w in enumerate(self.whitening)])
 
     def costs(self, points: list[tuple[Array, Array]], starts: list[Array]) -> Array:
         """Sum of squared errors of several points (slots, sensors); `starts`: per recording, points x 3."""

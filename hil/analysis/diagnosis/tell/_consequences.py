@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.diagnosis.tell._thresholds import STEP_NM
+from hil.analysis.diagnosis.tell._played import played
+from hil.analysis.diagnosis.tell._thresholds import STEP_FROM_RAD_S, STEP_NM
 from hil.core.channels import OUTPUTS
 from hil.core.conventions import COMFORT_BAND_HZ, TICK_S
 from hil.core.model import Model
-from hil.plant import Start, gear_ratio_of, simulate
 from test_plans.metrics import energy_within, periodogram
 
 Array = npt.NDArray[np.float64]
@@ -22,8 +22,8 @@ _MOTOR, _, _SHAFT = OUTPUTS
 def consequences(before: Model, after: Model, as_likely: Sequence[Model] = ()) -> dict[str, dict[str, float]]:
     """Peak shaft torque over its steady value (%), and 8-20 Hz energy of the motor speed ((rad/s)²).
 
-    An open-loop step of 20 N m from 5 rad/s wheel speed, with the model before and after. Nothing for a
-    model whose load comes from a recording (what its wheels would meet in a step is not in it), and for
+    An open-loop step of `STEP_NM` from `STEP_FROM_RAD_S` wheel speed, the model before and after. Nothing
+    for a model whose load comes from a recording (what its wheels would meet in a step is not in it), and for
     functions that do not give both.
 
     Args:
@@ -32,21 +32,24 @@ def consequences(before: Model, after: Model, as_likely: Sequence[Model] = ()) -
     functions = after.transfer_functions
     if after.load_input or (functions and not {_MOTOR, _SHAFT} <= {*functions}):
         return {}
-    figures = {"before": _figures(before), "after": _figures(after)}
-    result = {name: {when: one[name] for when, one in figures.items()} for name in figures["after"]}
-    drawn = [_figures(model) for model in as_likely]
-    if len(drawn) > 1:
+    shown = [before, after, *(as_likely if len(as_likely) > 1 else ())]
+    old, new, *drawn = [_figures(outputs) for outputs in _stepped(shown)]
+    result = {name: {"before": old[name], "after": new[name]} for name in new}
+    if drawn:
         for name, value in result.items():
             value["after_standard_error"] = float(np.std([one[name] for one in drawn], ddof=1))
     return result
 
 
-def _figures(model: Model) -> dict[str, float]:
-    """Of one model."""
+def _stepped(models: Sequence[Model]) -> Array:
+    """Outputs of models in the step, models x samples x 3."""
     torque = np.concatenate([np.zeros(1000), np.full(5000, STEP_NM)])
-    start = Start(5.0 * (gear_ratio_of(model) or 1.0), 5.0, 0.0)
-    channels = simulate(model, torque, TICK_S, start)
-    shaft, motor = channels[_SHAFT], channels[_MOTOR]
+    return played(models, torque, TICK_S, STEP_FROM_RAD_S)
+
+
+def _figures(outputs: Array) -> dict[str, float]:
+    """Of one model's outputs, samples x 3."""
+    motor, _, shaft = outputs.T
     resting = float(np.mean(shaft[500:1000]))
     steady, peak = float(np.mean(shaft[-2000:])) - resting, float(np.max(shaft[1000:])) - resting
     return {

@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 import yaml
 
-from hil.analysis.diagnosis.fit._coordinates import sensors_of
 from hil.analysis.diagnosis.tell._apart import apart
+from hil.analysis.diagnosis.tell._played import played
 from hil.analysis.diagnosis.tell._thresholds import (
     DURATION_S,
     FAST_KM_H,
@@ -29,7 +29,7 @@ from hil.analysis.diagnosis.tell._thresholds import (
     WHEEL_RADIUS_M,
 )
 from hil.core.model import Model
-from hil.plant import gear_ratio_of, pack, simulate_many
+from hil.plant import gear_ratio_of
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SAMPLE_TIME_S, Excitation, HoldSpeed
 
@@ -126,19 +126,12 @@ def _measured(test: _Test, measured: npt.NDArray[np.bool_], models: Sequence[Mod
     return _outputs(test, models)[:, :, measured]
 
 
+def _outputs(test: _Test, models: Sequence[Model]) -> Array:
+    return played(models, test.torque, SAMPLE_TIME_S, test.speed)
+
+
 def _rms(errors: Array) -> float:
     return float(np.sqrt(np.mean(np.sum(np.nan_to_num(errors) ** 2, axis=1))))
-
-
-def _outputs(test: _Test, models: Sequence[Model]) -> Array:
-    """Outputs of models in a test, models x samples x 3; 0 for one that a model does not have."""
-    slots, sensors = np.stack([pack(model) for model in models]), np.stack([sensors_of(m) for m in models])
-    starts = [(test.speed * (gear_ratio_of(model) or 1.0), test.speed, 0.0) for model in models]
-    torque = np.concatenate([[0.0], test.torque])  # what has acted before the first sample
-    played = simulate_many(
-        slots, torque, SAMPLE_TIME_S, np.array(starts), sensors, functions=models[0].transfer_functions
-    )
-    return played[:, 1:]
 
 
 def _within(outputs: Array, speed: float, shaft: float) -> bool:
@@ -163,8 +156,8 @@ def _test(name: str, torque: float, names: tuple[str, str]) -> _Test:
     )
     plan = plan_from_text(text, "separating plan", Path())
     speeds = [s.speed_km_h / 3.6 / WHEEL_RADIUS_M for s in plan.steps if isinstance(s, HoldSpeed)]
-    played = [s.samples(SAMPLE_TIME_S, 0) for s in plan.steps if isinstance(s, Excitation)]
-    return _Test(name, plan, text, np.concatenate(played), speeds[-1] if speeds else 0.0)
+    torques = [s.samples(SAMPLE_TIME_S, 0) for s in plan.steps if isinstance(s, Excitation)]
+    return _Test(name, plan, text, np.concatenate(torques), speeds[-1] if speeds else 0.0)
 
 
 def _steps(name: str, torque: float) -> Steps:

@@ -39,6 +39,7 @@ OPEN_CONFIDENCE: Annotated[
 ] = 0.05
 
 STEP_NM: Annotated[float, Means("N m", "the step whose overshoot is told", "consequences")] = 20.0
+STEP_FROM_RAD_S: Annotated[float, Means("rad/s", "wheel speed from which it is made", "consequences")] = 5.0
 
 DURATION_S: Annotated[float, Means("s", "of a separating test", "separating")] = 20.0
 TELLS: Annotated[

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy import signal
 
 from hil.analysis.diagnosis.data._gap import CONDITIONS, GapMap
 from hil.analysis.diagnosis.fit._fit import Fit
@@ -26,6 +24,7 @@ from hil.analysis.diagnosis.tell._thresholds import (
     SPEEDS_DIFFER,
     WORDS_SEGMENT,
 )
+from hil.analysis.power_density import power_density
 from hil.core.channels import OUTPUTS
 
 Array = npt.NDArray[np.float64]
@@ -48,7 +47,7 @@ def where(problem: Problem, without: list[Array], with_: list[Array], before: Ga
     for trace, a, b in zip(problem.traces, without, with_, strict=True):
         change = np.where(trace.has, (b - a) / problem.noise, 0.0)
         power += np.sum(change**2, axis=0)
-        density += _density(change, trace.dt, frequency, False).sum(axis=1) * len(change)
+        density += _density(change, trace.dt, frequency, about_mean=False).sum(axis=1) * len(change)
     ranked = np.argsort(-power)
     channels = tuple(OUTPUTS[i] for i in ranked if power[i] > CHANNEL_SHARE * power[ranked[0]])
     share = np.cumsum(density) / max(float(density.sum()), 1e-30)
@@ -68,10 +67,10 @@ def _common_frequency(steps: list[float]) -> Array:
     return np.linspace(0.0, 0.5 / max(steps), WORDS_SEGMENT // 2 + 1)
 
 
-def _density(values: Array, step: float, frequency: Array, detrend: Literal["constant", False]) -> Array:
+def _density(values: Array, step: float, frequency: Array, *, about_mean: bool) -> Array:
     """Power density of `values` (n x 3), sampled every `step` seconds, at `frequency`."""
     length = min(WORDS_SEGMENT, len(values))
-    own, density = signal.welch(values, 1 / step, nperseg=length, axis=0, detrend=detrend)
+    own, density = power_density(values, step, length, about_mean=about_mean)
     return np.column_stack([np.interp(frequency, own, column) for column in density.T])
 
 
@@ -83,7 +82,7 @@ def signature(problem: Problem, fit: Fit, gaps: GapMap) -> str:
     for trace, errors in zip(problem.traces, fit.errors, strict=True):
         e = errors.channels
         power += np.sum(e**2, axis=0) - np.count_nonzero(trace.judged_blocks) * trace.has
-        densities.append(_density(e, trace.dt * trace.block, frequency, "constant"))
+        densities.append(_density(e, trace.dt * trace.block, frequency, about_mean=True))
     column = int(np.argmax(power))
     density = np.mean([d[:, column] for d in densities], axis=0)
     top = 1 + int(np.argmax(density[1:]))
@@ -114,7 +113,7 @@ def _band(problem: Problem, fit: Fit, column: int, frequency: Array) -> tuple[fl
     over = np.zeros(len(frequency))
     for trace, errors in zip(problem.traces, fit.errors, strict=True):
         period = trace.dt * trace.block
-        density = _density(errors.channels, period, frequency, False)[:, column]
+        density = _density(errors.channels, period, frequency, about_mean=False)[:, column]
         over += len(errors.channels) * np.maximum(density - 2.0 * period, 0.0)  # white noise of variance 1
     share = np.cumsum(over) / max(float(over.sum()), 1e-30)
     low, high = np.interp(BAND_SHARES, share, frequency)
