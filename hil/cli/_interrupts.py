@@ -6,22 +6,27 @@ import contextlib
 import os
 import signal
 import sys
+import time
 from types import FrameType
 
 _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
 NUMBERS = tuple(getattr(signal, name) for name in _NAMES if hasattr(signal, name))
 EXIT_CODE = 130
+_AT_ONCE_S = 0.2
 
 
 class Interrupts:
     """Raises KeyboardInterrupt for each signal, and remembers that there was one.
 
+    A signal that comes within a moment of the one before is the same one: `timeout`, for one, sends it both
+    to the process and to its group.
     What a library makes of an exception in the middle of an import is anybody's guess; `arrived` is not.
     """
 
     def __init__(self) -> None:
         self.arrived = False
         self._told = False
+        self._last_s = -_AT_ONCE_S
         self._unraisable = sys.unraisablehook
 
     def raise_from_now_on(self) -> None:
@@ -49,6 +54,10 @@ class Interrupts:
 
     def _on_signal(self, number: int, frame: FrameType | None) -> None:
         del number, frame
+        now_s = time.monotonic()
+        again, self._last_s = now_s - self._last_s < _AT_ONCE_S, now_s
+        if again:
+            return
         if not self.arrived:
             self.arrived = True
             # What was made in part complains as it is thrown away: nobody's news.

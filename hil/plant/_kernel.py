@@ -159,6 +159,7 @@ def initial_state(p, motor_speed, wheel_speed, shaft_torque, motor_torque, wheel
     """State and memories that show the given speeds (rad/s) and torques (N m), the road coupling at rest."""
     chain = chain_of(p)
     memories, twist = L.begun(shaft_torque, chain, p)
+    memories = L.turned(motor_speed, chain, memories, p)
     if chain.kind != P.RIGID:
         twist += shaft_torque / chain.shaft_stiffness
     tyre = 0.0

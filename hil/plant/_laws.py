@@ -15,6 +15,7 @@ that calls it, not when a compiled one is loaded:
     stretched: what is left of a twist for the shafts: (twist, chain, memories, p)
     remembered: the memories after a step of h seconds: (before, after, chain, memories, p, h)
     begun: memories at a start with a shaft torque, and their twist in series: (torque, chain, p)
+    turned: memories at a start in motion: (speed, chain, memories, p)
 """
 
 from __future__ import annotations
@@ -243,6 +244,17 @@ def _begun(others: Any, effect: Effect) -> Any:
     return _compile(begin)
 
 
+def _turned(others: Any, effect: Effect) -> Any:
+    first, last, memory, acts = _place(effect.id)
+    law = _law(effect.law.turned)  # type: ignore[arg-type]
+
+    def turned(speed, chain, memories, p):  # type: ignore[no-untyped-def]
+        memories = others(speed, chain, memories, p)
+        return put(memories, memory, law(speed, chain, p[first:last])) if acts(p) else memories
+
+    return _compile(turned)
+
+
 def _in_turn(name: str, with_one_more: Callable[[Any, Effect], Any], first: Callable[..., Any]) -> Any:
     """All laws of one name, each around the ones before it."""
     result = _compile(first)
@@ -275,4 +287,5 @@ _MAKERS: dict[str, Callable[[], Any]] = {
         "remember", _remembered, lambda before, after, chain, memories, p, h: memories
     ),
     "begun": lambda: _in_turn("begin", _begun, lambda torque, chain, p: (_EMPTY, 0.0)),
+    "turned": lambda: _in_turn("turned", _turned, lambda speed, chain, memories, p: memories),
 }

@@ -87,7 +87,7 @@ def test_the_page_says_what_was_found_and_links_to_every_section(found: Diagnosi
         "one <b>",
         "cut at gaps: 1",
         "held-out recordings",
-        "60.002.400",
+        "60.002.4",
     ):
         assert said in text
     assert "channel_skew (motor_speed_rad_s)" in text

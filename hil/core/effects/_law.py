@@ -55,6 +55,7 @@ class Law:
         tyre: torque that the tyre takes from the wheel beside stiffness and damping.
         tyre_rate: rate in rad/s that the tyre's twist gains beside wheel speed less vehicle speed.
         begin: the memory at a start with a shaft torque: (torque, chain, values).
+        turned: the memory at a start when the rotor has turned at a speed for long: (speed, chain, values).
         leap: what `shaft` is within a step beyond a straight line between its ends, where it sets in or ends
             there: (before, after, chain, memory, values, h), two motions and the seconds between them; torque
             at the beginning, and its rise. Not asked where the memory stays what it was: nothing leaps then.
@@ -78,6 +79,7 @@ class Law:
     tyre: Force | None = None
     tyre_rate: Force | None = None
     begin: Callable[[float, Chain, Values], float] | None = None
+    turned: Callable[[float, Chain, Values], float] | None = None
     remember: Callable[[Motion, Motion, Chain, float, Values, float], float] | None = None
     steps: Callable[[Chain, Values, float], int] | None = None
     steady: Callable[[Any], Any] | None = None

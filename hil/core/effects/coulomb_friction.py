@@ -25,6 +25,7 @@ from hil.core.effects._law import Law, Motion, Values
 from hil.core.effects._probe import Direction, Probe, Scene
 from hil.core.effects._probe import Values as Named
 
+_TURNED_S = 0.5  # a recording that begins in motion has moved so for as long, and bristles are bent by it
 _STIFFEST = 0.5  # largest phase in rad that bristles may swing through in a step
 _MOST_STEPS = 8
 
@@ -66,6 +67,17 @@ def _remember(before: Motion, after: Motion, chain: Chain, bent: float, values: 
         share = _level(turned / h, values) / values[_TORQUE]
         way, turn = way * share, turn * share
     return way + (bent - way) * math.exp(-abs(turned) / turn)
+
+
+def _turned(speed: float, chain: Chain, values: Values) -> float:
+    """Friction as a share of its level at a start in motion: turned around as far as it is fast."""
+    if values[_TURN] == 0.0 or speed == 0.0:
+        return 0.0
+    way, turn = math.copysign(1.0, speed), values[_TURN]
+    if values[_BRISTLES] > 0.0 and values[_TORQUE] > 0.0:
+        share = _level(speed, values) / values[_TORQUE]
+        way, turn = way * share, turn * share
+    return way * (1.0 - math.exp(-abs(speed) * _TURNED_S / turn))
 
 
 def _steps(chain: Chain, values: Values, dt: float) -> int:
@@ -175,7 +187,7 @@ EFFECT = Effect(
         ),
     ),
     least=Least(1e-4, "largest torque"),
-    law=Law(dry=_dry, loss=_loss, remember=_remember, steps=_steps, steady=_steady),
+    law=Law(dry=_dry, loss=_loss, remember=_remember, turned=_turned, steps=_steps, steady=_steady),
     sizes=("torque_nm", "stribeck_torque_nm", "offset_nm"),
     memory=Memory("1", "friction over its level, while it turns around"),
     probes=_probes,

@@ -122,6 +122,7 @@ def _mend(recording: Recording, name: str, lacking: _Lacking, *, allow_missing: 
         values = recording[name].copy()
         values[places] = cells
         recording.channels[name] = values
+    recording.mended[name] = places
     recording.notes.append(f"{lacking.missing} missing cells of '{name}' were interpolated")
 
 

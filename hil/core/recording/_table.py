@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from hil.core.channels import TIME
 from hil.core.errors import BadInputError
-from hil.core.recording._stored import MOST_HELD_BYTES, StoredColumns
+from hil.core.recording._stored import MOST_HELD_BYTES, Places, StoredColumns
 
 Array = npt.NDArray[np.float64]
 
@@ -43,6 +43,7 @@ class Recording:
     `damage` tells what was lost or cannot be trusted, one sentence each: empty means that everything
     that can be checked was checked and is as it was written.
     `blank_lines` are the samples of a CSV before which a blank line stands, for messages to name lines.
+    `mended` are the samples (from 0) of each channel whose cells were missing and are interpolated.
     """
 
     channels: MutableMapping[str, Array]
@@ -53,6 +54,7 @@ class Recording:
     notes: list[str] = field(default_factory=list)
     damage: list[str] = field(default_factory=list)
     blank_lines: list[int] = field(default_factory=list)
+    mended: dict[str, Places] = field(default_factory=dict)
     _spacing: tuple[Array, float] | None = field(default=None, init=False, repr=False, compare=False)
 
     def __getitem__(self, name: str) -> Array:
@@ -163,8 +165,11 @@ class Recording:
     def piece(self, first: int, last: int) -> Recording:
         """Samples `first` to `last`, the last left out; where they are many they stay in their file too."""
         if isinstance(self.channels, StoredColumns):
-            return self._with(self.channels.window(first, last))
-        return self._with(self.rows(first, last))
+            part = self._with(self.channels.window(first, last))
+        else:
+            part = self._with(self.rows(first, last))
+        part.mended = {c: at[(at >= first) & (at < last)] - first for c, at in self.mended.items()}
+        return part
 
     def without(self, names: Collection[str]) -> Recording:
         """The same without some channels."""

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 CODE = """
-import os, signal
+import os, signal, time
 from hil.cli._interrupts import INTERRUPTS
 
 class Half:
@@ -17,6 +17,7 @@ class Half:
 
 INTERRUPTS.raise_from_now_on()
 for answered in (False, {answered}):
+    time.sleep(0.3)
     try:
         os.kill(os.getpid(), signal.SIGINT)
     except KeyboardInterrupt:
@@ -33,3 +34,27 @@ def test_what_is_thrown_away_half_made_complains_only_where_nobody_interrupted(a
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr
     assert ("was never made" in done.stderr) == answered
+
+
+TWICE = """
+import os, signal, time
+from hil.cli._interrupts import INTERRUPTS
+
+INTERRUPTS.raise_from_now_on()
+raised = 0
+for apart_s in {apart_s}:
+    time.sleep(apart_s)
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    except KeyboardInterrupt:
+        raised += 1
+print(raised)
+"""
+
+
+@pytest.mark.parametrize(("apart_s", "raised"), [((0.0, 0.0), 1), ((0.0, 0.0, 0.4), 2), ((0.0, 0.4), 2)])
+def test_signals_of_one_moment_are_one(apart_s: tuple[float, ...], raised: int) -> None:
+    """As `timeout` sends them: to the process, and to its group."""
+    code = TWICE.format(apart_s=apart_s)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.stdout.split() == [str(raised)], done.stderr

@@ -124,6 +124,8 @@ def reference(slope, states: int) -> np.ndarray:
     u = torque()
     x = np.zeros(states)
     x[0], x[2], x[4] = START.motor_speed_rad_s, START.wheel_speed_rad_s, START.wheel_speed_rad_s
+    if slope is turning:  # as if it had moved so for half a second
+        x[5] = 2.0 * (1.0 - math.exp(-0.5 * x[0] / 0.3))
     p = THREE.parameters
     rows = []
     for k in range(len(u)):
@@ -203,6 +205,28 @@ def test_a_rotor_thrown_at_a_flank_comes_back_as_restitution_says(kernel):
         speed = simulate_many(pack(model)[None], np.zeros(60), DT, start, ideal_sensors(1))[0, :, 0]
     back = speed[np.argmin(speed) : np.argmin(speed) + 5]
     assert np.mean(back) == pytest.approx(-0.6 * 20.0, rel=0.01 if kernel == 0 else 0.08)
+
+
+@pytest.mark.parametrize("bristles", [{}, {"stribeck_torque_nm": 1.0, "bristle_damping_nms_rad": 0.01}])
+@pytest.mark.parametrize("speed", [-3.0, 3.0])
+def test_friction_of_an_axle_that_begins_in_motion_has_turned_around(bristles, speed):
+    """As Coulomb's law, which has no bristles to bend first, slows it in the first samples."""
+    begun = Start(speed, speed / THREE.parameters["gear_ratio"], 0.0)
+    start = np.array([[begun.motor_speed_rad_s, begun.wheel_speed_rad_s, begun.shaft_torque_nm]])
+    at_once = {name: value for name, value in bristles.items() if "bristle" not in name} | {"turn_rad": 0.0}
+    slowed = []
+    for values in (bristles, at_once):
+        model = with_effect("coulomb_friction", **values)
+        alone = simulate(model, np.zeros(8), DT, begun)["motor_speed_rad_s"]
+        beside = simulate_many(pack(model)[None], np.zeros(8), DT, start, ideal_sensors(1))[0, :, 0]
+        np.testing.assert_allclose(beside, alone, atol=1e-3 * abs(speed))
+        slowed.append(abs(speed) - abs(alone[-1]))
+    assert slowed[0] == pytest.approx(slowed[1], rel=0.05)
+
+
+def test_bristles_of_an_axle_at_rest_are_straight():
+    model = with_effect("coulomb_friction")
+    assert np.all(simulate(model, np.zeros(20), DT, Start())["motor_speed_rad_s"] == 0.0)
 
 
 def test_the_kernels_have_a_place_for_every_number():

@@ -9,7 +9,7 @@ faster than that, only what goes in proportion tells.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -49,6 +49,7 @@ Array = npt.NDArray[np.float64]
 
 _MOTOR, _WHEEL, _SHAFT = OUTPUTS
 _RPM = 60.0 / (2 * np.pi)
+_UNRELATED = f"{_MOTOR} and {_WHEEL} have nothing to do with each other"
 
 
 def check(model: Model, traces: list[Trace], noise: Array, beside: Sequence[Trace] = ()) -> list[str]:
@@ -65,14 +66,33 @@ def check(model: Model, traces: list[Trace], noise: Array, beside: Sequence[Trac
     notes = refuse_broken_channels(traces, noise, beside)
     for trace in traces:
         refuse_frozen(trace, noise, model)
-    wrong = {t.source: error for t in traces if (error := _wrong(model, [t], noise)) is not None}
-    for error in wrong.values():
-        alike = [source for source, other in wrong.items() if _kind(other) == _kind(error)]
-        raise BadInputError(error.what, where=", ".join(alike), fix=error.fix)
-    together = _wrong(model, traces, noise) or mistaken(model, traces, noise)
+    _refuse_each((t.source, _wrong_alone(model, t, noise)) for t in traces)
+    together = _wrong(model, traces, noise)
     if together is not None:
         raise together
+    files = list(dict.fromkeys(trace.source for trace in traces))
+    _refuse_each((file, mistaken(model, [t for t in traces if t.source == file], noise)) for file in files)
+    if len(files) > 1 and (together := mistaken(model, traces, noise)) is not None:
+        raise together
     return notes
+
+
+def _refuse_each(found: Iterable[tuple[str, BadInputError | None]]) -> None:
+    """Refuse the first mistake, with the files that have it, however right others beside them are."""
+    wrong = {file: error for file, error in found if error is not None}
+    for error in wrong.values():
+        alike = [file for file, other in wrong.items() if _kind(other) == _kind(error)]
+        raise BadInputError(error.what, where=", ".join(alike), fix=error.fix)
+
+
+def _wrong_alone(model: Model, trace: Trace, noise: Array) -> BadInputError | None:
+    """What does not go together in one recording; two speeds without any relation may be in another unit."""
+    error = _wrong(model, [trace], noise)
+    return (
+        mistaken(model, [trace], noise) or error
+        if error is not None and _kind(error) == _UNRELATED
+        else error
+    )
 
 
 @dataclass(frozen=True)
@@ -163,7 +183,7 @@ def _speeds(
         return _inverted(pushes)
     if all(abs(p.correlation) < RELATED for p in (*seen, plain)):
         return BadInputError(
-            f"{_MOTOR} and {_WHEEL} have nothing to do with each other",
+            _UNRELATED,
             fix="are both from one axle, and in step?",
         )
     factors = [p.factor for p in seen]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -112,7 +111,7 @@ class Trace:
 
 
 def unbroken(recording: Recording) -> list[Recording]:
-    """The stretches of a recording between its gaps: nobody knows what the torque did in a gap.
+    """The stretches of a recording between its gaps: nobody knows what happened in a gap.
 
     Stretches too short for a diagnosis are left out; the first one's notes say what was cut.
 
@@ -124,9 +123,10 @@ def unbroken(recording: Recording) -> list[Recording]:
     gaps = _gaps(recording)
     if not gaps:
         return [recording]
+    behind = np.maximum.accumulate([gap.after for gap in gaps]).tolist()
     pieces = [
         _piece(recording, first, last)
-        for first, last in pairwise([0, *(gap.after for gap in gaps), recording.samples])
+        for first, last in zip([0, *behind], [*(gap.begins for gap in gaps), recording.samples], strict=True)
         if last - first >= LEAST_SAMPLES
         and recording.time_at(last - 1) - recording.time_at(first) >= LEAST_DURATION_S
     ]
@@ -145,21 +145,40 @@ def unbroken(recording: Recording) -> list[Recording]:
 
 @dataclass(frozen=True)
 class _Gap:
-    """A pause between two samples: when it begins, and the number of the sample behind it."""
+    """A pause between two samples, or samples that lack a channel: `begins` to `after` are left out."""
 
     start_s: float
     lasts_s: float
+    begins: int
     after: int
 
 
 def _gaps(recording: Recording) -> list[_Gap]:
+    return sorted([*_pauses(recording), *_holes(recording)], key=lambda gap: (gap.begins, gap.after))
+
+
+def _holes(recording: Recording) -> list[_Gap]:
+    """Where a channel that counts was interpolated for longer than a straight line can stand for it."""
+    missing = np.zeros(recording.samples, bool)
+    for channel in (INPUT, *OUTPUTS):
+        at = np.sort(recording.mended.get(channel, np.zeros(0, int)))
+        for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1):
+            if len(run) > GAP_SAMPLES:
+                missing[run] = True
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]]))).reshape(-1, 2).tolist()
+    dt = recording.sample_time_s
+    return [_Gap(recording.time_at(begins), (after - begins) * dt, begins, after) for begins, after in edges]
+
+
+def _pauses(recording: Recording) -> list[_Gap]:
     gaps = []
     last_s = np.zeros(0)
     for first, rows in recording.blocks((TIME,)):
         time = np.concatenate([last_s, rows[TIME]])
         steps = np.diff(time)
         for at in np.flatnonzero(steps > GAP_SAMPLES * recording.sample_time_s).tolist():
-            gaps.append(_Gap(float(time[at]), float(steps[at]), first - len(last_s) + at + 1))
+            after = first - len(last_s) + at + 1
+            gaps.append(_Gap(float(time[at]), float(steps[at]), after, after))
         last_s = time[-1:]
     return gaps
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import STARTS, Problem
+from hil.analysis.diagnosis.fit._problem import SHAFT, STARTS, VEHICLE, Problem
 
 Array = npt.NDArray[np.float64]
 
@@ -14,11 +14,20 @@ Array = npt.NDArray[np.float64]
 def settled_starts(
     problem: Problem, hypothesis: Hypothesis, theta: Array, starts: list[Array]
 ) -> list[Array]:
-    """Initial values of each recording at which the plant, held at `theta`, fits best."""
+    """Initial values of each recording at which the plant, held at `theta`, fits best.
+
+    What begins at rest does so: a motion at the start would hide part of what a plant misses. Its shafts may
+    hold a torque, and where a play begins in its gap wheel and vehicle may differ.
+    """
     slots, sensors = hypothesis.packed(theta)
     found = []
     for index, start in enumerate(starts):
         steps = problem.start_steps()
+        free = np.ones(STARTS, bool)
+        if problem.resting[index]:
+            free[:SHAFT] = False
+            free[VEHICLE:] = hypothesis.remembers_place
+            start = np.where(free, start, 0.0)
         for _ in range(3):
             tried = np.tile(start, (1 + STARTS, 1))
             tried[1:] += np.diag(steps)
@@ -30,7 +39,8 @@ def settled_starts(
             change = problem.changes(index, simulated).reshape(STARTS, -1).T / steps
             if not (np.isfinite(change).all() and np.any(change)):
                 break
-            start = start + np.linalg.lstsq(change, error, rcond=1e-8)[0]
+            start = start.copy()
+            start[free] += np.linalg.lstsq(change[:, free], error, rcond=1e-8)[0]
         found.append(start)
     return found
 

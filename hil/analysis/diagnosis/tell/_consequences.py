@@ -12,7 +12,7 @@ from hil.analysis.diagnosis.tell._thresholds import STEP_FROM_RAD_S, STEP_NM
 from hil.core.channels import OUTPUTS
 from hil.core.conventions import COMFORT_BAND_HZ, TICK_S
 from hil.core.model import Model
-from test_plans.metrics import energy_within, periodogram
+from test_plans.metrics import energy_within
 
 Array = npt.NDArray[np.float64]
 
@@ -22,9 +22,11 @@ _MOTOR, _, _SHAFT = OUTPUTS
 def consequences(before: Model, after: Model, as_likely: Sequence[Model] = ()) -> dict[str, dict[str, float]]:
     """Peak shaft torque over its steady value (%), and 8-20 Hz energy of the motor speed ((rad/s)²).
 
-    An open-loop step of `STEP_NM` from `STEP_FROM_RAD_S` wheel speed, the model before and after. Nothing
-    for a model whose load comes from a recording (what its wheels would meet in a step is not in it), and for
-    functions that do not give both.
+    An open-loop step of `STEP_NM` from `STEP_FROM_RAD_S` wheel speed, the model before and after. The energy
+    is the mean square within the band of what rings in the 5 s from the step on. It is not that of an
+    acceptance run, in which a controller acts and which looks from 4 s after the step on, when nothing of
+    this rings. Nothing for a model whose load comes from a recording (what its wheels would meet in a step
+    is not in it), and for functions that do not give both.
 
     Args:
         as_likely: models that the data allow as well as `after`: their scatter is its standard error.
@@ -54,9 +56,19 @@ def _figures(outputs: Array) -> dict[str, float]:
     steady, peak = float(np.mean(shaft[-2000:])) - resting, float(np.max(shaft[1000:])) - resting
     return {
         "overshoot_shaft_torque_percent": 100.0 * max(0.0, peak / steady - 1.0) if steady else 0.0,
-        "band_energy_motor_speed": _band_energy(motor[1000:]),
+        "band_energy_motor_speed": _ringing(motor[1000:]),
     }
 
 
-def _band_energy(values: Array) -> float:
-    return energy_within(*periodogram(values, TICK_S), *COMFORT_BAND_HZ)
+def _ringing(values: Array) -> float:
+    """Mean square of `values` (n,) within the comfort band, their linear trend left out.
+
+    No window: it would be zero where a step rings most, and show when the step comes, not how it rings.
+    """
+    count = len(values)
+    at = np.linspace(-1.0, 1.0, count)
+    about = values - np.mean(values)
+    about = about - at * (at @ about) / (at @ at)
+    lines = np.fft.rfft(about)
+    density = 2.0 * TICK_S / count * (lines.real**2 + lines.imag**2)  # but at 0 and half the rate, outside
+    return energy_within(np.asarray(np.fft.rfftfreq(count, TICK_S)), density, *COMFORT_BAND_HZ)

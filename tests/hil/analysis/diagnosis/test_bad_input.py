@@ -18,7 +18,7 @@ from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.cli._app import guarded
 from hil.core.errors import BadInputError
 from hil.core.model import Model, parameter_names, save_model
-from hil.core.recording import Recording
+from hil.core.recording import Recording, read_recording
 from hil.plant import simulate
 from tests.hil.analysis.diagnosis.hidden_cases import EFFECTS, draw
 from tests.hil.analysis.diagnosis.reference_plant import BASE, CHANNELS, Truth, recordings
@@ -275,6 +275,27 @@ def test_a_recording_is_cut_at_its_gaps() -> None:
         "cut at gaps: 2, the longest of 0.301 s at 0.499 s; short stretches left out: 1"
     ]
     assert unbroken(pieces[1]) == [pieces[1]]
+
+
+@pytest.mark.parametrize(("empty", "firsts"), [(15, [0.0]), (21, [0.0, 0.521]), (100, [0.0, 0.6])])
+def test_a_recording_is_cut_where_a_channel_is_empty(tmp_path: Path, empty: int, firsts: list[float]) -> None:
+    """What a straight line over the hole would say is no measurement."""
+    time = np.arange(12_000) * 1e-3
+    cells = [f"{value:.6f}" for value in np.sin(time)]
+    cells[500 : 500 + empty] = [""] * empty
+    rows = [f"{t:.3f},{np.cos(t):.6f},{cell}" for t, cell in zip(time, cells, strict=True)]
+    (tmp_path / "r.csv").write_text(f"time_s,{TORQUE},{MOTOR}\n" + "\n".join(rows) + "\n")
+    pieces = unbroken(read_recording(tmp_path / "r.csv"))
+    assert [p.time_s[0] for p in pieces] == firsts
+    assert sum(len(p.time_s) for p in pieces) == len(time) - (empty if empty > 20 else 0)
+    assert all(len(p.mended[MOTOR]) == (0 if empty > 20 else empty) for p in pieces)
+
+
+def test_overlapping_gaps_are_one() -> None:
+    time = np.concatenate([np.arange(600), np.arange(700, 2000)]) * 1e-3
+    whole = Recording({"time_s": time, TORQUE: time, MOTOR: time}, Path("r.csv"))
+    whole.mended[MOTOR] = np.arange(550, 650)  # begins before the pause, ends behind it
+    assert [(p.time_s[0], len(p.time_s)) for p in unbroken(whole)] == [(0.0, 550), (0.75, 1250)]
 
 
 def rounded(recording: Recording, channel: str, step: float) -> Recording:

@@ -1,6 +1,7 @@
 """What no physics can explain is refused by name; noise is read once and handed on."""
 
 import dataclasses
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -84,3 +85,13 @@ def test_a_speed_that_rests_beside_a_drifting_one_is_not_dead() -> None:
     told["wheel_speed_rad_s"] = told["wheel_speed_rad_s"] + rng.normal(0.0, 0.05, len(time))
     told["motor_speed_rad_s"] = told["motor_speed_rad_s"] + 16.0 * np.sin(2 * np.pi * time / 50.0)
     examined(MODEL, [dataclasses.replace(one, channels=told)])
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_recording_in_rpm_is_named_beside_a_good_one(first: bool) -> None:
+    good, one = recorded(seconds=8.0), recorded(seconds=8.0, seed=2)
+    wheels = {name: one[name] * 60.0 / (2.0 * np.pi) for name in ("motor_speed_rad_s", "wheel_speed_rad_s")}
+    wrong = dataclasses.replace(one, channels={**one.channels, **wheels}, source=Path("rpm.csv"))
+    with pytest.raises(BadInputError, match="look like rpm") as refused:
+        examined(MODEL, [wrong, good] if first else [good, wrong])
+    assert refused.value.where == "rpm.csv"

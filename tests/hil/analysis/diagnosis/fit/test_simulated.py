@@ -15,3 +15,13 @@ def test_settled_starts_undo_a_wrong_one() -> None:
     settled = settled_starts(problem, hypothesis, theta, wrong)
     error = simulated_samples(problem, hypothesis, theta, settled)[0] - problem.traces[0].samples
     assert np.std(error, axis=0) == pytest.approx(NOISE, rel=0.1)
+
+
+def test_an_axle_that_begins_at_rest_is_held_there_by_a_model_that_fits_badly() -> None:
+    """A speed of its own at the start would hide part of what the model misses."""
+    problem = one_problem()
+    assert problem.resting == (True,)
+    heavier = MODEL.with_parameters(vehicle_inertia=1.5 * MODEL.parameters["vehicle_inertia"])
+    hypothesis = Hypothesis(heavier)
+    (start,) = settled_starts(problem, hypothesis, hypothesis.start(), problem.first_starts())
+    assert np.all(start[:2] == 0.0)

@@ -1,10 +1,13 @@
 """What a new model changes in what the bench is judged by."""
 
+import numpy as np
 import pytest
+from scipy import signal
 
 from hil.analysis.diagnosis.tell._consequences import consequences
 from hil.analysis.diagnosis.tell._result import derived_of
 from hil.core.model import EffectUse
+from hil.plant import Start, simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL
 
 LOOP = EffectUse("shaft_hysteresis", {"stiffness_nm_rad": 1000.0, "slip_rad": 0.01})
@@ -19,6 +22,24 @@ def test_less_damping_overshoots_more() -> None:
     loose = MODEL.with_parameters(shaft_damping=0.3 * MODEL.parameters["shaft_damping"])
     told = consequences(MODEL, loose)["overshoot_shaft_torque_percent"]
     assert told["after"] > told["before"] > 0.0
+
+
+def test_dead_time_alone_changes_next_to_nothing_of_what_rings() -> None:
+    """A window that is zero where the step rings would show when the step comes."""
+    late = MODEL.with_effects(EffectUse("dead_time", {"extra_delay_s": 0.02}))
+    told = consequences(MODEL, late)["band_energy_motor_speed"]
+    assert told["after"] == pytest.approx(told["before"], rel=0.05)
+
+
+def test_the_energy_is_what_scipy_says() -> None:
+    torque = np.concatenate([np.zeros(1000), np.full(5000, 20.0)])
+    ratio = MODEL.parameters["gear_ratio"]
+    out = simulate(MODEL, torque, 1e-3, Start(5.0 * ratio, 5.0, 0.0, motor_torque_nm=0.0))
+    ringing = signal.detrend(out["motor_speed_rad_s"][1000:])
+    f, density = signal.periodogram(ringing, 1000.0, detrend=False)
+    inside = (f >= 8.0) & (f <= 20.0)
+    told = consequences(MODEL, MODEL)["band_energy_motor_speed"]["before"]
+    assert told == pytest.approx(np.sum(density[inside]) * f[1], rel=0.02)
 
 
 def test_a_loop_loses_energy_by_its_stiffness() -> None:
