@@ -51,6 +51,7 @@ CHECKS = {
     "consequences": _TESTS.format("tell/test_consequences.py"),
     "drift": _TESTS.format("tell/test_drift.py"),
     "least": _TESTS.format("tell/test_least.py"),
+    "named": _TESTS.format("tell/test_named.py"),
     "separating": _TESTS.format("tell/test_separating.py"),
     "verdict": _TESTS.format("tell/test_verdict.py"),
     "words": _TESTS.format("tell/test_words.py"),

@@ -37,7 +37,14 @@ EFFECT = Effect(
     signature="Speed reached falls short, more at high speed; nothing at resonance.",
     shown_by="Coast-down from a high speed.",
     parameters=(
-        Parameter("rolling_nm", "N m", 0.0, 1e5, "constant part, against the motion", typical=1.0),
+        Parameter(
+            "rolling_nm",
+            "N m",
+            0.0,
+            1e5,
+            "constant part, against the motion; below 0.05 rad/s it fades, and holds nothing at standstill",
+            typical=1.0,
+        ),
         Parameter(
             "aero_nms2_rad2", "N m s²/rad²", 0.0, 1e4, "part proportional to speed squared", typical=1e-3
         ),

@@ -21,7 +21,7 @@ from hil.analysis.diagnosis.tell._drift import drifts
 from hil.analysis.diagnosis.tell._given_back import GivenBack, given_back
 from hil.analysis.diagnosis.tell._held_out import held_out
 from hil.analysis.diagnosis.tell._least import belongs_to_filter, worth_naming
-from hil.analysis.diagnosis.tell._named import considered, lasting, named_effects
+from hil.analysis.diagnosis.tell._named import considered, lasting, named_effects, reduced
 from hil.analysis.diagnosis.tell._result import Diagnosis, NamedEffect, Overlay, Verdict
 from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.tell._words import signature
@@ -89,6 +89,7 @@ class Judged:
             notes=(
                 *notes,
                 *trading,
+                *reduced(effects),
                 *(drifts(problem, back.after.samples) if verdict == "none" else ()),
                 *([said] if verdict == "named" and said else ()),
             ),

@@ -16,6 +16,7 @@ from hil.analysis.diagnosis.tell._confidence import Sure
 from hil.analysis.diagnosis.tell._corrections import is_correction
 from hil.analysis.diagnosis.tell._given_back import GivenBack
 from hil.analysis.diagnosis.tell._result import Considered, NamedEffect
+from hil.analysis.diagnosis.tell._thresholds import NOTHING_SIGMAS
 from hil.analysis.diagnosis.tell._words import Where, where
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
@@ -98,6 +99,24 @@ def lasting(model: Model) -> list[EffectUse]:
     return lasting
 
 
+def reduced(effects: Sequence[NamedEffect]) -> list[str]:
+    """What to say of an effect whose own number is nothing and which is named for another of its numbers."""
+    said = []
+    for one in effects:
+        effect, values = EFFECTS[one.use.id], one.use.values
+        main = next(iter(effect.sizes), "")  # none where any number alone makes it act
+        error = one.standard_error.get(main)
+        if error is None or abs(float(values[main])) > NOTHING_SIGMAS * error:
+            continue
+        fitted = [effect.parameter(name) for name in values if name != main and name in one.standard_error]
+        acting = [f"{p.name} = {float(values[p.name]):.4g} {p.unit}, {p.meaning}" for p in fitted]
+        own = f"{float(values[main]):.2g} ± {error:.2g} {effect.parameter(main).unit}"
+        if acting:
+            words = "; ".join(acting)
+            said.append(f"of {one.use.id} the {main} itself is nothing ({own}); what acts is {words}")
+    return said
+
+
 def clean(use: EffectUse) -> EffectUse:
     """Phases within ±π; optional values that were not fitted left out."""
     values = dict(use.values)
@@ -110,6 +129,8 @@ def clean(use: EffectUse) -> EffectUse:
 
 
 def _reason(one: Fit | None, gain: float, fits: list[Fit]) -> str:
+    if gain <= 0.0:
+        return "by its linearised score it explains nothing; not fitted"
     if gain < LEAST_EVIDENCE:
         return "no evidence: the drop is what noise would give"
     if one is None:

@@ -96,9 +96,10 @@ def separating_plan(
     if chosen is None:
         return "no test of ours stays within the recordings' speed and shaft torque", ""
     whole = level * np.sqrt(len(chosen.torque))
-    differ = f"by {level:.2g} noise levels rms, {whole:.3g} over the whole test"
     if whole < TELLS:
-        return f"no test of ours tells them apart, which takes {TELLS:g}: the best {differ}", ""
+        shown = f"{whole:.3g} noise levels of difference over its whole length, and {TELLS:g} are needed"
+        return f"no test of ours tells them apart: the best shows {shown}", ""
+    differ = f"by {level:.2g} noise levels rms, {whole:.3g} over the whole test"
     peak = float(np.max(np.abs(chosen.torque)))
     return f"{_WORDS[chosen.name]}, up to {peak:.3g} N m: the two differ {differ}", chosen.text
 

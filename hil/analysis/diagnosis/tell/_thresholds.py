@@ -167,6 +167,9 @@ TOLERANCES: Annotated[
         "least",
     ),
 ] = 2.0
+NOTHING_SIGMAS: Annotated[
+    float, Means("standard errors", "an effect whose own number is less is named for another of its", "named")
+] = 2.0
 WORDS_SEGMENT: Annotated[int, Means("blocks", "of a spectrum that is told in words", "words")] = 1024
 SLOW_BINS: Annotated[int, Means("frequencies", "what lies below drifts, it is no line", "words")] = 2
 LINE: Annotated[float, Means("times its neighbours", "a spectral line stands so far above them", "words")] = (

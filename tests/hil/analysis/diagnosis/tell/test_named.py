@@ -5,7 +5,9 @@ import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.search._search import search
-from hil.analysis.diagnosis.tell._named import clean, considered, lasting
+from hil.analysis.diagnosis.tell._named import clean, considered, lasting, reduced
+from hil.analysis.diagnosis.tell._result import NamedEffect
+from hil.analysis.diagnosis.tell._words import Where
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
@@ -33,3 +35,22 @@ def test_what_was_not_named_comes_with_its_reason() -> None:
     assert len(rows) > 3
     assert all(row.reason for row in rows)
     assert [row.score for row in rows] == sorted((row.score for row in rows), reverse=True)
+
+
+@pytest.mark.parametrize(("torque", "says"), [(1e-4, True), (0.5, False)])
+def test_friction_that_is_nothing_but_a_constant_torque_is_said_to_be_one(torque: float, says: bool) -> None:
+    use = EffectUse("coulomb_friction", {"torque_nm": torque, "offset_nm": 0.8})
+    everywhere = Where((OUTPUTS[0],), (0.0, 1.0), "at all operating conditions")
+    one = NamedEffect(use, {"torque_nm": 1.6e-4, "offset_nm": 9.7e-5}, 0.99, everywhere)
+    said = reduced([one])
+    assert bool(said) is says
+    assert all("torque_nm itself is nothing" in text and "offset_nm = 0.8 N m" in text for text in said)
+
+
+@pytest.mark.parametrize("id_", sorted(EFFECTS))
+def test_any_effect_may_be_asked_whether_it_is_nothing(id_: str) -> None:
+    numbers = {p.name: p.lower for p in EFFECTS[id_].parameters}
+    errors = dict.fromkeys(numbers, 1.0)
+    everywhere = Where((OUTPUTS[0],), (0.0, 1.0), "at all operating conditions")
+    said = reduced([NamedEffect(EffectUse(id_, {**numbers}), errors, 0.99, everywhere)])
+    assert all(text.startswith(f"of {id_} the ") for text in said)
