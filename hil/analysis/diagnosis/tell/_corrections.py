@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -44,6 +44,23 @@ def updates(found: Found, kept: Fit, errors: Array) -> dict[str, Correction]:
             continue
         corrected[c.name] = (old, new, new * float(error))
     return corrected
+
+
+def suiting_a_gap(corrected: Mapping[str, Correction], gaps: Mapping[str, float]) -> list[str]:
+    """What to say of corrections beside a gap that stays: least squares bend numbers to it.
+
+    Args:
+        corrected: from `updates`.
+        gaps: in noises, of the channels that stay open.
+    """
+    if not (corrected and gaps):
+        return []
+    worst = max(gaps, key=lambda channel: gaps[channel])
+    left = f"{gaps[worst]:.3g} times its noise left in {worst}"
+    return [
+        f"{', '.join(corrected)} of the base model moved with {left}: they suit what is missing as well, "
+        "and may be off by far more than their standard errors"
+    ]
 
 
 def is_correction(found: Found, mismatch: EffectUse, kept: Fit) -> bool:

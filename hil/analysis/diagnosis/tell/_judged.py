@@ -16,7 +16,7 @@ from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._as_likely import as_likely
 from hil.analysis.diagnosis.tell._confidence import Sure, alternatives_of
 from hil.analysis.diagnosis.tell._consequences import consequences
-from hil.analysis.diagnosis.tell._corrections import as_corrections, started, updates
+from hil.analysis.diagnosis.tell._corrections import as_corrections, started, suiting_a_gap, updates
 from hil.analysis.diagnosis.tell._drift import drifts
 from hil.analysis.diagnosis.tell._given_back import GivenBack, given_back
 from hil.analysis.diagnosis.tell._held_out import held_out
@@ -70,12 +70,14 @@ class Judged:
         remaining = said if verdict != closes else self._signature(back) if verdict == "unknown" else ""
         model = back.kept.hypothesis.model(back.kept.theta)
         model = model.with_effects(*lasting(model), *(rounded if self.verdict == "named" else ()))
+        corrected, open_channels = updates(found, back.kept, errors), self._open(back.kept)
+        gaps = {channel: back.after.gaps[channel].noises for channel in open_channels}
         return Diagnosis(
             verdict=verdict,
             base=base,
             model=model,
             effects=effects,
-            parameter_updates=updates(found, back.kept, errors) | as_corrections(small),
+            parameter_updates=corrected | as_corrections(small),
             alternatives=sure.alternatives if verdict == "named" else alternatives_of(found, verdict),
             considered=considered(problem, found, back.kept),
             gap_before=back.before.gaps,
@@ -90,6 +92,7 @@ class Judged:
                 *notes,
                 *trading,
                 *reduced(effects),
+                *suiting_a_gap(corrected, gaps),
                 *(drifts(problem, back.after.samples) if verdict == "none" else ()),
                 *([said] if verdict == "named" and said else ()),
             ),
@@ -97,7 +100,7 @@ class Judged:
             by_chance=self.by_chance,
             consequences=consequences(base, model, as_likely(back.kept, errors)),
             start=started(problem, found, back.kept, errors, floor),
-            open_channels=self._open(back.kept),
+            open_channels=open_channels,
             held_out_open=held.open(closes),
             unfinished=self.unfinished,
             worse=tuple(back.worse),

@@ -6,7 +6,13 @@ from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._covariance import standard_errors
 from hil.analysis.diagnosis.fit._fit import fit
 from hil.analysis.diagnosis.search._search import begun
-from hil.analysis.diagnosis.tell._corrections import as_corrections, is_correction, started, updates
+from hil.analysis.diagnosis.tell._corrections import (
+    as_corrections,
+    is_correction,
+    started,
+    suiting_a_gap,
+    updates,
+)
 from hil.analysis.diagnosis.tell._result import NamedEffect
 from hil.analysis.diagnosis.tell._words import Where
 from hil.core.channels import OUTPUTS
@@ -38,3 +44,11 @@ def test_an_effect_too_small_for_a_name_is_a_correction_from_where_it_does_nothi
     gain = EffectUse("sensor_gain", {"channel": OUTPUTS[2], "gain": 1.0004})
     effect = NamedEffect(gain, {"gain": 1e-4}, 0.9, Where((OUTPUTS[2],), (0.0, 1.0), "elsewhere"))
     assert as_corrections([effect]) == {f"sensor_gain.{OUTPUTS[2]}.gain": (1.0, 1.0004, 1e-4)}
+
+
+def test_numbers_that_moved_beside_a_gap_are_said_to_suit_it() -> None:
+    moved = {"motor_inertia": (0.02, 0.0196, 2e-5), "vehicle_inertia": (303.0, 298.1, 0.4)}
+    (said,) = suiting_a_gap(moved, {OUTPUTS[0]: 5.4, OUTPUTS[2]: 10.4})
+    assert said.startswith("motor_inertia, vehicle_inertia of the base model moved with 10.4 times its noise")
+    assert OUTPUTS[2] in said
+    assert suiting_a_gap(moved, {}) == suiting_a_gap({}, {OUTPUTS[0]: 5.4}) == []
