@@ -16,7 +16,7 @@ _SIGNS: Mapping[Kind, frozenset[str]] = {
     "plan": frozenset({"steps", "criteria"}),
 }
 _GIVEN: Mapping[Kind, str] = {
-    "bench file": "it is for commands that take --bench FILE, as 'hil run' does",
+    "bench file": "give it as --bench FILE to a command that takes one, as 'hil run' does",
     "model": "give it as --model FILE, or name it under [simulation] of a bench file",
     "controller": "give it as --controller FILE, or name it in a plan's set_controller",
     "plan": "give it to 'hil check' or 'hil run' as PLAN",
