@@ -12,7 +12,7 @@ from types import FrameType
 _NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
 NUMBERS = tuple(getattr(signal, name) for name in _NAMES if hasattr(signal, name))
 EXIT_CODE = 130
-_AT_ONCE_S = 0.2
+_AT_ONCE_S = 0.002  # nobody presses a key twice so fast
 
 
 class Interrupts:
