@@ -7,17 +7,17 @@ import numpy as np
 from test_plans.conductor import Array
 
 
-def periodogram(values: Array, spacing_s: float) -> tuple[Array, Array]:
+def periodogram(values: Array, spacing_s: float, *, tapered: bool = True) -> tuple[Array, Array]:
     """Frequencies in Hz and the one-sided density in the values' unit squared per Hz, each (n // 2 + 1,).
 
-    The linear trend (least squares) is removed, then a periodic Hann window is applied, as by
-    `scipy.signal.periodogram` with `window="hann"` behind `scipy.signal.detrend`.
+    The linear trend (least squares) is removed, then, if it is to be `tapered`, a periodic Hann window is
+    applied, as by `scipy.signal.periodogram` ("hann" or "boxcar") behind `scipy.signal.detrend`.
     """
     count = len(values)
     position = np.arange(count) - 0.5 * (count - 1)
     middle = np.mean(values)
     slope = position @ (values - middle) / np.maximum(position @ position, 1e-300)
-    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(count) / count)
+    window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(count) / count) if tapered else np.ones(count)
     lines = np.fft.rfft((values - middle - slope * position) * window)
     density = (lines.real**2 + lines.imag**2) * spacing_s / (window @ window)
     density[1 : (count + 1) // 2] *= 2.0  # every line but zero and half the rate stands for two

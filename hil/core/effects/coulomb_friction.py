@@ -59,9 +59,13 @@ def _loss(motion: Motion, chain: Chain, bent: float, values: Values) -> float:
 
 def _remember(before: Motion, after: Motion, chain: Chain, bent: float, values: Values, h: float) -> float:
     """Friction as a share of its level, after the angle that the rotor turns in `h` seconds."""
-    if values[3] == 0.0:
+    return _turned_for(h, 0.5 * h * (before.rotor_speed + after.rotor_speed), bent, values)
+
+
+def _turned_for(h: float, turned: float, bent: float, values: Values) -> float:
+    """What becomes of `bent` as the rotor turns by an angle in `h` seconds."""
+    if values[_TURN] == 0.0:
         return 0.0
-    turned = 0.5 * h * (before.rotor_speed + after.rotor_speed)
     way, turn = math.copysign(1.0, turned), values[_TURN]
     if values[_BRISTLES] > 0.0 and values[_TORQUE] > 0.0:
         share = _level(turned / h, values) / values[_TORQUE]
@@ -71,13 +75,7 @@ def _remember(before: Motion, after: Motion, chain: Chain, bent: float, values: 
 
 def _turned(speed: float, chain: Chain, values: Values) -> float:
     """Friction as a share of its level at a start in motion: turned around as far as it is fast."""
-    if values[_TURN] == 0.0 or speed == 0.0:
-        return 0.0
-    way, turn = math.copysign(1.0, speed), values[_TURN]
-    if values[_BRISTLES] > 0.0 and values[_TORQUE] > 0.0:
-        share = _level(speed, values) / values[_TORQUE]
-        way, turn = way * share, turn * share
-    return way * (1.0 - math.exp(-abs(speed) * _TURNED_S / turn))
+    return _turned_for(_TURNED_S, speed * _TURNED_S, 0.0, values)
 
 
 def _steps(chain: Chain, values: Values, dt: float) -> int:

@@ -43,7 +43,7 @@ class Recording:
     `damage` tells what was lost or cannot be trusted, one sentence each: empty means that everything
     that can be checked was checked and is as it was written.
     `blank_lines` are the samples of a CSV before which a blank line stands, for messages to name lines.
-    `mended` are the samples (from 0) of each channel whose cells were missing and are interpolated.
+    `mended` are the samples (from 0, rising) of each channel whose cells were missing and are interpolated.
     """
 
     channels: MutableMapping[str, Array]

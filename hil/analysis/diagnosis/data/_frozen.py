@@ -6,8 +6,6 @@ turn by the same angle but for play and twist; and where shaft torque stays, spe
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 import numpy.typing as npt
 
@@ -23,6 +21,7 @@ from hil.analysis.diagnosis.data._thresholds import (
     TURNS_ON,
 )
 from hil.analysis.diagnosis.data._trace import Trace
+from hil.analysis.diagnosis.data._turns import around
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -86,8 +85,8 @@ def _shaft_torque(torque: Array, motor_speed: Array, step: float, inertia: float
 
 def _on_by_turning(other: Array, column: int, step: float, least: float, apart: float) -> str:
     """The other speed, where it turns further than play and twist allow; even change may be drift."""
-    about = _without_trend(other, 1)
-    turned = _without_trend(_slow(np.cumsum(other) * step, step), 2)
+    about = around(1, other)
+    turned = around(2, _slow(np.cumsum(other) * step, step))
     return OUTPUTS[column] if np.std(turned) > apart and np.std(about) > least else ""
 
 
@@ -98,21 +97,10 @@ def _on_by_torque(part: Array, torque: Array, trace: Trace, least: float, moves:
         return ""
     for column in (0, 1):
         if trace.has[column]:
-            uneven = _without_trend(part[:, column], 1)
+            uneven = around(1, part[:, column])
             if np.std(uneven) > max(5.0 * float(holds[column]), 0.2 * TURNS_ON * float(moves[column])):
                 return INPUT
     return ""
-
-
-def _without_trend(values: Array, degree: int) -> Array:
-    basis = _trends(len(values), degree)
-    return np.asarray(values - basis @ (basis.T @ values))
-
-
-@lru_cache(maxsize=64)
-def _trends(count: int, degree: int) -> Array:
-    """An orthonormal basis of what polynomials up to `degree` are at `count` points, one a column."""
-    return np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, count), degree))[0]
 
 
 def _slow(values: Array, step: float) -> Array:

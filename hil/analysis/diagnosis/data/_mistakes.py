@@ -25,6 +25,7 @@ from hil.analysis.diagnosis.data._thresholds import (
     UNLIKE,
 )
 from hil.analysis.diagnosis.data._trace import Trace
+from hil.analysis.diagnosis.data._turns import around
 from hil.core.channels import INPUT, OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model
@@ -167,10 +168,7 @@ def _said(model: Model, trace: Trace) -> Array:
 
 def _spectra(values: Array) -> Array:
     """Spectra of channels (blocks x 3) about their trend; NaN where not measured."""
-    at = np.linspace(-1.0, 1.0, len(values))
     known = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
-    trend = np.polynomial.legendre.legvander(at, MISTAKE_TREND)
-    about = known - trend @ np.linalg.lstsq(trend, known, rcond=None)[0]
     window = np.hanning(len(values) + 1)[:-1, None]
-    spectra = np.fft.rfft(about * window, axis=0)
+    spectra = np.fft.rfft(around(MISTAKE_TREND, known) * window, axis=0)
     return np.where(np.all(np.isnan(values), axis=0), np.nan, spectra)

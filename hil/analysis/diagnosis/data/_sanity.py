@@ -88,11 +88,9 @@ def _refuse_each(found: Iterable[tuple[str, BadInputError | None]]) -> None:
 def _wrong_alone(model: Model, trace: Trace, noise: Array) -> BadInputError | None:
     """What does not go together in one recording; two speeds without any relation may be in another unit."""
     error = _wrong(model, [trace], noise)
-    return (
-        mistaken(model, [trace], noise) or error
-        if error is not None and _kind(error) == _UNRELATED
-        else error
-    )
+    if error is None or _kind(error) != _UNRELATED:
+        return error
+    return mistaken(model, [trace], noise) or error
 
 
 @dataclass(frozen=True)
@@ -182,10 +180,7 @@ def _speeds(
     if all(p.correlation < INVERTED for p in seen) and plain.correlation < 0.0:
         return _inverted(pushes)
     if all(abs(p.correlation) < RELATED for p in (*seen, plain)):
-        return BadInputError(
-            _UNRELATED,
-            fix="are both from one axle, and in step?",
-        )
+        return BadInputError(_UNRELATED, fix="are both from one axle, and in step?")
     factors = [p.factor for p in seen]
     if even.count == 0 and max(uneven.sizes) < TURNED_RAD:
         return None

@@ -160,8 +160,8 @@ def _gaps(recording: Recording) -> list[_Gap]:
 def _holes(recording: Recording) -> list[_Gap]:
     """Where a channel that counts was interpolated for longer than a straight line can stand for it."""
     missing = np.zeros(recording.samples, bool)
-    for channel in (INPUT, *OUTPUTS):
-        at = np.sort(recording.mended.get(channel, np.zeros(0, int)))
+    for channel in recording.mended.keys() & {INPUT, *OUTPUTS}:
+        at = recording.mended[channel]
         for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1):
             if len(run) > GAP_SAMPLES:
                 missing[run] = True

@@ -5,6 +5,8 @@ Angles from speeds that drift hold slow swings of any shape; what can be said in
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 import numpy.typing as npt
 
@@ -102,6 +104,12 @@ def drift_degree(angle: Array, step: float) -> int:
 
 
 def around(degree: int, values: Array) -> Array:
-    """`values` (n,) without their best polynomial of `degree`."""
-    at = np.linspace(-1.0, 1.0, len(values))
-    return np.asarray(values - np.polynomial.Legendre.fit(at, values, min(degree, len(values) - 1))(at))
+    """`values` (n,) or (n x channels) without their best polynomial of `degree`."""
+    basis = _polynomials(len(values), min(degree, len(values) - 1))
+    return np.asarray(values - basis @ (basis.T @ values))
+
+
+@lru_cache(maxsize=16)
+def _polynomials(count: int, degree: int) -> Array:
+    """An orthonormal basis of the polynomials up to `degree` at `count` even points, one a column."""
+    return np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, count), degree))[0]

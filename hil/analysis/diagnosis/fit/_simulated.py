@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._problem import SHAFT, STARTS, VEHICLE, Problem
+from hil.analysis.diagnosis.fit._problem import MOTOR, STARTS, WHEEL, Problem
 
 Array = npt.NDArray[np.float64]
 
@@ -23,11 +23,10 @@ def settled_starts(
     found = []
     for index, start in enumerate(starts):
         steps = problem.start_steps()
-        free = np.ones(STARTS, bool)
+        free = problem.free_starts(index, hypothesis)
         if problem.resting[index]:
-            free[:SHAFT] = False
-            free[VEHICLE:] = hypothesis.remembers_place
-            start = np.where(free, start, 0.0)
+            free = [c for c in free if c not in (MOTOR, WHEEL)]
+            start = np.where(np.isin(range(STARTS), free), start, 0.0)
         for _ in range(3):
             tried = np.tile(start, (1 + STARTS, 1))
             tried[1:] += np.diag(steps)

@@ -12,7 +12,7 @@ from hil.analysis.diagnosis.tell._thresholds import STEP_FROM_RAD_S, STEP_NM
 from hil.core.channels import OUTPUTS
 from hil.core.conventions import COMFORT_BAND_HZ, TICK_S
 from hil.core.model import Model
-from test_plans.metrics import energy_within
+from test_plans.metrics import energy_within, periodogram
 
 Array = npt.NDArray[np.float64]
 
@@ -61,14 +61,8 @@ def _figures(outputs: Array) -> dict[str, float]:
 
 
 def _ringing(values: Array) -> float:
-    """Mean square of `values` (n,) within the comfort band, their linear trend left out.
+    """Mean square within the comfort band.
 
     No window: it would be zero where a step rings most, and show when the step comes, not how it rings.
     """
-    count = len(values)
-    at = np.linspace(-1.0, 1.0, count)
-    about = values - np.mean(values)
-    about = about - at * (at @ about) / (at @ at)
-    lines = np.fft.rfft(about)
-    density = 2.0 * TICK_S / count * (lines.real**2 + lines.imag**2)  # but at 0 and half the rate, outside
-    return energy_within(np.asarray(np.fft.rfftfreq(count, TICK_S)), density, *COMFORT_BAND_HZ)
+    return energy_within(*periodogram(values, TICK_S, tapered=False), *COMFORT_BAND_HZ)

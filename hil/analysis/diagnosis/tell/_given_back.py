@@ -62,9 +62,10 @@ def given_back(problem: Problem, found: Found, verdict: Verdict, floor: Array) -
     kept = found.best if verdict == "named" and found.best.hypothesis.terms else found.base
     hypothesis, theta, starts = _as_it_came(problem, found)
     before = _shown(problem, floor, hypothesis, theta, starts)
+    begun = kept.starts
     if verdict != "named":  # far from the noise a fit is drawn away from rest
-        kept = replace(kept, starts=settled_starts(problem, kept.hypothesis, kept.theta, kept.starts))
-    back = GivenBack(kept, before, _shown(problem, floor, kept.hypothesis, kept.theta, kept.starts))
+        begun = settled_starts(problem, kept.hypothesis, kept.theta, begun)
+    back = GivenBack(kept, before, _shown(problem, floor, kept.hypothesis, kept.theta, begun))
     if verdict == "unknown" and back.trades:
         return GivenBack(fit(problem, hypothesis, starts, theta, rounds=0), before, before), [NUMBERS_TRADE]
     return back, []

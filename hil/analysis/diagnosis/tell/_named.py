@@ -130,7 +130,7 @@ def clean(use: EffectUse) -> EffectUse:
 
 def _reason(one: Fit | None, gain: float, fits: list[Fit]) -> str:
     if gain <= 0.0:
-        return "by its linearised score it explains nothing; not fitted"
+        return "by its linearised score it explains nothing"
     if gain < LEAST_EVIDENCE:
         return "no evidence: the drop is what noise would give"
     if one is None:
