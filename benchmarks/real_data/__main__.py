@@ -18,6 +18,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.real_data.embir import EMBIR
 from benchmarks.real_data.emps import EMPS
 from benchmarks.real_data.hsm150 import HSM150
 from benchmarks.real_data.lexium62 import LEXIUM62
@@ -27,7 +28,7 @@ from hil.core.errors import HilError
 from hil.core.model import Model, save_model
 from hil.core.recording import Recording, write_recording
 
-DATA_SETS = {one.name: one for one in (EMPS, HSM150, LORENZ, LEXIUM62)}
+DATA_SETS = {one.name: one for one in (EMPS, HSM150, LORENZ, LEXIUM62, EMBIR)}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

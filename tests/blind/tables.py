@@ -80,7 +80,7 @@ def _summary(scores: Sequence[Score]) -> list[str]:
         "Shrank: of what a gap has over the true noise, by squares; a channel counts if its gap was 1.1 "
         "times the noise.",
         _table(["figure", "of", "value", "line", "target"], figure_rows(scores)),
-        "## Gap, parameters, time",
+        "## Gap and parameters",
         "Gap after over the true noise on held-out recordings, in single-effect cases: rms over the "
         "channels, and the worst channel.",
     ]
@@ -92,7 +92,6 @@ def _summary(scores: Sequence[Score]) -> list[str]:
         ["gap after / noise", *_quantiles([s.mean_gap for s in singles]), "1.10 / 1.5", "1.02 / 1.15"],
         ["gap after / noise, worst channel", *_quantiles([s.worst_gap for s in singles]), "", ""],
         ["parameter error", *_quantiles(errors), "0.05", "0.01"],
-        ["processor time per case, s", *_quantiles([s.processor_s for s in scores]), "60", "10"],
     ]
     return [*parts, _table(["figure", "median", "95th percentile", "line", "target"], rows)]
 

@@ -63,9 +63,21 @@ def _lexium62(directory):
     (directory / "JLoadWithFriction.trace").write_bytes(text.encode("utf-16"))
 
 
-WRITTEN = {"emps": _emps, "hsm150": _hsm150, "lorenz": _lorenz, "lexium62": _lexium62}
+def _embir(directory):
+    rows = "\n".join(f"{t:.6f},9,{v!r},{0.1 * v!r}" for t, v in zip(_time(), _speed().tolist(), strict=True))
+    text = f"# g1 = 1.0\ntime [s],c1 mode,a1 velocity [rad/s],a1 torque [Nm]\n{rows}\n"
+    (directory / DATA_SETS["embir"].files[0]).write_text(text)
+
+
+WRITTEN = {"embir": _embir, "emps": _emps, "hsm150": _hsm150, "lorenz": _lorenz, "lexium62": _lexium62}
 #: Torque in N m (force in N) at a speed of 1, which the files above hold in their own units.
-TORQUE = {"emps": 70.0, "hsm150": 70.0, "lorenz": 70.0, "lexium62": 0.795915429599640 - 0.00559804068576}
+TORQUE = {
+    "embir": 0.1,
+    "emps": 70.0,
+    "hsm150": 70.0,
+    "lorenz": 70.0,
+    "lexium62": 0.795915429599640 - 0.00559804068576,
+}
 
 
 @pytest.mark.parametrize("name", sorted(DATA_SETS))

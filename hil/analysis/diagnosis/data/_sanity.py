@@ -126,7 +126,7 @@ def examined(model: Model, recordings: Sequence[Recording], beside: Sequence[Tra
     for recording in recordings:
         refuse_implausible(recording)
     comparable = [with_outputs_of(model, recording) for recording in recordings]
-    pieces = [part for r in comparable for piece in unbroken(r) for part in excerpts(piece)]
+    pieces = [part for r in comparable for piece in unbroken(r, model.load_input) for part in excerpts(piece)]
     traces = [trace_of(part, load=load_of(model, part)) for part in pieces]
     if not traces:
         return Examined([], np.full(3, np.nan), [])

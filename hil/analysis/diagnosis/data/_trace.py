@@ -110,17 +110,20 @@ class Trace:
         return np.asarray(middles * self.dt, dtype=float)
 
 
-def unbroken(recording: Recording) -> list[Recording]:
+def unbroken(recording: Recording, load: str = "") -> list[Recording]:
     """The stretches of a recording between its gaps: nobody knows what happened in a gap.
 
     Stretches too short for a diagnosis are left out; the first one's notes say what was cut.
+
+    Args:
+        load: the channel whose torque brakes the wheels, where the model takes one.
 
     Raises:
         BadInputError: no stretch is long enough.
     """
     if recording.samples < 2:
         return [recording]
-    gaps = _gaps(recording)
+    gaps = _gaps(recording, {INPUT, *OUTPUTS, load})
     if not gaps:
         return [recording]
     behind = np.maximum.accumulate([gap.after for gap in gaps]).tolist()
@@ -153,14 +156,15 @@ class _Gap:
     after: int
 
 
-def _gaps(recording: Recording) -> list[_Gap]:
-    return sorted([*_pauses(recording), *_holes(recording)], key=lambda gap: (gap.begins, gap.after))
+def _gaps(recording: Recording, counting: set[str]) -> list[_Gap]:
+    gaps = [*_pauses(recording), *_holes(recording, counting)]
+    return sorted(gaps, key=lambda gap: (gap.begins, gap.after))
 
 
-def _holes(recording: Recording) -> list[_Gap]:
+def _holes(recording: Recording, counting: set[str]) -> list[_Gap]:
     """Where a channel that counts was interpolated for longer than a straight line can stand for it."""
     missing = np.zeros(recording.samples, bool)
-    for channel in recording.mended.keys() & {INPUT, *OUTPUTS}:
+    for channel in recording.mended.keys() & counting:
         at = recording.mended[channel]
         for run in np.split(at, np.flatnonzero(np.diff(at) > 1) + 1):
             if len(run) > GAP_SAMPLES:

@@ -17,7 +17,7 @@ from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.cli._app import guarded
 from hil.core.errors import BadInputError
-from hil.core.model import Model, parameter_names, save_model
+from hil.core.model import LOAD_INPUTS, Model, parameter_names, save_model
 from hil.core.recording import Recording, read_recording
 from hil.plant import simulate
 from tests.hil.analysis.diagnosis.hidden_cases import EFFECTS, draw
@@ -289,6 +289,15 @@ def test_a_recording_is_cut_where_a_channel_is_empty(tmp_path: Path, empty: int,
     assert [p.time_s[0] for p in pieces] == firsts
     assert sum(len(p.time_s) for p in pieces) == len(time) - (empty if empty > 20 else 0)
     assert all(len(p.mended[MOTOR]) == (0 if empty > 20 else empty) for p in pieces)
+
+
+def test_a_hole_in_the_load_cuts_where_the_model_takes_a_load() -> None:
+    time = np.linspace(0.0, 1.999, 2000)
+    (load,) = LOAD_INPUTS
+    whole = Recording({"time_s": time, TORQUE: time, MOTOR: time, load: time}, Path("r.csv"))
+    whole.mended[load] = np.arange(600, 700)
+    assert [len(p.time_s) for p in unbroken(whole, load)] == [600, 1300]
+    assert unbroken(whole) == [whole]
 
 
 def test_overlapping_gaps_are_one() -> None:
