@@ -39,10 +39,10 @@ class Trace:
 
     `measured` is blocks x 3 in the order of `OUTPUTS` (NaN where a channel is missing), each the mean of
     `block` samples; `samples` is the same at full rate; `start` is motor speed, wheel speed (rad/s) and
-    shaft torque (N m) at the first sample, NaN where not measured. `source` is the file, for messages.
-    `judged` says of each block whether errors count there; everywhere if None. `load` is the torque in N m
-    that brakes the wheels at every sample; None where the model takes none. In the first `lead` samples of
-    a recording that begins in motion errors do not count: torque that was asked for before acts there.
+    shaft torque (N m) at first, means of `start_samples`, NaN where not measured. `source` is the file, for
+    messages. `judged` says of each block whether errors count there; everywhere if None. `load` is the torque
+    in N m that brakes the wheels at every sample; None where the model takes none. In the first `lead`
+    samples of a recording that begins in motion errors do not count: torque asked for before acts there.
     """
 
     name: str
@@ -58,6 +58,7 @@ class Trace:
     judged: Flags | None = None
     load: Array | None = None
     lead: int = 0
+    start_samples: int = START_SAMPLES
 
     def angles(self, gear_ratio: float, sensors: Array | None = None) -> Array:
         """Wheel and rotor angle in rad at every sample, n x 2, integrated from the measured speeds.
@@ -260,6 +261,7 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
     samples = np.full((len(grid), 3), np.nan)
     samples[:, [c in given for c in OUTPUTS]] = np.column_stack([*on_grid[1:]])
     block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
+    first = _before_torque(torque)
     return Trace(
         name or recording.source.stem,
         torque,
@@ -267,11 +269,12 @@ def trace_of(recording: Recording, name: str = "", load: Array | None = None) ->
         block,
         samples,
         blocks(samples, block),
-        _start(samples, torque),
+        samples[:first].mean(axis=0),
         tuple(notes),
         float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
         where,
         load=None if load is None else np.where(missing, np.interp(grid, time, load), load[nearest]),
+        start_samples=first,
     )
 
 
@@ -315,9 +318,8 @@ def blocks(samples: Array, block: int) -> Array:
     return np.asarray(samples[: count * block].reshape(count, block, -1).mean(axis=1))
 
 
-def _start(samples: Array, torque: Array) -> Array:
-    """Readings before the torque does anything: a fed back torque is never quite zero."""
+def _before_torque(torque: Array) -> int:
+    """How many samples there are before the torque does anything: a fed back torque is never quite zero."""
     least = LITTLE_TORQUE * float(np.max(np.abs(torque)))
     changed = np.flatnonzero(np.abs(torque[:START_SAMPLES] - torque[0]) > least)
-    count = max(3, int(changed[0]) if changed.size else min(START_SAMPLES, len(torque)))
-    return np.asarray(samples[:count].mean(axis=0))
+    return max(3, int(changed[0]) if changed.size else min(START_SAMPLES, len(torque)))

@@ -332,7 +332,7 @@ def problem_of(
     noise = read_only(noise)
     floor = noise if floor is None else read_only(floor)
     weights = [np.where(t.has, np.sqrt(t.block) / np.where(noise > 0, noise, np.inf), 0.0) for t in traces]
-    resting = tuple(_rests(t, noise, floor) for t in traces)
+    resting = tuple(_rests(t, noise, floor, gear_ratio) for t in traces)
     return Problem(
         tuple(t if rests else replace(t, lead=_lead(t)) for t, rests in zip(traces, resting, strict=True)),
         noise,
@@ -359,12 +359,19 @@ def read_only(values: Array) -> Array:
     return copy
 
 
-def _rests(trace: Trace, noise: Array, floor: Array) -> bool:
+def _rests(trace: Trace, noise: Array, floor: Array, gear_ratio: float) -> bool:
     """Whether the recording begins at rest: a speed channel reads zero, and no torque is asked for.
 
-    A channel whose rounding is coarser than its noise reads zero at many speeds.
+    A channel whose rounding is coarser than its noise reads zero at many speeds. Where the other one reads a
+    speed, it may be wrong by an offset; but a noisy zero that goes with that speed as well tells nothing.
     """
-    near = np.abs(trace.start[:2]) < REST_SIGMAS * noise[:2] / np.sqrt(REST_SAMPLES)
-    tells = trace.has[:2] & (noise[:2] < FINE * floor[:2])
+    speeds, level = trace.start[:2], noise[:2]
+    ratio = np.array([gear_ratio, 1.0 / gear_ratio])
+    near = np.abs(speeds) < REST_SIGMAS * level / np.sqrt(REST_SAMPLES)
+    tells = trace.has[:2] & (level < FINE * floor[:2])
+    unsure = REST_SIGMAS * level / np.sqrt(trace.start_samples)
+    moves = np.abs(speeds) > unsure
+    apart = np.abs(speeds - ratio * speeds[::-1]) > np.hypot(unsure, ratio * unsure[::-1])
+    still = near & tells & (apart | ~moves[::-1])
     idle = abs(trace.torque[0]) <= LITTLE_TORQUE * float(np.max(np.abs(trace.torque)))
-    return bool(np.any(near & tells) and idle)
+    return bool(np.any(still) and idle)

@@ -99,6 +99,34 @@ def test_an_axle_at_rest_is_held_there() -> None:
     assert moving.first_starts()[0] == pytest.approx([100.0, 12.0, 0.0, 0.0, 0.0])
 
 
+@pytest.mark.parametrize(
+    ("motor_noise", "motor", "wheel", "rests"),
+    [
+        (0.1, 0.0, 0.0, True),
+        (0.1, 0.0, 0.2, True),  # the wheel's sensor has an offset: the motor would show such a motion
+        (2.3, 1.0, 0.2, False),  # the motor is too noisy to show it
+        (2.3, 1.0, np.nan, True),
+        (2.3, 0.0, 0.0, True),
+    ],
+)
+def test_a_noisy_zero_does_not_say_rest_where_the_wheel_turns(
+    motor_noise: float, motor: float, wheel: float, rests: bool
+) -> None:
+    trace = one_trace()
+    samples, measured = trace.samples.copy(), trace.measured.copy()
+    if np.isnan(wheel):
+        samples[:, 1] = measured[:, 1] = np.nan
+    begun = dataclasses.replace(
+        trace,
+        samples=samples,
+        measured=measured,
+        start=np.array([motor, wheel, 0.0]),
+        start_samples=20,
+    )
+    problem = problem_of([begun], np.array([motor_noise, 0.08, 1.0]), RATIO)
+    assert problem.resting == (rests,)
+
+
 def test_nothing_of_a_problem_can_be_changed() -> None:
     problem = one_problem()
     with pytest.raises(dataclasses.FrozenInstanceError):
