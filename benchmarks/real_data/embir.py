@@ -45,6 +45,6 @@ def _read(directory: Path) -> Measured:
 EMBIR = DataSet(
     "embir",
     (_FILE,),
-    "no law of friction, gear or sensor closes it: coulomb_friction 0.044 N m leaves 15 of 20 % (own fit)",
+    "unknown as a whole: coulomb_friction 0.045 N m leaves 15 of 20 % (own fit)",
     _read,
 )
