@@ -21,6 +21,7 @@ from tests.hil.analysis.diagnosis.one_recording import MODEL
 from tests.hil.analysis.diagnosis.reference_plant import BASE
 
 HALF_GAP = 0.02
+SETTLED = 500  # samples in which what the plant's start twists the tyre by is gone: the axle rests
 LAG = EffectUse("actuator_lag", {"time_constant_s": 0.01})
 
 
@@ -29,9 +30,10 @@ def _problem(torque: np.ndarray) -> Problem:
     rng = np.random.default_rng(1)
     channels = {TIME: np.arange(len(torque)) * 1e-3, INPUT: torque}
     model = MODEL.with_effects(EffectUse("backlash", {"half_gap_rad": HALF_GAP}))
-    clean = simulate(model, torque, 1e-3, start=Start(0.0, 0.0, 1.0))
+    before = np.full(SETTLED, torque[0])
+    clean = simulate(model, np.concatenate([before, torque]), 1e-3, start=Start(0.0, 0.0, 1.0))
     for name, noise in zip(OUTPUTS, (0.02, 0.0014, 0.7), strict=True):
-        channels[name] = clean[name] + rng.normal(0.0, noise, len(torque))
+        channels[name] = clean[name][SETTLED:] + rng.normal(0.0, noise, len(torque))
     traces = [trace_of(Recording(channels, Path("play.csv")))]
     return problem_of(traces, noise_levels(traces), BASE["gear_ratio"])
 
