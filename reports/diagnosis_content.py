@@ -246,6 +246,7 @@ def _conditions(when: str, gaps: GapMap) -> Map:
     rows = tuple(
         (channel_label(channel).text, tuple(map(_cell, gaps.by_condition[:, column])))
         for column, channel in enumerate(OUTPUTS)
+        if np.isfinite(gaps.by_condition[:, column]).any()
     )
     return Map(f"Operating conditions, {when}", ("", *CONDITIONS), rows)
 

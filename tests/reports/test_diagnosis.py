@@ -40,6 +40,7 @@ def _map(level: float) -> GapMap:
     bands[:, 1] = np.nan
     conditions = np.full((len(CONDITIONS), 3), level)
     conditions[0, 0] = np.nan
+    conditions[:, 1] = np.nan
     return GapMap(("one <b>", "two"), bands, conditions)
 
 
@@ -112,6 +113,7 @@ def test_maps_stand_in_pairs_and_shade_what_is_above_the_noise(found: Diagnosis)
     shades = [{cell.shade for _, cells in m.rows for cell in cells} for m in maps[:4]]
     assert shades == [{1.0}, {0.0}, {1.0}, {0.0}]
     assert maps[4].rows[0][1][0].text == "–"
+    assert [name for name, _ in maps[4].rows] == ["Motor speed", "Shaft torque"]
 
 
 def test_headline_and_lead_follow_the_verdict(found: Diagnosis) -> None:

@@ -40,7 +40,10 @@ class ChannelGap:
 
 @dataclass(frozen=True)
 class GapMap:
-    """Error over noise (1: nothing but noise): recordings x channels x bands, and conditions x channels."""
+    """Error over noise (1: nothing but noise): recordings x channels x bands, and conditions x channels.
+
+    NaN where a channel was not measured.
+    """
 
     recordings: tuple[str, ...]
     by_band: Array
@@ -74,7 +77,7 @@ def channel_gaps(traces: Sequence[Trace], floor: Array, simulated: Sequence[Arra
 def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -> GapMap:
     """Where the error stands above `noise`, the standard deviation of each channel per sample, shape (3,)."""
     bands = np.full((len(traces), 3, len(BANDS_HZ)), np.nan)
-    sums, counts = np.zeros((len(CONDITIONS), 3)), np.zeros(len(CONDITIONS))
+    sums, counts = np.zeros((2, len(CONDITIONS), 3))
     for row, (trace, values) in enumerate(zip(traces, simulated, strict=True)):
         counted = trace.judged_samples
         error = np.where(counted[:, None], (trace.samples - values) / noise, 0.0)
@@ -83,9 +86,9 @@ def gap_map(traces: Sequence[Trace], noise: Array, simulated: Sequence[Array]) -
         for column in np.flatnonzero(trace.has):
             bands[row, column] = whole * _band_ratios(error[:, column], trace.dt)
             sums[:, column] += masks @ error[:, column] ** 2
-        counts += masks.sum(axis=1)
+            counts[:, column] += masks.sum(axis=1)
     with np.errstate(invalid="ignore", divide="ignore"):
-        condition = np.sqrt(sums / counts[:, None])
+        condition = np.sqrt(sums / counts)
     return GapMap(tuple(t.name for t in traces), bands, condition)
 
 

@@ -57,9 +57,12 @@ def suiting_a_gap(corrected: Mapping[str, Correction], gaps: Mapping[str, float]
         return []
     worst = max(gaps, key=lambda channel: gaps[channel])
     left = f"{gaps[worst]:.3g} times its noise left in {worst}"
+    suits, theirs = (
+        ("it suits", "its standard error") if len(corrected) == 1 else ("they suit", "their standard errors")
+    )
     return [
-        f"{', '.join(corrected)} of the base model moved with {left}: they suit what is missing as well, "
-        "and may be off by far more than their standard errors"
+        f"{', '.join(corrected)} of the base model moved with {left}: {suits} what is missing as well, "
+        f"and may be off by far more than {theirs}"
     ]
 
 

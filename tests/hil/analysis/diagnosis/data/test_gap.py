@@ -1,5 +1,7 @@
 """Ratios of errors, over channels, bands and conditions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,6 +24,19 @@ def test_an_error_stands_in_its_band() -> None:
     wave = np.sin(2 * np.pi * 12.0 * np.arange(len(trace.samples)) * trace.dt)
     found = gap_map([trace], np.ones(3), [trace.samples - wave[:, None]])
     assert [BANDS_HZ[i] for i in np.argmax(found.by_band[0], axis=1)] == [(10.0, 15.0)] * 3
+
+
+def test_recordings_that_lack_a_channel_do_not_thin_its_error_out() -> None:
+    trace = one_trace()
+    without = replace(
+        trace, measured=trace.measured * [1.0, np.nan, 1.0], samples=trace.samples * [1.0, np.nan, 1.0]
+    )
+    alone = gap_map([trace], np.ones(3), [trace.samples - 2.0]).by_condition
+    both = gap_map([trace, without], np.ones(3), [trace.samples - 2.0] * 2).by_condition
+    assert both[:, 1] == pytest.approx(alone[:, 1], nan_ok=True)
+    lacking = gap_map([without], np.ones(3), [trace.samples - 2.0]).by_condition
+    assert np.isnan(lacking[:, 1]).all()
+    assert lacking[:, 0] == pytest.approx(alone[:, 0], nan_ok=True)
 
 
 def test_every_sample_has_one_condition() -> None:

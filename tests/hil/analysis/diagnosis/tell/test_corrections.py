@@ -51,4 +51,8 @@ def test_numbers_that_moved_beside_a_gap_are_said_to_suit_it() -> None:
     (said,) = suiting_a_gap(moved, {OUTPUTS[0]: 5.4, OUTPUTS[2]: 10.4})
     assert said.startswith("motor_inertia, vehicle_inertia of the base model moved with 10.4 times its noise")
     assert OUTPUTS[2] in said
+    assert "they suit what is missing as well" in said
+    (of_one,) = suiting_a_gap({"motor_inertia": moved["motor_inertia"]}, {OUTPUTS[0]: 5.4})
+    assert "it suits what is missing as well" in of_one
+    assert of_one.endswith("than its standard error")
     assert suiting_a_gap(moved, {}) == suiting_a_gap({}, {OUTPUTS[0]: 5.4}) == []
