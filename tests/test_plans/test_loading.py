@@ -179,6 +179,7 @@ def read_or_refused(text: str) -> None:
     assert message.startswith("p.yaml")
 
 
+@pytest.mark.slow
 @given(_NEARLY_PLANS | _VALUES)
 @settings(max_examples=300)
 def test_whatever_the_values_a_plan_is_read_or_refused(value: object) -> None:

@@ -24,6 +24,7 @@ def run(tmp_path_factory) -> Path:
     return folder / "out"
 
 
+@pytest.mark.slow
 def test_a_run_that_was_killed_is_recovered_and_reported(run: Path, tmp_path: Path) -> None:
     content = (run / "recording.mcap").read_bytes()
     left = content[: int(0.75 * len(content))]

@@ -32,6 +32,7 @@ def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_nobody_arms_the_bench_until_it_is_reset(bench: Path, tmp_path: Path) -> None:
     moving = tmp_path / "moving.yaml"
     moving.write_text("name: moving\nsteps: [{hold_speed: {speed_km_h: 5, duration_s: 1}}]\n")
@@ -49,6 +50,7 @@ def test_nobody_arms_the_bench_until_it_is_reset(bench: Path, tmp_path: Path) ->
     hil("run", tmp_path / "quick.yaml", "--bench", bench, "--out", tmp_path / "b")
 
 
+@pytest.mark.slow
 def test_a_hazardous_plan_is_confirmed_by_name(bench: Path, tmp_path: Path) -> None:
     plan = tmp_path / "hazard.yaml"
     plan.write_text(PLAN + "hazardous: the wheels turn fast\n")

@@ -31,6 +31,7 @@ def ran(plan: str, out: Path) -> tuple[RunOutcome, Recording, Recording]:
     return outcome, read_recording(outcome.recording), stored
 
 
+@pytest.mark.slow
 def test_acceptance_is_judged_and_drawn_the_same(tmp_path: Path) -> None:
     outcome, held, stored = ran("acceptance", tmp_path / "run")
     assert sum(criterion.value is not None for criterion in outcome.result.criteria) > 10

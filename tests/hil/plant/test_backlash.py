@@ -109,6 +109,7 @@ def test_contact_never_pulls(kernel):
     assert np.ptp(out[lost[1:5], 0]) < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("form", "one_spring"), [(1.0, 0.0), (2.0, 1.0)], ids=["in series", "one spring"])
 def test_flanks_of_another_author_need_the_depth_over_which_their_damping_sets_in(form, one_spring):
     """By another integrator, 40 steps a sample, and with another rise: depth / (depth + 2e-4 rad)."""

@@ -16,6 +16,12 @@ from tests.hil.service.postgresql import Cluster, cluster
 from tests.hil.service.served import ASKING, SHORT, Served, served
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Where slow tests are left out: its calls are thought of while tests are collected, half a minute."""
+    slow_ones = collection_path.name == "test_api_fuzz.py"
+    return True if slow_ones and "not slow" in config.getoption("markexpr") else None
+
+
 @pytest.fixture(scope="session")
 def postgresql() -> Iterator[Cluster]:
     with cluster() as server:

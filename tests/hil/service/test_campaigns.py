@@ -49,6 +49,7 @@ def over(client: Client, campaign: int) -> CampaignData:
     return until(client, campaign, lambda found: found.state in CAMPAIGN_OVER)
 
 
+@pytest.mark.slow
 def test_a_campaign_is_given_carried_out_and_its_table_fetched(there: Served, tmp_path: Path) -> None:
     client = Client(there.url)
     asked = client.add_campaign(WANTED)

@@ -112,6 +112,7 @@ def _given_at(together: threading.Barrier, url: str, name: str, text: str) -> Re
     return None
 
 
+@pytest.mark.slow
 def test_what_was_answered_is_there_after_a_kill_whatever_the_folder_has(tmp_path: Path) -> None:
     data, state = tmp_path / "data", tmp_path / "state"
     answered: list[str] = []
