@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.tell._played import played
-from hil.analysis.diagnosis.tell._thresholds import STEP_FROM_RAD_S, STEP_NM
+from hil.analysis.diagnosis.tell._thresholds import LASTING, STEP_FROM_RAD_S, STEP_NM
 from hil.core.channels import OUTPUTS
 from hil.core.conventions import COMFORT_BAND_HZ, TICK_S
 from hil.core.model import Model
@@ -25,21 +25,23 @@ def consequences(before: Model, after: Model, as_likely: Sequence[Model] = ()) -
     An open-loop step of `STEP_NM` from `STEP_FROM_RAD_S` wheel speed, the model before and after. The energy
     is the mean square within the band of what rings in the 5 s from the step on. It is not that of an
     acceptance run, in which a controller acts and which looks from 4 s after the step on, when nothing of
-    this rings. Nothing for a model whose load comes from a recording (what its wheels would meet in a step
-    is not in it), and for functions that do not give both.
+    this rings. Nothing for a rigid axle, which neither overshoots nor rings, for a model whose load comes
+    from a recording (what its wheels would meet in a step is not in it), and for functions that do not give
+    both; no overshoot where little of the peak lasts: drag holds the motor then, the shaft carries nothing.
 
     Args:
         as_likely: models that the data allow as well as `after`: their scatter is its standard error.
     """
     functions = after.transfer_functions
-    if after.load_input or (functions and not {_MOTOR, _SHAFT} <= {*functions}):
+    if after.kind == "rigid" or after.load_input or (functions and not {_MOTOR, _SHAFT} <= {*functions}):
         return {}
     shown = [before, after, *(as_likely if len(as_likely) > 1 else ())]
     old, new, *drawn = [_figures(outputs) for outputs in _stepped(shown)]
-    result = {name: {"before": old[name], "after": new[name]} for name in new}
-    if drawn:
-        for name, value in result.items():
-            value["after_standard_error"] = float(np.std([one[name] for one in drawn], ddof=1))
+    result = {name: {"before": old[name], "after": new[name]} for name in new if name in old}
+    for name, value in result.items():
+        scatter = [one[name] for one in drawn if name in one]
+        if len(scatter) > 1:
+            value["after_standard_error"] = float(np.std(scatter, ddof=1))
     return result
 
 
@@ -54,10 +56,10 @@ def _figures(outputs: Array) -> dict[str, float]:
     motor, _, shaft = outputs.T
     resting = float(np.mean(shaft[500:1000]))
     steady, peak = float(np.mean(shaft[-2000:])) - resting, float(np.max(shaft[1000:])) - resting
-    return {
-        "overshoot_shaft_torque_percent": 100.0 * max(0.0, peak / steady - 1.0) if steady else 0.0,
-        "band_energy_motor_speed": _ringing(motor[1000:]),
-    }
+    figures = {"band_energy_motor_speed": _ringing(motor[1000:])}
+    if steady > LASTING * peak:
+        figures = {"overshoot_shaft_torque_percent": 100.0 * (peak / steady - 1.0)} | figures
+    return figures
 
 
 def _ringing(values: Array) -> float:

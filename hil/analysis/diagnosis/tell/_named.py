@@ -133,6 +133,8 @@ def _reason(one: Fit | None, gain: float, fits: list[Fit]) -> str:
         return "by its linearised score it explains nothing"
     if gain < LEAST_EVIDENCE:
         return "no evidence: the drop is what noise would give"
+    if one is None and not fits:
+        return "promises too small a share of what is left by its linearised score; not fitted"
     if one is None:
         return "explains far less than the best by its linearised score; not fitted"
     if fits and one is not fits[0]:

@@ -40,6 +40,9 @@ OPEN_CONFIDENCE: Annotated[
 
 STEP_NM: Annotated[float, Means("N m", "the step whose overshoot is told", "consequences")] = 20.0
 STEP_FROM_RAD_S: Annotated[float, Means("rad/s", "wheel speed from which it is made", "consequences")] = 5.0
+LASTING: Annotated[
+    float, Means("of its peak", "must last of the shaft torque for an overshoot to be told", "consequences")
+] = 0.1
 
 DURATION_S: Annotated[float, Means("s", "of a separating test", "separating")] = 20.0
 TELLS: Annotated[

@@ -6,7 +6,7 @@ from scipy import signal
 
 from hil.analysis.diagnosis.tell._consequences import consequences
 from hil.analysis.diagnosis.tell._result import derived_of
-from hil.core.model import EffectUse
+from hil.core.model import EffectUse, Model
 from hil.plant import Start, simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL
 
@@ -40,6 +40,24 @@ def test_the_energy_is_what_scipy_says() -> None:
     inside = (f >= 8.0) & (f <= 20.0)
     told = consequences(MODEL, MODEL)["band_energy_motor_speed"]["before"]
     assert told == pytest.approx(np.sum(density[inside]) * f[1], rel=0.02)
+
+
+def test_a_rigid_axle_neither_overshoots_nor_rings() -> None:
+    inertias = {k: MODEL.parameters[k] for k in ("motor_inertia", "gear_ratio", "vehicle_inertia")}
+    rigid = Model("rigid", {**inertias, "viscous_drag": 0.01, "torque_delay": 0.0})
+    assert consequences(rigid, rigid) == {}
+
+
+def test_no_overshoot_over_a_shaft_torque_that_does_not_last() -> None:
+    """A servo without a load: drag holds the motor, and its shaft carries nothing in the end."""
+    servo = {"motor_inertia": 4.5e-4, "gear_ratio": 1.0, "shaft_stiffness": 100.0, "shaft_damping": 0.05}
+    servo |= {"vehicle_inertia": 1e-4, "viscous_drag": 0.012, "torque_delay": 0.0}
+    alone = Model("two_inertia", servo)
+    assert [*consequences(alone, alone)] == ["band_energy_motor_speed"]
+    assert [*consequences(MODEL, MODEL, [MODEL, MODEL])] == [
+        "overshoot_shaft_torque_percent",
+        "band_energy_motor_speed",
+    ]
 
 
 def test_a_loop_loses_energy_by_its_stiffness() -> None:

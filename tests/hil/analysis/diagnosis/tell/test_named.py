@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
+from hil.analysis.diagnosis.search._race import Step
 from hil.analysis.diagnosis.search._search import search
+from hil.analysis.diagnosis.search._thresholds import LEAST_EVIDENCE
 from hil.analysis.diagnosis.tell._named import clean, considered, lasting, reduced
 from hil.analysis.diagnosis.tell._result import NamedEffect
 from hil.analysis.diagnosis.tell._words import Where
@@ -35,6 +37,16 @@ def test_what_was_not_named_comes_with_its_reason() -> None:
     assert len(rows) > 3
     assert all(row.reason for row in rows)
     assert [row.score for row in rows] == sorted((row.score for row in rows), reverse=True)
+
+
+def test_where_nothing_was_fitted_no_effect_is_held_against_a_best_one() -> None:
+    problem = one_problem(EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0}))
+    found = search(problem, Hypothesis(MODEL), lambda text: None)
+    found.steps = [Step(step.parent, step.scores, []) for step in found.steps]
+    rows = considered(problem, found, found.base)
+    assert rows[0].score > LEAST_EVIDENCE
+    assert rows[0].reason.startswith("promises too small a share of what is left")
+    assert not any("than the best" in row.reason for row in rows)
 
 
 @pytest.mark.parametrize(("torque", "says"), [(1e-4, True), (0.5, False)])
