@@ -77,7 +77,7 @@ autotune: setup
 hunt: setup
 	$(BIN)/python -m pytest -n 2 -m hunt --timeout 7200
 
-# Bad input, signals and broken streams on every command, as processes: docs/reference/bad-inputs.md.
+# Bad input, signals and broken streams on commands, as processes: docs/reference/bad-inputs.md.
 bad-inputs: setup
 	$(BIN)/python -m tests.bad_inputs --write
 

@@ -44,7 +44,7 @@ _COMMANDS = {
     "recover": "A whole recording from what a crash left.",
     "verify": "Prove that report and recording belong together and nothing changed.",
     "sign": "Sign a run's directory: who approved it.",
-    "export": "Write a recording as CSV, Parquet or MDF4, or its frames as a CAN log.",
+    "export": "Write a recording as CSV, Parquet, MDF4 or MAT, or its frames as a CAN log.",
     "export-fmu": "A model with its controller as an FMI 2 unit for other tools.",
     "replay": "CAN logs of other tools, decoded to a recording with its report.",
     "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",

@@ -36,7 +36,7 @@ class Closing:
         diagnosis: the newest.
         best: the run with the largest worst margin of those that came out as predicted, else of all.
         best_round: where it was.
-        agrees: whether the newest confirming run came out as predicted.
+        agrees: whether the confirming run of the round that the best controller is of came out as predicted.
         ended: why there was no other round; '' while it goes on.
     """
 

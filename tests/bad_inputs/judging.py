@@ -45,7 +45,7 @@ def message_of(outcome: Outcome) -> str:
     lines = [line.strip() for line in outcome.err.strip().splitlines()]
     start = next((i for i, line in enumerate(lines) if line.startswith(("error:", "Error"))), 0)
     text = " / ".join(lines[start : start + 2])
-    text = re.sub(r"(/[^\s/':,]+)+/", "", text)  # paths become names
+    text = re.sub(r"(?<![\w.])(/[^\s/':,]+)+/", "", text)  # paths become names
     text = re.sub(r"\d+(\.\d+)? ?m?s\b", "… s", text)
     return text if len(text) <= 230 else text[:229] + "…"
 

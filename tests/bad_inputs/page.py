@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from tests.bad_inputs.case import FILES, OPTIONS, PLACES, SIGNALS, STREAMS, VALUES, Case, Outcome
+from tests.bad_inputs.commands import COMMANDS
 from tests.bad_inputs.judging import FAULTS, faults_of, message_of
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "bad-inputs.md"
-_ORDER = ("hil", "run", "check", "report", "identify", "design", "diagnose", "simulate", "export", "schema")
+_ORDER = ("hil", *COMMANDS)
 _KINDS = {
     FILES: "files that are missing, of another kind or broken",
     VALUES: "values out of range",

@@ -11,7 +11,7 @@ from hil.cli._completion import shipped_bench, shipped_plan
 PlanName = Annotated[
     str,
     typer.Argument(
-        help="plan file, or the name of a shipped plan: acceptance, identification",
+        help="plan file, or the name of a shipped plan (`hil list plans`): acceptance, identification, …",
         autocompletion=shipped_plan(),
     ),
 ]

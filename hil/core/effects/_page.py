@@ -55,8 +55,9 @@ def _section(effect: Effect) -> str:
     lines.append(f"Shown by: {effect.shown_by[:1].lower()}{effect.shown_by[1:]}")
     lines.append(f" For models of kind {', '.join(effect.needs)}.")
     if effect.least is not None:
-        unit = effect.least.of or effect.parameter(effect.acting()[0]).unit or "1"
-        lines.append(f" Named from {effect.least.amount:g} {unit} on: below, it is a correction.")
+        unit = effect.least.of or effect.parameter(effect.acting()[0]).unit
+        least = f"{effect.least.amount:g} {unit}".strip()
+        lines.append(f" Named from {least} on: below, it is a correction.")
     if effect.kin:
         lines.append(f" Looks like: {', '.join(f'`{id_}`' for id_ in effect.kin)}.")
     if effect.source:

@@ -123,7 +123,7 @@ class Diagnosis:
     start: Start | None = None
     #: Channels whose gap stays above what is proven to be noise.
     open_channels: tuple[str, ...] = ()
-    #: The same of recordings held out; under `named` only those that keep over a tenth of their gap's power.
+    #: The same of recordings held out; with `none` those that keep more than slow noise may be.
     held_out_open: tuple[str, ...] = ()
     #: Why the search ended before it was through, if it did: this is what was known by then.
     unfinished: str = ""
@@ -171,7 +171,7 @@ class Diagnosis:
             ],
             **(
                 {"evidence": {"drops": [e.drop for e in self.effects], "by_chance_at_most": self.by_chance}}
-                if self.by_chance is not None
+                if self.by_chance is not None and self.verdict == "named"
                 else {}
             ),
             "consequences": self.consequences,
