@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
-from scipy.stats import binomtest, rankdata
 
 from test_plans import Criterion
 
@@ -35,6 +34,8 @@ class Share:
     @property
     def interval(self) -> tuple[float, float]:
         """Exact, for independent draws; of none: everything."""
+        from scipy.stats import binomtest
+
         if not self.of:
             return 0.0, 1.0
         found = binomtest(self.passed, self.of).proportion_ci(CONFIDENCE, method="exact")
@@ -164,6 +165,8 @@ def rank_correlation(first: Array, second: Array) -> float:
     there = np.isfinite(first) & np.isfinite(second)
     if np.sum(there) < _FEWEST:
         return math.nan
+    from scipy.stats import rankdata
+
     ranks = [rankdata(one[there]) for one in (first, second)]
     spread = [float(np.std(one)) for one in ranks]
     if min(spread) == 0:

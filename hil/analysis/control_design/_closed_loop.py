@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy import linalg, signal
+from scipy import linalg
 
 from hil.core.errors import BadInputError
 from hil.core.model import TransferFunction
@@ -57,10 +57,12 @@ def closed_loop_poles(
 
 def _held(plant: TransferFunction, step: float) -> _StateSpace:
     """The plant from one command of the RMCU to the speed at the next samples, dead time as states."""
+    from scipy.signal import tf2ss
+
     whole = plant.delay_s / step
     late = int(np.floor(whole + _ROUNDING))
     rest = max(0.0, whole - late) * step
-    a, b, c, d = signal.tf2ss(plant.numerator, plant.denominator)
+    a, b, c, d = tf2ss(plant.numerator, plant.denominator)
     even, scale = linalg.matrix_balance(a)
     balanced: Array = np.asarray(even, float)
     entering: Array = np.asarray(np.linalg.solve(scale, b), float)
@@ -96,7 +98,9 @@ def _advanced(a: Array, b: Array, duration_s: float) -> tuple[Array, Array]:
 
 
 def _by_tustin(block: TransferFunction, step: float) -> _StateSpace:
-    a, b, c, d = signal.tf2ss(*discretised(block.numerator, block.denominator, step))
+    from scipy.signal import tf2ss
+
+    a, b, c, d = tf2ss(*discretised(block.numerator, block.denominator, step))
     return _StateSpace(a, b, c, float(d[0, 0]))
 
 

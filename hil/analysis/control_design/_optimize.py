@@ -9,7 +9,6 @@ from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import minimize
 
 from hil.analysis.control_design._laws import Normalisation, lead, lead_function, pole_assignment
 from hil.analysis.control_design._loop import comfort, encirclements, feedback_response, margins
@@ -200,6 +199,7 @@ class _Search:
         self, start: tuple[float, float, float], normalisation: Normalisation
     ) -> tuple[float, tuple[float, float, float]]:
         """Nelder-Mead on all plants from one start."""
+        from scipy.optimize import minimize
 
         def cost(x: Array) -> float:
             value = self.penalised(_inside(x), normalisation, self._plants)

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
-import pandas as pd
 
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
@@ -113,8 +112,10 @@ def frf_to_csv(frf: FrequencyResponse) -> str:
         columns |= {f"{output}.{name}": value for name, value in zip(_COLUMNS, values, strict=True)}
     columns["independent_every"] = np.full(len(frf.frequency_hz), float(frf.independent_every))
     columns[_HOLD] = np.full(len(frf.frequency_hz), frf.input_hold_s)
+    from pandas import DataFrame
+
     text = io.StringIO()
-    pd.DataFrame(columns).to_csv(text, index=False, float_format="%.9g", lineterminator="\n")
+    DataFrame(columns).to_csv(text, index=False, float_format="%.9g", lineterminator="\n")
     return text.getvalue()
 
 
@@ -124,9 +125,12 @@ def frf_from_csv(path: Path) -> FrequencyResponse:
     Raises:
         BadInputError: not a table, no `frequency_hz`, no output, or cells that are not numbers.
     """
+    from pandas import read_csv
+    from pandas.errors import ParserError
+
     try:
-        frame = pd.read_csv(io.StringIO(read_text(path)), dtype=float)
-    except (ValueError, pd.errors.ParserError) as error:
+        frame = read_csv(io.StringIO(read_text(path)), dtype=float)
+    except (ValueError, ParserError) as error:
         raise BadInputError(f"not a table of numbers: {error}", where=str(path)) from error
     outputs = tuple(name for name in OUTPUTS if f"{name}.real" in frame)
     if "frequency_hz" not in frame or not outputs:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import least_squares
 
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification._chain import CHAINS, chain_response
@@ -139,6 +138,8 @@ def fit_chain(
     Raises:
         BadInputError: unknown kind, or without motor speed and another output.
     """
+    from scipy.optimize import least_squares
+
     if kind not in CHAINS:
         raise BadInputError(f"unknown chain '{kind}'", fix=f"chains: {', '.join(CHAINS)}")
     if OUTPUTS[0] not in frf.outputs or len(frf.outputs) < 2:

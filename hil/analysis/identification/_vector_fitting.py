@@ -11,8 +11,6 @@ import warnings
 
 import numpy as np
 import numpy.typing as npt
-from skrf import Network
-from skrf.vectorFitting import VectorFitting
 
 from hil.analysis.identification._modal import Structure
 
@@ -33,6 +31,9 @@ def starting_poles(
         structure: how many sections; a pole at the origin is taken out by multiplying with s.
         delay_s: trial dead time.
     """
+    from skrf import Network
+    from skrf.vectorFitting import VectorFitting
+
     s = 2j * np.pi * frequency_hz
     data = response * np.exp(delay_s * s) * (s if structure.integrator else 1.0)
     data = data / np.sqrt(np.mean(np.abs(data) ** 2, axis=1, keepdims=True))

@@ -16,8 +16,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import Bounds, differential_evolution, minimize
-from scipy.stats import qmc
 
 from hil.analysis.target_search._plausible import Candidate
 from hil.analysis.target_search._trial import Trial, guess_at
@@ -118,6 +116,9 @@ class Search:
 
     def _evolve(self, chosen: Set, most: int) -> None:
         """Generations of about `most` looks, from the last ones of the set, or from its best and others."""
+        from scipy.optimize import Bounds, differential_evolution
+        from scipy.stats import qmc
+
         size = sum(len(candidate.numbers) for candidate in chosen)
         population = self._populations.get(chosen)
         if population is None:
@@ -143,6 +144,8 @@ class Search:
 
     def _descend(self, start: Found, most: int, step: float) -> None:
         """From the best of a set, `most` looks with a first simplex of `step`."""
+        from scipy.optimize import minimize
+
         inward = np.where(start.point > 0.5, -step, step)
         simplex = np.vstack([start.point, start.point + np.diag(inward)])
         options: Any = {"maxfev": most, "initial_simplex": simplex, "xatol": 1e-4, "fatol": 1e-6}
@@ -152,6 +155,8 @@ class Search:
 
     def _scatter(self, chosen: Set, count: int, first: list[Array]) -> None:
         """A Latin hypercube over the ranges, behind the points in `first`."""
+        from scipy.stats import qmc
+
         size = sum(len(candidate.numbers) for candidate in chosen)
         points = qmc.LatinHypercube(size, seed=self._seed).random(max(1, count - len(first)))
         for point in [*first, *points]:

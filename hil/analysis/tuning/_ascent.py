@@ -16,8 +16,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.optimize import linprog
-from scipy.stats import qmc
 
 from hil.analysis.tuning._trial import MEAN_SHARE, Tried, counted
 
@@ -41,6 +39,8 @@ def score(cars: Sequence[Tried]) -> float:
 
 def scatter(free: int, count: int, random: np.random.Generator) -> list[Array]:
     """Points all over the unit cube: a scrambled Sobol sequence."""
+    from scipy.stats import qmc
+
     more = math.ceil(math.log2(max(count, 1)))
     return list(qmc.Sobol(free, seed=random).random_base2(more)[:count])
 
@@ -131,5 +131,7 @@ class Ascent:
 
 def _solved(cost: Array, rows: Array, above: Array, bounds: Any) -> Array:
     """What makes `cost` least where rows @ x <= above; no step where there is none."""
+    from scipy.optimize import linprog
+
     found = linprog(cost, A_ub=rows, b_ub=above, bounds=bounds, method="highs")
     return np.zeros(len(cost)) if found.x is None else np.asarray(found.x)

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
-from scipy.stats import norm, qmc
 
 from hil.analysis.tuning._free import Tolerance
 from hil.core.effects import finite_number
@@ -48,6 +47,8 @@ def draws_of(model: Model, tolerance: Tolerance, count: int, seed: int) -> tuple
             raise BadInputError(
                 f"tolerance.{name}: a '{model.kind}' model has no such parameter", fix="leave it out"
             )
+    from scipy.stats import qmc
+
     errors = _standard_errors(model)
     dimensions = [
         *(f"even {name}" for name, share in tolerance.relative.items() if share > 0),
@@ -84,10 +85,12 @@ def _drawn(
     number: int,
     seed: int,
 ) -> Draw:
+    from scipy.special import ndtri
+
     parameters = dict(model.parameters)
     for name, error in errors.items():
         share = 0.5 + _SHARE * (chosen[f"normal {name}"] - 0.5)
-        moved = parameters[name] + error * float(norm.ppf(share))
+        moved = parameters[name] + error * float(ndtri(share))
         parameters[name] = max(moved, 0.05 * parameters[name])  # an error bar may be wider than its number
     for name, width in tolerance.relative.items():
         if width > 0:
