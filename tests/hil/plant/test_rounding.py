@@ -51,9 +51,12 @@ def ran(out: Path, **settings: str) -> np.ndarray:
     return np.load(out)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
-    "build", [{"NUMBA_OPT": "0"}, {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}]
+    "build",
+    [
+        pytest.param({"NUMBA_OPT": "0"}, marks=pytest.mark.hunt),
+        pytest.param({"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": ""}, marks=pytest.mark.slow),
+    ],
 )
 def test_a_kernel_that_was_built_otherwise_rounds_alike(tmp_path, build):
     usual = ran(tmp_path / "usual.npy")

@@ -52,7 +52,7 @@ def test_the_identification_plan_agrees_with_its_own_model_in_every_format(tmp_p
         # at its end either chirp bounces through it chaotically
         pytest.param("backlash", "half_gap_rad", 0.02, marks=pytest.mark.hunt),
         pytest.param("backlash", "half_gap_rad", 0.01, marks=pytest.mark.slow),
-        pytest.param("dead_time", "extra_delay_s", 0.002, marks=pytest.mark.slow),
+        pytest.param("dead_time", "extra_delay_s", 0.002, marks=pytest.mark.hunt),
         pytest.param("coulomb_friction", "torque_nm", 1.0, marks=pytest.mark.slow),
     ],
 )
