@@ -218,11 +218,13 @@ def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
 def _shaft(traces: list[Trace], slow: SlowMotion, noise: Array) -> BadInputError | None:
     """Shaft torque against motor torque at low frequency: sign and order of magnitude.
 
-    What brakes the wheels passes the shafts only as far as it brakes the rotor.
+    What brakes the wheels passes the shafts only as far as it brakes the rotor, and what turns the rotor does
+    not pass them. A torque that is limited swings less than asked for: then its mean is of the right size.
     """
     ratio, rotor = slow.gear_ratio, slow.rotor_kg_m2
     passed = rotor / (slow.inertia_kg_m2 - rotor)
-    pair = Pair()
+    share = 1.0 - rotor / slow.inertia_kg_m2
+    pair, even = Pair(), Pair()
     having = [t for t in traces if t.has[2]]
     for t in having:
         length = max(1, round(SLOW_S / t.dt))
@@ -232,6 +234,8 @@ def _shaft(traces: list[Trace], slow: SlowMotion, noise: Array) -> BadInputError
             torque = drive[: count * length].reshape(count, length).mean(axis=1)
             shaft = t.samples[: count * length, 2].reshape(count, length).mean(axis=1)
             pair.add(torque - torque.mean(), shaft - shaft.mean())
+            if abs(torque.mean()) > np.std(torque):
+                even.add(np.array([torque.mean()]), np.array([shaft.mean()]))
     if not pair.count or max(pair.sizes) < MOVES * noise[2]:
         return None
     alone = abs(pair.correlation) < RELATED and all(_noise_alone(t, 2, noise) for t in having)
@@ -239,11 +243,13 @@ def _shaft(traces: list[Trace], slow: SlowMotion, noise: Array) -> BadInputError
         return _dead(_SHAFT)
     if pair.correlation < INVERTED and 1 / TOO_FAST < pair.factor < TOO_FAST:
         return BadInputError(f"{_SHAFT} looks inverted", fix="turn the sign of the channel")
-    slope = pair.xy / max(pair.xx, 1e-30)
-    if abs(pair.correlation) > RELATED and not 1 / TORQUE_OFF < pair.factor < TORQUE_OFF:
+    factors = [p.factor for p in (pair, even) if p.count]
+    off = all(f < share / TORQUE_OFF for f in factors) or all(f > TORQUE_OFF for f in factors)
+    if abs(pair.correlation) > RELATED and off:
+        slope = pair.xy / max(pair.xx, 1e-30)
         return BadInputError(
             f"{_SHAFT} is {slope * ratio:.3g} times the motor torque at low frequency, the model has "
-            f"{ratio:.3g}",
+            f"{share * ratio:.3g}",
             fix="is the channel in another unit, or on the motor side of the gear?",
         )
     return None

@@ -8,9 +8,12 @@ import pytest
 
 from hil.analysis.diagnosis.data._noise import noise_levels
 from hil.analysis.diagnosis.data._sanity import examine, examined
+from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
+from hil.core.model import EffectUse, Model
+from hil.core.recording import Recording
 from hil.plant import simulate
-from tests.hil.analysis.diagnosis.one_recording import MODEL, recorded
+from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE, recorded
 
 
 def test_good_recordings_come_with_their_noise() -> None:
@@ -95,3 +98,33 @@ def test_a_recording_in_rpm_is_named_beside_a_good_one(first: bool) -> None:
     with pytest.raises(BadInputError, match="look like rpm") as refused:
         examined(MODEL, [wrong, good] if first else [good, wrong])
     assert refused.value.where == "rpm.csv"
+
+
+def _limited(unit: float, model: Model = MODEL, limit_nm: float = 25.0) -> Recording:
+    """A slow swing around 29 N m on an axle whose torque ends at `limit_nm`, its shaft torque in another unit."""
+    rng = np.random.default_rng(4)
+    time = np.arange(0.0, 12.0, 1e-3)
+    torque = np.minimum(20.0 * time, 1.0) * (29.0 + 7.0 * np.sin(2 * np.pi * 0.2 * time))
+    shown = simulate(model.with_effects(EffectUse("torque_saturation", {"limit_nm": limit_nm})), torque, 1e-3)
+    noisy = {
+        name: shown[name] + rng.normal(0.0, level, len(time))
+        for name, level in zip(OUTPUTS, NOISE, strict=True)
+    }
+    noisy["shaft_torque_nm"] = unit * noisy["shaft_torque_nm"]
+    return Recording({TIME: time, INPUT: torque, **noisy}, Path("limited.csv"))
+
+
+def test_a_torque_that_its_limit_holds_is_in_no_other_unit() -> None:
+    assert examined(MODEL, [_limited(1.0)]).traces
+    with pytest.raises(BadInputError, match="in another unit, or on the motor side"):
+        examined(MODEL, [_limited(1.0 / MODEL.parameters["gear_ratio"])])
+
+
+def test_a_rotor_that_takes_most_of_its_torque_itself_leaves_the_shaft_little() -> None:
+    """A motor with a small load on its bench: a fifth of the torque passes the shaft."""
+    ratio = MODEL.parameters["gear_ratio"]
+    light = {"wheel_inertia": 0.1, "vehicle_inertia": 0.2 * MODEL.parameters["motor_inertia"] * ratio**2}
+    small = MODEL.with_parameters(**light)
+    assert examined(small, [_limited(1.0, small, 1000.0)]).traces
+    with pytest.raises(BadInputError, match="in another unit, or on the motor side"):
+        examined(small, [_limited(1e-3, small, 1000.0)])
