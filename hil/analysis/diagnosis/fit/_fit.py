@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
 from hil.analysis.diagnosis.fit._errors import Errors
-from hil.analysis.diagnosis.fit._least_squares import Hopeless, descent
+from hil.analysis.diagnosis.fit._least_squares import Hopeless, Reached, descent
 from hil.analysis.diagnosis.fit._normal import reduced
 from hil.analysis.diagnosis.fit._problem import Linearised, Problem
 from hil.analysis.diagnosis.fit._thresholds import MOST_ROUNDS, POLISHED, SAME_COST, WORTH_A_LEAP
@@ -96,6 +96,13 @@ def fit(
         theta, starts, done = reached.theta, reached.starts, done + reached.rounds
         if by_samples is None or done >= rounds:
             break
+    if by_samples is not None and done < rounds:
+        for other in by_samples.beside_bend(theta, lower, upper):
+            begin = other, starts
+            tried_too = descent(problem, hypothesis, begin, (lower, upper), precision, rounds - done, enough)
+            if _total(tried_too, precision) < _total(reached, precision):
+                reached = tried_too
+        theta, starts, done = reached.theta, reached.starts, max(done, reached.rounds)
     matrix, _ = reduced(reached.at.normals)
     covariance = _inverse(matrix + np.diag(precision))
     prior = float(precision @ theta**2) + (by_samples.coincidence(theta) if by_samples is not None else 0.0)
@@ -110,6 +117,10 @@ def fit(
         done,
         problem.angles,
     )
+
+
+def _total(reached: Reached, precision: Array) -> float:
+    return reached.at.cost + float(precision @ reached.theta**2)
 
 
 def fitted_on(problem: Problem, one: Fit, *, rounds: int = MOST_ROUNDS, enough: float = 1.0) -> Fit:

@@ -177,6 +177,12 @@ EDGE: Annotated[
     float,
     Means("of a sample", "a descent of a rigid axle's dead time keeps from either end", "whole_samples"),
 ] = 1e-3
+AT_BEND: Annotated[
+    float, Means("of a sample", "a dead time beside a lag so near to a whole one ends there", "whole_samples")
+] = 0.02
+BESIDE_BEND: Annotated[
+    float, Means("of a sample", "from there it begins again on either side", "whole_samples")
+] = 0.15
 JUST: Annotated[
     float, Means("of a sample", "a delay nearer to a whole sample is just one", "whole_samples")
 ] = 0.02

@@ -2,7 +2,8 @@
 
 With no spring between, shaft torque jumps with every sample of the request. The error then jumps with the
 dead time wherever that crosses a sample: no slope leads across, so descents stay within a sample and the
-neighbouring ones are tried.
+neighbouring ones are tried. A lag lets no jump through, but a bend: with one a descent goes where it likes,
+and where it ends at a bend it begins again on either side.
 """
 
 from __future__ import annotations
@@ -13,7 +14,15 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._thresholds import COINCIDENCE, EDGE, JUST, LEAPS, TOLERANCE
+from hil.analysis.diagnosis.fit._thresholds import (
+    AT_BEND,
+    BESIDE_BEND,
+    COINCIDENCE,
+    EDGE,
+    JUST,
+    LEAPS,
+    TOLERANCE,
+)
 from hil.core.channels import OUTPUTS
 
 Array = npt.NDArray[np.float64]
@@ -27,9 +36,12 @@ class DelayBySamples:
     index: int
     skew: int | None  # the coordinate of the delay of the shaft torque's own channel
     dt: float
+    lags: bool = False
 
     def within(self, theta: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
         """Bounds of a descent from `theta`: those given, and of the sample that its dead time lies in."""
+        if self.lags:
+            return lower, upper
         sample = np.floor(self._delay(theta) / self.dt + 1e-9)
         ends = [self._at(theta, (sample + share) * self.dt) for share in (EDGE, 1.0 - EDGE)]
         lower, upper = lower.copy(), upper.copy()
@@ -66,6 +78,19 @@ class DelayBySamples:
                     found.append(late)
         return found
 
+    def beside_bend(self, theta: Array, lower: Array, upper: Array) -> list[Array]:
+        """`theta` with the dead time a little shorter and longer, where it ended at a whole sample."""
+        samples = self._delay(theta) / self.dt
+        if not self.lags or abs(samples - round(samples)) > AT_BEND:
+            return []
+        found = []
+        for more in (-BESIDE_BEND, BESIDE_BEND):
+            other = theta.copy()
+            other[self.index] = self._at(theta, (samples + more) * self.dt)
+            if lower[self.index] <= other[self.index] <= upper[self.index]:
+                found.append(other)
+        return found
+
     def coincidence(self, theta: Array) -> float:
         """Price in squared errors of a channel that is late by just a sample: dead time is by nature."""
         if self.skew is None:
@@ -97,4 +122,13 @@ def delay_by_samples(hypothesis: Hypothesis, dt: float) -> DelayBySamples | None
             index = i
         elif c.name == "delay_s" and hypothesis.terms[c.term].values["channel"] == OUTPUTS[2]:
             skew = i
-    return None if index is None else DelayBySamples(hypothesis, index, skew, dt)
+    return None if index is None else DelayBySamples(hypothesis, index, skew, dt, _lags(hypothesis))
+
+
+def _lags(hypothesis: Hypothesis) -> bool:
+    """Whether a low-pass lies between the request and what is read of the shaft torque."""
+    uses = (*hypothesis.base.effects, *hypothesis.terms)
+    return any(
+        use.id == "actuator_lag" or (use.id == "sensor_lag" and use.values["channel"] == OUTPUTS[2])
+        for use in uses
+    )

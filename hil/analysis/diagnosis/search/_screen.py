@@ -10,9 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis, key_of
-from hil.analysis.diagnosis.fit._fit import Fit, carried
+from hil.analysis.diagnosis.fit._fit import Fit, bounds_of, carried, precision_of
 from hil.analysis.diagnosis.fit._least_squares import box_step
 from hil.analysis.diagnosis.fit._problem import Problem
+from hil.analysis.diagnosis.fit._whole_samples import delay_by_samples
 from hil.analysis.diagnosis.search._probes import Candidate, mismatches, probes
 from hil.analysis.diagnosis.search._thresholds import LOOKED_AT_CLOSELY, PROBE_DIVERGED, SCORED_MISMATCH
 from hil.core.model import EffectUse
@@ -67,10 +68,8 @@ def _scored(
     matrix, gradients = products(problem, fit, candidates, errors)
     gradient = gradients[:, 0]
     base = len(fit.theta)
-    coordinates = fit.hypothesis.coordinates()
-    lower = np.array([c.lower for c in coordinates]) - fit.theta
-    upper = np.array([c.upper for c in coordinates]) - fit.theta
-    precision = np.array([problem.misfit / c.prior**2 for c in coordinates])
+    lower, upper = (bound - fit.theta for bound in _bounds(problem, fit))
+    precision = precision_of(problem, fit.hypothesis)
     matrix[:base, :base] += np.diag(precision)
     gradient[:base] -= precision * fit.theta
     rest = _gain(matrix, gradient, lower, upper, np.arange(base))[0]
@@ -93,6 +92,17 @@ def _scored(
         value = float(use.values["value"]) * float(np.exp(fit.theta[index] + step[index]))
         _keep(best, Score(EffectUse(use.id, {**use.values, "value": value}), gain - rest))
     return best
+
+
+def _bounds(problem: Problem, fit: Fit) -> tuple[Array, Array]:
+    """Of the coordinates: a dead time that jumps by samples has no slope beyond its own.
+
+    At the edge of a sample its derivative holds the jump, as if a part of it could be had: what a lag, or a
+    late channel, explains would seem to be explained by that.
+    """
+    lower, upper = bounds_of(fit.hypothesis)
+    by_samples = delay_by_samples(fit.hypothesis, problem.traces[0].dt)
+    return (lower, upper) if by_samples is None else by_samples.within(fit.theta, lower, upper)
 
 
 def _keep(best: dict[tuple[str, str], Score], score: Score) -> None:

@@ -101,7 +101,7 @@ def test_a_recording_in_rpm_is_named_beside_a_good_one(first: bool) -> None:
 
 
 def _limited(unit: float, model: Model = MODEL, limit_nm: float = 25.0) -> Recording:
-    """A slow swing around 29 N m on an axle whose torque ends at `limit_nm`, its shaft torque in another unit."""
+    """A slow swing around 29 N m, torque that ends at `limit_nm`, the shaft torque in another unit."""
     rng = np.random.default_rng(4)
     time = np.arange(0.0, 12.0, 1e-3)
     torque = np.minimum(20.0 * time, 1.0) * (29.0 + 7.0 * np.sin(2 * np.pi * 0.2 * time))

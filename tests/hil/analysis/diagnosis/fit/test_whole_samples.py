@@ -114,3 +114,24 @@ def test_a_fit_begun_where_another_ended_ends_at_once(fitted):
     again = fit(problem, one.hypothesis, one.starts, one.theta)
     assert again.rounds == 0
     assert again.total == pytest.approx(one.total)
+
+
+@pytest.mark.parametrize(("delay", "start"), [(0.00786, 0.0004), (0.00815, 0.0004), (0.00786, 0.002)])
+def test_beside_a_lag_a_dead_time_is_found_across_a_sample(fitted, delay, start):
+    """At a whole sample its slope bends: a descent that ends there begins again on either side."""
+    lag, guess = (EffectUse("actuator_lag", {"time_constant_s": value}) for value in (0.0007, start))
+    true = MODEL.with_parameters(torque_delay=delay).with_effects(lag)
+    base = MODEL.with_parameters(torque_delay=0.008)
+    problem, one = fitted(true, Hypothesis(base, (guess,)))
+    assert one.cost == pytest.approx(problem.rows, rel=0.05)
+    found = one.hypothesis.model(one.theta)
+    assert found.effects[0].values["time_constant_s"] == pytest.approx(0.0007, rel=0.1)
+    assert found.parameters["torque_delay"] == pytest.approx(delay, abs=5e-5)
+
+
+def test_without_a_lag_no_descent_begins_again():
+    by_samples = delay_by_samples(Hypothesis(MODEL.with_parameters(torque_delay=0.008)), 1e-3)
+    assert by_samples is not None
+    theta = by_samples.hypothesis.start()
+    wide = np.full(len(theta), 1.0)
+    assert by_samples.beside_bend(theta, -wide, wide) == []

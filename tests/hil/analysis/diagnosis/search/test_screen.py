@@ -1,13 +1,21 @@
 """Scores of effects, and the columns that each may use."""
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 
+from hil.analysis.diagnosis.data._noise import noise_levels
+from hil.analysis.diagnosis.data._trace import trace_of
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
 from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit._problem import problem_of
 from hil.analysis.diagnosis.search._probes import probes
 from hil.analysis.diagnosis.search._screen import _near, _scored, mismatch_columns, probe_columns, screen
-from hil.core.channels import OUTPUTS
-from hil.core.model import EffectUse
+from hil.core.channels import INPUT, OUTPUTS, TIME
+from hil.core.model import EffectUse, Model
+from hil.core.recording import Recording
+from hil.plant import simulate
 from tests.hil.analysis.diagnosis.one_recording import MODEL, one_problem
 
 OFFSET = EffectUse("sensor_offset", {"channel": OUTPUTS[2], "offset": 20.0})
@@ -53,3 +61,22 @@ def test_an_effect_of_many_sizes_is_looked_at_closely_where_it_promises_somethin
         if closely:
             assert found["mount_mode", ""].gain == pytest.approx(best.gain, rel=0.02)
             assert best.gain > first["mount_mode", ""].gain
+
+
+def test_a_dead_time_at_the_edge_of_a_sample_promises_nothing_of_what_a_lag_explains() -> None:
+    """A rigid axle's dead time acts by whole samples: half of a jump cannot be had."""
+    inertias = {"motor_inertia": 0.02, "gear_ratio": 10.0, "vehicle_inertia": 300.0}
+    rigid = Model("rigid", {**inertias, "viscous_drag": 0.002, "torque_delay": 0.0079995})
+    lag = EffectUse("actuator_lag", {"time_constant_s": 0.0017})
+    rng = np.random.default_rng(5)
+    time = np.arange(0.0, 8.0, 1e-3)
+    torque = 20.0 * np.sin(2 * np.pi * (0.2 * time + 1.5 * time**2))
+    shown = simulate(rigid.with_effects(lag), torque, 1e-3)
+    channels = {TIME: time, INPUT: torque}
+    for name, noise in zip(OUTPUTS, (0.05, 0.005, 0.3), strict=True):
+        channels[name] = shown[name] + rng.normal(0.0, noise, len(time))
+    traces = [trace_of(Recording(channels, Path("edge.csv")))]
+    problem = problem_of(traces, noise_levels(traces), 10.0)
+    without = fit(problem, Hypothesis(rigid, far=True), rounds=0)
+    scores = {score.key: score.gain for score in screen(problem, without)}
+    assert scores["actuator_lag", ""] > 0.7 * (without.total - problem.rows)
