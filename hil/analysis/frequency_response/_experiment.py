@@ -171,6 +171,6 @@ def _even(time: Array, values: Array, to_hz: float, where: str) -> tuple[Array, 
         f"time stamps are uneven (steps of {np.min(steps) * 1e3:.3g} to {np.max(steps) * 1e3:.3g} ms): "
         f"resampled to {step * 1e3:.4g} ms with a cubic spline"
     )
-    from scipy.interpolate import CubicSpline
+    from scipy.interpolate import CubicSpline  # slow to import
 
     return CubicSpline(time, values, axis=1)(grid), step, (note,)

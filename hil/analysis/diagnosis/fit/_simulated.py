@@ -30,6 +30,7 @@ def settled_starts(
         if resting:
             free = [c for c in free if c not in (MOTOR, WHEEL)]
             start = np.where(np.isin(range(STARTS), free), start, 0.0)
+            slowest, fastest = creeping(problem, index)
         for _ in range(3):
             tried = np.tile(start, (1 + STARTS, 1))
             tried[1:] += np.diag(steps)
@@ -42,7 +43,6 @@ def settled_starts(
             if not (np.isfinite(change).all() and np.any(change)):
                 break
             if resting:
-                slowest, fastest = creeping(problem, index)
                 bounds = (slowest - start[WHEEL], fastest - start[WHEEL])
                 start = start + _crept(change, error, free, problem.gear_ratio, bounds)
             else:

@@ -36,7 +36,15 @@ class DelayBySamples:
     index: int
     skew: int | None  # the coordinate of the delay of the shaft torque's own channel
     dt: float
-    lags: bool = False
+
+    @property
+    def lags(self) -> bool:
+        """Whether a low-pass lies between the request and what is read of the shaft torque."""
+        uses = (*self.hypothesis.base.effects, *self.hypothesis.terms)
+        return any(
+            use.id == "actuator_lag" or (use.id == "sensor_lag" and use.values["channel"] == OUTPUTS[2])
+            for use in uses
+        )
 
     def within(self, theta: Array, lower: Array, upper: Array) -> tuple[Array, Array]:
         """Bounds of a descent from `theta`: those given, and of the sample that its dead time lies in."""
@@ -122,13 +130,4 @@ def delay_by_samples(hypothesis: Hypothesis, dt: float) -> DelayBySamples | None
             index = i
         elif c.name == "delay_s" and hypothesis.terms[c.term].values["channel"] == OUTPUTS[2]:
             skew = i
-    return None if index is None else DelayBySamples(hypothesis, index, skew, dt, _lags(hypothesis))
-
-
-def _lags(hypothesis: Hypothesis) -> bool:
-    """Whether a low-pass lies between the request and what is read of the shaft torque."""
-    uses = (*hypothesis.base.effects, *hypothesis.terms)
-    return any(
-        use.id == "actuator_lag" or (use.id == "sensor_lag" and use.values["channel"] == OUTPUTS[2])
-        for use in uses
-    )
+    return None if index is None else DelayBySamples(hypothesis, index, skew, dt)
