@@ -19,7 +19,7 @@ _ROLES = ("gain", "phase", "third", "fourth", "fifth", "reference")
 _FIRST_SECONDS = 2.0
 _SPECTRUM_TO_HZ = 30.0
 _SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
-_MARKS = {"fail": " ✗", "error": " !", "not_judged": " –"}
+_MARKS = {"fail": " ✗", "undecided": " ?", "error": " !", "not_judged": " –"}
 
 
 def comparison_html(found: Comparison) -> str:

@@ -177,17 +177,18 @@ def _banner(result: RunResult | None) -> Banner:
 
 def _counts(result: RunResult) -> list[str]:
     """What became of the criteria, in sentences."""
-    demanding = [criterion for criterion in result.criteria if criterion.has_limit]
-    if not demanding:
-        sentences = ["The plan has no criterion with a limit, so nothing is judged."]
-    else:
-        passed = sum(criterion.verdict == "pass" for criterion in demanding)
-        sentences = [f"{passed} of {len(demanding)} criteria passed."]
+    sentences = []
+    for source, name in (("plan", "criteria"), ("device", "checks of what any device must do")):
+        demanding = [one for one in result.criteria if one.has_limit and one.source == source]
+        passed = sum(one.verdict == "pass" for one in demanding)
+        sentences += [f"{passed} of {len(demanding)} {name} passed."] if demanding else []
+    sentences = sentences or ["The plan has no criterion with a limit, so nothing is judged."]
     counts = count_by_verdict(result.criteria)
-    failed = sum(criterion.failed for criterion in result.criteria)
+    failed = sum(criterion.verdict == "fail" for criterion in result.criteria)
     unsettled = counts["did_not_settle"]
     told = {
         f"{failed} failed.": failed,
+        f"{counts['undecided']} undecided.": counts["undecided"],
         f"{counts['not_judged']} not judged: {_why_not_judged(result)}.": counts["not_judged"],
         f"{counts['error']} could not be computed.": counts["error"],
         f"{counts['informational']} informational.": counts["informational"],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, Field
 
@@ -10,7 +10,7 @@ from hil.core.errors import BadInputError
 from hil.core.suggestion import did_you_mean
 from test_plans.building import Strict, build, key_names, mapping_at
 from test_plans.conductor import PlannedSegment
-from test_plans.metrics import METRICS, Metric
+from test_plans.metrics import METRICS, Limits, Metric
 from test_plans.yaml_document import Document, KeyPath
 
 EXAMPLE = "{segment: gain_0kmh, metric: peak_shaft_torque, upper: 723, unit: N m}"
@@ -44,11 +44,16 @@ class Criterion(Strict):
     lower: float | None = None
     below: str | None = None
     title: str = ""
+    source: Literal["plan", "device"] = "plan"
 
     @property
     def definition(self) -> str:
         """How the value is computed and, with `below`, what it is compared with."""
-        compared = f" It must be lower than in segment {self.below}." if self.below else ""
+        compared = (
+            f" It must be lower than in segment {self.below}, by more than two standard errors of noise."
+            if self.below
+            else ""
+        )
         return self.metric.definition + compared
 
 
@@ -68,6 +73,8 @@ def criterion_at(value: object, document: Document, path: KeyPath, segments: Seg
     if segments is not None:
         _check_segments(keys, metric, segments, document, path)
     _check_limits(keys, metric, document, path)
+    if segments is not None:
+        _check_sides(keys, metric, segments[keys.segment], document, path)
     default_id = f"{keys.segment}.{keys.metric}" + (f".below.{keys.below}" if keys.below else "")
     return Criterion(
         id=keys.id or default_id,
@@ -141,6 +148,21 @@ def _check_limits(keys: CriterionKeys, metric: Metric, document: Document, path:
             f"the unit of '{keys.metric}' is '{metric.unit}', not {keys.unit!r}",
             where=document.place((*path, "unit")),
             fix="convert the limits, or choose the metric that was meant",
+        )
+
+
+def _check_sides(
+    keys: CriterionKeys, metric: Metric, segment: PlannedSegment, document: Document, path: KeyPath
+) -> None:
+    """Refuse a limit on the side to which the step does not go: nothing could break it."""
+    objection = metric.objection_to_limits(segment, Limits(keys.upper, keys.lower, keys.below or ""))
+    if objection:
+        what, _, fix = objection.partition(": ")
+        key = "below" if keys.below else "upper" if keys.upper is not None else "lower"
+        raise BadInputError(
+            f"'{metric.name}' in segment '{keys.segment}': {what}",
+            where=document.place((*path, key)),
+            fix=fix,
         )
 
 

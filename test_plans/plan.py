@@ -12,6 +12,7 @@ from hil.core.result import VariableValue
 from test_plans.building import Strict
 from test_plans.conductor import PlannedSegment
 from test_plans.criteria import Criterion
+from test_plans.device_checks import DeviceChecks
 from test_plans.pace import Pace
 from test_plans.steps import Step
 from test_plans.variables import Variable
@@ -32,6 +33,9 @@ class PlanKeys(Strict):
     )
     variables: dict[str, Variable] = Field(
         default={}, description="numbers that a run may choose, by name; $name stands for them"
+    )
+    device: DeviceChecks = Field(
+        default=DeviceChecks(), description="bounds of what any device must do, judged in every step"
     )
 
 
@@ -57,6 +61,11 @@ class Plan(PlanKeys):
     def segments(self) -> tuple[PlannedSegment, ...]:
         """The segments that the plan will produce, in order."""
         return tuple(segment for step in self.steps for segment in step.segments())
+
+    @property
+    def device_criteria(self) -> tuple[Criterion, ...]:
+        """What any device must do in the plan's steps, whatever its author asks."""
+        return self.device.criteria(self.segments)
 
 
 def estimate_duration_s(plan: Plan, pace: Pace | None = None) -> float:

@@ -30,6 +30,7 @@ _COMPILER = "hil.core.compiled"  # named here, for importing it takes longer tha
 _STYLE: dict[CriterionVerdict, str] = {
     "pass": "green",
     "fail": "bold red",
+    "undecided": "bold yellow",
     "informational": "dim",
     "did_not_settle": "yellow",
     "not_judged": "magenta",
@@ -142,17 +143,24 @@ class _Waits(logging.Handler):
 
 
 def print_criteria(page: Console, criteria: tuple[CriterionResult, ...]) -> None:
-    """Criteria with value, limits, margin and verdict; below, why some have no value."""
-    page.print(_table(criteria))
-    for reason in _reasons(criteria):
+    """Criteria with value, limits, margin and verdict; below, why some have no value.
+
+    Of the checks that any device must pass only those that it did not are shown.
+    """
+    shown = tuple(c for c in criteria if c.source == "plan" or c.verdict != "pass")
+    page.print(_table(shown))
+    for reason in _reasons(shown):
         page.print(f"  {reason}", highlight=False, markup=False, soft_wrap=True)
 
 
 def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
     """How many criteria with a limit passed, and what became of the others."""
-    judged = [c for c in criteria if c.has_limit]
-    passed = sum(c.verdict == "pass" for c in judged)
-    parts = [f"{passed} of {len(judged)} criteria passed"] if judged else ["nothing was judged"]
+    parts = []
+    for source, name in (("plan", "criteria"), ("device", "device checks")):
+        judged = [c for c in criteria if c.has_limit and c.source == source]
+        passed = sum(c.verdict == "pass" for c in judged)
+        parts += [f"{passed} of {len(judged)} {name} passed"] if judged else []
+    parts = parts or ["nothing was judged"]
     informational = sum(c.verdict == "informational" for c in criteria)
     return ", ".join([*parts, f"{informational} informational"] if informational else parts)
 

@@ -12,7 +12,10 @@ from hil.core.file_format import FORMAT, FormatNumber
 Verdict = Literal["pass", "fail", "error"]
 #: `informational`: no limit. `did_not_settle`: a failure if it has a limit, else counts as neither.
 #: `not_judged`: its segment was not carried out whole. `error`: could not be computed.
-CriterionVerdict = Literal["pass", "fail", "informational", "did_not_settle", "not_judged", "error"]
+#: `undecided`: a comparison within its own scatter; it fails the run.
+CriterionVerdict = Literal[
+    "pass", "fail", "undecided", "informational", "did_not_settle", "not_judged", "error"
+]
 SafeState = Literal["confirmed", "not_confirmed", "not_needed"]
 
 
@@ -33,6 +36,9 @@ class CriterionResult(_Frozen):
     title: str = ""
     definition: str = ""
     reason: str = ""
+    source: Literal["plan", "device"] = Field(
+        "plan", description="who asks: the plan's author, or the checks of what any device must do"
+    )
 
     @property
     def has_limit(self) -> bool:
@@ -41,8 +47,10 @@ class CriterionResult(_Frozen):
 
     @property
     def failed(self) -> bool:
-        """Beyond a limit, or never settled where a limit asks for it."""
-        return self.verdict == "fail" or (self.verdict == "did_not_settle" and self.has_limit)
+        """Beyond a limit, within its own scatter, or never settled where a limit asks for it."""
+        if self.verdict == "did_not_settle":
+            return self.has_limit
+        return self.verdict in ("fail", "undecided")
 
     @property
     def margin(self) -> float | None:
@@ -88,6 +96,17 @@ class Segment(_Frozen):
     )
     reference_before: float = Field(0.0, description="value of the stepped quantity before the step")
     reference_after: float = Field(0.0, description="value of the stepped quantity after the step")
+    quantity: Literal["", "motor_torque", "driving_torque"] = Field(
+        "", description="what was requested; '' in recordings of version 0.1"
+    )
+    torque_limit_nm: float | None = Field(None, description="of the controller; null: none drove the segment")
+    gear_ratio: float | None = Field(
+        None, description="motor speed over wheel speed, of the last controller; null: none was loaded"
+    )
+    rolling_radius_m: float | None = Field(
+        None,
+        description="vehicle speed over wheel speed: the bench's wheel radius, less the slip it was set to",
+    )
 
 
 class StreamClock(_Frozen):

@@ -57,7 +57,7 @@ class BenchConductor:
         self._wait_for = wait_for
         self._check = Rehearsal(bench.file)  # the bench's limits lie below every plan
         self._controller: Controller | None = None
-        self._speed_m_s = 0.0
+        self._speed_m_s, self._slip = 0.0, bench.file.vehicle.slip
         self._load: Literal["vehicle", "speed"] = "speed"
         self.segments: list[Segment] = []
         self.controllers: dict[str, str] = {}
@@ -125,6 +125,7 @@ class BenchConductor:
                 "has no slip that could be set", where="dyno", fix="take set_slip out of the plan"
             )
         dyno.set_slip(slip)
+        self._slip = slip
         self._event("slip", f"the dynos' vehicle slips by {100.0 * slip:g} %")
 
     def set_vehicle(self, vehicle: VehicleAndRoad) -> None:
@@ -266,6 +267,9 @@ class BenchConductor:
     def _begin(self, planned: PlannedSegment, clock_s: float, samples: int) -> None:
         start_s = self._recorder.recording_time(clock_s)
         end_s = start_s + min(planned.end_s, samples * TICK_S)
+        controller = self._controller
+        driven = controller if planned.quantity == "driving_torque" else None
+        vehicle = self._bench.file.vehicle
         self.segments.append(
             Segment(
                 id=planned.id,
@@ -274,13 +278,15 @@ class BenchConductor:
                 step_s=round(start_s + planned.step_s, 6),
                 end_s=round(end_s, 6),
                 complete=False,
-                controller=self._controller.stabilization
-                if self._controller and planned.quantity == "driving_torque"
-                else "",
+                controller=driven.stabilization if driven else "",
                 load=self._load,
                 initial_speed_km_h=round(self._speed_m_s * 3.6, 6),
                 reference_before=planned.reference_before,
                 reference_after=planned.reference_after,
+                quantity=planned.quantity,
+                torque_limit_nm=driven.torque_limit_nm if driven else None,
+                gear_ratio=controller.dfo.gear_ratio if controller else None,
+                rolling_radius_m=vehicle.wheel_radius_m * (1.0 - self._slip),
             )
         )
         self._store_segment()

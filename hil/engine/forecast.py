@@ -51,4 +51,4 @@ def forecast(plan: Plan, bench: BenchFile) -> Forecast:
     found = predict(plan, bench, load_model(simulation.model))
     limits = limits_of_channels(bench.limits)
     peaks = {channel: (found.peaks[channel], limit) for channel, limit in limits.items()}
-    return Forecast(peaks, judge(plan, found.recording, found.segments), found.bus_loads)
+    return Forecast(peaks, judge(plan, found.recording, found.segments, measured=False), found.bus_loads)

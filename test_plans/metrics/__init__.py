@@ -1,6 +1,13 @@
 """Metrics by name: one file a metric; other packages add theirs by entry point `hil.metrics`."""
 
-from test_plans.metrics._metric import ChannelName, DidNotSettleError, Metric, NoValueError
+from test_plans.metrics._metric import (
+    ChannelName,
+    DidNotSettleError,
+    Limits,
+    Metric,
+    NotReachedError,
+    NoValueError,
+)
 from test_plans.metrics._periodogram import energy_within, periodogram
 from test_plans.metrics._window import WindowMetric
 from test_plans.metrics.band_energy import BandEnergy, BandEnergyMotorSpeed
@@ -10,9 +17,21 @@ from test_plans.metrics.overshoot import (
     OvershootPercentShaftTorque,
     OvershootShaftTorque,
 )
-from test_plans.metrics.peak import Peak, PeakShaftTorque
+from test_plans.metrics.peak import Magnitude, Peak, PeakShaftTorque, Trough
+from test_plans.metrics.response_time import (
+    Arrival,
+    ArrivalShaftTorque,
+    ResponseTime,
+    ResponseTimeShaftTorque,
+)
 from test_plans.metrics.ride_comfort import RideComfort
 from test_plans.metrics.settling_time import SettlingShaftTorque, SettlingTime
+from test_plans.metrics.stability import (
+    Growth,
+    StabilityOscillation,
+    StabilityTorqueRequest,
+    growth_at_the_end,
+)
 from test_plans.registry import Registry
 
 _OWN: tuple[type[Metric], ...] = (
@@ -21,10 +40,18 @@ _OWN: tuple[type[Metric], ...] = (
     OvershootPercentShaftTorque,
     SettlingShaftTorque,
     BandEnergyMotorSpeed,
+    ResponseTimeShaftTorque,
+    ArrivalShaftTorque,
+    StabilityTorqueRequest,
     RideComfort,
     Peak,
+    Trough,
+    Magnitude,
     Overshoot,
     OvershootPercent,
+    ResponseTime,
+    Arrival,
+    StabilityOscillation,
     SettlingTime,
     BandEnergy,
 )
@@ -38,22 +65,34 @@ METRICS: Registry[Metric] = Registry(
 
 __all__ = [
     "METRICS",
+    "Arrival",
+    "ArrivalShaftTorque",
     "BandEnergy",
     "BandEnergyMotorSpeed",
     "ChannelName",
     "DidNotSettleError",
+    "Growth",
+    "Limits",
+    "Magnitude",
     "Metric",
     "NoValueError",
+    "NotReachedError",
     "Overshoot",
     "OvershootPercent",
     "OvershootPercentShaftTorque",
     "OvershootShaftTorque",
     "Peak",
     "PeakShaftTorque",
+    "ResponseTime",
+    "ResponseTimeShaftTorque",
     "RideComfort",
     "SettlingShaftTorque",
     "SettlingTime",
+    "StabilityOscillation",
+    "StabilityTorqueRequest",
+    "Trough",
     "WindowMetric",
     "energy_within",
+    "growth_at_the_end",
     "periodogram",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from pydantic import AfterValidator, Field
@@ -31,8 +32,21 @@ class NoValueError(Exception):
     """The metric has no value for this segment; the message says why."""
 
 
+class NotReachedError(NoValueError):
+    """What is timed did not happen within the window: with a limit on it that is a failure."""
+
+
 class DidNotSettleError(NoValueError):
     """The response was still moving at the end of the window: there is no settling time to tell."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a criterion demands of a metric, in its unit; `below`: the segment that it is compared with."""
+
+    upper: float | None = None
+    lower: float | None = None
+    below: str = ""
 
 
 class Metric(Strict, ABC):
@@ -59,6 +73,16 @@ class Metric(Strict, ABC):
             DidNotSettleError: what is looked for had not come to rest.
             BadInputError: the recording has no such channel.
         """
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that the value is computed from: each must be proven to have been measured."""
+        own = getattr(self, "channel", None)
+        return (own,) if isinstance(own, str) else ()
+
+    def objection_to_limits(self, segment: PlannedSegment, limits: Limits) -> str:  # noqa: ARG002
+        """Why limits cannot bound the metric in a segment planned so: what can; empty if they do."""
+        return ""
 
     def objection(self, segment: PlannedSegment) -> str:  # noqa: ARG002 - most have none
         """Why the metric cannot have a value in a segment that is planned so; empty if it can."""

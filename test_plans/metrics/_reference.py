@@ -27,16 +27,18 @@ def step_size(segment: Segment, given: float | None) -> float:
     return size
 
 
-def not_comparable(segment: PlannedSegment, channel: str, key: str) -> str:
-    """Objection to comparing `channel` with the step unless `key` gives the value; else empty."""
+def not_comparable(segment: PlannedSegment, channel: str, key: str = "") -> str:
+    """Objection to comparing `channel` with the step unless `key`, if any, gives the value; else empty."""
     if channel in _COMPARABLE[segment.quantity]:
         return ""
     unit = CHANNELS[channel].unit
-    return f"{channel} cannot be compared with a step of {segment.quantity}: give '{key}' in {unit}"
+    instead = f"give '{key}' in {unit}" if key else f"take {' or '.join(_COMPARABLE[segment.quantity])}"
+    return f"{channel} cannot be compared with a step of {segment.quantity}: {instead}"
 
 
-def no_step(segment: PlannedSegment, key: str) -> str:
-    """Objection to a segment without a step unless `key` gives its size; else empty."""
+def no_step(segment: PlannedSegment, key: str = "") -> str:
+    """Objection to a segment without a step unless `key`, if there is one, gives its size; else empty."""
     if segment.reference_before == segment.reference_after:
-        return f"a {segment.kind} has no step: give '{key}', or choose another metric"
+        instead = f"give '{key}', or choose another metric" if key else "choose another metric"
+        return f"a {segment.kind} has no step: {instead}"
     return ""

@@ -1,22 +1,21 @@
-"""Overshoot: how far a response to an upward step goes beyond the reference."""
+"""Overshoot: how far a response goes beyond the reference, in the step's direction."""
 
 from __future__ import annotations
 
 from typing import ClassVar
 
-import numpy as np
 from pydantic import Field
 
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import PlannedSegment
 from test_plans.metrics import _reference
-from test_plans.metrics._metric import ChannelName, NoValueError
-from test_plans.metrics._window import WindowMetric
+from test_plans.metrics._metric import ChannelName
+from test_plans.metrics.peak import Extreme, is_downward
 
 
-class Overshoot(WindowMetric):
-    """Peak minus the reference, not below zero."""
+class Overshoot(Extreme):
+    """How far the peak lies beyond the reference in the step's direction, not below zero."""
 
     name: ClassVar[str] = "overshoot"
     reference: float | None = Field(
@@ -26,10 +25,10 @@ class Overshoot(WindowMetric):
 
     @property
     def definition(self) -> str:
-        """Peak minus reference."""
+        """Distance from the reference to the peak."""
         return (
-            f"Peak minus reference, not below 0. Peak: largest value of {self.subject} {self.window}. "
-            f"Reference: {self._reference_in_words}."
+            f"How far {self.subject} goes beyond the reference in the step's direction, upwards or "
+            f"downwards, {self.window}; not below 0. Reference: {self._reference_in_words}."
         )
 
     @property
@@ -38,15 +37,12 @@ class Overshoot(WindowMetric):
 
     def compute(self, recording: Recording, segment: Segment) -> float:
         """The excess in the channel's unit."""
-        if segment.reference_after < segment.reference_before:
-            raise NoValueError("overshoot is defined for upward steps, this one goes down")
-        _, values = self.samples(recording, segment)
-        return max(0.0, float(np.max(values)) - _reference.reference(segment, self.reference))
+        lowest, highest = self.extremes(recording, segment)
+        reference = _reference.reference(segment, self.reference)
+        return max(0.0, reference - lowest if is_downward(segment) else highest - reference)
 
     def objection(self, segment: PlannedSegment) -> str:
-        """A downward step, no step, or one of another torque than the channel's."""
-        if segment.reference_after < segment.reference_before:
-            return "overshoot is defined for upward steps, this one goes down"
+        """No step, or one of another torque than the channel's."""
         if self.reference is None:
             objection = _reference.no_step(segment, "reference") or _reference.not_comparable(
                 segment, self.channel, "reference"

@@ -78,7 +78,19 @@ def test_a_generic_metric_takes_its_parameters() -> None:
         ({"metric": "band_energy_motor_speed", "segment": "short"}, "segment", "the segment to 10 s"),
         ({"metric": "overshoot_shaft_torque", "segment": "sweep"}, "segment", "a chirp has no step"),
         ({"metric": "overshoot_shaft_torque", "segment": "motor"}, "segment", "give 'reference' in N m"),
-        ({"metric": "overshoot_shaft_torque", "segment": "down"}, "segment", "upward"),
+        (
+            {"metric": "peak_shaft_torque", "segment": "down", "upper": 300},
+            "upper",
+            "'trough' or 'magnitude'",
+        ),
+        ({"metric": "peak_shaft_torque", "segment": "down", "below": "up"}, "below", "'magnitude' instead"),
+        (
+            {"metric": "trough", "channel": "shaft_torque_nm", "segment": "down", "lower": 1},
+            "lower",
+            "'upper'",
+        ),
+        ({"metric": "trough", "channel": "shaft_torque_nm", "segment": "up", "upper": 1}, "upper", "'lower'"),
+        ({"metric": "response_time_shaft_torque", "segment": "sweep"}, "segment", "choose another metric"),
         (
             {"metric": "overshoot_percent_shaft_torque", "segment": "motor", "reference": 1},
             "segment",

@@ -148,14 +148,14 @@ class Trial:
         return self._carry_out(plan, guess.model(self.base), guess.held)
 
     def _outcome(self, found: Predicted, model: Model) -> Outcome:
-        criteria = judge(self.plan, found.recording, found.segments)
+        criteria = judge(self.plan, found.recording, found.segments, measured=False, device=False)
         early = criteria
         if self.targets.first_seconds is not None:
             segments = [_cut(segment, self.targets.first_seconds) for segment in found.segments]
             only = self.plan.model_copy(
                 update={"criteria": tuple(c for c in self.plan.criteria if c.id in self.targets.values)}
             )
-            early = judge(only, found.recording, segments)
+            early = judge(only, found.recording, segments, measured=False, device=False)
         return Outcome(
             _figures(criteria, self.targets),
             _figures(early, self.targets),

@@ -152,7 +152,7 @@ class Trial:
     def judged(self, found: Predicted) -> tuple[CriterionResult, ...]:
         """The criteria that depend on the controller."""
         plan = self.plan.model_copy(update={"criteria": self.driven.criteria})
-        return judge(plan, found.recording, found.segments)
+        return judge(plan, found.recording, found.segments, measured=False, device=False)
 
     def margins_of(self, criteria: Iterable[CriterionResult]) -> dict[str, float]:
         """Weighted margins by id of those `criteria` that depend on the controller, predicted or measured."""

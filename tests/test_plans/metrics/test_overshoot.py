@@ -41,12 +41,18 @@ def test_reference_and_step_size_can_be_given() -> None:
     assert "Reference: 10 rad/s. In percent of 8." in percent.definition
 
 
-def test_a_step_down_and_no_step_have_none() -> None:
+def test_a_step_down_overshoots_downwards() -> None:
+    time = time_axis()
+    torque = np.where(time < STEP.step_s + 0.0005, 326.0, np.where(time < STEP.step_s + 0.1, -40.0, 5.0))
+    recording = recording_of(time, shaft_torque_nm=torque)
+    down = STEP.model_copy(update={"reference_before": 326.0, "reference_after": 0.0})
+    assert OvershootShaftTorque().compute(recording, down) == 40.0
+    assert OvershootPercentShaftTorque().compute(recording, down) == pytest.approx(100 * 40 / 326)
+
+
+def test_no_step_has_none() -> None:
     time = time_axis()
     recording = recording_of(time, shaft_torque_nm=np.zeros(len(time)))
-    down = STEP.model_copy(update={"reference_before": 326.0, "reference_after": 0.0})
     level = STEP.model_copy(update={"reference_before": 326.0})
-    with pytest.raises(NoValueError, match="upward"):
-        OvershootShaftTorque().compute(recording, down)
     with pytest.raises(NoValueError, match="no step"):
         OvershootPercentShaftTorque().compute(recording, level)

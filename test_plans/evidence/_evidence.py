@@ -1,0 +1,52 @@
+"""Whether the channels of a segment were measured: one sentence for each that was not."""
+
+from __future__ import annotations
+
+from hil.core.recording import Recording
+from hil.core.result import Segment
+from test_plans.evidence._relations import RELATIONS, means_of
+from test_plans.evidence._repetition import SENSORS, WITNESSES, frozen_channels
+
+#: Channels that are computed from both sides, and what they are computed from.
+_SIDES = {
+    "shaft_torque_nm": ("shaft_torque_left_nm", "shaft_torque_right_nm"),
+    "wheel_speed_rad_s": ("wheel_speed_left_rad_s", "wheel_speed_right_rad_s"),
+}
+
+
+def _proofs() -> dict[str, tuple[str, ...]]:
+    found: dict[str, list[str]] = {}
+    for name in SENSORS:
+        witness = f", or while {WITNESSES[name]} moves" if WITNESSES[name] else ""
+        found.setdefault(name, []).append(f"does not repeat bit for bit beyond its noise{witness}")
+    for one in RELATIONS:
+        bounds = f"within {one.within[0]:g} to {one.within[1]:g} times"
+        for name in (one.channel, *one.against):
+            found.setdefault(name, []).append(f"{one.law}, {bounds}")
+    for whole, sides in _SIDES.items():
+        found[whole] += [f"both sides: {text}" for text in dict.fromkeys(t for s in sides for t in found[s])]
+    return {name: tuple(dict.fromkeys(texts)) for name, texts in found.items()}
+
+
+#: What proves that a channel was measured, in words.
+PROOFS = _proofs()
+
+
+def objections(recording: Recording, segment: Segment) -> dict[str, str]:
+    """Channels that were not measured in a segment, each with the reason; empty where all were.
+
+    A relation in which two channels contradict each other counts against both: nobody knows which of them
+    is wrong.
+    """
+    found = {name: str(frozen) for name, frozen in frozen_channels(recording, segment).items()}
+    means = means_of(recording, segment)
+    for relation in RELATIONS:
+        objection = relation.objection(means, segment)
+        if objection:
+            for name in (relation.channel, *relation.against):
+                found.setdefault(name, objection)
+    for whole, sides in _SIDES.items():
+        for side in sides:
+            if side in found:
+                found.setdefault(whole, found[side])
+    return found

@@ -1,0 +1,140 @@
+"""Stability: does the loop come to rest, or does it shake, bang between its limits, or grow?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from hil.core.recording import Recording
+from hil.core.result import Segment
+from test_plans.conductor import PlannedSegment
+from test_plans.metrics import _lines
+from test_plans.metrics._metric import ChannelName, Metric, NoValueError
+from test_plans.metrics._reference import no_step
+from test_plans.metrics._window import WindowMetric, cut, evenly
+
+_WHEEL = "wheel_speed_rad_s"
+_REQUEST = "motor_torque_ref_nm"
+#: A request this close to its limit lies at it; one against what was asked for counts from this share of it.
+_AT_LIMIT, _AGAINST = 0.999, 0.05
+_ASKED = 0.1  # of the step: a smaller torque has no direction that noise could not turn around
+_LEAST_S = 0.4  # of the second half: less shows no line
+
+
+class StabilityTorqueRequest(Metric):
+    """Share of a window's second half in which T_m* lies at its limit, or against what was asked for."""
+
+    name: ClassVar[str] = "stability_torque_request"
+    limit_nm: float | None = Field(
+        default=None, gt=0, description="torque limit of the controller, N m; else that of the segment's"
+    )
+
+    @property
+    def unit(self) -> str:
+        """A share."""
+        return "1"
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The request."""
+        return (_REQUEST,)
+
+    @property
+    def definition(self) -> str:
+        """When a request counts."""
+        return (
+            f"Share of the second half of the time after the step in which {_REQUEST} (T_m*) lies at the "
+            "controller's torque limit, or has the other sign than the torque that was asked for."
+        )
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """From 0 to 1."""
+        middle_s = 0.5 * (segment.step_s + segment.end_s)
+        _, request = cut(recording, segment, _REQUEST, middle_s, segment.end_s)
+        limit_nm = self.limit_nm or segment.torque_limit_nm
+        counted = np.zeros(len(request), bool)
+        if limit_nm is not None:
+            counted |= np.abs(request) >= _AT_LIMIT * limit_nm
+        size = abs(segment.reference_after - segment.reference_before)
+        if abs(segment.reference_after) >= _ASKED * size:
+            asked = np.sign(segment.reference_after)
+            counted |= asked * request < -_AGAINST * float(np.max(np.abs(request)))
+        return float(np.mean(counted))
+
+
+class StabilityOscillation(WindowMetric):
+    """Amplitude of the strongest line of a channel that does not decay and follows no order of the wheel."""
+
+    name: ClassVar[str] = "stability_oscillation"
+    channel: ChannelName = "shaft_torque_nm"
+    orders: tuple[float, ...] = Field(
+        default=(), strict=False, description="declared orders of the wheel, for windows of constant speed"
+    )
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The channel and the wheel's speed."""
+        return (self.channel, _WHEEL)
+
+    @property
+    def definition(self) -> str:
+        """How lines are found, and which count."""
+        return (
+            f"Amplitude of the strongest spectral line of {self.subject} in the second half of the time "
+            f"after the step, in at most {_lines.MOST_WINDOWS} windows (Hann), that keeps its frequency and "
+            "does not decay. A line that moves with the wheel's speed is an order of the wheel and does not "
+            "count, nor does a declared order where the speed is constant."
+        )
+
+    def objection(self, segment: PlannedSegment) -> str:
+        """No step: what is excited is no cycle of the loop."""
+        return no_step(segment) or super().objection(segment)
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """The amplitude in the channel's unit."""
+        return self.line(recording, segment).amplitude
+
+    def line(self, recording: Recording, segment: Segment) -> _lines.Line:
+        """The line itself, with its frequency.
+
+        Raises:
+            NoValueError: the window is too short, or samples are missing.
+        """
+        start_s, end_s = self.bounds_s(segment)
+        middle_s = 0.5 * (start_s + end_s)
+        if end_s - middle_s < _LEAST_S:
+            raise NoValueError(f"{end_s - middle_s:.3g} s are too short for a line")
+        time, values = cut(recording, segment, self.channel, middle_s, end_s, with_end=False)
+        spacing_s, even = evenly(time, values)
+        _, speed = cut(recording, segment, _WHEEL, middle_s, end_s, with_end=False)
+        return _lines.strongest_cycle(even, spacing_s, speed / (2 * np.pi), self.orders)
+
+
+@dataclass(frozen=True)
+class Growth:
+    """An oscillation that grew until its run was ended."""
+
+    frequency_hz: float
+    amplitude_nm: float
+
+
+def growth_at_the_end(recording: Recording, segment: Segment) -> Growth | None:
+    """The oscillation of T_s in which a segment that was cut short ended; None if it did not oscillate.
+
+    An oscillation: at least three periods since the step, in the last of which T_s swings by more than a
+    tenth of the step to both sides of its mean, and no less than in the first.
+    """
+    start_s = max(segment.step_s, segment.end_s - 1.0)
+    try:
+        time, values = cut(recording, segment, "shaft_torque_nm", start_s, segment.end_s, with_end=False)
+    except NoValueError:
+        return None
+    spacing_s, even = evenly(time, values)
+    found = _lines.swings(even, spacing_s)
+    size = abs(segment.reference_after - segment.reference_before)
+    if found is None or found.last < 0.1 * size or found.last < found.first:
+        return None
+    return Growth(found.frequency_hz, found.last)
