@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from drivers.newest_frames import least_bytes
 from drivers.samples import Counting, Samples, Stream
+from hil.core.checksum import crc8_of
 from hil.core.compiled import compiled
 from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.signals import Signal, bits_at, number_at
@@ -48,10 +49,16 @@ class FrameSource:
 
     The streams are in the order in which the bindings name their frames first; a frame that only counts is
     the last, without channels. Frames of a bus without `counted_by` have the times at which they came.
+    `checked` are frames by identifier with the signal of their checksum (`hil.core.checksum`, byte 7): one
+    whose checksum is not that of its content is left out, and counted in `damaged`.
     """
 
     def __init__(
-        self, bindings: Sequence[Binding], period_s: float, counted_by: CountedBy | None = None
+        self,
+        bindings: Sequence[Binding],
+        period_s: float,
+        counted_by: CountedBy | None = None,
+        checked: Mapping[int, Signal] | None = None,
     ) -> None:
         frames = list(dict.fromkeys((b.bus, b.frame_id) for b in bindings))
         if counted_by and (counted_by.bus, counted_by.frame_id) not in frames:
@@ -66,10 +73,16 @@ class FrameSource:
                     if its_bus == bus
                 ],
                 counted_by if counted_by and counted_by.bus == bus else None,
+                checked or {},
             )
             for bus, _ in frames
         }
         self._waiting: list[Samples] = []
+
+    @property
+    def damaged(self) -> int:
+        """How many frames were left out because of their checksum."""
+        return sum(decoder.damaged for decoder in self._decoders.values())
 
     def take(self, bus: str, block: FrameBlock) -> None:
         """Take the frames of one bus."""
@@ -124,7 +137,12 @@ def _stream(
 class _Decoder:
     """The bound signals of one bus, and its count."""
 
-    def __init__(self, bound: list[tuple[Stream, int, list[Binding]]], counted_by: CountedBy | None) -> None:
+    def __init__(
+        self,
+        bound: list[tuple[Stream, int, list[Binding]]],
+        counted_by: CountedBy | None,
+        checked: Mapping[int, Signal],
+    ) -> None:
         self._streams = [stream for stream, _, _ in bound]
         self._counted = counted_by is not None
         signals = [b.signal for _, _, bindings in bound for b in bindings]
@@ -141,8 +159,17 @@ class _Decoder:
             if counted_by.counter:
                 self._counter[1:] = counted_by.counter.place
                 read[self._counter[0]].append(counted_by.counter)
+        for place, (_, frame_id, _) in enumerate(bound):
+            read[place] += [checked[frame_id]] if frame_id in checked else []
+        self._checked = np.array([frame_id in checked for _, frame_id, _ in bound], bool)
+        self._damaged = np.zeros(1, np.int64)
         self._least = np.array([least_bytes(several) for several in read], np.int64)
         self._state = np.array([_NONE_YET, 0, 0], np.int64)
+
+    @property
+    def damaged(self) -> int:
+        """Frames left out because of their checksum."""
+        return int(self._damaged[0])
 
     def decode(self, block: FrameBlock) -> list[Samples]:
         """Samples of each stream that the block has frames of."""
@@ -153,7 +180,8 @@ class _Decoder:
         marks = np.empty((streams if self._counted else 0, frames), np.int64)
         _read(
             block["id"], block["flags"], block["length"], block["time_s"], block["data"],
-            self._ids, self._least, self._ends, self._places, self._scales, self._counter, self._state,
+            self._ids, self._checked, self._damaged, self._least, self._ends,
+            self._places, self._scales, self._counter, self._state,
             counts, times, numbers, marks,
         )  # fmt: skip
         values = numbers.T
@@ -201,6 +229,8 @@ def _read(  # type: ignore[no-untyped-def]
     stamps,
     payloads,
     wanted,
+    checked,
+    damaged,
     least,
     ends,
     places,
@@ -218,6 +248,9 @@ def _read(  # type: ignore[no-untyped-def]
             continue
         for stream in range(wanted.shape[0]):
             if ids[frame] != wanted[stream] or lengths[frame] < least[stream]:
+                continue
+            if checked[stream] and payloads[frame] >> np.uint64(56) != crc8_of(ids[frame], payloads[frame]):
+                damaged[0] += 1
                 continue
             at = counts[stream]
             if counter[0] == stream:

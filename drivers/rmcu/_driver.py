@@ -20,7 +20,7 @@ from hil.core.conventions import TICK_S
 from hil.core.dbc import Dbc, Names, Needed, read_dbc
 from hil.core.errors import BadInputError, BenchError
 from hil.core.printable import printable
-from hil.core.signals import Payloads
+from hil.core.signals import FrameLayout, Payloads
 
 MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
 _COUNTER_VALUES = 16
@@ -39,7 +39,7 @@ _NEEDED = {
         ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
     ),
     "RMCU_Status": Needed(
-        ("MotorSpeed", "MotorTorqueRef", "MotorTorque"), whole=("Counter",), optional=("Counter",)
+        ("MotorSpeed", "MotorTorqueRef", "MotorTorque"), whole=("Counter", "Crc"), optional=("Counter", "Crc")
     ),
     "RMCU_Control": Needed(
         ("DrivingTorqueRef", "DrivingTorqueEst", "State", "RequestFault"),
@@ -105,14 +105,13 @@ class RmcuDriver:
         self.last_seen_s = -math.inf
         self._damaged_s = self._stands_s = -math.inf  # when a frame came whose checksum or count was wrong
         self._count: int | None = None
-        control = self._layouts["RMCU_Control"]
-        self._checked = "Crc" in control.signals and control.signals["Crc"].place[:2] == _LAST_BYTE
-        shown = (control, self._layouts["RMCU_Status"])
+        shown = (self._layouts["RMCU_Control"], self._layouts["RMCU_Status"])
         self._newest = NewestFrames({frame.id: frame.signals.values() for frame in shown})
         self._identification: int | None = None
         if "RMCU_Identification" in self._layouts:
             loop.on_frame(wire, self._layouts["RMCU_Identification"].id, self._take_identification)
-        source = FrameSource(self._bindings(), TICK_S, self._counted_by())
+        checked = {frame.id: frame.signals["Crc"] for frame in shown if self._is_checked(frame)}
+        source = FrameSource(self._bindings(), TICK_S, self._counted_by(), checked)
         self.sources = (source,)
         loop.on_frame(wire, self._reply.id, self._take_reply)
         loop.on_block(self._take_block)
@@ -131,13 +130,19 @@ class RmcuDriver:
         ]
 
     def _counted_by(self) -> CountedBy:
-        """What counts its samples: the status's own counter, else the control frame's, else the status."""
-        for message in ("RMCU_Status", "RMCU_Control"):
+        """What counts its samples: the longer of both frames' counters, else the status frames themselves."""
+        found = [
+            (counter.length, message)
+            for message in ("RMCU_Control", "RMCU_Status")
+            if (counter := self._layouts[message].signals.get("Counter")) is not None
+            and counter.length >= _SHORTEST_COUNTER
+        ]
+        if found:
+            _, message = max(found, key=lambda one: one[0])
             layout = self._layouts[message]
-            counter = layout.signals.get("Counter")
-            if counter is not None and counter.length >= _SHORTEST_COUNTER:
-                # The control frame follows the status of its sample.
-                return CountedBy(self._wire.name, layout.id, message, counter, opens=message == "RMCU_Status")
+            # The control frame follows the status of its sample.
+            opens = message == "RMCU_Status"
+            return CountedBy(self._wire.name, layout.id, message, layout.signals["Counter"], opens=opens)
         return CountedBy(self._wire.name, self._layouts["RMCU_Status"].id, "RMCU_Status", opens=True)
 
     def come_up(self) -> None:
@@ -312,12 +317,14 @@ class RmcuDriver:
         self.last_seen_s, payload = control
         self.state = self._state_names.get(signals["State"].raw(payload), "?")
         self.fault = self._fault_names.get(signals["RequestFault"].raw(payload), "?")
-        self.torque_ref_nm = self._layouts["RMCU_Status"].signals["MotorTorqueRef"].value(status[1])
+        shown = self._layouts["RMCU_Status"]
+        if not self._is_damaged(shown, status[1]):
+            self.torque_ref_nm = shown.signals["MotorTorqueRef"].value(status[1])
 
     def _is_believed(self, time_s: float, payload: int) -> bool:
         """Whether a control frame is whole, and not the one that came before."""
         control = self._layouts["RMCU_Control"]
-        if self._checked and control.signals["Crc"].raw(payload) != crc8(control.id, payload):
+        if self._is_damaged(control, payload):
             self._damaged_s = time_s
             return False
         counter = control.signals.get("Counter")
@@ -326,3 +333,11 @@ class RmcuDriver:
             self._stands_s = time_s
             return False
         return True
+
+    def _is_checked(self, frame: FrameLayout) -> bool:
+        """Whether a frame ends in a checksum."""
+        return "Crc" in frame.signals and frame.signals["Crc"].place[:2] == _LAST_BYTE
+
+    def _is_damaged(self, frame: FrameLayout, payload: int) -> bool:
+        """Whether a frame's checksum is not that of its content."""
+        return self._is_checked(frame) and frame.signals["Crc"].raw(payload) != crc8(frame.id, payload)

@@ -47,7 +47,8 @@ class LimitWatch:
     trips. A value that the device does not know (NaN) is not known to be within the range.
 
     Silence counts only while somebody listened: a time in which this loop itself stood still is no silence
-    of a device. It is kept in `pauses`, and is a fault of the bench only beyond `LONGEST_PAUSE_S`.
+    of a device. It is kept in `pauses`, and is a fault of the bench only beyond `LONGEST_PAUSE_S`. What
+    devices have to say of a silence, `why_silent` gives in words.
     """
 
     def __init__(
@@ -56,10 +57,11 @@ class LimitWatch:
         limits: Limits,
         interlocks: Mapping[str, Interlock] | None = None,
         answer: Callable[[Range, str], None] = lambda reached, text: None,
+        why_silent: Callable[[], str] = lambda: "",
     ) -> None:
         ranges = ranges_of(limits, interlocks)
         self._watched = {stream: StreamRanges(stream, ranges) for stream in streams}
-        self._answer = answer
+        self._answer, self._why_silent = answer, why_silent
         self._seen_s = dict.fromkeys(streams, -np.inf)
         self._looked_s = np.inf
         self.pauses = OwnPauses()
@@ -120,8 +122,11 @@ class LimitWatch:
         """
         for stream, seen_s in self._seen_s.items():
             if now_s - seen_s > stream.silence_s:
+                why = self._why_silent()
                 raise BenchError(
-                    f"{stream.label} has stopped coming", where=stream.where, fix="is the device powered?"
+                    f"{stream.label} has stopped coming{f' ({why})' if why else ''}",
+                    where=stream.where,
+                    fix="look at its wiring and its sender" if why else "is the device powered?",
                 )
 
     def standing_still(self, now_s: float) -> bool:

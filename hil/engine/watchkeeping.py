@@ -9,6 +9,7 @@ from hil.core.errors import BenchError, EmergencyStopError
 from hil.engine.bench import Bench
 from hil.engine.hold import Holding
 from hil.engine.limits import LimitWatch
+from hil.engine.liveness import LivenessWatch
 from hil.engine.operator import LOOK_S, Operator
 from hil.engine.ranges import Range
 from hil.engine.recorder import Recorder
@@ -30,7 +31,8 @@ class Watchkeeping:
     ) -> None:
         self._bench, self._recorder, self._operator, self._event = bench, recorder, operator, event
         file = bench.file
-        self.limits = LimitWatch(bench.streams, file.limits, file.interlocks, self._answer)
+        self.limits = LimitWatch(bench.streams, file.limits, file.interlocks, self._answer, self._troubles)
+        self.liveness = LivenessWatch(bench.streams)
         self.zero = ZeroCheck(bench.streams, file.zero)
         self.hold = Holding(bench.loop, operator, self.limits.standing, event, recorder.recording_time)
         self._sources = bench.sources
@@ -63,6 +65,9 @@ class Watchkeeping:
         else:
             self._operator.tell(f"warning: {text}")
 
+    def _troubles(self) -> str:
+        return "; ".join(text for device in self._bench.devices for text in device.troubles())
+
     def _supervise(self) -> None:
         if self.limits.standing_still(self._bench.loop.clock.now_s()):
             return  # what came meanwhile is to be looked at first
@@ -87,7 +92,10 @@ class Watchkeeping:
                 if not self.rows_finished:
                     self._recorder.take(samples)
                 self.limits.take(samples, now_s)
+                self.liveness.take(samples)
             self._bench.loop.keep_up()
+        if self.limits.active and not self._bench.rmcu.is_safe():
+            self.liveness.refuse_frozen()
         pauses = self.limits.pauses.count
         try:
             self.limits.look_for_silence(now_s)

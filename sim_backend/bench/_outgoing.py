@@ -68,8 +68,9 @@ class Outgoing:
         ]
         if talks:
             shown += _shown_by(self._rmcu)
-        checked = (self._vehicle.id, self._rmcu.control.id)
-        self._rmcu_traffic = CyclicTraffic(shown, self._bit_rates[RMCU_BUS], checked)
+        checked = [self._vehicle.id, self._rmcu.control.id]
+        checked += [self._rmcu.status.id] if "Crc" in self._rmcu.status.signals else []
+        self._rmcu_traffic = CyclicTraffic(shown, self._bit_rates[RMCU_BUS], tuple(checked))
 
     def dynos_changed(self) -> None:
         """Look again at what NMT and the SYNC producer let the dynos send."""
@@ -148,6 +149,8 @@ class Outgoing:
 
 def _shown_by(rmcu: RmcuNode) -> list[Shown]:
     status = {"MotorSpeed": T.MOTOR_SPEED, "MotorTorqueRef": T.TORQUE_REF, "MotorTorque": T.TORQUE}
+    if "Counter" in rmcu.status.signals:
+        status["Counter"] = T.COUNTER
     control = {
         "DrivingTorqueRef": T.DRIVING_REF,
         "DrivingTorqueEst": T.DRIVING_EST,

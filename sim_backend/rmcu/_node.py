@@ -31,7 +31,9 @@ NEEDED = {
     "RMCU_Request": Needed(
         ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
     ),
-    "RMCU_Status": Needed(("MotorSpeed", "MotorTorqueRef", "MotorTorque")),
+    "RMCU_Status": Needed(
+        ("MotorSpeed", "MotorTorqueRef", "MotorTorque"), whole=("Counter", "Crc"), optional=("Counter", "Crc")
+    ),
     "RMCU_Control": Needed(
         (
             "DrivingTorqueRef",

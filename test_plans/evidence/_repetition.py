@@ -3,9 +3,10 @@
 The last digits of a measured value change from sample to sample, unless its resolution is coarser than its
 noise and nothing moves. Two things show that a live channel could not have stood still:
 
-- *its own noise*: before the repetition at most a third of its samples repeated, and at least a third of its
+- *its own noise*: at some time before, at most a third of its samples repeated, and at least a third of its
   changes turned back. Noise then exceeds half a resolution step, every second sample changes wherever the
-  value lies, and 20 equal samples have a chance below 1e-6, 50 of 1e-15.
+  value lies, and 20 equal samples have a chance below 1e-6, 50 of 1e-15. At a value of exactly zero this has
+  to be so just before: an encoder that gives noise in motion gives none at standstill.
 - *a witness*: the neighbour that moves it (the motor's torque for T_s, the wheel for the vehicle) has moved
   by a tenth of its own largest magnitude meanwhile. A shaft torque of exactly zero is left out: it may lie in
   the backlash.
@@ -13,7 +14,7 @@ noise and nothing moves. Two things show that a live channel could not have stoo
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +26,7 @@ from test_plans.conductor import Array
 
 #: A channel with noise that repeats for longer than this is frozen, and one whose witness moves, s.
 FROZEN_S, FROZEN_BESIDE_WITNESS_S = 0.05, 0.08
-_LEAST_SAMPLES = 20
+LEAST_SAMPLES = 20
 _REPEATS, _TURNS = 1 / 3, 1 / 3
 _MEMORY = 1 / 64  # of a sample in the shares of repeats and turns
 _MOVED = 0.1  # of a witness's largest magnitude
@@ -43,6 +44,8 @@ WITNESSES = {
     "vehicle_speed_m_s": "wheel_speed_rad_s",
 }
 SENSORS = tuple(WITNESSES)
+#: How far a witness has to move at least, in its unit: more than its noise.
+_LEAST = {"motor_torque_ref_nm": 2.0, "wheel_speed_rad_s": 0.2, "wheel_speed_left_rad_s": 0.2}
 
 
 class Repetition:
@@ -56,8 +59,13 @@ class Repetition:
     def __init__(self, columns: int) -> None:
         self.runs = np.zeros(columns, np.int64)
         self.noisy = np.zeros(columns, bool)
-        #: Last value, last change, share of repeats, share of turns.
-        self._state = np.tile(np.array([np.nan, 0.0, 1.0, 0.0]), (columns, 1))
+        #: Last value, last change, share of repeats, share of turns, whether noise was ever seen.
+        self._state = np.tile(np.array([np.nan, 0.0, 1.0, 0.0, 0.0]), (columns, 1))
+
+    @property
+    def values(self) -> Array:
+        """The newest value of each column."""
+        return self._state[:, 0]
 
     def look(self, values: Array) -> None:
         """Take samples, shape (n, columns); what is not known (NaN) neither repeats nor ends a repetition."""
@@ -88,7 +96,7 @@ class Frozen:
 def frozen_channels(recording: Recording, segment: Segment) -> dict[str, Frozen]:
     """Channels that were not measured somewhere in a segment, each with its longest repetition."""
     names = [name for name in SENSORS if name in recording]
-    if not names or recording.samples < _LEAST_SAMPLES:
+    if not names or recording.samples < LEAST_SAMPLES:
         return {}
     first = recording.rows_before(max(segment.start_s - _LEARNT_S, recording.first_s))
     last = recording.rows_before(segment.end_s)
@@ -109,7 +117,7 @@ def frozen_channels(recording: Recording, segment: Segment) -> dict[str, Frozen]
 
 def _stretches(name: str, time: Array, values: Array, witness: Array | None) -> Iterator[Frozen]:
     """Repetitions that are too long, in order."""
-    if len(values) < _LEAST_SAMPLES:
+    if len(values) < LEAST_SAMPLES:
         return
     same = np.concatenate([[False], np.diff(values) == 0.0, [False]])
     edges = np.flatnonzero(np.diff(same.astype(np.int8)))
@@ -117,42 +125,42 @@ def _stretches(name: str, time: Array, values: Array, witness: Array | None) -> 
     seen = 0
     for start, end in zip(edges[::2], edges[1::2], strict=True):
         lasted_s = float(time[end] - time[start])
-        if end - start < _LEAST_SAMPLES or lasted_s < FROZEN_S:
+        if end - start < LEAST_SAMPLES or lasted_s < FROZEN_S:
             continue
         follow.look(values[seen : end + 1, np.newaxis])
         seen = end + 1
         if follow.noisy[0]:
             yield Frozen(name, float(time[start]), lasted_s)
             continue
-        if witness is None or lasted_s < FROZEN_BESIDE_WITNESS_S or values[start] == 0.0:
+        if witness is None or values[start] == 0.0:
             continue
-        if has_moved(witness[start : end + 1], witness[: end + 1]):
+        moved_s = _moved_for_s(WITNESSES[name], witness[: end + 1], time[: end + 1], int(start))
+        if moved_s >= FROZEN_BESIDE_WITNESS_S:
             yield Frozen(name, float(time[start]), lasted_s, WITNESSES[name])
 
 
-def has_moved(meanwhile: Array, until_now: Array) -> bool:
-    """Whether a witness has moved by a tenth of what it has ever been."""
-    known = meanwhile[np.isfinite(meanwhile)]
-    largest = float(np.max(np.abs(until_now), where=np.isfinite(until_now), initial=0.0))
-    return bool(known.size) and largest > 0 and float(np.ptp(known)) > _MOVED * largest
+def _moved_for_s(witness: str, values: Array, time: Array, start: int) -> float:
+    """For how long at the end a witness has been away from where it was at `start`."""
+    known = np.isfinite(values)
+    largest = float(np.max(np.abs(values), where=known, initial=0.0))
+    part, stamps = values[start:][known[start:]], time[start:][known[start:]]
+    if not part.size:
+        return 0.0
+    range_ = np.maximum.accumulate(part) - np.minimum.accumulate(part)
+    first = int(np.searchsorted(range_, least_motion(witness, largest), "right"))
+    return float(stamps[-1] - stamps[first]) if first < len(part) else 0.0
 
 
-def is_too_long(samples: int, period_s: float, *, beside_witness: bool) -> bool:
-    """Whether a repetition has lasted longer than a live channel's could."""
-    allowed_s = FROZEN_BESIDE_WITNESS_S if beside_witness else FROZEN_S
-    return samples >= _LEAST_SAMPLES and samples * period_s >= allowed_s
-
-
-def witnesses_among(channels: Sequence[str]) -> dict[str, str]:
-    """The witness of each sensor among some channels."""
-    return {name: WITNESSES[name] for name in channels if name in WITNESSES}
+def least_motion(witness: str, largest: float) -> float:
+    """What a witness has to move by: more than its noise, and a tenth of its largest magnitude so far."""
+    return max(_LEAST[witness], _MOVED * largest)
 
 
 @compiled
 def _follow(values, state, runs, noisy):  # type: ignore[no-untyped-def]
     """Update the state of each column."""
     for column in range(values.shape[1]):
-        last, change, repeats, turns = state[column]
+        last, change, repeats, turns, ever = state[column]
         for sample in range(values.shape[0]):
             value = values[sample, column]
             if np.isnan(value):
@@ -160,7 +168,8 @@ def _follow(values, state, runs, noisy):  # type: ignore[no-untyped-def]
             step = value - last
             if step == 0.0:
                 if runs[column] == 0:
-                    noisy[column] = repeats < _REPEATS and turns > _TURNS
+                    now = repeats < _REPEATS and turns > _TURNS
+                    noisy[column] = now or (ever > 0.0 and value != 0.0)
                 runs[column] += 1
                 repeats += _MEMORY * (1.0 - repeats)
             else:
@@ -168,8 +177,10 @@ def _follow(values, state, runs, noisy):  # type: ignore[no-untyped-def]
                 repeats -= _MEMORY * repeats
                 turned = 1.0 if step * change < 0.0 else 0.0
                 turns += _MEMORY * (turned - turns)
+                if repeats < _REPEATS and turns > _TURNS:
+                    ever = 1.0
                 if not np.isnan(step):
                     change = step
             last = value
         state[column, 0], state[column, 1] = last, change
-        state[column, 2], state[column, 3] = repeats, turns
+        state[column, 2], state[column, 3], state[column, 4] = repeats, turns, ever

@@ -168,14 +168,30 @@ def test_an_rmcu_that_has_not_been_heard_yet_is_in_no_trouble_and_not_safe_eithe
             rmcu.come_up()
 
 
-@pytest.mark.parametrize(("bits", "counted_by"), [(8, 8), (3, 3), (2, None), (1, None)])
-def test_a_counter_counts_from_three_bits_on(bits, counted_by, tmp_path):
+@pytest.mark.parametrize(("bits", "counted_by"), [(8, 8), (5, 5), (4, 4), (3, 4), (1, 4)])
+def test_the_longer_of_both_counters_counts(bits, counted_by, tmp_path):
     path = tmp_path / "short.dbc"
     text = SIM.rmcu.dbc.read_text()
     path.write_text(
         text.replace("SG_ Counter : 48|8@1+ (1,0) [0|255]", f"SG_ Counter : 48|{bits}@1+ (1,0) [0|1]")
     )
     with running("short-counter") as bench:
+        counts = RmcuDriver(bench.loop, bench.loop.wires[0], path)._counted_by()
+    assert counts.counter.length == counted_by
+    assert (counts.name, counts.opens) == (("RMCU_Control", False) if bits >= 4 else ("RMCU_Status", True))
+
+
+@pytest.mark.parametrize(("bits", "counted_by"), [(3, 3), (2, None), (1, None)])
+def test_a_counter_counts_from_three_bits_on(bits, counted_by, tmp_path):
+    path = tmp_path / "short.dbc"
+    text = SIM.rmcu.dbc.read_text().replace(
+        ' SG_ Counter : 0|4@1+ (1,0) [0|15] "" HOST\n SG_ MotorS', " SG_ MotorS"
+    )
+    text = text.replace('CM_ SG_ 272 Counter "Number of the sample, modulo 16.";\n', "")
+    path.write_text(
+        text.replace("SG_ Counter : 48|8@1+ (1,0) [0|255]", f"SG_ Counter : 48|{bits}@1+ (1,0) [0|1]")
+    )
+    with running("shorter-counter") as bench:
         counts = RmcuDriver(bench.loop, bench.loop.wires[0], path)._counted_by()
     assert (counts.counter.length if counts.counter else None) == counted_by
     assert (counts.name, counts.opens) == (("RMCU_Control", False) if counted_by else ("RMCU_Status", True))

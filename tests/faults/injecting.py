@@ -302,6 +302,9 @@ def _checked(payloads: Payloads) -> Payloads:
     return payloads | crc8_many(CONTROL.id, payloads).astype(np.uint64) << np.uint64(56)
 
 
+_VALUES = np.uint64((1 << 56) - 1)
+
+
 def stuck_counter() -> Callable[[FrameBlock], FrameBlock]:
     signal_ = CONTROL.signals["Counter"]
     mask = np.uint64(((1 << signal_.length) - 1) << signal_.shift)
@@ -317,15 +320,44 @@ def stuck_counter() -> Callable[[FrameBlock], FrameBlock]:
     return change
 
 
-def stuck(frame_id: int) -> Callable[[FrameBlock], FrameBlock]:
-    """Its values do not change any more."""
-    kept: list[np.uint64] = []
+def stuck(*frame_ids: int) -> Callable[[FrameBlock], FrameBlock]:
+    """Their payloads do not change any more, bit for bit."""
+    kept: dict[int, np.uint64] = {}
 
     def change(block: FrameBlock) -> FrameBlock:
-        place = block["id"] == frame_id
+        for frame_id in frame_ids:
+            place = block["id"] == frame_id
+            if place.any():
+                block["data"][place] = kept.setdefault(frame_id, block["data"][place][0])
+        return block
+
+    return change
+
+
+def stuck_values() -> Callable[[FrameBlock], FrameBlock]:
+    """The RMCU's status keeps its values, under a counter that runs and a checksum that is right."""
+    kept: list[np.uint64] = []
+    counter = np.uint64(0xF)
+
+    def change(block: FrameBlock) -> FrameBlock:
+        place = block["id"] == STATUS.id
         if place.any():
-            kept[:] = kept or [block["data"][place][0]]
-            block["data"][place] = kept[0]
+            kept[:] = kept or [block["data"][place][0] & ~counter & _VALUES]
+            payloads = block["data"][place] & counter | kept[0]
+            block["data"][place] = payloads | crc8_many(STATUS.id, payloads) << np.uint64(56)
+        return block
+
+    return change
+
+
+def flipped_status(every: int) -> Callable[[FrameBlock], FrameBlock]:
+    """A bit of one in so many status frames is flipped, at random."""
+    random = np.random.default_rng(7)
+
+    def change(block: FrameBlock) -> FrameBlock:
+        place = (block["id"] == STATUS.id) & (random.integers(0, every, len(block)) == 0)
+        bits = random.integers(4, 56, len(block)).astype(np.uint64)
+        block["data"][place] ^= np.uint64(1) << bits[place]
         return block
 
     return change
@@ -337,7 +369,8 @@ def no_torque(block: FrameBlock) -> FrameBlock:
     mask = np.uint64(((1 << torque.length) - 1) << torque.shift)
     place = block["id"] == STATUS.id
     zero = np.uint64(int(STATUS.encode(MotorTorque=0.0)[0])) & mask
-    block["data"][place] = (block["data"][place] & ~mask) | zero
+    payloads = ((block["data"][place] & ~mask) | zero) & _VALUES
+    block["data"][place] = payloads | crc8_many(STATUS.id, payloads) << np.uint64(56)
     return block
 
 

@@ -23,6 +23,7 @@ from tests.faults.expected import (
     row,
 )
 from tests.faults.further_rows import FURTHER
+from tests.faults.sensor_rows import SENSORS
 from tests.faults.stage import Injection
 from tests.faults.third_party import Oil
 
@@ -278,7 +279,7 @@ _OF_SENSORS = (
         "stuck",
         "a wheel's speed is stuck",
         lambda: I.Received(I.stuck(0x183), DYNO_BUS),
-        "the wheels turn at",
+        "the wheels turn at|repeats bit for bit",
         within_s=None,  # until its speed should have changed nobody can know
     ),
     tolerated("no-torque", "torque does not follow", lambda: I.Received(I.no_torque), phases=("stepping",)),
@@ -365,6 +366,7 @@ FAULTS: tuple[FaultRow, ...] = (
     *_OF_WIRES,
     *_OF_SENSORS,
     *FURTHER,
+    *SENSORS,
     *_OF_THE_COMPUTER,
     *_OF_CODE,
 )

@@ -34,11 +34,15 @@ def big_endian(dbc: str) -> str:
 
 
 def with_floats(dbc: str) -> str:
-    """The motor speed as a float, the torques in what room is left."""
+    """The motor speed as a float, the torques in what room is left; neither counter nor checksum."""
     for old, new in (
-        ("MotorSpeed : 0|24@1- (0.0005,0)", "MotorSpeed : 0|32@1- (1,0)"),
-        ("MotorTorqueRef : 24|20@1- (0.001,0)", "MotorTorqueRef : 32|16@1- (0.01,0)"),
-        ("MotorTorque : 44|20@1- (0.001,0)", "MotorTorque : 48|16@1- (0.01,0)"),
+        ("MotorSpeed : 4|22@1- (0.001,0)", "MotorSpeed : 0|32@1- (1,0)"),
+        ("MotorTorqueRef : 26|16@1- (0.01,0)", "MotorTorqueRef : 32|16@1- (0.01,0)"),
+        ("MotorTorque : 42|14@1- (0.05,0)", "MotorTorque : 48|16@1- (0.01,0)"),
+        (' SG_ Counter : 0|4@1+ (1,0) [0|15] "" HOST\n SG_ MotorSpeed', " SG_ MotorSpeed"),
+        (' SG_ Crc : 56|8@1+ (1,0) [0|255] "" HOST\n\nBO_ 273', "\nBO_ 273"),
+        ('CM_ SG_ 272 Counter "Number of the sample, modulo 16.";\n', ""),
+        ('CM_ SG_ 272 Crc "CRC-8 SAE J1850 over the low byte of the identifier and bytes 0 to 6.";\n', ""),
     ):
         assert old in dbc
         dbc = dbc.replace(old, new)

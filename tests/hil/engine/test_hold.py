@@ -97,7 +97,7 @@ def test_an_interlock_that_stays_open_ends_the_run_with_its_end_steps(tmp_path: 
     assert outcome.error.fix == "shut the cage"
     assert outcome.result.end_steps.startswith("carried out: ramp_down; the wheels turn at 0.0")
     assert outcome.result.holds[0].ended_by == "end of the run"
-    assert [c.verdict for c in outcome.result.criteria] == ["not_judged"]
+    assert {c.verdict for c in outcome.result.criteria} == {"not_judged"}
     assert outcome.result.safe_state == "confirmed"
 
 

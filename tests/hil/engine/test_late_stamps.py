@@ -88,9 +88,9 @@ def test_raw_frames_keep_their_stamps_and_the_file_says_where_the_rows_lie(tmp_p
     frames = read_frames(tmp_path / RECORDING)["rmcu"]
     status = frames[frames["id"] == 0x110]
     np.testing.assert_allclose(status["time_s"] / 0.002, np.rint(status["time_s"] / 0.002), atol=1e-6)
-    speeds = (status["data"] & np.uint64(0xFFFFFF)).astype(np.int64)
-    speeds[speeds >= 1 << 23] -= 1 << 24
-    shown = np.rint(recording["motor_speed_rad_s"][:50] / 0.0005).astype(np.int64)
+    speeds = (status["data"] >> np.uint64(4) & np.uint64(0x3FFFFF)).astype(np.int64)
+    speeds[speeds >= 1 << 21] -= 1 << 22
+    shown = np.rint(recording["motor_speed_rad_s"][:50] / 0.001).astype(np.int64)
     (row_0,) = (at for at in range(len(speeds) - 50) if np.array_equal(speeds[at : at + 50], shown))
     row_0_s = float(recording.metadata["time"]["bench_clock_at_row_0_s"])
     assert abs(status["time_s"][row_0] - row_0_s) <= 0.002

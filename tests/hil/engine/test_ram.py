@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import tomli_w
 
+from drivers import read_rmcu
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock
 from hil.core.recording import read_recording
@@ -18,12 +19,14 @@ from hil.engine.bench_file import bench_from_dict, shipped
 from hil.engine.doctor import DoctorRequest, examine_bench
 from sim_backend.bench import RAM_BUS, SimulatedBench
 from sim_backend.can_interface import prepare
-from tests.benches_for_tests import plan
+from tests.benches_for_tests import SIM, plan
 
 WHOLE = load_bench("sim_whole")
 STEPS = """[{set_controller: {file: phase_stabilization.toml}},
   {step: {segment: s, quantity: driving_torque, from_nm: 20, to_nm: 200, before_s: 0.3, after_s: 1}}]"""
 WAIT = "[{wait: {duration_s: 2.5}}]"
+
+RESOLUTION_NM = read_rmcu(SIM.rmcu.dbc).layouts["RMCU_Status"].signals["MotorTorqueRef"].scale
 
 
 def bench(name: str, *, bus: str = "ram", **keys):
@@ -55,7 +58,7 @@ def test_internals_stand_beside_the_bus_on_one_time_base(tmp_path: Path) -> None
     assert np.max(np.abs(bus - memory)[driven]) < 0.011
     assert np.max(np.abs(bus[1:] - memory[:-1])[driven[1:]]) > 0.1
     parts = recording["dfc_torque_nm"] + recording["wsc_torque_nm"]
-    assert np.max(np.abs(recording["motor_torque_ref_nm"] - parts)[driven]) < 0.001
+    assert np.max(np.abs(recording["motor_torque_ref_nm"] - parts)[driven]) < RESOLUTION_NM
     (clock,) = [clock for clock in outcome.result.clocks if clock.where == "bus 'ram'"]
     assert (clock.lost, clock.counted_by) == (0, "time stamps of its DAQ list")
     load = {load.bus: load.busiest for load in outcome.result.bus_loads}
@@ -71,7 +74,7 @@ def test_four_floats_fit_beside_the_rmcus_own_frames(tmp_path: Path) -> None:
     recording = read_recording(outcome.recording)
     parts = recording["dfc_torque_nm"] + recording["wsc_torque_nm"]
     driven = recording["driving_torque_ref_nm"] > 0
-    assert np.max(np.abs(recording["motor_torque_ref_nm"] - parts)[driven]) < 0.001
+    assert np.max(np.abs(recording["motor_torque_ref_nm"] - parts)[driven]) < RESOLUTION_NM
     assert 0.8 < outcome.result.bus_loads[0].mean < 1.0
 
 

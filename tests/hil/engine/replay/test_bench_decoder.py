@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from drivers import read_rmcu
+from hil.core.checksum import crc8_many
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock, frames, inserted
 from hil.core.recording import read_frames
+from hil.core.signals import Payloads
 from hil.engine.replay._bench import BenchDecoder
 from tests.benches_for_tests import SIM
 
@@ -18,13 +21,25 @@ LAYOUTS = read_rmcu(SIM.rmcu.dbc).layouts
 
 
 def status(count: int) -> FrameBlock:
-    return frames(LAYOUTS["RMCU_Status"].id, np.zeros(count, np.uint64), 8, 1e-3 * np.arange(float(count)))
+    return frames(
+        LAYOUTS["RMCU_Status"].id,
+        checked("RMCU_Status", Counter=np.arange(count) % 16),
+        8,
+        1e-3 * np.arange(float(count)),
+    )
+
+
+def checked(message: str, **values: Any) -> Payloads:
+    """Payloads of a message under their checksum."""
+    layout = LAYOUTS[message]
+    payloads = layout.encode(**values)
+    return payloads | layout.signals["Crc"].encode(crc8_many(layout.id, payloads))
 
 
 def test_only_devices_of_the_buses_that_are_there_give_channels(tmp_path: Path) -> None:
     count = 300
     control = LAYOUTS["RMCU_Control"]
-    payloads = control.encode(Counter=np.arange(count) % 256, DrivingTorqueRef=np.full(count, 5.0))
+    payloads = checked("RMCU_Control", Counter=np.arange(count) % 256, DrivingTorqueRef=np.full(count, 5.0))
     counted = frames(control.id, payloads, 8, 1e-3 * np.arange(float(count)) + 1e-4)
     decoder = BenchDecoder(SIM, {"rmcu": inserted(counted, status(count))})
     recorder = decoder.write(tmp_path / "a.mcap", 0)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from drivers import read_rmcu
+from hil.core.checksum import crc8_many
 from hil.core.errors import BadInputError
 from hil.core.recording import read_as_written, read_recording, run_of, write_frames
 from hil.engine import RunRequest, run_plan
@@ -150,10 +151,15 @@ def test_a_log_of_something_else_is_refused_with_what_is_in_it(tmp_path: Path) -
 
 def test_two_channels_that_fit_alike_are_for_a_person_to_tell_apart(tmp_path: Path) -> None:
     log = tmp_path / "a.log"
-    control = read_rmcu(DBC).layouts["RMCU_Control"].encode(Counter=np.arange(9))
+    layouts = read_rmcu(DBC).layouts
+    frames = {}
+    for name in ("RMCU_Status", "RMCU_Control"):
+        payloads = layouts[name].encode(Counter=np.arange(9))
+        payloads |= layouts[name].signals["Crc"].encode(crc8_many(layouts[name].id, payloads))
+        frames[layouts[name].id] = payloads.tolist()
     lines = []
-    for t, payload in enumerate(control.tolist()):
-        for frame in ("110#" + 16 * "0", "111#" + payload.to_bytes(8, "little").hex()):
+    for t in range(9):
+        for frame in (f"{i:03X}#{several[t].to_bytes(8, 'little').hex()}" for i, several in frames.items()):
             lines += [f"({t / 1e3:.6f}) {bus} {frame}\n" for bus in ("can0", "can1")]
     log.write_text("".join(lines))
     with pytest.raises(BadInputError, match="bus 'rmcu' may be channel can0 or can1"):
