@@ -17,7 +17,7 @@ from test_plans.metrics import (
     NotReachedError,
     NoValueError,
     StabilityOscillation,
-    growth_at_the_end,
+    instability,
 )
 from test_plans.plan import Plan
 from test_plans.scatter import standard_error
@@ -150,14 +150,9 @@ def _cut_short(metric: Metric, recording: Recording, segment: Segment) -> _Found
     """Of a segment that was stopped: nothing, unless its loop was growing, a failure of the device."""
     ran_s = segment.end_s - segment.start_s
     reason = f"segment '{segment.id}' was stopped after {ran_s:.3g} s"
-    if isinstance(metric, StabilityOscillation):
-        growth = growth_at_the_end(recording, segment)
-        if growth is not None:
-            grown = (
-                f"segment '{segment.id}': T_s oscillates at {growth.frequency_hz:.3g} Hz without decay, "
-                f"{growth.amplitude_nm:.3g} N m when the run was ended: the control loop is not stable"
-            )
-            return _Found(growth.amplitude_nm, "fail", grown)
+    unstable = instability(recording, segment) if isinstance(metric, StabilityOscillation) else ""
+    if unstable:
+        return _Found(trouble="fail", reason=f"{reason}; {unstable}: the control loop is not stable")
     return _Found(trouble="not_judged", reason=reason)
 
 

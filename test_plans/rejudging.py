@@ -22,5 +22,6 @@ def rejudged(recording: Recording) -> RunResult | None:
         reason = "\n".join(
             [*([reason] if reason else []), f"the recording is damaged: {recording.damage[0]}"]
         )
-    verdict = verdict_of(criteria, stopped=reason != "")
+    tripped = "" if recording.damage else stored.limit_tripped
+    verdict = verdict_of(criteria, stopped=reason != "", limit_tripped=tripped)
     return stored.model_copy(update={"criteria": criteria, "verdict": verdict, "reason": reason})

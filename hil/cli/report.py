@@ -80,5 +80,5 @@ def _told(result: RunResult | None, files: dict[str, str], path: Path, folder: P
         verdict = f"{result.verdict.upper()}, {count_in_words(result.criteria)}"
         console().print(f"\n{verdict}\nreport: {page}", highlight=False)
         if result.reason:
-            complain("error", result.reason)
+            complain("error" if result.verdict == "error" else "note", result.reason)
     return {"pass": 0, "fail": 1, "error": 1}[result.verdict]

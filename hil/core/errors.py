@@ -46,6 +46,10 @@ class BenchError(HilError):
     exit_code = 3
 
 
+class LimitTripError(BenchError):
+    """A measured value went beyond a limit of the bench (exit code 3, unless it was the device's doing)."""
+
+
 class OrderlyEndError(BenchError):
     """The run was ended though every device is well: its end steps can be carried out (exit code 3)."""
 

@@ -66,12 +66,15 @@ class CriterionResult(_Frozen):
         return min(shares) if shares else None
 
 
-def verdict_of(criteria: Iterable[CriterionResult], *, stopped: bool) -> Verdict:
+def verdict_of(criteria: Iterable[CriterionResult], *, stopped: bool, limit_tripped: str = "") -> Verdict:
     """A run's verdict: error when something stopped it or a criterion could not be judged, else fail or pass.
 
+    A limit of the bench that ended the run is a failure of the device where that was shown to be unstable.
     Criteria without a limit count as neither.
     """
     found = list(criteria)
+    if limit_tripped and any(one.source == "device" and one.verdict == "fail" for one in found):
+        return "fail"
     if stopped or any(criterion.verdict in ("error", "not_judged") for criterion in found):
         return "error"
     return "fail" if any(criterion.failed for criterion in found) else "pass"
@@ -313,3 +316,6 @@ class RunResult(_Frozen):
     sha256: dict[str, str] = Field({}, description="of each file that `files` names")
     samples_sha256: str = Field("", description="of the recording's samples, as its table `channels` has it")
     reason: str = ""
+    limit_tripped: str = Field(
+        "", description="the bench's limit that ended the run, in words; '' if none did"
+    )

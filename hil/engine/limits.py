@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drivers import Samples, Stream
-from hil.core.errors import BenchError
+from hil.core.errors import BenchError, LimitTripError
 from hil.core.result import LimitResult
 from hil.engine.limit_tables import Interlock, Limits
 from hil.engine.range_scan import StreamRanges
@@ -89,14 +89,15 @@ class LimitWatch:
         """Look at samples that were handed out at `now_s` of the bench clock.
 
         Raises:
-            BenchError: a limit tripped, or what `answer` raises.
+            LimitTripError: a limit tripped.
+            BenchError: what `answer` raises.
         """
         self._seen_s[samples.stream] = now_s
         watched = self._watched[samples.stream]
         if watched.look(samples) and self.active:
             for reached, text in watched.reached():
                 if reached.response == "trip":
-                    raise BenchError(
+                    raise LimitTripError(
                         f"limit tripped: {text}",
                         where="bench limits",
                         fix="lower the plan's torque or speed; the limit is in the bench file",

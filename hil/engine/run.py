@@ -13,6 +13,7 @@ from hil.core.errors import (
     BenchError,
     HilError,
     InterruptError,
+    LimitTripError,
     OrderlyEndError,
 )
 from hil.core.files import make_directory
@@ -237,8 +238,10 @@ class _Run:
         self._watch.rows_finished = True
         self._look_at_drift()
         criteria = self._judged(recording) if recording is not None else ()
+        tripped = failures.error.what if isinstance(failures.error, LimitTripError) else ""
+        verdict = verdict_of(criteria, stopped=failures.error is not None, limit_tripped=tripped)
         result = RunResult(
-            verdict=verdict_of(criteria, stopped=failures.error is not None),
+            verdict=verdict,
             plan=request.plan.name,
             bench=request.bench.name,
             real_time_factor=round(bench_time_s / max(wall_s, 1e-9), 2),
@@ -259,15 +262,18 @@ class _Run:
             missing=self._arming.missing,
             accepted_expired=self._expired,
             reason=str(failures.error) if failures.error else "",
+            limit_tripped=tripped,
         )
         try:
             store_result(self._recorder, self._inputs, self._conductor, result)
         except Exception as error:  # the result is to be told all the same
             failures.take(error)
         largest = dict(self._watch.limits.largest)
-        return RunOutcome(
-            result, request.out / RECORDING, failures.error, largest, tuple(self._conductor.made)
-        )
+        at_fault = (
+            isinstance(failures.error, LimitTripError) and verdict == "fail"
+        )  # the device, not the bench
+        ended_by = None if at_fault else failures.error
+        return RunOutcome(result, request.out / RECORDING, ended_by, largest, tuple(self._conductor.made))
 
     def _timed(self) -> Timing:
         """How well the loop kept time; what is left of it is recorded."""

@@ -27,10 +27,9 @@ from test_plans.metrics.response_time import (
 from test_plans.metrics.ride_comfort import RideComfort
 from test_plans.metrics.settling_time import SettlingShaftTorque, SettlingTime
 from test_plans.metrics.stability import (
-    Growth,
     StabilityOscillation,
     StabilityTorqueRequest,
-    growth_at_the_end,
+    instability,
 )
 from test_plans.registry import Registry
 
@@ -71,7 +70,6 @@ __all__ = [
     "BandEnergyMotorSpeed",
     "ChannelName",
     "DidNotSettleError",
-    "Growth",
     "Limits",
     "Magnitude",
     "Metric",
@@ -93,6 +91,6 @@ __all__ = [
     "Trough",
     "WindowMetric",
     "energy_within",
-    "growth_at_the_end",
+    "instability",
     "periodogram",
 ]

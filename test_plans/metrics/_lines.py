@@ -18,7 +18,7 @@ MOST_WINDOWS = 8
 _SHORTEST_WINDOW_S = 0.2
 _HALF_WIDTH = 2  # lines to each side that a line through a Hann window fills
 _PEELED = 24  # orders and decaying lines that are taken away before what is left counts, at most
-_DECAYS = 0.7  # a line that has this share left at the end decays
+DECAYS = 0.7  # a line that has this share left at the end decays
 _PERIODS = 3  # that make an oscillation
 
 
@@ -55,7 +55,7 @@ def strongest_cycle(values: Array, spacing_s: float, turns_hz: Array, declared: 
         following = _amplitudes(left, np.abs(order * turns) / frequency[1])
         if _is_order(steady, following, np.abs(order * turns) / frequency[1], order, declared):
             _take(taken, np.abs(order * turns) / frequency[1])
-        elif steady[-1] < _DECAYS * steady[0]:
+        elif steady[-1] < DECAYS * steady[0]:
             _take(taken, np.full(windows, at / frequency[1]))
         else:
             return Line(float(steady[-1]), at)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 from pydantic import Field
 
+from hil.core.errors import HilError
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import PlannedSegment
@@ -22,6 +22,9 @@ _REQUEST = "motor_torque_ref_nm"
 _AT_LIMIT, _AGAINST = 0.999, 0.05
 _ASKED = 0.1  # of the step: a smaller torque has no direction that noise could not turn around
 _LEAST_S = 0.4  # of the second half: less shows no line
+_LATEST_S = 0.1
+_LOOKED_AT_S = 1.0  # at the end of a segment that was cut short
+_MOST_OF_IT = 0.2  # of the second half: a stable loop has left its limit by then
 
 
 class StabilityTorqueRequest(Metric):
@@ -113,28 +116,25 @@ class StabilityOscillation(WindowMetric):
         return _lines.strongest_cycle(even, spacing_s, speed / (2 * np.pi), self.orders)
 
 
-@dataclass(frozen=True)
-class Growth:
-    """An oscillation that grew until its run was ended."""
+def instability(recording: Recording, segment: Segment) -> str:
+    """What shows that the loop was not stable when a segment was cut short, in words; '' if nothing does.
 
-    frequency_hz: float
-    amplitude_nm: float
-
-
-def growth_at_the_end(recording: Recording, segment: Segment) -> Growth | None:
-    """The oscillation of T_s in which a segment that was cut short ended; None if it did not oscillate.
-
-    An oscillation: at least three periods since the step, in the last of which T_s swings by more than a
-    tenth of the step to both sides of its mean, and no less than in the first.
+    Either the request lay at its limit, or against what was asked, for a fifth of the second half; or T_s
+    swung by more than a tenth of the step over three periods and more, without decay, up to the end.
     """
-    start_s = max(segment.step_s, segment.end_s - 1.0)
+    # The last samples of slower or later devices may be missing.
+    segment = segment.model_copy(update={"end_s": segment.end_s - _LATEST_S})
     try:
+        share = StabilityTorqueRequest().compute(recording, segment)
+        start_s = max(segment.step_s, segment.end_s - _LOOKED_AT_S)
         time, values = cut(recording, segment, "shaft_torque_nm", start_s, segment.end_s, with_end=False)
-    except NoValueError:
-        return None
+    except (NoValueError, HilError):
+        return ""
+    if segment.end_s - segment.step_s >= _LEAST_S and share >= _MOST_OF_IT:
+        return f"T_m* lies at its limit, or against what was asked, for {100 * share:.0f} % of the time"
     spacing_s, even = evenly(time, values)
     found = _lines.swings(even, spacing_s)
     size = abs(segment.reference_after - segment.reference_before)
-    if found is None or found.last < 0.1 * size or found.last < found.first:
-        return None
-    return Growth(found.frequency_hz, found.last)
+    if found is None or found.last < _ASKED * size or found.last < _lines.DECAYS * found.first:
+        return ""
+    return f"T_s oscillates at {found.frequency_hz:.3g} Hz with {found.last:.3g} N m and does not decay"
