@@ -17,6 +17,8 @@ from test_plans.conductor import Array
 MOST_WINDOWS = 8
 _SHORTEST_WINDOW_S = 0.2
 _HALF_WIDTH = 2  # lines to each side that a line through a Hann window fills
+_NARROW = 1  # lines to each side in which a line is followed, to tell whether it moves
+_LEAST_MOTION = 1.5  # lines: by less nobody can tell an order from a line that keeps its frequency
 _PEELED = 24  # orders and decaying lines that are taken away before what is left counts, at most
 DECAYS = 0.7  # a line that has this share left at the end decays
 _PERIODS = 3  # that make an oscillation
@@ -52,9 +54,9 @@ def strongest_cycle(values: Array, spacing_s: float, turns_hz: Array, declared: 
         at = _refined(frequency, left[-1], place)
         steady = _amplitudes(left, np.full(windows, at / frequency[1]))
         order = at / turns[-1] if abs(turns[-1]) > 1e-3 else 0.0
-        following = _amplitudes(left, np.abs(order * turns) / frequency[1])
-        if _is_order(steady, following, np.abs(order * turns) / frequency[1], order, declared):
-            _take(taken, np.abs(order * turns) / frequency[1])
+        places = np.abs(order * turns) / frequency[1]
+        if _is_order(left, at / frequency[1], places, order, declared):
+            _take(taken, places)
         elif steady[-1] < DECAYS * steady[0]:
             _take(taken, np.full(windows, at / frequency[1]))
         else:
@@ -103,25 +105,31 @@ def _spectra(values: Array, spacing_s: float, windows: int) -> tuple[Array, Arra
     return np.asarray(np.fft.rfftfreq(length, spacing_s)), scale * np.array(found)
 
 
-def _amplitudes(spectra: Array, places: Array) -> Array:
+def _amplitudes(spectra: Array, places: Array, half_width: int = _HALF_WIDTH) -> Array:
     """Amplitude of a line in each window, `places` in lines: what it fills there, taken together."""
     count = spectra.shape[1]
     found = np.zeros(len(spectra))
     for window, place in enumerate(places):
-        first = max(0, round(float(place)) - _HALF_WIDTH)
-        part = spectra[window, min(first, count) : min(count, first + 2 * _HALF_WIDTH + 1)]
+        first = max(0, round(float(place)) - half_width)
+        part = spectra[window, min(first, count) : min(count, first + 2 * half_width + 1)]
         found[window] = np.sqrt(np.sum(part**2) / 1.5)  # a Hann window spreads a line over 1.5 lines' power
     return found
 
 
-def _is_order(
-    steady: Array, following: Array, places: Array, order: float, declared: Sequence[float]
-) -> bool:
-    """Whether a line follows the wheel; where the speed hardly changes only a declaration can say."""
-    if np.ptp(places) <= 2 * _HALF_WIDTH:
+def _is_order(spectra: Array, place: float, places: Array, order: float, declared: Sequence[float]) -> bool:
+    """Whether a line follows the wheel; where the speed hardly changes only a declaration can say.
+
+    Args:
+        spectra: amplitudes in each window, shape (windows, m).
+        place: the line that keeps its frequency, in lines.
+        places: the line that follows the wheel, in lines, shape (windows,).
+    """
+    if np.ptp(places) < _LEAST_MOTION:
         return any(
             abs(order / one - round(order / one)) * one < 0.1 and order > 0.5 * one for one in declared
         )
+    steady = _amplitudes(spectra, np.full(len(places), place), _NARROW)
+    following = _amplitudes(spectra, places, _NARROW)
     return bool(np.sum(np.log(following + 1e-12)) > np.sum(np.log(steady + 1e-12)))
 
 

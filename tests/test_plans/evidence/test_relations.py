@@ -1,0 +1,96 @@
+"""What the drive train demands of its channels: a dead, half or mirrored one contradicts its neighbours."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hil.core.recording import Recording
+from test_plans import Array
+from test_plans.evidence import PROOFS, objections
+from tests.test_plans.signals import STEP, recording_of, time_axis
+
+TIME = time_axis()
+GEAR, RADIUS_M = 8.148, 0.33
+SEGMENT = STEP.model_copy(update={"gear_ratio": GEAR, "rolling_radius_m": RADIUS_M})
+DRIVEN = np.clip((TIME - STEP.step_s) / 0.2, 0.0, 1.0)
+
+
+def axle(**changed: Array) -> Recording:
+    """An axle that accelerates under 326 N m, every sensor with its noise; some channels changed."""
+    draws = np.random.default_rng(5)
+
+    def noisy(values: Array, size: float) -> Array:
+        return np.asarray(values + draws.normal(0.0, size, len(TIME)))
+
+    wheel = 2.0 + np.cumsum(DRIVEN) * 1.07e-3
+    channels = {
+        "motor_torque_ref_nm": 40.5 * DRIVEN,
+        "motor_torque_nm": 40.5 * DRIVEN,
+        "motor_speed_rad_s": noisy(GEAR * wheel, 0.02),
+        "wheel_speed_left_rad_s": noisy(wheel, 0.002),
+        "wheel_speed_right_rad_s": noisy(wheel, 0.002),
+        "shaft_torque_left_nm": noisy(163.0 * DRIVEN, 0.5),
+        "shaft_torque_right_nm": noisy(163.0 * DRIVEN, 0.5),
+        "vehicle_speed_m_s": RADIUS_M * wheel,
+    } | changed
+    left, right = channels["shaft_torque_left_nm"], channels["shaft_torque_right_nm"]
+    speeds = channels["wheel_speed_left_rad_s"] + channels["wheel_speed_right_rad_s"]
+    return recording_of(TIME, **channels, shaft_torque_nm=left + right, wheel_speed_rad_s=0.5 * speeds)
+
+
+def test_a_sound_axle_has_nothing_to_object_to() -> None:
+    assert objections(axle(), SEGMENT) == {}
+
+
+SOUND = axle()
+NOISE = np.random.default_rng(6).normal(0.0, 0.5, len(TIME))
+
+
+@pytest.mark.parametrize(
+    ("changed", "doubted"),
+    [
+        ({"shaft_torque_left_nm": NOISE, "shaft_torque_right_nm": NOISE[::-1]}, "shaft_torque_nm"),
+        ({"shaft_torque_left_nm": NOISE}, "shaft_torque_nm"),
+        (
+            {
+                "shaft_torque_left_nm": 0.5 * SOUND["shaft_torque_left_nm"],
+                "shaft_torque_right_nm": 0.5 * SOUND["shaft_torque_right_nm"],
+            },
+            "shaft_torque_nm",
+        ),
+        ({"shaft_torque_right_nm": -SOUND["shaft_torque_right_nm"]}, "shaft_torque_right_nm"),
+        ({"motor_speed_rad_s": -SOUND["motor_speed_rad_s"]}, "motor_speed_rad_s"),
+        ({"motor_speed_rad_s": SOUND["wheel_speed_rad_s"]}, "motor_speed_rad_s"),
+        ({"motor_speed_rad_s": SOUND["motor_speed_rad_s"] + 3.0 * TIME}, "wheel_speed_rad_s"),
+        ({"wheel_speed_left_rad_s": 0.5 * SOUND["wheel_speed_left_rad_s"]}, "wheel_speed_rad_s"),
+        ({"vehicle_speed_m_s": 0.5 * SOUND["vehicle_speed_m_s"]}, "vehicle_speed_m_s"),
+        ({"motor_torque_nm": 0.3 * SOUND["motor_torque_nm"]}, "shaft_torque_nm"),
+    ],
+    ids=["both dead", "left dead", "both half", "right mirrored", "rotor mirrored", "rotor is wheel",
+         "rotor drifts", "left wheel half", "vehicle half", "motor torque scaled"],
+)  # fmt: skip
+def test_a_sensor_that_contradicts_its_neighbours_is_doubted(changed: dict[str, Array], doubted: str) -> None:
+    assert doubted in objections(axle(**changed), SEGMENT)
+
+
+def test_drag_slip_and_efficiency_are_no_contradiction() -> None:
+    torque = SOUND["shaft_torque_left_nm"] * 0.9
+    changed = {
+        "shaft_torque_left_nm": torque,
+        "shaft_torque_right_nm": torque[::1] + 0.0,
+        "vehicle_speed_m_s": 0.9 * SOUND["vehicle_speed_m_s"],
+    }
+    assert objections(axle(**changed), SEGMENT) == {}
+
+
+def test_a_motor_that_only_shakes_proves_nothing_of_the_shaft() -> None:
+    square = 150.0 * np.sign(np.sin(2 * np.pi * 45.0 * TIME)) * DRIVEN
+    shaken = axle(motor_torque_nm=square, shaft_torque_left_nm=NOISE, shaft_torque_right_nm=NOISE[::-1])
+    assert not any("T_s = N T_m" in text for text in objections(shaken, SEGMENT).values())
+
+
+def test_every_channel_of_the_axle_has_a_proof() -> None:
+    channels = set(SOUND.channels) - {"time_s", "motor_torque_ref_nm"}
+    assert channels <= set(PROOFS)
+    assert all(PROOFS[name] for name in channels)
