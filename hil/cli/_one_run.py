@@ -47,7 +47,7 @@ class Finished:
             return BenchError.exit_code
         if self.outcome.error is not None:
             return self.outcome.error.exit_code
-        return 0 if self.result.verdict == "pass" else 1
+        return 0 if self.result.verdict in ("pass", "done") else 1
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,10 @@ from pathlib import Path
 
 from rich.table import Table
 
+from hil.analysis.control_design import Margins
 from hil.cli._choices import choices_of
-from hil.cli._output import console, plain_table, print_criteria, print_json, progress
+from hil.cli._loop_margins import loop_margins, margins_json, margins_table, warnings_of
+from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
 from hil.core.mistakes import all_of
@@ -40,10 +42,13 @@ def carry_out(
     with progress(checked.name) as show:
         show("predicting")
         predicted = forecast(checked, file)
+    loops = loop_margins(checked, file)
     if as_json:
-        print_json(_json(checked, file.name, duration_s, predicted))
+        print_json(_json(checked, file.name, duration_s, predicted) | {"loops": margins_json(loops)})
     else:
-        _tell(checked, file.name, duration_s, predicted)
+        _tell(checked, file.name, duration_s, predicted, loops)
+    for text in warnings_of(loops):
+        warn(text)
     return 0 if predicted.fits else 1
 
 
@@ -80,7 +85,7 @@ def _json(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> dic
     }
 
 
-def _tell(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> None:
+def _tell(plan: Plan, bench: str, duration_s: float, predicted: Forecast, loops: dict[str, Margins]) -> None:
     page = console()
     page.print(
         f"{plan.name}: valid, {len(plan.steps)} steps, {len(plan.segments)} segments, "
@@ -90,6 +95,9 @@ def _tell(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> Non
     page.print(_table(predicted.peaks))
     loads = ", ".join(f"'{name}' at most {load:.0%}" for name, load in predicted.bus_loads.items())
     page.print(f"\nload of bus {loads}", highlight=False)
+    if loops:
+        page.print()
+        page.print(margins_table(loops))
     if predicted.criteria:
         page.print("\n[italic]criteria, predicted[/]")
         print_criteria(page, predicted.criteria)

@@ -108,13 +108,20 @@ def _asked_for_name(plan: Plan) -> str:
     return sys.stdin.readline().strip()
 
 
+def _carried_out(result: RunResult) -> str:
+    """What a run did that judged nothing."""
+    count = sum(segment.complete for segment in result.segments)
+    whole = "1 segment" if count == 1 else f"{count} segments"
+    return f"{whole} recorded, " if result.verdict == "done" else ""
+
+
 def _print(result: RunResult, folder: Path) -> None:
     page = console()
     if result.criteria:
         print_criteria(page, result.criteria)
     page.print(
         f"\n{result.plan} on {result.bench}: [bold]{result.verdict.upper()}[/], "
-        f"{count_in_words(result.criteria)}   safe state {result.safe_state.replace('_', ' ')}   "
+        f"{_carried_out(result)}{count_in_words(result.criteria)}   safe state {result.safe_state.replace('_', ' ')}   "
         f"{result.bench_time_s:.0f} s of bench time, {times_in_words(result.real_time_factor)} x real time",
         highlight=False,
     )

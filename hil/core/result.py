@@ -9,7 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from hil.core.file_format import FORMAT, FormatNumber
 
-Verdict = Literal["pass", "fail", "error"]
+#: `done`: carried out, and nothing was judged.
+Verdict = Literal["pass", "fail", "error", "done"]
 #: `informational`: no limit. `did_not_settle`: a failure if it has a limit, else counts as neither.
 #: `not_judged`: its segment was not carried out whole. `error`: could not be computed.
 #: `undecided`: a comparison within its own scatter; it fails the run.
@@ -69,6 +70,8 @@ class CriterionResult(_Frozen):
 def verdict_of(criteria: Iterable[CriterionResult], *, stopped: bool, limit_tripped: str = "") -> Verdict:
     """A run's verdict: error when something stopped it or a criterion could not be judged, else fail or pass.
 
+    What has no criterion with a limit is done, and passed nothing.
+
     A limit of the bench that ended the run is a failure of the device where that was shown to be unstable.
     Criteria without a limit count as neither.
     """
@@ -77,6 +80,8 @@ def verdict_of(criteria: Iterable[CriterionResult], *, stopped: bool, limit_trip
         return "fail"
     if stopped or any(criterion.verdict in ("error", "not_judged") for criterion in found):
         return "error"
+    if not any(criterion.has_limit for criterion in found):
+        return "done"
     return "fail" if any(criterion.failed for criterion in found) else "pass"
 
 

@@ -105,7 +105,7 @@ class RunData(_Data):
     doing: str = Field("", description="what is going on, while it is running")
     told: str = Field("", description="what its operator was told last, while it is running")
     exit_code: int | None = Field(None, description="as `hil run` would have ended")
-    verdict: Literal["pass", "fail", "error"] | None = None
+    verdict: Literal["pass", "fail", "error", "done"] | None = None
     safe_state: Literal["confirmed", "not_confirmed", "not_needed"] | None = None
     reason: str = Field("", description="what stopped it, or why it waits")
     files: list[str] = Field([], description="names of its files, once it is over")
