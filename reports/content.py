@@ -166,7 +166,7 @@ def _banner(result: RunResult | None) -> Banner:
         return Banner("none", "Recording, not judged", (sentence,), "")
     unsafe = result.safe_state == "not_confirmed"
     verdict = "error" if unsafe else result.verdict  # a run that may have left the bench live did not pass
-    judged = any(criterion.has_limit for criterion in result.criteria)
+    judged = any(one.has_limit and one.source == "plan" for one in result.criteria)
     tone = "unjudged" if verdict == "done" or (verdict == "pass" and not judged) else verdict
     sentences = [*_as_sentences(result.reason), *_counts(result)]
     if not unsafe:

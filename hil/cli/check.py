@@ -110,9 +110,11 @@ def _verdict(predicted: Forecast) -> str:
     if predicted.overloaded:
         names = ", ".join(f"'{name}'" for name in predicted.overloaded)
         verdict = f"[bold red]bus {names} cannot carry its frames; raise bit_rate[/]"
-    failed = sum(criterion.failed for criterion in predicted.criteria)
-    if failed:
-        verdict += f"; [bold red]{failed} of {len(predicted.criteria)} criteria are predicted to fail[/]"
+    for source, name in (("plan", "criteria"), ("device", "device checks")):
+        asked = [criterion for criterion in predicted.criteria if criterion.source == source]
+        failed = sum(criterion.failed for criterion in asked)
+        if failed:
+            verdict += f"; [bold red]{failed} of {len(asked)} {name} are predicted to fail[/]"
     return verdict
 
 

@@ -121,7 +121,8 @@ def _print(result: RunResult, folder: Path) -> None:
         print_criteria(page, result.criteria)
     page.print(
         f"\n{result.plan} on {result.bench}: [bold]{result.verdict.upper()}[/], "
-        f"{_carried_out(result)}{count_in_words(result.criteria)}   safe state {result.safe_state.replace('_', ' ')}   "
+        f"{_carried_out(result)}{count_in_words(result.criteria)}   "
+        f"safe state {result.safe_state.replace('_', ' ')}   "
         f"{result.bench_time_s:.0f} s of bench time, {times_in_words(result.real_time_factor)} x real time",
         highlight=False,
     )

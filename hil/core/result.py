@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from hil.core.file_format import FORMAT, FormatNumber
 
-#: `done`: carried out, and nothing was judged.
+#: `done`: carried out, and no criterion of the plan has a limit.
 Verdict = Literal["pass", "fail", "error", "done"]
 #: `informational`: no limit. `did_not_settle`: a failure if it has a limit, else counts as neither.
 #: `not_judged`: its segment was not carried out whole. `error`: could not be computed.
@@ -70,7 +70,7 @@ class CriterionResult(_Frozen):
 def verdict_of(criteria: Iterable[CriterionResult], *, stopped: bool, limit_tripped: str = "") -> Verdict:
     """A run's verdict: error when something stopped it or a criterion could not be judged, else fail or pass.
 
-    What has no criterion with a limit is done, and passed nothing.
+    A plan whose author gave no criterion a limit is done, and passed nothing.
 
     A limit of the bench that ended the run is a failure of the device where that was shown to be unstable.
     Criteria without a limit count as neither.
@@ -80,9 +80,10 @@ def verdict_of(criteria: Iterable[CriterionResult], *, stopped: bool, limit_trip
         return "fail"
     if stopped or any(criterion.verdict in ("error", "not_judged") for criterion in found):
         return "error"
-    if not any(criterion.has_limit for criterion in found):
-        return "done"
-    return "fail" if any(criterion.failed for criterion in found) else "pass"
+    if any(criterion.failed for criterion in found):
+        return "fail"
+    judged = any(criterion.has_limit and criterion.source == "plan" for criterion in found)
+    return "pass" if judged else "done"
 
 
 class Segment(_Frozen):

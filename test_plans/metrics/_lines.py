@@ -1,7 +1,9 @@
 """Lines of a spectrum that keep their frequency, told from orders, which move with the wheel's speed.
 
 A limit cycle of a control loop has the frequency of the loop, whatever the speed; what a joint or a tyre
-excites has a multiple of the wheel's. Over several windows in which the speed changes the two part.
+excites has a multiple of the wheel's. Over time a cycle is one sharp line, and an order is smeared; over the
+wheel's angle it is the other way round. The sharper one is the true one (order tracking by angular
+resampling: Fyfe and Munck, Analysis of computed order tracking, MSSP 11(2), 1997).
 """
 
 from __future__ import annotations
@@ -11,17 +13,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from test_plans.conductor import Array
 
-MOST_WINDOWS = 8
-_SHORTEST_WINDOW_S = 0.2
-_HALF_WIDTH = 2  # lines to each side that a line through a Hann window fills
-_NARROW = 1  # lines to each side in which a line is followed, to tell whether it moves
-_LEAST_MOTION = 1.5  # lines: by less nobody can tell an order from a line that keeps its frequency
-_PEELED = 24  # orders and decaying lines that are taken away before what is left counts, at most
 DECAYS = 0.7  # a line that has this share left at the end decays
 _PERIODS = 3  # that make an oscillation
+_PEELED = 12  # lines that are looked at, strongest first, at most
+_LEAST_SHARE = 0.02  # of the largest value: smaller lines are not looked at
+_TAIL = 10  # the part at the end that counts
+_FINER = 4  # lines of the spectra between those of the window
+_LEAST_TURNING = 0.05  # periods, rms, by which an order must leave a constant frequency, to be told from it
+_SHARPER = 1.05  # what lives for a moment only is as sharp over time as over angle
+_SMOOTHED_S, _SMOOTHED_SHARE = 1.0, 0.2  # over which a line's amplitude is taken
+_LOWEST_PERIODS = 3.0  # of a line within the window
 
 
 @dataclass(frozen=True)
@@ -32,36 +37,42 @@ class Line:
     frequency_hz: float
 
 
-def strongest_cycle(values: Array, spacing_s: float, turns_hz: Array, declared: Sequence[float] = ()) -> Line:
-    """The strongest line that keeps its frequency and does not decay.
+def lasting_oscillation(
+    values: Array, spacing_s: float, turns_hz: Array, declared: Sequence[float] = ()
+) -> Line:
+    """What swings at the end of a signal and follows no order of the wheel: a cycle, or what has grown.
 
     Args:
         values: shape (n,), every `spacing_s`.
         turns_hz: the wheel's revolutions a second at the same samples, shape (n,) or nearly.
         declared: orders of the wheel that do not count where the speed says nothing.
+
+    Returns:
+        √2 times the rms of the last tenth without orders, which is a sine's amplitude, and its frequency.
     """
-    duration_s = len(values) * spacing_s
-    windows = max(1, min(MOST_WINDOWS, int(duration_s / max(_SHORTEST_WINDOW_S, 1e-9))))
-    frequency, spectra = _spectra(values, spacing_s, windows)
-    turns = np.array([float(np.mean(part)) for part in np.array_split(turns_hz, windows)])
-    taken = np.zeros(spectra.shape, bool)
-    taken[:, : _HALF_WIDTH + 1] = True  # the trend's
+    count = len(values)
+    time: Array = spacing_s * np.arange(count, dtype=float)
+    turns = np.interp(np.linspace(0, 1, count), np.linspace(0, 1, len(turns_hz)), turns_hz)
+    angle: Array = np.zeros(count)
+    angle[1:] = spacing_s * np.cumsum(0.5 * (turns[1:] + turns[:-1]))
+    left = _without_trend(values)
+    unexplained: Array = left.copy()
+    least = _LEAST_SHARE * float(np.max(np.abs(left)))
     for _ in range(_PEELED):
-        left = np.where(taken, 0.0, spectra)
-        place = int(np.argmax(left[-1]))
-        if left[-1, place] <= 0.0:
+        over_time = _sharpest(left, time)
+        if over_time.amplitude <= least:
             break
-        at = _refined(frequency, left[-1], place)
-        steady = _amplitudes(left, np.full(windows, at / frequency[1]))
-        order = at / turns[-1] if abs(turns[-1]) > 1e-3 else 0.0
-        places = np.abs(order * turns) / frequency[1]
-        if _is_order(left, at / frequency[1], places, order, declared):
-            _take(taken, places)
-        elif steady[-1] < DECAYS * steady[0]:
-            _take(taken, np.full(windows, at / frequency[1]))
-        else:
-            return Line(float(steady[-1]), at)
-    return Line(0.0, 0.0)
+        over_angle = _sharpest(left, angle) if np.min(turns) > 0.0 else Line(0.0, 0.0)
+        along: Array = over_angle.frequency_hz * angle
+        size, line = _followed(left, along, spacing_s)
+        follows = _is_order(over_time, over_angle, _turning(along, size, time), declared)
+        if not follows:
+            _, line = _followed(left, over_time.frequency_hz * time, spacing_s)
+        left = left - line
+        unexplained = unexplained - line if follows else unexplained
+    tail = slice(count - max(2, count // _TAIL), count)
+    amplitude = float(np.sqrt(2.0) * np.std(unexplained[tail]))
+    return Line(amplitude, _sharpest(unexplained[tail], time[tail]).frequency_hz)
 
 
 @dataclass(frozen=True)
@@ -91,56 +102,77 @@ def swings(values: Array, spacing_s: float) -> Swings | None:
     return Swings(0.5 * len(firm) / float(length_s), first, last)
 
 
-def _spectra(values: Array, spacing_s: float, windows: int) -> tuple[Array, Array]:
-    """Frequencies in Hz, shape (m,), and amplitudes of the lines in each window, shape (windows, m)."""
-    length = len(values) // windows
-    taper = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(length) / length)
-    position = np.arange(length) - 0.5 * (length - 1)
-    found = []
-    for number in range(windows):
-        part = values[number * length : (number + 1) * length]
-        slope = float(position @ (part - np.mean(part))) / max(float(position @ position), 1e-300)
-        found.append(np.abs(np.fft.rfft((part - np.mean(part) - slope * position) * taper)))
-    scale = 2.0 / float(np.sum(taper))
-    return np.asarray(np.fft.rfftfreq(length, spacing_s)), scale * np.array(found)
+def _without_trend(values: Array) -> Array:
+    position = np.arange(len(values)) - 0.5 * (len(values) - 1)
+    around = values - np.mean(values)
+    return np.asarray(around - float(position @ around) / max(float(position @ position), 1e-300) * position)
 
 
-def _amplitudes(spectra: Array, places: Array, half_width: int = _HALF_WIDTH) -> Array:
-    """Amplitude of a line in each window, `places` in lines: what it fills there, taken together."""
-    count = spectra.shape[1]
-    found = np.zeros(len(spectra))
-    for window, place in enumerate(places):
-        first = max(0, round(float(place)) - half_width)
-        part = spectra[window, min(first, count) : min(count, first + 2 * half_width + 1)]
-        found[window] = np.sqrt(np.sum(part**2) / 1.5)  # a Hann window spreads a line over 1.5 lines' power
-    return found
+def _sharpest(values: Array, over: Array) -> Line:
+    """The strongest line over time (s, then in Hz) or over angle (revolutions, then in orders).
+
+    `over` rises; it need not be even. Lines of fewer than three periods belong to the trend.
+    """
+    even = np.linspace(over[0], over[-1], len(over))
+    taper = _taper(len(even))
+    resampled = np.interp(even, over, values) * taper
+    size = 2.0 / float(np.sum(taper)) * np.abs(np.fft.rfft(resampled, _FINER * len(even)))
+    frequency = np.fft.rfftfreq(_FINER * len(even), float(even[1] - even[0]))
+    size[frequency * float(even[-1] - even[0]) < _LOWEST_PERIODS] = 0.0
+    place = int(np.argmax(size))
+    return Line(float(size[place]), float(frequency[place]))
 
 
-def _is_order(spectra: Array, place: float, places: Array, order: float, declared: Sequence[float]) -> bool:
-    """Whether a line follows the wheel; where the speed hardly changes only a declaration can say.
+def _taper(count: int) -> Array:
+    """Rises over half the window and falls over its last twentieth: what has grown at the end is seen."""
+    rising, falling = count // 2, max(2, count // 20)
+    taper = np.ones(count)
+    taper[:rising] = 0.5 - 0.5 * np.cos(np.pi * np.arange(rising) / rising)
+    taper[count - falling :] = 0.5 + 0.5 * np.cos(np.pi * (np.arange(falling) + 1) / falling)
+    return taper
+
+
+def _is_order(over_time: Line, over_angle: Line, turning: Array, declared: Sequence[float]) -> bool:
+    """Whether the strongest line follows the wheel.
+
+    Where the wheel's speed hardly changes while the line lasts, only a declaration can say.
 
     Args:
-        spectra: amplitudes in each window, shape (windows, m).
-        place: the line that keeps its frequency, in lines.
-        places: the line that follows the wheel, in lines, shape (windows,).
+        over_time: the strongest line over time.
+        over_angle: the strongest line over the wheel's angle.
+        turning: how far the phase of `over_angle` leaves a constant frequency at each sample, in periods,
+            weighted by its power, shape (n,).
+        declared: orders.
     """
-    if np.ptp(places) < _LEAST_MOTION:
-        return any(
-            abs(order / one - round(order / one)) * one < 0.1 and order > 0.5 * one for one in declared
-        )
-    steady = _amplitudes(spectra, np.full(len(places), place), _NARROW)
-    following = _amplitudes(spectra, places, _NARROW)
-    return bool(np.sum(np.log(following + 1e-12)) > np.sum(np.log(steady + 1e-12)))
+    if over_angle.amplitude == 0.0:
+        return False
+    if float(np.sqrt(np.mean(turning**2))) < _LEAST_TURNING:
+        order = over_angle.frequency_hz
+        near = (abs(order - one * max(1, round(order / one))) for one in declared)
+        return any(distance < 0.1 for distance in near)
+    return over_angle.amplitude > _SHARPER * over_time.amplitude
 
 
-def _take(taken: np.ndarray, places: Array) -> None:
-    for window, place in enumerate(places):
-        first = round(float(place)) - 2 * _HALF_WIDTH
-        taken[window, max(0, first) : max(0, first + 4 * _HALF_WIDTH + 1)] = True
+def _turning(place: Array, size: Array, time: Array) -> Array:
+    """How far a phase (periods) leaves its best straight line, weighted by the power of its line."""
+    weight = size**2 / max(float(np.mean(size**2)), 1e-300)
+    around = time - float(np.mean(weight * time))
+    slope = float(np.mean(weight * around * place)) / max(float(np.mean(weight * around**2)), 1e-300)
+    return np.asarray(np.sqrt(weight) * (place - float(np.mean(weight * place)) - slope * around))
 
 
-def _refined(frequency: Array, spectrum: Array, place: int) -> float:
-    """Frequency of a line between the lines: their mean, weighted by power."""
-    near = slice(max(0, place - 1), place + 2)
-    power = spectrum[near] ** 2
-    return float(frequency[near] @ power / np.sum(power))
+def _followed(values: Array, periods: Array, spacing_s: float) -> tuple[Array, Array]:
+    """Amplitude, smoothed over a second at most, and the line whose phase is `periods` (1: a whole turn)."""
+    turning: npt.NDArray[np.complex128] = np.exp(-2j * np.pi * periods)
+    length = max(3, round(min(_SMOOTHED_S, _SMOOTHED_SHARE * len(values) * spacing_s) / spacing_s))
+    kernel = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
+    size = 1 << int(len(values) + length - 1).bit_length()
+
+    def smoothed(signal: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+        product = np.fft.fft(signal, size) * np.fft.fft(kernel, size)
+        whole = np.fft.ifft(product)[: len(signal) + length - 1]
+        return np.asarray(whole[(length - 1) // 2 :][: len(signal)])
+
+    weight = smoothed(np.ones(len(values), complex)).real
+    envelope = 2.0 * smoothed(values * turning) / np.maximum(weight, 1e-12)
+    return np.abs(envelope), np.asarray((envelope * np.conj(turning)).real)

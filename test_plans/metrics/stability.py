@@ -69,7 +69,7 @@ class StabilityTorqueRequest(Metric):
 
 
 class StabilityOscillation(WindowMetric):
-    """Amplitude of the strongest line of a channel that does not decay and follows no order of the wheel."""
+    """Amplitude of what a channel still swings by at the end, and that follows no order of the wheel."""
 
     name: ClassVar[str] = "stability_oscillation"
     channel: ChannelName = "shaft_torque_nm"
@@ -86,10 +86,9 @@ class StabilityOscillation(WindowMetric):
     def definition(self) -> str:
         """How lines are found, and which count."""
         return (
-            f"Amplitude of the strongest spectral line of {self.subject} in the second half of the time "
-            f"after the step, in at most {_lines.MOST_WINDOWS} windows (Hann), that keeps its frequency and "
-            "does not decay. A line that moves with the wheel's speed is an order of the wheel and does not "
-            "count, nor does a declared order where the speed is constant."
+            f"Amplitude of what {self.subject} swings by at the end of the window (√2 times the rms of the "
+            "last twentieth of the time after the step), without the orders of the wheel: lines that are "
+            "sharper over the wheel's angle than over time, or declared orders where the speed is constant."
         )
 
     def objection(self, segment: PlannedSegment) -> str:
@@ -113,7 +112,7 @@ class StabilityOscillation(WindowMetric):
         time, values = cut(recording, segment, self.channel, middle_s, end_s, with_end=False)
         spacing_s, even = evenly(time, values)
         _, speed = cut(recording, segment, _WHEEL, middle_s, end_s, with_end=False)
-        return _lines.strongest_cycle(even, spacing_s, speed / (2 * np.pi), self.orders)
+        return _lines.lasting_oscillation(even, spacing_s, speed / (2 * np.pi), self.orders)
 
 
 def instability(recording: Recording, segment: Segment) -> str:

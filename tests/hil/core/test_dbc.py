@@ -38,9 +38,9 @@ def refused(text, tmp_path):
     [
         ("SG_ MotorSpeed :", "SG_ Other :", "message 'RMCU_Status' has no signal 'MotorSpeed'"),
         ("BO_ 256 RMCU_Request", "BO_ 256 Request", "has no message 'RMCU_Request'"),
-        ("24@1- (0.0005,0)", "24@1- (0,0)", "'RMCU_Status', signal 'MotorSpeed' has the factor 0"),
-        ("MotorTorque : 44|20", "MotorTorque : 44|30", "'MotorTorque' reaches beyond the message's 8 bytes"),
-        ("MotorTorqueRef : 24|", "MotorTorqueRef : 20|", "'MotorSpeed' and 'MotorTorqueRef' overlap"),
+        ("22@1- (0.001,0)", "22@1- (0,0)", "'RMCU_Status', signal 'MotorSpeed' has the factor 0"),
+        ("MotorTorque : 42|14", "MotorTorque : 42|30", "'MotorTorque' reaches beyond the message's 8 bytes"),
+        ("MotorTorqueRef : 26|", "MotorTorqueRef : 20|", "'MotorSpeed' and 'MotorTorqueRef' overlap"),
         ("BO_ 272", "BO_ 2147483920", "'RMCU_Status': identifier 0x110 is extended"),
         ("BO_ 272", "BO_ 3000", "more than 11 bits"),
         ("RMCU_Status: 8", "RMCU_Status: 64", "'RMCU_Status' has 64 bytes"),
@@ -62,7 +62,7 @@ def test_a_multiplexed_signal_is_refused(tmp_path):
 
 def test_a_float_of_a_width_that_ieee_does_not_have_is_refused(tmp_path):
     text = TEXT + "SIG_VALTYPE_ 272 MotorTorque : 1;\n"
-    assert "'MotorTorque' is a float of 20 bits" in refused(text, tmp_path)
+    assert "'MotorTorque' is a float of 14 bits" in refused(text, tmp_path)
 
 
 def test_colliding_identifiers_are_refused(tmp_path):

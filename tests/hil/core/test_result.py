@@ -56,7 +56,7 @@ def test_what_never_settles_fails_where_a_limit_asks_for_it(
 @pytest.mark.parametrize(
     ("verdicts", "stopped", "run"),
     [
-        ((), False, "pass"),
+        ((), False, "done"),
         ((), True, "error"),
         (("pass", "informational"), False, "pass"),
         (("pass", "fail"), False, "fail"),
@@ -67,6 +67,20 @@ def test_what_never_settles_fails_where_a_limit_asks_for_it(
 )
 def test_a_runs_verdict(verdicts: tuple[CriterionVerdict, ...], stopped: bool, run: str) -> None:
     assert verdict_of((criterion(verdict=one, upper=1.0) for one in verdicts), stopped=stopped) == run
+
+
+def test_what_only_the_device_checks_judge_passes_nothing_but_may_fail() -> None:
+    kept, broken = (criterion(verdict=one, upper=1.0, source="device") for one in ("pass", "fail"))
+    assert verdict_of([kept], stopped=False) == "done"
+    assert verdict_of([kept, broken], stopped=False) == "fail"
+
+
+def test_a_limit_that_an_unstable_device_tripped_is_a_failure_of_the_device() -> None:
+    left = criterion(verdict="not_judged", upper=1.0)
+    unstable = criterion(verdict="fail", upper=1.0, source="device")
+    assert verdict_of([left, unstable], stopped=True, limit_tripped="T_s") == "fail"
+    assert verdict_of([left], stopped=True, limit_tripped="T_s") == "error"
+    assert verdict_of([left, unstable], stopped=True) == "error"
 
 
 def test_a_segment_says_only_what_was_so() -> None:
