@@ -61,7 +61,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
         expired = accepted_expiry(request.bench, today, request.accept_expired)
         preflight(request.plan, request.bench, request.out, somebody_answers=answers)
         refuse_unconfirmed(request.plan, request.hazard_confirmed_by)
-        refuse_latched(request.bench)
+        refuse_latched(request.bench, request.stops)
         with open_bench(request.bench, model=request.model) as bench:
             refuse_needs(bench, channels_of(request.plan))
             for path in request.replaces:
@@ -97,7 +97,8 @@ class _Run:
             self._unsafe = reach_safe_state(bench, self._failures.note) if self._arming.armed else []
             if self._request.watched is not None:
                 self._request.watched.concluded(armed=self._arming.armed, unsafe=self._unsafe)
-            self._stopped = keep_latched(self._failures.error, self._request.bench, self._request.out)
+            request = self._request
+            self._stopped = keep_latched(self._failures.error, request.bench, request.out, request.stops)
         return self._finish(time.perf_counter() - started)
 
     def _prepare(self) -> None:
