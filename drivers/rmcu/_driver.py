@@ -26,6 +26,7 @@ MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
 _COUNTER_VALUES = 16
 _SHORTEST_COUNTER = 3  # bits; a shorter one says less than the order of the frames
 _REPLY_TIMEOUT_S = 0.2
+_ASKED_AGAIN_S = 0.04
 _SILENT_S = 0.2
 _NOT_BELIEVED_S = 0.05
 _LAST_BYTE = (56, 8)
@@ -99,6 +100,7 @@ class RmcuDriver:
         self._shown = (self._layouts["RMCU_Control"].id, self._layouts["RMCU_Status"].id)
         self._counter = 0
         self._answer: int | None = None
+        self._awaited = (0, 0)
         self.state = ""
         self.fault = ""
         self.torque_ref_nm = math.nan
@@ -271,23 +273,30 @@ class RmcuDriver:
         """The value of the reply, and the one that was sent, as its signal rounds it."""
         layout = self._layouts["RMCU_ParameterWrite"]
         payload = int(layout.encode(Command=command, Index=index, Value=value)[0])
-        self._answer = None
-        self._wire.send(layout.id, payload.to_bytes(8, "little")[: layout.length])
-        if (
-            not self._loop.wait_for(lambda: self._answer is not None, _REPLY_TIMEOUT_S)
-            or self._answer is None
-        ):
+        if not self._asked(payload, command, index):
             raise BenchError(
                 f"no reply to parameter '{name}' within {_REPLY_TIMEOUT_S:g} s",
                 where="RMCU",
                 fix="is the RMCU powered and on this bus?",
             )
+        assert self._answer is not None
         signals = self._reply.signals
         result = signals["Result"].raw(self._answer)
         if result != 0:
             reason = self._names("RMCU_ParameterReply", "Result").get(result, str(result))
             raise BenchError(f"refused parameter '{name}' = {value:g}: {reason}", where="RMCU")
         return signals["Value"].value(self._answer), layout.signals["Value"].value(payload)
+
+    def _asked(self, payload: int, command: int, index: int) -> bool:
+        """Ask, and again as long as there is time: a frame may be lost, and twice is as once."""
+        layout, clock = self._layouts["RMCU_ParameterWrite"], self._loop.clock
+        self._answer, self._awaited = None, (command, index)
+        until_s = clock.now_s() + _REPLY_TIMEOUT_S
+        while (left_s := until_s - clock.now_s()) > 0.0:
+            self._wire.send(layout.id, payload.to_bytes(8, "little")[: layout.length])
+            if self._loop.wait_for(lambda: self._answer is not None, min(_ASKED_AGAIN_S, left_s)):
+                return True
+        return False
 
     def _names(self, message: str, signal: str) -> dict[int, str]:
         """The value table of a signal, by number."""
@@ -296,7 +305,9 @@ class RmcuDriver:
 
     def _take_reply(self, frame_id: int, data: bytes, time_s: float) -> None:
         del frame_id, time_s
-        self._answer = int.from_bytes(data, "little")
+        answer, signals = int.from_bytes(data, "little"), self._reply.signals
+        if (signals["Command"].raw(answer), signals["Index"].raw(answer)) == self._awaited:
+            self._answer = answer  # and not that to an earlier one, which was asked twice
 
     def _take_identification(self, frame_id: int, data: bytes, time_s: float) -> None:
         del frame_id, time_s

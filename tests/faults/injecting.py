@@ -118,6 +118,24 @@ class Sent(Injection):
 
 
 @dataclass
+class Lossy(Injection):
+    """One of so many frames is lost, at random, on every bus and in both directions."""
+
+    count: int
+    _random: np.random.Generator = field(default_factory=lambda: np.random.default_rng(11))
+
+    def to_hosts(self, stage: Stage, bus: str, block: FrameBlock) -> FrameBlock:
+        kept = block[self._random.integers(0, self.count, len(block)) > 0]
+        stage.count(len(kept) != len(block))
+        return kept
+
+    def to_nodes(self, stage: Stage, bus: str, frame_id: int, data: bytes) -> Iterable[tuple[int, bytes]]:
+        lost = not self._random.integers(0, self.count)
+        stage.count(lost)
+        return [] if lost else [(frame_id, data)]
+
+
+@dataclass
 class Refused(Injection):
     """The adapter has left the bus: it takes and gives nothing."""
 

@@ -159,15 +159,14 @@ def test_the_folder_of_another_command_stays_when_both_come_at_the_same_moment(
             make(path, *arguments, **options)
         if path == out and not other:
             command = [sys.executable, "-c", holder, str(out)]
-            other.append(
-                subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-            )
+            other.append(subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
             assert other[0].stdout is not None
             assert other[0].stdout.readline() == "in\n"
         if first == "they":
             make(path, *arguments, **options)
 
-    for first in ("we", "they"):
+    for order in ("we", "they"):
+        first = order
         with monkeypatch.context() as patch:
             patch.setattr(Path, "mkdir", made)
             with pytest.raises(BadInputError, match="another command is writing here"), claim(out):
