@@ -12,6 +12,7 @@ from drivers.examination import Examined, Finding
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.newest_frames import NewestFrames
+from drivers.rmcu._damage import FrameDamage, has_checksum
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
 from hil.core.checksum import crc8, crc8_many
@@ -29,9 +30,9 @@ _REPLY_TIMEOUT_S = 0.2
 _ASKED_AGAIN_S = 0.04
 _SILENT_S = 0.2
 _NOT_BELIEVED_S = 0.05
-_LAST_BYTE = (56, 8)
 _READ, _WRITE, _APPLY = 0, 1, 2
 _FIRST_PARAMETER = 1
+_SENT_BY_IT = ("RMCU_Status", "RMCU_Control")
 _VERSION = ("SoftwareMajor", "SoftwareMinor", "SoftwarePatch")
 _IDENTIFICATION = (*_VERSION, "HardwareRevision", "CalibrationId")
 _IDENTIFIES_WITHIN_S = 1.2
@@ -108,7 +109,8 @@ class RmcuDriver:
         self._damaged_s = self._stands_s = -math.inf  # when a frame came whose checksum or count was wrong
         self._count: int | None = None
         control = self._layouts["RMCU_Control"]
-        self._checked = "Crc" in control.signals and control.signals["Crc"].place[:2] == _LAST_BYTE
+        self._checked = has_checksum(control)
+        self._damage = FrameDamage(wire.name, {name: self._layouts[name] for name in _SENT_BY_IT})
         shown = (control, self._layouts["RMCU_Status"])
         self._newest = NewestFrames({frame.id: frame.signals.values() for frame in shown})
         self._identification: int | None = None
@@ -163,6 +165,11 @@ class RmcuDriver:
         if unseen and self._stands_s > self.last_seen_s:
             found.append("the RMCU's counter stands still")
         return found
+
+    @property
+    def damage(self) -> str:
+        """Which of its frames came damaged, and how many of how many; empty if none to speak of."""
+        return str(self._damage)
 
     def close(self) -> None:
         """Nothing of its own is open."""
@@ -316,6 +323,7 @@ class RmcuDriver:
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus != self._wire.name:
             return
+        self._damage.take(block)
         control, status = self._newest.of(block)
         if control is None or status is None or not self._is_believed(*control):
             return

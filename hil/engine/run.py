@@ -7,7 +7,7 @@ import datetime
 import time
 from functools import partial
 
-from drivers import TICK_S
+from drivers import TICK_S, SaysDamage
 from hil.core.errors import (
     BadInputError,
     BenchError,
@@ -214,7 +214,10 @@ class _Run:
         self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
 
     def _blame(self) -> str:
-        return self._watch.limits.pauses.blamed_at(self._bench.loop.clock.now_s())
+        """What may be the cause of a failure, whatever it looks like."""
+        pause = self._watch.limits.pauses.blamed_at(self._bench.loop.clock.now_s())
+        damage = [device.damage for device in self._bench.devices if isinstance(device, SaysDamage)]
+        return "; ".join(filter(None, [pause, *damage]))
 
     def _event(self, kind: str, text: str) -> None:
         self._recorder.event(self._bench.loop.clock.now_s(), kind, text)

@@ -289,6 +289,18 @@ def every(count: int, seed: int = 3) -> Callable[[FrameBlock], FrameBlock]:
     return lambda block: block[random.integers(0, count, len(block)) > 0]
 
 
+def damaged(count: int, seed: int = 5) -> Callable[[FrameBlock], FrameBlock]:
+    """In one of so many frames bits are changed at random, whatever the frame."""
+    random = np.random.default_rng(seed)
+
+    def change(block: FrameBlock) -> FrameBlock:
+        place = random.integers(0, count, len(block)) == 0
+        block["data"][place] ^= random.integers(1, 1 << 63, int(place.sum()), dtype=np.uint64)
+        return block
+
+    return change
+
+
 def doubled(block: FrameBlock) -> FrameBlock:
     return np.repeat(block, 2)
 
