@@ -181,7 +181,8 @@ def test_the_folder_of_another_command_stays_when_both_come_at_the_same_moment(
 def test_a_folder_that_another_command_removes_meanwhile_is_made_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    out, named, removed = tmp_path / "out", _place._named, []
+    out, named = tmp_path / "out", _place._named
+    removed: list[Path] = []
 
     def gone_then(out: Path, made: list[Path]) -> Path:
         """Between making and locking it, twice."""
