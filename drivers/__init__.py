@@ -7,6 +7,7 @@ from drivers.can_adapter import CanSettings, open_can
 from drivers.device import (
     Device,
     MotorControl,
+    SaysDamage,
     SaysEmergency,
     SaysPowerless,
     SetsSlip,
@@ -77,6 +78,7 @@ __all__ = [
     "SampleQueue",
     "SampleSource",
     "Samples",
+    "SaysDamage",
     "SaysEmergency",
     "SaysPowerless",
     "SerialLine",

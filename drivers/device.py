@@ -129,6 +129,16 @@ class SaysEmergency(Protocol):
 
 
 @runtime_checkable
+class SaysDamage(Protocol):
+    """A device that knows which of its frames came damaged: what others do wrong may come of it."""
+
+    @property
+    def damage(self) -> str:
+        """Bus, frames, and how many of how many; empty if none to speak of."""
+        ...
+
+
+@runtime_checkable
 class SaysPowerless(Protocol):
     """A device that gives no torque once its host has left it, though it is not in its safe state then."""
 

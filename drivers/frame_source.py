@@ -50,7 +50,7 @@ class FrameSource:
     The streams are in the order in which the bindings name their frames first; a frame that only counts is
     the last, without channels. Frames of a bus without `counted_by` have the times at which they came.
     `checked` are frames by identifier with the signal of their checksum (`hil.core.checksum`, byte 7): one
-    whose checksum is not that of its content is left out, and counted in `damaged`.
+    whose checksum is not that of its content is left out.
     """
 
     def __init__(
@@ -78,11 +78,6 @@ class FrameSource:
             for bus, _ in frames
         }
         self._waiting: list[Samples] = []
-
-    @property
-    def damaged(self) -> int:
-        """How many frames were left out because of their checksum."""
-        return sum(decoder.damaged for decoder in self._decoders.values())
 
     def take(self, bus: str, block: FrameBlock) -> None:
         """Take the frames of one bus."""
@@ -162,14 +157,8 @@ class _Decoder:
         for place, (_, frame_id, _) in enumerate(bound):
             read[place] += [checked[frame_id]] if frame_id in checked else []
         self._checked = np.array([frame_id in checked for _, frame_id, _ in bound], bool)
-        self._damaged = np.zeros(1, np.int64)
         self._least = np.array([least_bytes(several) for several in read], np.int64)
         self._state = np.array([_NONE_YET, 0, 0], np.int64)
-
-    @property
-    def damaged(self) -> int:
-        """Frames left out because of their checksum."""
-        return int(self._damaged[0])
 
     def decode(self, block: FrameBlock) -> list[Samples]:
         """Samples of each stream that the block has frames of."""
@@ -180,7 +169,7 @@ class _Decoder:
         marks = np.empty((streams if self._counted else 0, frames), np.int64)
         _read(
             block["id"], block["flags"], block["length"], block["time_s"], block["data"],
-            self._ids, self._checked, self._damaged, self._least, self._ends,
+            self._ids, self._checked, self._least, self._ends,
             self._places, self._scales, self._counter, self._state,
             counts, times, numbers, marks,
         )  # fmt: skip
@@ -230,7 +219,6 @@ def _read(  # type: ignore[no-untyped-def]
     payloads,
     wanted,
     checked,
-    damaged,
     least,
     ends,
     places,
@@ -250,7 +238,6 @@ def _read(  # type: ignore[no-untyped-def]
             if ids[frame] != wanted[stream] or lengths[frame] < least[stream]:
                 continue
             if checked[stream] and payloads[frame] >> np.uint64(56) != crc8_of(ids[frame], payloads[frame]):
-                damaged[0] += 1
                 continue
             at = counts[stream]
             if counter[0] == stream:

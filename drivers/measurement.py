@@ -96,7 +96,8 @@ class SampleAssembler:
         """Raises:
         BenchError: the count of a device's samples and their arrival do not go together any more.
         """
-        for waiting in self._waiting.values():
+        base = self._base
+        for waiting in [base, *(one for one in self._waiting.values() if one is not base)]:
             if waiting.clock is None:
                 continue
             said = waiting.clock.parted_from(None if waiting is self._base else self._base.clock)
@@ -105,11 +106,20 @@ class SampleAssembler:
             if waiting.moved_s:
                 said = f"its samples and the rows have moved by {abs(waiting.moved_s) * 1e3:.0f} ms at once"
             if said:
+                blamed = self._less_in_time(waiting)
+                if blamed is not waiting:
+                    said = f"its count leaves the bench's clock; beside it {waiting.stream.label}: {said}"
                 raise BenchError(
-                    f"{waiting.stream.label}: {said}",
-                    where=waiting.stream.where,
+                    f"{blamed.stream.label}: {said}",
+                    where=blamed.stream.where,
                     fix="look for lost frames, a device that started again, and the adapter's time stamps",
                 )
+
+    def _less_in_time(self, waiting: Waiting) -> Waiting:
+        """Of a stream and the time base the one whose count goes less well with the bench's own clock."""
+        base, clock = self._base, waiting.clock
+        assert clock is not None
+        return base if base.clock is not None and base.clock.disorder > clock.disorder else waiting
 
     def rows(self, *, everything: bool = False, between: Callable[[], None] = _nothing) -> Array:
         """Samples that are complete (`everything`: also the newest), one row each, columns as `names`.

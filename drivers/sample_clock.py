@@ -118,6 +118,11 @@ class SampleClock:
         offset_s = (aside - round(aside)) * base.period_s
         return ClockFigures(offset_s, (self._whole_drift() - base._whole_drift()) * 1e6)
 
+    @property
+    def disorder(self) -> float:
+        """How badly numbers and arrivals go together: what a stretch is off the bench's clock, in samples."""
+        return abs(self._slope) / self.period_s * _STRETCH + self.spread_s / self.period_s
+
     def parted_from(self, base: SampleClock | None) -> str:
         """What to say if this clock and another (None: the bench's) have parted; else nothing."""
         drift = (self._slope - (base._slope if base else 0.0)) / self.period_s

@@ -59,21 +59,25 @@ def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
         _refuse_other_file(text, str(path))
     if choices is not None:
         text = choices.applied(text, read_yaml(text, str(path)))
-    plan = plan_from_text(text, str(path), path.parent)
+    plan = plan_from_text(text, str(path), path.parent, to_carry_out=True)
     logger.info("plan %s: %d steps, %d criteria", path, len(plan.steps), len(plan.criteria))
     return plan
 
 
-def plan_from_text(text: str, where: str, base_dir: Path, *, files_required: bool = True) -> Plan:
+def plan_from_text(
+    text: str, where: str, base_dir: Path, *, files_required: bool = True, to_carry_out: bool = False
+) -> Plan:
     """Check the text of a plan; `where` names it in messages.
 
     Relative controller files are looked for in `base_dir`, then among the built-in ones. With
-    `files_required` false they are not looked for: for a plan that was carried out long ago.
+    `files_required` false they are not looked for: for a plan that was carried out long ago. With
+    `to_carry_out` it is refused, too, if it asks for driving torque before there is a controller.
 
     Raises:
         BadInputError: file, line, key, and what to do.
     """
-    return _Reader(with_values(read_yaml(text, where)), base_dir, files_required).plan(text)
+    reader = _Reader(with_values(read_yaml(text, where)), base_dir, files_required)
+    return reader.plan(text, to_carry_out=to_carry_out)
 
 
 class _Reader:
@@ -83,7 +87,7 @@ class _Reader:
         self._document = document
         self._files = FileSearch((base_dir, LIBRARY / "controllers"), files_required)
 
-    def plan(self, text: str) -> Plan:
+    def plan(self, text: str, *, to_carry_out: bool) -> Plan:
         document, mistakes = self._document, PlanMistakes()
         content = mapping_at(document.value, document, (), "name: my_plan, then steps:")
         keys: PlanKeys | None = None
@@ -101,6 +105,9 @@ class _Reader:
         with mistakes.collected():
             end_steps = self._steps(_or_empty(content, "finally"), ("finally",))
             self._refuse_segments_at_the_end(end_steps)
+        with mistakes.collected():
+            if steps is not None and to_carry_out:
+                self._refuse_without_controller((*steps, *end_steps), len(steps))
         with mistakes.collected():
             criteria = self._criteria(_or_empty(content, "criteria"), steps)
         mistakes.refuse()
@@ -212,6 +219,20 @@ class _Reader:
                 fix="move the step to 'steps'; 'finally' is for coming to rest",
             )
 
+    def _refuse_without_controller(self, steps: tuple[Step, ...], first: int) -> None:
+        """Refuse driving torque before any controller; of `steps` those from `first` on are the end steps."""
+        for index, step in enumerate(steps):
+            path: KeyPath = ("steps", index) if index < first else ("finally", index - first)
+            for place, one in _each(step, path):
+                if one.needs_controller:
+                    raise BadInputError(
+                        f"'{one.kind}' asks for driving torque before any set_controller step",
+                        where=self._document.place(place),
+                        fix="write before it: - set_controller: {file: my_controller.toml}",
+                    )
+                if one.sets_controller:
+                    return
+
     def _refuse_endless(self, plan: Plan) -> None:
         duration = estimate_duration_s(plan)
         if duration > LONGEST_PLAN_S:
@@ -225,6 +246,14 @@ class _Reader:
 def _or_empty(content: dict[str, Any], key: str) -> object:
     value = content.get(key)
     return [] if value is None else value
+
+
+def _each(step: Step, path: KeyPath) -> Iterator[tuple[KeyPath, Step]]:
+    """A step, or those within it, in their order, with their places."""
+    yield path, step
+    for key in step.nested:
+        for index, inner in enumerate(getattr(step, key, ())):
+            yield from _each(inner, (*path, step.kind, key, index))
 
 
 def _ids(steps: tuple[Step, ...]) -> Iterator[tuple[int, str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -36,6 +36,7 @@ _SYNC_PERIOD_US = 1000
 _SYNC_PRODUCER = 1 << 30
 SYNC = 0x80
 _STATE_TIMEOUT_S = 0.5
+_ASKED_AGAIN_S = 0.05
 _ACCELERATION_UNIT_RAD_S2 = 1e-4
 
 
@@ -106,10 +107,12 @@ class DynoDriver:
             self._write_vehicle(node)
         self.left.write(0x1006, 0, _SYNC_PERIOD_US, "SYNC period")
         self.left.write(0x1005, 0, _SYNC_PRODUCER | SYNC, "SYNC producer")
-        for node in self.rear:
-            node.nmt("OPERATIONAL")
-        alive = self._loop.wait_for(lambda: all(n.last_seen_s > -np.inf for n in self.rear), _STATE_TIMEOUT_S)
-        if not alive:
+
+        def start() -> None:
+            for node in self.rear:
+                node.nmt("OPERATIONAL")
+
+        if not self._asked_until(start, lambda: all(n.last_seen_s > -np.inf for n in self.rear)):
             raise BenchError("the rear dynos send no measured values", where=f"bus '{self._wire.name}'")
 
     def enable(self, acceleration_rad_s2: float) -> None:
@@ -181,16 +184,26 @@ class DynoDriver:
         return ""
 
     def _all(self, controlword: int, state: int) -> None:
-        for node in self.rear:
-            node.command(controlword)
-        reached = self._loop.wait_for(lambda: all(n.in_state(state) for n in self.rear), _STATE_TIMEOUT_S)
-        if not reached:
+        def command() -> None:
+            for node in self.rear:
+                node.command(controlword)
+
+        if not self._asked_until(command, lambda: all(n.in_state(state) for n in self.rear)):
             states = ", ".join(f"{n.name} is in '{n.state}'" for n in self.rear)
             raise BenchError(
                 f"controlword 0x{controlword:02X} did not bring the drives along: {states}",
                 where=f"bus '{self._wire.name}'",
                 fix="reset the dyno controller and look at its fault list",
             )
+
+    def _asked_until(self, ask: Callable[[], None], reached: Callable[[], bool]) -> bool:
+        """Ask again and again, as a frame may be lost, until it is so; False if it is not in time."""
+        until_s = self._loop.clock.now_s() + _STATE_TIMEOUT_S
+        while (left_s := until_s - self._loop.clock.now_s()) > 0.0:
+            ask()
+            if self._loop.wait_for(reached, min(_ASKED_AGAIN_S, left_s)):
+                return True
+        return False
 
     def _write_vehicle(self, node: DynoNode) -> None:
         v = self.vehicle
@@ -201,8 +214,10 @@ class DynoDriver:
                 node.write(0x2000, subindex, value, name)
 
     def beat(self) -> None:
-        """The host's heartbeat, which the dynos watch."""
+        """The host's heartbeat, which the dynos watch; and what they were told last, which may be lost."""
         self._wire.send(0x700 + self._host, b"\x05")
+        for node in self.rear:
+            node.repeat()
 
     def close(self) -> None:
         """Nothing of its own is open."""

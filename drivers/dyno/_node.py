@@ -10,7 +10,7 @@ import canopen
 import numpy as np
 import numpy.typing as npt
 
-from drivers.dyno._canopen import LoopNetwork, LoopNode
+from drivers.dyno._canopen import SDO_TIMEOUT_S, BrokenOffError, LoopNetwork, LoopNode, abort_in_words
 from drivers.frame_source import Binding
 from drivers.newest_frames import NewestFrames
 from hil.core.errors import BenchError
@@ -32,6 +32,7 @@ _STATE_NAMES = {
 _OBJECTS = ((0x1005, 0), (0x1006, 0), (0x1016, 1), (0x1017, 0), (0x6060, 0), (0x6083, 0))
 _VEHICLE_OBJECTS = tuple((0x2000, subindex) for subindex in range(1, 7))
 _FRESH_S = 0.05
+_REPEATS = 2
 HEARTBEAT_LOST_S = 0.35
 
 
@@ -65,6 +66,11 @@ def identifiers_of(node_id: int, name: str) -> dict[int, str]:
     }
 
 
+def _object(index: int, subindex: int) -> str:
+    """An object of the dictionary, in words."""
+    return f"object 0x{index:04X}" + (f", subindex {subindex}" if subindex else "")
+
+
 class DynoNode:
     """Access to one node; `status` and `velocity` follow its PDOs."""
 
@@ -76,6 +82,7 @@ class DynoNode:
         network.add_node(self._node)
         self._newest = NewestFrames({f.id: f.signals.values() for f in (self._status, self._values)})
         self._target_speed = 0.0
+        self._controlword = self._repeats = 0
         self.emergencies: list[str] = []
         self.emergency_codes: list[int] = []
         self.last_heartbeat_s = -math.inf
@@ -124,15 +131,22 @@ class DynoNode:
             BenchError: no answer, a refusal, or another value than was written.
         """
         entry = self._node.sdo[index] if subindex == 0 else self._node.sdo[index][subindex]
+        named = f"{what} ({_object(index, subindex)})"
         try:
             entry.raw = value
             answer = entry.raw
         except canopen.SdoCommunicationError as error:
             raise BenchError(
-                f"no answer while {what} was written", where=self._where, fix="is it powered and on this bus?"
+                f"no answer within {SDO_TIMEOUT_S:g} s while {named} was written",
+                where=self._where,
+                fix="is it powered and on this bus?",
             ) from error
         except canopen.SdoAbortedError as error:
-            raise BenchError(f"refused {what} = {value:g}: {error}", where=self._where) from error
+            raise BenchError(
+                f"refused {named} = {value:g}: {abort_in_words(error.code)}",
+                where=self._where,
+                fix="look at the value, at the drive's state and at its manual",
+            ) from error
         sent = float(np.float32(value)) if isinstance(answer, float) else value
         if answer != sent:
             raise BenchError(f"{what} reads back as {answer:g}, {value:g} was written", where=self._where)
@@ -147,12 +161,15 @@ class DynoNode:
         if entry is None:
             return None
         try:
-            return entry.raw
+            try:
+                return entry.raw
+            except BrokenOffError:  # a text comes in segments, each of which may be lost
+                return entry.raw
         except canopen.SdoAbortedError:
             return None
         except canopen.SdoCommunicationError as error:
             raise BenchError(
-                f"no answer while object 0x{index:04X} was read",
+                f"no answer within {SDO_TIMEOUT_S:g} s while {_object(index, subindex)} was read",
                 where=self._where,
                 fix="is it powered and on this bus?",
             ) from error
@@ -182,7 +199,17 @@ class DynoNode:
         self._target_speed = speed_rad_s
 
     def command(self, controlword: int) -> None:
-        """Send controlword and target speed by PDO."""
+        """Send controlword and target speed by PDO, now and with some of the next `repeat`."""
+        self._controlword, self._repeats = controlword, _REPEATS
+        self._send_command(controlword)
+
+    def repeat(self) -> None:
+        """Send the newest command once more, unless it was repeated often enough: a frame may be lost."""
+        if self._repeats > 0:
+            self._repeats -= 1
+            self._send_command(self._controlword)
+
+    def _send_command(self, controlword: int) -> None:
         payload = self._command.encode(
             **{"Controlword": float(controlword), "Target velocity": self._target_speed}
         )

@@ -12,6 +12,7 @@ from drivers.examination import Examined, Finding
 from drivers.frame_source import Binding, CountedBy, FrameSource
 from drivers.loop import BusLoop
 from drivers.newest_frames import NewestFrames
+from drivers.rmcu._damage import FrameDamage, has_checksum
 from drivers.rmcu._parameters import parameters_of
 from drivers.wire import Wire
 from hil.core.checksum import crc8, crc8_many
@@ -26,11 +27,12 @@ MODES = {"off": 0, "motor_torque": 1, "driving_torque": 2}
 _COUNTER_VALUES = 16
 _SHORTEST_COUNTER = 3  # bits; a shorter one says less than the order of the frames
 _REPLY_TIMEOUT_S = 0.2
+_ASKED_AGAIN_S = 0.04
 _SILENT_S = 0.2
 _NOT_BELIEVED_S = 0.05
-_LAST_BYTE = (56, 8)
 _READ, _WRITE, _APPLY = 0, 1, 2
 _FIRST_PARAMETER = 1
+_SENT_BY_IT = ("RMCU_Status", "RMCU_Control")
 _VERSION = ("SoftwareMajor", "SoftwareMinor", "SoftwarePatch")
 _IDENTIFICATION = (*_VERSION, "HardwareRevision", "CalibrationId")
 _IDENTIFIES_WITHIN_S = 1.2
@@ -99,6 +101,7 @@ class RmcuDriver:
         self._shown = (self._layouts["RMCU_Control"].id, self._layouts["RMCU_Status"].id)
         self._counter = 0
         self._answer: int | None = None
+        self._awaited = (0, 0)
         self.state = ""
         self.fault = ""
         self.torque_ref_nm = math.nan
@@ -106,11 +109,12 @@ class RmcuDriver:
         self._damaged_s = self._stands_s = -math.inf  # when a frame came whose checksum or count was wrong
         self._count: int | None = None
         shown = (self._layouts["RMCU_Control"], self._layouts["RMCU_Status"])
+        self._damage = FrameDamage(wire.name, {name: self._layouts[name] for name in _SENT_BY_IT})
         self._newest = NewestFrames({frame.id: frame.signals.values() for frame in shown})
         self._identification: int | None = None
         if "RMCU_Identification" in self._layouts:
             loop.on_frame(wire, self._layouts["RMCU_Identification"].id, self._take_identification)
-        checked = {frame.id: frame.signals["Crc"] for frame in shown if self._is_checked(frame)}
+        checked = {frame.id: frame.signals["Crc"] for frame in shown if has_checksum(frame)}
         source = FrameSource(self._bindings(), TICK_S, self._counted_by(), checked)
         self.sources = (source,)
         loop.on_frame(wire, self._reply.id, self._take_reply)
@@ -166,6 +170,11 @@ class RmcuDriver:
         if unseen and self._stands_s > self.last_seen_s:
             found.append("the RMCU's counter stands still")
         return found
+
+    @property
+    def damage(self) -> str:
+        """Which of its frames came damaged, and how many of how many; empty if none to speak of."""
+        return str(self._damage)
 
     def close(self) -> None:
         """Nothing of its own is open."""
@@ -276,23 +285,30 @@ class RmcuDriver:
         """The value of the reply, and the one that was sent, as its signal rounds it."""
         layout = self._layouts["RMCU_ParameterWrite"]
         payload = int(layout.encode(Command=command, Index=index, Value=value)[0])
-        self._answer = None
-        self._wire.send(layout.id, payload.to_bytes(8, "little")[: layout.length])
-        if (
-            not self._loop.wait_for(lambda: self._answer is not None, _REPLY_TIMEOUT_S)
-            or self._answer is None
-        ):
+        if not self._asked(payload, command, index):
             raise BenchError(
                 f"no reply to parameter '{name}' within {_REPLY_TIMEOUT_S:g} s",
                 where="RMCU",
                 fix="is the RMCU powered and on this bus?",
             )
+        assert self._answer is not None
         signals = self._reply.signals
         result = signals["Result"].raw(self._answer)
         if result != 0:
             reason = self._names("RMCU_ParameterReply", "Result").get(result, str(result))
             raise BenchError(f"refused parameter '{name}' = {value:g}: {reason}", where="RMCU")
         return signals["Value"].value(self._answer), layout.signals["Value"].value(payload)
+
+    def _asked(self, payload: int, command: int, index: int) -> bool:
+        """Ask, and again as long as there is time: a frame may be lost, and twice is as once."""
+        layout, clock = self._layouts["RMCU_ParameterWrite"], self._loop.clock
+        self._answer, self._awaited = None, (command, index)
+        until_s = clock.now_s() + _REPLY_TIMEOUT_S
+        while (left_s := until_s - clock.now_s()) > 0.0:
+            self._wire.send(layout.id, payload.to_bytes(8, "little")[: layout.length])
+            if self._loop.wait_for(lambda: self._answer is not None, min(_ASKED_AGAIN_S, left_s)):
+                return True
+        return False
 
     def _names(self, message: str, signal: str) -> dict[int, str]:
         """The value table of a signal, by number."""
@@ -301,7 +317,9 @@ class RmcuDriver:
 
     def _take_reply(self, frame_id: int, data: bytes, time_s: float) -> None:
         del frame_id, time_s
-        self._answer = int.from_bytes(data, "little")
+        answer, signals = int.from_bytes(data, "little"), self._reply.signals
+        if (signals["Command"].raw(answer), signals["Index"].raw(answer)) == self._awaited:
+            self._answer = answer  # and not that to an earlier one, which was asked twice
 
     def _take_identification(self, frame_id: int, data: bytes, time_s: float) -> None:
         del frame_id, time_s
@@ -310,6 +328,7 @@ class RmcuDriver:
     def _take_block(self, bus: str, block: npt.NDArray[np.void]) -> None:
         if bus != self._wire.name:
             return
+        self._damage.take(block)
         control, status = self._newest.of(block)
         if control is None or status is None or not self._is_believed(*control):
             return
@@ -334,10 +353,6 @@ class RmcuDriver:
             return False
         return True
 
-    def _is_checked(self, frame: FrameLayout) -> bool:
-        """Whether a frame ends in a checksum."""
-        return "Crc" in frame.signals and frame.signals["Crc"].place[:2] == _LAST_BYTE
-
     def _is_damaged(self, frame: FrameLayout, payload: int) -> bool:
         """Whether a frame's checksum is not that of its content."""
-        return self._is_checked(frame) and frame.signals["Crc"].raw(payload) != crc8(frame.id, payload)
+        return has_checksum(frame) and frame.signals["Crc"].raw(payload) != crc8(frame.id, payload)

@@ -72,7 +72,8 @@ def work(request: AgentRequest) -> None:
         BadInputError: folder, bench files or token cannot be used.
         BenchError: the service has given one of the benches' names to another.
     """
-    benches = [DrivenBench(bench) for bench in benches_of(list(request.benches)).values()]
+    named = benches_of(list(request.benches), request.folder.resolve())
+    benches = [DrivenBench(bench) for bench in named.values()]
     with alone_in(request.folder, who="agent", fix=_OTHER_FOLDER):
         asyncio.run(_Agent(request, benches).work())
 

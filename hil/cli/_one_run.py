@@ -63,6 +63,7 @@ class Runs:
     overwrite: bool
     terminal: Callable[[], Terminal | None] = operators_terminal
     shown: Callable[[str], AbstractContextManager[Show]] = progress
+    stops: Path | None = None
 
     @contextlib.contextmanager
     def finished(self, plan: Plan, bench: BenchFile, out: Path | None) -> Iterator[Finished]:
@@ -80,6 +81,7 @@ class Runs:
             hazard_confirmed_by=self.hazard_confirmed_by,
             analyse=analysed_apart,
             stop=stop,
+            stops=self.stops,
         )
         with (
             results_in(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import logging
 import os
@@ -16,6 +17,7 @@ from hil.core.locks import HeldError, lock_on
 
 logger = logging.getLogger(__name__)
 
+_MOST_CLAIMS = 100
 _OVERWRITE = "add --overwrite to replace it, or name another place with --out"
 
 
@@ -62,7 +64,7 @@ def results_in(
 ) -> Iterator[Place]:
     """Claim the folder `out` for results called `names`; without `out` a new numbered one, `out/DEFAULT-001`.
 
-    A folder that was made for this and stays empty is removed again.
+    A folder that this process made and that stays empty is removed again.
 
     Args:
         inputs: files that the command reads; none of them is ever written over.
@@ -72,25 +74,40 @@ def results_in(
         BadInputError: `out` holds results already (without `overwrite`), is no folder, cannot be written, or
             another command is writing there.
     """
-    made: list[Path] = []
-    folder = _numbered(default, made) if out is None else _named(out, made)
-    try:
-        with alone_in(folder) as lock:
-            there = [folder / name for name in dict.fromkeys((*names, *_listed(folder / summary)))]
-            for path in there:
-                refuse_special(path)
-            refuse_inputs(there, inputs)
-            there = [path for path in there if path.exists()]
-            if there and not overwrite:
-                raise BadInputError(
-                    f"holds results already: {there[0].name}", where=str(folder), fix=_OVERWRITE
-                )
-            logger.info("results go to %s", folder)
-            yield Place(folder, tuple(there), lock)
-    finally:
-        for path in reversed(made):
-            with contextlib.suppress(OSError):  # not empty: the results are there
-                path.rmdir()
+    with _claimed(out, default) as (folder, lock):
+        there = [folder / name for name in dict.fromkeys((*names, *_listed(folder / summary)))]
+        for path in there:
+            refuse_special(path)
+        refuse_inputs(there, inputs)
+        there = [path for path in there if path.exists()]
+        if there and not overwrite:
+            raise BadInputError(f"holds results already: {there[0].name}", where=str(folder), fix=_OVERWRITE)
+        logger.info("results go to %s", folder)
+        yield Place(folder, tuple(there), lock)
+
+
+@contextlib.contextmanager
+def _claimed(out: Path | None, default: str) -> Iterator[tuple[Path, int]]:
+    """The folder and its lock; what this process made and nobody used goes again while the lock is held."""
+    with contextlib.ExitStack() as held:
+        for _ in range(_MOST_CLAIMS):
+            made: list[Path] = []
+            folder = _numbered(default, made) if out is None else _named(out, made)
+            try:
+                lock = held.enter_context(alone_in(folder))
+                if os.path.samestat(os.fstat(lock), folder.stat()):
+                    break
+            except FileNotFoundError:
+                pass
+            held.close()  # another command made it, found nothing to keep, and has just removed it
+        else:
+            raise _unusable(folder, FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)))
+        try:
+            yield folder, lock
+        finally:
+            for path in reversed(made):
+                with contextlib.suppress(OSError):  # not empty: the results are there
+                    path.rmdir()
 
 
 def refuse_file(out: Path, inputs: Iterable[Path], *, overwrite: bool) -> None:
@@ -148,10 +165,8 @@ def _numbered(default: str, made: list[Path]) -> Path:
 
 
 def _named(out: Path, made: list[Path]) -> Path:
-    if out.exists() and not out.is_dir():
-        raise BadInputError("is not a directory", where=str(out), fix="choose another place with --out")
     _make(out, made)
-    if not os.access(out, os.W_OK):
+    if out.exists() and not os.access(out, os.W_OK):
         raise BadInputError("cannot be written", where=str(out), fix="choose another place with --out")
     return out
 
@@ -162,10 +177,17 @@ def _make(folder: Path, made: list[Path]) -> None:
     while not place.exists() and place != place.parent:
         missing.append(place)
         place = place.parent
-    if not place.is_dir():
+    if place.exists() and not place.is_dir():
         raise BadInputError("is not a directory", where=str(place), fix="choose another place with --out")
-    make_directory(folder)
-    made += reversed(missing)
+    for path in reversed(missing):
+        try:
+            path.mkdir()
+        except (FileExistsError, FileNotFoundError):
+            make_directory(path)  # by another command at this moment, whose it is to remove
+        except OSError as error:
+            raise _unusable(path, error) from error
+        else:
+            made.append(path)
 
 
 @contextlib.contextmanager

@@ -136,6 +136,7 @@ def _carried_out(asked: RunAsked, service: _Service, pipe: BorderPipe) -> int:
         overwrite=False,
         terminal=lambda: service,
         shown=service.shown,
+        stops=request.stops,
     )
     with runs.finished(request.plan, request.bench, out) as run:
         outcome = run.outcome

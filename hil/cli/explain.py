@@ -25,6 +25,7 @@ from hil.core.file_format import FORMAT
 from hil.core.model import Model, load_model
 from hil.engine import BenchFile, StopRequest, load_bench
 from hil.engine.prediction import predict
+from hil.plant import refuse_too_stiff
 from reports.target_search import caution, explanation_html, explanation_pdf
 from test_plans import Plan
 
@@ -51,6 +52,7 @@ def carry_out(
         raise BadInputError("is no simulated bench", where=str(file.source), fix="give one with [simulation]")
     source = model or file.simulation.model
     base = load_model(source)
+    refuse_too_stiff(base)
     inputs = [path for path in (targets, source, file.source) if path is not None]
     names = (SUMMARY, HTML, PDF, SEPARATING, model_name(1))
     stop = StopRequest()

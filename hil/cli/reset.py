@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from hil.cli._output import console, print_json
 from hil.core.errors import BadInputError
 from hil.core.printable import is_printable, printable
 from hil.engine import load_bench
+from hil.engine.bus_identity import within_process
 from hil.engine.emergency_stop import reset
 
 
-def carry_out(*, bench: str, by: str, as_json: bool) -> int:
+def carry_out(*, bench: str, by: str, data: Path | None, as_json: bool) -> int:
     """Carry the command out; its exit code."""
     name = by.strip()
     if not name or not is_printable(name):
         raise BadInputError("--by names nobody", fix="give the name of who has made sure that it is safe")
     file = load_bench(bench)
-    stops = reset(file, name)
+    stops = reset(file, name, data.resolve() if data is not None else None)
     if as_json:
         print_json({"bench": file.name, "reset": [stop.model_dump() for stop in stops]})
         return 0
@@ -25,4 +28,9 @@ def carry_out(*, bench: str, by: str, as_json: bool) -> int:
         page.print(printable(text, 500), highlight=False, markup=False, soft_wrap=True)
     if not stops:
         page.print(f"no emergency stop is latched on {file.name}", highlight=False, markup=False)
+        if within_process(file) and data is None:
+            text = (
+                "a simulated bench's stop is with its service: reset it there, or name its folder with --data"
+            )
+            page.print(text, highlight=False, markup=False)
     return 0

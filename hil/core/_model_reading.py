@@ -71,6 +71,7 @@ def model_from_dict(data: Mapping[str, Any], where: str, text: str = "") -> Mode
         _wheel_radius(data, mistakes),
         _tolerance(data.get("tolerance", {}), kind, mistakes),
         _load_input(data.get("load_input", ""), kind, mistakes),
+        where,
     )
     mistakes.refuse(where, text)
     return model

@@ -95,6 +95,8 @@ class Model:
     #: How well parameters are known, relative; those not named have the default of who asks.
     tolerance: dict[str, float] = field(default_factory=dict)
     load_input: str = ""
+    #: What it was read from, for messages; '' for one that was made.
+    source: str = field(default="", compare=False, repr=False)
 
     @property
     def dead_time_s(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +17,7 @@ except ImportError:  # Windows
 
 _KERNELS_LIST = Path("/proc/locks")
 #: Where locks of things that are no files lie: for all users of the machine, gone when it starts anew.
-_SHARED_PLACES = (Path("/run/lock"), Path("/var/lock"))
+_SHARED_PLACES = (Path("/run/lock"), Path("/var/lock"), Path("/tmp"))
 _LONGEST_COMMAND = 120
 
 
@@ -73,7 +74,10 @@ def lock_named(name: str) -> Iterator[None]:
 def _has_name(path: Path, held: contextlib.ExitStack) -> bool:
     """Lock the file; whether it is still the one of this name: its holder takes it away when it is done."""
     with contextlib.suppress(FileExistsError):
-        os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644))
+        made = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
+        with contextlib.suppress(OSError):
+            path.chmod(0o644)  # whatever the umask: another account has to be able to look at it
+        os.close(made)
     with contextlib.suppress(FileNotFoundError):
         handle = held.enter_context(lock_on(path))
         return os.path.samestat(os.fstat(handle), path.stat())
@@ -83,8 +87,9 @@ def _has_name(path: Path, held: contextlib.ExitStack) -> bool:
 def shared_place() -> Path:
     """Where files of `lock_named` lie."""
     for place in _SHARED_PLACES:
-        if os.access(place, os.W_OK):
-            return place
+        with contextlib.suppress(OSError):
+            if place.stat().st_mode & stat.S_IWOTH:  # else another account would take another place
+                return place
     return Path(tempfile.gettempdir())
 
 

@@ -17,6 +17,7 @@ from hil.core.suggestion import closest, did_you_mean
 from hil.engine._bus_settings import adapter_mistakes, slows_down
 from hil.engine._simulable import check_simulable, ram_of, rmcu_of
 from hil.engine.bench_tables import BenchFile
+from hil.engine.bus_identity import identity_of
 from hil.plant.controller import in_range
 from sim_backend.bench import DYNO_BUS, RAM_BUS, RMCU_BUS, SENSED_CHANNELS
 from sim_backend.rmcu import INTERNALS
@@ -106,11 +107,9 @@ def _of_uses(bench: BenchFile) -> Iterator[str]:
     for name in bench.buses:
         if name not in used.values():
             yield f"buses.{name}: is used by nothing; name it under [rmcu], [dyno] or [devices], or drop it"
-    seen: dict[tuple[str, str, str], str] = {}
+    seen: dict[str, str] = {}
     for name, bus in bench.buses.items():
-        # Two adapters of one make may both have a channel 0: their options tell which is meant.
-        which = repr(sorted(bus.options.items()))
-        other = seen.setdefault((bus.interface, str(bus.channel), which), name)
+        other = seen.setdefault(identity_of(bus) or f"{bus.interface} {bus.channel}", name)
         if other != name:
             yield (
                 f"buses.{name}.channel = '{printable(bus.channel)}': is also buses.{other}; "

@@ -7,6 +7,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import Model, refuse_without_vehicle
 from hil.core.printable import printable
 from hil.engine.bench_tables import BenchFile
+from hil.plant import refuse_too_stiff
 from sim_backend.bench import (
     RAM_BUS,
     RMCU_BUS,
@@ -64,6 +65,7 @@ def simulated(bench: BenchFile, model: Model) -> SimulatedBench:
     """
     assert bench.simulation is not None
     refuse_without_vehicle(model, str(bench.simulation.model), "simulate a bench")
+    refuse_too_stiff(model)
     rmcu, dyno, noise = rmcu_of(bench), dyno_of(bench), bench.simulation.noise
     return SimulatedBench(
         SimulationSettings(

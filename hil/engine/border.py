@@ -124,6 +124,9 @@ class RunRequest:
     on; `analyse` begins the analysis of a step of the plan, while the bench is kept alive (None: in a process
     of its own on hardware, at once in virtual time).
 
+    `stops` is the folder of the service or agent that asks, where stops of a simulated bench are kept (None:
+    they end with the process).
+
     `watched` hears that the loop turns, if another process watches it.
 
     The one call the other way is `stop`.
@@ -141,5 +144,6 @@ class RunRequest:
     progress: Progress = lambda share, text: None
     analyse: Analyse | None = None
     replaces: tuple[Path, ...] = ()
+    stops: Path | None = None
     watched: Watched | None = None
     stop: StopRequest = field(default_factory=StopRequest)

@@ -27,6 +27,7 @@ def asked_of(request: RunRequest) -> RunAsked:
         hazard_confirmed_by=request.hazard_confirmed_by,
         accept_expired=request.accept_expired,
         replaces=tuple(map(str, request.replaces)),
+        stops=str(request.stops or ""),
     )
 
 
@@ -48,6 +49,7 @@ def request_of(asked: RunAsked) -> RunRequest:
         hazard_confirmed_by=asked.hazard_confirmed_by,
         accept_expired=asked.accept_expired,
         replaces=tuple(map(Path, asked.replaces)),
+        stops=Path(asked.stops) if asked.stops else None,
     )
 
 

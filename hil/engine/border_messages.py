@@ -74,6 +74,7 @@ class RunAsked(_Data):
     hazard_confirmed_by: str = ""
     accept_expired: str = ""
     replaces: tuple[str, ...] = ()
+    stops: str = ""
 
 
 class Here(_Data):

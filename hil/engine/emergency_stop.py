@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import datetime
+import logging
 import os
 import secrets
 from collections.abc import Iterator
@@ -12,12 +13,25 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from hil.core.errors import BenchError, EmergencyStopError, HilError
-from hil.core.files import make_directory, write_atomically
+from hil.core.files import write_atomically
 from hil.core.result import StoppedInEmergency
 from hil.engine.bench_tables import BenchFile
+from hil.engine.bus_identity import identities_of, share_a_bus, within_process
+from hil.engine.stop_places import (
+    RESET,
+    make_for_all,
+    places_to_read,
+    places_to_write,
+    remark_on,
+    seen_by_all,
+)
 
-_FOLDER = "emergency-stops"
-_PLACE_FIX = "look at the file; it is removed with: hil reset {bench} --by NAME"
+logger = logging.getLogger(__name__)
+
+_BY_PORTS = (
+    2  # `identity` of stops that name physical ports; earlier ones named interface, channel and options
+)
+_PLACE_FIX = "look at the file; then: {reset}"
 
 
 class LatchedStop(BaseModel):
@@ -31,42 +45,54 @@ class LatchedStop(BaseModel):
     why: str
     at: str
     run: str
+    identity: int = 1
     reset_by: str = ""
     reset_at: str = ""
 
 
-def state_directory() -> Path:
-    """Where is kept what outlives a process: HIL_STATE, or the user's own place for that."""
-    own = os.environ.get("HIL_STATE")
-    if own:
-        return Path(own)
-    base = os.environ.get("XDG_STATE_HOME")
-    return Path(base) / "hil" if base else Path.home() / ".local" / "state" / "hil"
-
-
 def buses_of(file: BenchFile) -> tuple[str, ...]:
     """What two bench files of one bench have in common, whatever they are called."""
-    return tuple(
-        sorted(
-            " ".join([bus.interface, str(bus.channel), *(f"{k}={v}" for k, v in sorted(bus.options.items()))])
-            for bus in file.buses.values()
-        )
-    )
+    if within_process(file):
+        return tuple(sorted(f"{bus.interface} {bus.channel}" for bus in file.buses.values()))
+    return tuple(sorted(identities_of(file)))
 
 
-def latch(file: BenchFile, *, by: str, why: str, run: Path) -> None:
-    """Keep it on disk, also through a power cut.
+def latch(file: BenchFile, *, by: str, why: str, run: Path, owner: Path | None = None) -> Path:
+    """Keep it on disk, also through a power cut; the folder that it lies in.
+
+    Args:
+        owner: folder of the service or agent whose bench it is, if it is a simulated one.
 
     Raises:
-        HilError: it cannot be written.
+        HilError: it cannot be written anywhere.
     """
     stop = LatchedStop(
-        bench=file.name, buses=buses_of(file), by=by, why=why, at=_now(), run=str(run.resolve())
+        bench=file.name,
+        buses=buses_of(file),
+        by=by,
+        why=why,
+        at=_now(),
+        run=str(run.resolve()),
+        identity=_BY_PORTS,
     )
-    folder = state_directory() / _FOLDER
-    make_directory(folder)
-    path = folder / f"{file.name[:60]}-{secrets.token_hex(6)}.json"
-    write_atomically(path, stop.model_dump_json(indent=1) + "\n")
+    name = f"{file.name[:60]}-{secrets.token_hex(6)}.json"
+    failure: HilError | OSError | None = None
+    for place in places_to_write(file, owner):
+        try:
+            make_for_all(place)
+            write_atomically(place / name, stop.model_dump_json(indent=1) + "\n")
+        except (HilError, OSError) as error:
+            failure = failure or error
+            continue
+        _put_name_on_disk(place)
+        if not within_process(file) and not seen_by_all(place):
+            logger.warning(remark_on(place))
+        return place
+    assert failure is not None
+    raise failure
+
+
+def _put_name_on_disk(folder: Path) -> None:
     with contextlib.suppress(OSError):  # a system that opens no folders
         handle = os.open(folder, os.O_RDONLY)
         try:
@@ -75,70 +101,136 @@ def latch(file: BenchFile, *, by: str, why: str, run: Path) -> None:
             os.close(handle)
 
 
-def keep_latched(error: HilError | None, file: BenchFile, run: Path) -> StoppedInEmergency | None:
-    """Latch the bench if an emergency stop ended the run; `error.fix` tells then what a person has to do."""
+def keep_latched(
+    error: HilError | None, file: BenchFile, run: Path, owner: Path | None = None
+) -> StoppedInEmergency | None:
+    """Latch the bench if an emergency stop ended the run; `error.fix` says then what a person has to do."""
     if not isinstance(error, EmergencyStopError):
         return None
-    error.fix = f"make sure that nobody is in danger; then: hil reset {file.source} --by NAME"
+    error.fix = f"make sure that nobody is in danger; then: {_how_to_reset(file, owner)}"
     try:
-        latch(file, by=error.by, why=error.what, run=run)
+        place = latch(file, by=error.by, why=error.what, run=run, owner=owner)
     except (HilError, OSError) as failure:
         error.fix += (
             f"\n  it could NOT be latched, nothing but you keeps the bench from being armed: {failure}"
         )
         return StoppedInEmergency(by=error.by, why=error.what, latched=False)
+    if not within_process(file) and not seen_by_all(place):
+        error.fix += f"\n  {remark_on(place)}"
     return StoppedInEmergency(by=error.by, why=error.what, latched=True)
 
 
-def refuse_latched(file: BenchFile) -> None:
+def refuse_latched(file: BenchFile, owner: Path | None = None) -> None:
     """Raises:
     BenchError: an emergency stop of this bench has not been reset: who, when, why, and how to reset it.
     """
-    for path, stop in _latched(file):
+    for path, stop in _latched(file, owner):
         if stop is None:
             raise BenchError(
                 "an emergency stop may be latched here, but cannot be read",
                 where=str(path),
-                fix=_PLACE_FIX.format(bench=file.source),
+                fix=_PLACE_FIX.format(reset=_how_to_reset(file, owner)),
             )
         raise BenchError(
             f"emergency stop since {stop.at}, by {stop.by}: {stop.why}",
             where=f"bench '{file.name}'",
-            fix=f"make sure that nobody is in danger and why it was; then: hil reset {file.source} --by NAME",
+            fix=f"make sure that nobody is in danger and why it was; then: {_how_to_reset(file, owner)}",
         )
 
 
-def reset(file: BenchFile, by: str) -> list[LatchedStop]:
+def reset(file: BenchFile, by: str, owner: Path | None = None) -> list[LatchedStop]:
     """Let the bench be armed again; what was latched is kept beside, with who reset it.
+
+    A stop of another account stays where it is, for it may not be removed: what stands beside it resets it.
 
     Raises:
         HilError: it cannot be written.
     """
     found = []
-    for path, stop in list(_latched(file)):
-        done = path.parent / "reset"
-        make_directory(done)
+    for path, stop in list(_latched(file, owner)):
+        record = path.read_bytes()
         if stop is not None:
             stop = stop.model_copy(update={"reset_by": by, "reset_at": _now()})
-            write_atomically(done / path.name, stop.model_dump_json(indent=1) + "\n")
+            record = (stop.model_dump_json(indent=1) + "\n").encode()
             found.append(stop)
-        else:
-            write_atomically(done / path.name, path.read_bytes())
-        path.unlink()
+        _keep_reset([path.parent, *places_to_write(file, owner)], path.name, record)
+        with contextlib.suppress(PermissionError):
+            path.unlink()
     return found
 
 
-def _latched(file: BenchFile) -> Iterator[tuple[Path, LatchedStop | None]]:
-    """Files of stops that concern a bench; without a stop if one cannot be read: it may concern any."""
-    buses = set(buses_of(file))
-    for path in sorted((state_directory() / _FOLDER).glob("[!.]*.json")):
+def _how_to_reset(file: BenchFile, owner: Path | None) -> str:
+    if not within_process(file):
+        return f"hil reset {file.source} --by NAME"
+    if owner is not None:
+        return f"reset it at its service, or: hil reset {file.source} --by NAME --data {owner}"
+    return "begin anew: the bench is simulated in this process, and its stop ends with it"
+
+
+def _keep_reset(places: list[Path], name: str, record: bytes) -> None:
+    """Write who reset a stop beside it, or where this account may write.
+
+    Raises:
+        HilError: nowhere.
+    """
+    failure: HilError | OSError | None = None
+    for place in places:
         try:
-            stop = LatchedStop.model_validate_json(path.read_bytes())
-        except (OSError, ValidationError):
+            make_for_all(place)
+            write_atomically(place / RESET / name, record)
+        except (HilError, OSError) as error:
+            failure = failure or error
+        else:
+            return
+    assert failure is not None
+    raise failure
+
+
+def _latched(file: BenchFile, owner: Path | None) -> Iterator[tuple[Path, LatchedStop | None]]:
+    """Files of stops that concern a bench; without a stop if one cannot be read: it may concern any."""
+    buses, places = buses_of(file), places_to_read(file, owner)
+    earlier = tuple(f"{bus.interface} {bus.channel}" for bus in file.buses.values())
+    for path in (path for place in places for path in _stops_in(place)):
+        try:
+            content = path.read_bytes()
+            stop = LatchedStop.model_validate_json(content)
+        except FileNotFoundError:
+            continue  # reset at this moment
+        except OSError:
             yield path, None
             continue
-        if buses & set(stop.buses):
+        except ValidationError:
+            if not any(_bytes_of(place / RESET / path.name) == content for place in places):
+                yield path, None
+            continue
+        mine = buses if stop.identity == _BY_PORTS else earlier
+        if share_a_bus(stop.buses, mine) and not any(_resets(place, path.name, stop) for place in places):
             yield path, stop
+
+
+def _stops_in(place: Path) -> list[Path]:
+    """Files of stops in a place, as far as this account can look into it."""
+    try:
+        found = sorted(place.iterdir())
+    except OSError:
+        return []
+    return [path for path in found if path.suffix == ".json" and not path.name.startswith(".")]
+
+
+def _resets(place: Path, name: str, stop: LatchedStop) -> bool:
+    """Whether somebody has reset this very stop."""
+    try:
+        done = LatchedStop.model_validate_json(_bytes_of(place / RESET / name))
+    except ValidationError:
+        return False
+    return bool(done.reset_by) and done.model_copy(update={"reset_by": "", "reset_at": ""}) == stop
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
 
 
 def _now() -> str:

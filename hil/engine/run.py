@@ -7,7 +7,7 @@ import datetime
 import time
 from functools import partial
 
-from drivers import TICK_S
+from drivers import TICK_S, SaysDamage
 from hil.core.errors import (
     BadInputError,
     BenchError,
@@ -62,7 +62,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
         expired = accepted_expiry(request.bench, today, request.accept_expired)
         preflight(request.plan, request.bench, request.out, somebody_answers=answers)
         refuse_unconfirmed(request.plan, request.hazard_confirmed_by)
-        refuse_latched(request.bench)
+        refuse_latched(request.bench, request.stops)
         with open_bench(request.bench, model=request.model) as bench:
             refuse_needs(bench, channels_of(request.plan))
             for path in request.replaces:
@@ -98,7 +98,8 @@ class _Run:
             self._unsafe = reach_safe_state(bench, self._failures.note) if self._arming.armed else []
             if self._request.watched is not None:
                 self._request.watched.concluded(armed=self._arming.armed, unsafe=self._unsafe)
-            self._stopped = keep_latched(self._failures.error, self._request.bench, self._request.out)
+            request = self._request
+            self._stopped = keep_latched(self._failures.error, request.bench, request.out, request.stops)
         return self._finish(time.perf_counter() - started)
 
     def _prepare(self) -> None:
@@ -214,7 +215,10 @@ class _Run:
         self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
 
     def _blame(self) -> str:
-        return self._watch.limits.pauses.blamed_at(self._bench.loop.clock.now_s())
+        """What may be the cause of a failure, whatever it looks like."""
+        pause = self._watch.limits.pauses.blamed_at(self._bench.loop.clock.now_s())
+        damage = [device.damage for device in self._bench.devices if isinstance(device, SaysDamage)]
+        return "; ".join(filter(None, [pause, *damage]))
 
     def _event(self, kind: str, text: str) -> None:
         self._recorder.event(self._bench.loop.clock.now_s(), kind, text)

@@ -18,6 +18,7 @@ from hil.core.printable import printable
 from hil.engine._simulable import dyno_of, ram_of, rmcu_of, simulated
 from hil.engine.bench_tables import BenchFile
 from hil.engine.stopping import StopRequest
+from hil.plant import refuse_too_stiff
 from sim_backend.bench import DYNO_BUS, RAM_BUS, RMCU_BUS, SimulatedBench
 from sim_backend.rcs import EmulatedPanel, PanelPort
 from sim_backend.serving import (
@@ -102,7 +103,9 @@ def serve(request: SimBenchRequest) -> Served:
     """
     bench = _checked(request)
     assert bench.simulation is not None
-    model = with_hidden(load_model(bench.simulation.model), request.hidden)
+    shown = load_model(bench.simulation.model)
+    refuse_too_stiff(shown)
+    model = with_hidden(shown, request.hidden)
     world = simulated(bench, model)
     roles = _roles(bench)
     with contextlib.ExitStack() as opened:

@@ -212,7 +212,7 @@ class _Supervisor:
         safe, said = self._safe_state()
         recording = recording_left(self._path, self._recorded_before)
         error = self._error(why, said or "nothing was commanded", recorded=recording is not None)
-        stopped = keep_latched(error, self._request.bench, self._request.out)
+        stopped = keep_latched(error, self._request.bench, self._request.out, self._request.stops)
         if recording is None:
             raise error
         result = result_left(recording, self._request, safe, error)

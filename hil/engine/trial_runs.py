@@ -19,7 +19,7 @@ from hil.engine.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench_tables import BenchFile
 from hil.engine.prediction import PredictedRun, Prediction, predict
 from hil.engine.preflight import Rehearsal
-from hil.plant import linear_system
+from hil.plant import LONGEST_STEP_S, is_stable, linear_system
 from hil.plant.closed_loop import TICK_S, Noise
 from test_plans import Array, Plan, Step, Work
 
@@ -170,11 +170,13 @@ class _Loaded(Rehearsal):
 def _longest_step_s(model: Model) -> float:
     """Of the integrator, for a model's fastest motion."""
     if any(use.id == "backlash" for use in model.effects):
-        return _WITH_A_GAP_S
+        return _WITH_A_GAP_S if is_stable(model, _WITH_A_GAP_S) else LONGEST_STEP_S
     calm = all(
         EFFECTS[use.id].law.chain is not None
         or (use.id == _WHEEL and float(use.values["order"]) <= _CALM_ORDER)
         for use in model.effects
     )
     rates = np.abs(np.linalg.eigvals(linear_system(model).a))
-    return TICK_S if calm and np.max(rates) <= _CALM_RAD_S else _LONGEST_STEP_S
+    if calm and np.max(rates) <= _CALM_RAD_S:
+        return TICK_S
+    return _LONGEST_STEP_S if is_stable(model, _LONGEST_STEP_S) else LONGEST_STEP_S

@@ -2,13 +2,14 @@
 
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
 from hil.plant._many import ideal_sensors, simulate_many
-from hil.plant._replay import LONGEST_STEP_S, Start, gear_ratio_of, load_of, replay, simulate, start_of
+from hil.plant._replay import Start, gear_ratio_of, load_of, replay, simulate, start_of
 from hil.plant._sensors import DELAY as SENSOR_DELAY
 from hil.plant._sensors import GAIN as SENSOR_GAIN
 from hil.plant._sensors import OFFSET as SENSOR_OFFSET
 from hil.plant._sensors import STEP as SENSOR_STEP
 from hil.plant._sensors import bench_sensor, sensor_of
 from hil.plant._slots import chain_numbers, pack
+from hil.plant._stability import LONGEST_STEP_S, is_stable, refuse_diverged_state, refuse_too_stiff
 
 __all__ = [
     "LONGEST_STEP_S",
@@ -22,10 +23,13 @@ __all__ = [
     "chain_numbers",
     "gear_ratio_of",
     "ideal_sensors",
+    "is_stable",
     "linear_system",
     "linear_system_of",
     "load_of",
     "pack",
+    "refuse_diverged_state",
+    "refuse_too_stiff",
     "replay",
     "sensor_of",
     "simulate",

@@ -16,14 +16,13 @@ from hil.core.recording import Recording
 from hil.plant import _kernel, _slots
 from hil.plant._functions import respond_many
 from hil.plant._sensors import measured, sensor_of
+from hil.plant._stability import LONGEST_STEP_S, refuse_divergence, refuse_too_stiff
 
 Array = npt.NDArray[np.float64]
 
-LONGEST_STEP_S = 1e-4
 _UNEVEN_SHARE = 0.01
 _START_SAMPLES = (20, 10, 5)
 _RESTING_SHARE = 0.05
-_DIVERGED = 1e12
 _SLOW_HZ = 1e-3
 
 
@@ -95,8 +94,9 @@ def replay(model: Model, recording: Recording) -> Recording:
     (input held, load and outputs interpolated); `notes` says so.
 
     Raises:
-        BadInputError: the simulation diverges, or the model's load was not recorded.
+        BadInputError: the simulation diverges, or would; or the model's load was not recorded.
     """
+    refuse_too_stiff(model)
     time = recording.time_s
     dt = recording.sample_time_s
     torque = recording[INPUT]
@@ -115,7 +115,7 @@ def replay(model: Model, recording: Recording) -> Recording:
     if _rests(model, start, float(torque[0])):
         start = dataclasses.replace(start, motor_torque_nm=0.0)
     channels = simulate(model, torque, dt, start, load_nm=load)
-    _refuse_divergence(channels, grid)
+    refuse_divergence(channels, grid, model)
     if not even:
         channels = {name: np.interp(time, grid, values) for name, values in channels.items()}
     inputs = {name: recording[name] for name in (INPUT, model.load_input) if name}
@@ -137,20 +137,6 @@ def load_of(model: Model, recording: Recording) -> Array | None:
             fix="record it, or take load_input out of the model file, which then has to hold the vehicle",
         )
     return recording[model.load_input]
-
-
-def _refuse_divergence(channels: dict[str, Array], time_s: Array) -> None:
-    """Refuse numbers that no axle has: an unstable model, or one too stiff for the integrator's steps."""
-    for name, values in channels.items():
-        bad = ~(np.abs(values) < _DIVERGED)
-        if bad.any():
-            since_s = time_s[np.argmax(bad)]
-            raise BadInputError(
-                f"the simulation diverges: {name} is beyond {_DIVERGED:g} from {since_s:g} s on",
-                where="the model",
-                fix=f"look for a damping or stiffness too large for steps of {LONGEST_STEP_S * 1e3:g} ms, "
-                "or an inertia too small",
-            )
 
 
 def _rests(model: Model, start: Start, torque_nm: float) -> bool:

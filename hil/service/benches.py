@@ -13,10 +13,13 @@ from hil.engine.ranges import limits_of_channels
 
 
 class Bench:
-    """A bench; its file is read when the service begins, and again before each run."""
+    """A bench; its file is read when the service begins, and again before each run.
 
-    def __init__(self, name_or_path: str) -> None:
-        self._named = name_or_path
+    `stops` is the folder of the service or agent: there lie the stops of its benches that are simulated.
+    """
+
+    def __init__(self, name_or_path: str, stops: Path | None = None) -> None:
+        self._named, self.stops = name_or_path, stops
         self.file = load_bench(name_or_path)
         self.name = self.file.name
 
@@ -59,7 +62,7 @@ class Bench:
     def stopped(self) -> str:
         """Why nothing may move until somebody resets it; '' if nothing is latched."""
         try:
-            refuse_latched(self.file)
+            refuse_latched(self.file, self.stops)
         except BenchError as error:
             return error.what
         return ""
@@ -78,7 +81,7 @@ class Bench:
         Raises:
             HilError: that cannot be written.
         """
-        latch(self.file, by=by, why=f"{by} asked for it at the bench service", run=folder)
+        latch(self.file, by=by, why=f"{by} asked for it at the bench service", run=folder, owner=self.stops)
 
     def reset(self, by: str) -> int:
         """Let it be armed again; how many stops there were.
@@ -86,18 +89,21 @@ class Bench:
         Raises:
             HilError: that cannot be written.
         """
-        return len(reset(self.file, by))
+        return len(reset(self.file, by, self.stops))
 
 
-def benches_of(names: list[str]) -> dict[str, Bench]:
+def benches_of(names: list[str], stops: Path | None = None) -> dict[str, Bench]:
     """Benches by the names in their files.
+
+    Args:
+        stops: the folder of the service or agent.
 
     Raises:
         BadInputError: one of the files cannot be used, or two have the same name.
     """
     found: dict[str, Bench] = {}
     for name in names:
-        bench = Bench(name)
+        bench = Bench(name, stops)
         if bench.name in found:
             raise BadInputError(
                 f"the name '{bench.name}' is given to two benches",

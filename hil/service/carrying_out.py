@@ -145,6 +145,7 @@ def _asked(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:
         confirmed_by=taken.confirmed_by,
         hazard_confirmed_by=_takes_it_upon_them(run),
         accept_expired=taken.accept_expired,
+        stops=str(bench.stops or ""),
     )
 
 

@@ -95,7 +95,7 @@ class Plans:
                     where=where,
                     fix="a plan that is given to the service loads controllers that it has, by their names",
                 )
-        plan = plan_from_text(text, where, folder)
+        plan = plan_from_text(text, where, folder, to_carry_out=True)
         if plan.name != name:
             raise BadInputError(
                 f"the plan calls itself '{plan.name}'", where=where, fix="give it under that name"

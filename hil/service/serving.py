@@ -77,7 +77,7 @@ def serve(request: ServeRequest) -> None:
         BadInputError: folder, bench files or host cannot be used.
         BenchError: the port is taken, or the database cannot be used.
     """
-    benches = benches_of(list(request.benches))
+    benches = benches_of(list(request.benches), request.folder.resolve())
     archive = Archive(request.store) if request.store else None
     with alone_in(request.folder, who="service", fix=_OTHER_FOLDER):
         engine = _database(request.folder, request.database)

@@ -10,6 +10,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model, model_from_dict
 from hil.core.toml_file import parse_toml
 from hil.engine.bench_file import shipped
+from hil.plant import refuse_too_stiff
 from hil.service.design_data import ControllerData, ModelData
 from hil.service.given_files import GivenFiles
 from hil.service.shelf import Shelf
@@ -60,7 +61,9 @@ def controller_data(shelf: Shelf[Controller], name: str, path: Path) -> Controll
 
 
 def _model(text: str, where: str) -> Model:
-    return model_from_dict(parse_toml(text, where), where, text)
+    model = model_from_dict(parse_toml(text, where), where, text)
+    refuse_too_stiff(model)
+    return model
 
 
 def _shipped_models() -> dict[str, Path]:

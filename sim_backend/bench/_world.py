@@ -64,6 +64,7 @@ class SimulatedBench:
         self.faults: set[Fault] = set()
         self.tamper: Tamper | None = None
         self._boots_until: int | None = None
+        self._diverged = False
         self._samples = 0  # computed so far
         self._due = 0  # samples whose time has come
         self._now_s = 0.0
@@ -210,7 +211,11 @@ class SimulatedBench:
     # --- one sample ---
 
     def _compute(self) -> None:
-        """Catch up with the time."""
+        """Catch up with the time.
+
+        Raises:
+            BadInputError: the simulation diverges.
+        """
         while self._samples < self._due:
             first = self._samples
             if self._boots_until is not None and first >= self._boots_until:
@@ -222,8 +227,11 @@ class SimulatedBench:
             end = self._inbox.next_break(end)
             self._advance(first, end)
             self._samples = end
+            error = self._mended(end)
             if end - self._first_row == _LARGEST_BATCH:
                 self._emit()
+            if error is not None:
+                raise error
 
     def _advance(self, first: int, end: int) -> None:
         """Samples `first` to before `end`; between them nothing but torque requests may come."""
@@ -256,6 +264,20 @@ class SimulatedBench:
             self._status,
             self._rows[first - self._first_row :],
         )
+
+    def _mended(self, sample: int) -> BadInputError | None:
+        """That the simulation diverges, said once; the axle stands then, so that its host can end the run."""
+        try:
+            self._plant.refuse_diverged(sample * TICK_S)
+        except BadInputError as error:
+            self._plant.stand_still()
+            for kept in (self._rmcu.memory.filter_states, self._rmcu.memory.states):
+                kept[:] = 0
+            rows = self._rows[: sample - self._first_row]
+            np.nan_to_num(rows, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
+            first, self._diverged = not self._diverged, True
+            return error if first else None
+        return None
 
     def _requests_until(self, end: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.uint64]]:
         """The samples before which torque requests come, and these."""

@@ -41,6 +41,11 @@ class Excitation(Step):
         """Mean torque of one play."""
 
     @property
+    def needs_controller(self) -> bool:
+        """Driving torque is what a controller makes of a request."""
+        return self.quantity == "driving_torque"
+
+    @property
     def plays(self) -> int:
         """How often `samples` are played."""
         return 1

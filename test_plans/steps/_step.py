@@ -35,6 +35,16 @@ class Step(Strict, ABC):
     #: Keys whose value is a list of steps, which the loader makes first.
     nested: ClassVar[tuple[str, ...]] = ()
 
+    @property
+    def needs_controller(self) -> bool:
+        """Whether a `set_controller` has to come before it: it asks for driving torque itself."""
+        return False
+
+    @property
+    def sets_controller(self) -> bool:
+        """Whether there may be a controller after it: of another package's step only a rehearsal knows."""
+        return not type(self).__module__.startswith("test_plans.")
+
     @abstractmethod
     def carry_out(self, conductor: Conductor) -> None:
         """Do it on the bench; returns when done."""

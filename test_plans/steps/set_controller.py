@@ -55,6 +55,11 @@ class SetController(Step):
             raise ValueError(f"the controller file cannot be used: {error}") from error
         return found.absolute()  # a relative one is what a design step makes
 
+    @property
+    def sets_controller(self) -> bool:
+        """It does."""
+        return True
+
     def carry_out(self, conductor: Conductor) -> None:
         """Hand the file over."""
         conductor.set_controller(self.file or designed_file(str(self.designed)))

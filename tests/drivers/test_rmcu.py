@@ -1,3 +1,5 @@
+import re
+
 import numpy as np
 import pytest
 
@@ -224,3 +226,38 @@ def test_a_checksum_that_is_not_the_last_byte_is_not_looked_at(change, tmp_path)
         rmcu = RmcuDriver(bench.loop, bench.loop.wires[0], path)
         bench.loop.run_for(0.1)
         assert (rmcu.is_safe(), rmcu.troubles()) == (True, [])
+
+
+class Damaging:
+    """Changes bits of one frame in ten."""
+
+    def __init__(self):
+        self._random = np.random.default_rng(1)
+
+    def time_passes(self, now_s):
+        pass
+
+    def look(self, first, rows):
+        pass
+
+    def to_hosts(self, bus, block):
+        place = self._random.integers(0, 10, len(block)) == 0
+        block["data"][place] ^= np.uint64(0x10)
+        return block
+
+    def to_nodes(self, bus, frame_id, data):
+        return [(frame_id, data)]
+
+
+def test_damaged_frames_are_counted_and_named_with_their_bus():
+    with running("damaged") as bench:
+        assert bench.rmcu.damage == ""
+        attached("damaged").tamper = Damaging()
+        bench.loop.run_for(0.3)
+        said = re.fullmatch(
+            r"bus 'rmcu': (\d+) of (\d+) frames RMCU_Control came damaged \(wrong checksum\)",
+            bench.rmcu.damage,
+        )
+    assert said
+    assert 15 < int(said[1]) < 60
+    assert int(said[2]) >= 300

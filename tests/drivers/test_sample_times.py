@@ -223,6 +223,20 @@ def test_a_clock_that_drifts_beyond_what_quartz_does_ends_the_run() -> None:
         assembler.look_for_parted_clocks()
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_who_is_blamed_is_whose_count_leaves_the_benchs_clock(seed: int) -> None:
+    """Damaged counters of the time base make the other device's clock look wrong."""
+    n, random = 9000, np.random.default_rng(seed)
+    block = rmcu(n)
+    place = (block["id"] == CONTROL) & (block["time_s"] > 6.0) & (random.random(len(block)) < 0.02)
+    block["data"][place] ^= random.integers(1, 1 << 40, int(place.sum()), dtype=np.uint64)
+    assembler, _ = recorded(block, dyno(n))
+    with pytest.raises(BenchError) as caught:
+        assembler.look_for_parted_clocks()
+    assert caught.value.where == "bus 'rmcu'"
+    assert caught.value.what.startswith("frame 0x110")
+
+
 def test_a_device_whose_count_leaves_its_time_ends_the_run() -> None:
     n = 9000
     block = dyno(n)

@@ -118,6 +118,24 @@ class Sent(Injection):
 
 
 @dataclass
+class Lossy(Injection):
+    """One of so many frames is lost, at random, on every bus and in both directions."""
+
+    count: int
+    _random: np.random.Generator = field(default_factory=lambda: np.random.default_rng(11))
+
+    def to_hosts(self, stage: Stage, bus: str, block: FrameBlock) -> FrameBlock:
+        kept = block[self._random.integers(0, self.count, len(block)) > 0]
+        stage.count(len(kept) != len(block))
+        return kept
+
+    def to_nodes(self, stage: Stage, bus: str, frame_id: int, data: bytes) -> Iterable[tuple[int, bytes]]:
+        lost = not self._random.integers(0, self.count)
+        stage.count(lost)
+        return [] if lost else [(frame_id, data)]
+
+
+@dataclass
 class Refused(Injection):
     """The adapter has left the bus: it takes and gives nothing."""
 
@@ -269,6 +287,18 @@ def every(count: int, seed: int = 3) -> Callable[[FrameBlock], FrameBlock]:
     """One of so many frames is lost, at random."""
     random = np.random.default_rng(seed)
     return lambda block: block[random.integers(0, count, len(block)) > 0]
+
+
+def damaged(count: int, seed: int = 5) -> Callable[[FrameBlock], FrameBlock]:
+    """In one of so many frames bits are changed at random, whatever the frame."""
+    random = np.random.default_rng(seed)
+
+    def change(block: FrameBlock) -> FrameBlock:
+        place = random.integers(0, count, len(block)) == 0
+        block["data"][place] ^= random.integers(1, 1 << 63, int(place.sum()), dtype=np.uint64)
+        return block
+
+    return change
 
 
 def doubled(block: FrameBlock) -> FrameBlock:

@@ -204,6 +204,7 @@ _OF_WIRES = (
         other={"arming": Expected(says="interface is down", safe=EITHER)},
     ),
     tolerated("lost", "1 of 20 frames of the RMCU lost", lambda: I.Received(I.every(20))),
+    tolerated("loss", "1 of 100 frames lost, on all buses, both ways", lambda: I.Lossy(100)),
     row(
         "lost-all",
         "every frame of the RMCU lost for 0.3 s",

@@ -214,3 +214,40 @@ def test_built_in_plans() -> None:
         "short_identification",
         "slip",
     )
+
+
+DRIVING = "ramp: {quantity: driving_torque, from_nm: 0, to_nm: 100, duration_s: 0.2}"
+LOADED = "set_controller: {file: phase_stabilization.toml}"
+
+
+@pytest.mark.parametrize(
+    ("steps", "end", "line"),
+    [
+        (f"[{{{DRIVING}}}]", "[]", "line 2"),
+        (
+            f"[{{repeat: {{times: 2, steps: [{{wait: {{duration_s: 1}}}}, {{{DRIVING}}}]}}}}, {{{LOADED}}}]",
+            "[]",
+            "line 2",
+        ),
+        ("[{wait: {duration_s: 1}}]", f"[{{{DRIVING}}}]", "line 3"),
+    ],
+)
+def test_driving_torque_before_any_controller_is_refused_where_it_stands(
+    steps: str, end: str, line: str
+) -> None:
+    with pytest.raises(BadInputError, match="asks for driving torque before any set_controller") as caught:
+        plan_from_text(f"name: x\nsteps: {steps}\nfinally: {end}\n", "p.yaml", Path(), to_carry_out=True)
+    assert line in caught.value.where
+    assert "set_controller: {file:" in caught.value.fix
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [
+        f"[{{{LOADED}}}, {{{DRIVING}}}]",
+        f"[{{repeat: {{times: 2, steps: [{{{LOADED}}}, {{{DRIVING}}}]}}}}, {{{DRIVING}}}]",
+        f"[{{{DRIVING.replace('driving', 'motor')}}}, {{{LOADED}}}, {{{DRIVING}}}]",
+    ],
+)
+def test_a_controller_that_comes_before_is_enough(steps: str) -> None:
+    assert plan_from_text(f"name: x\nsteps: {steps}\n", "p.yaml", Path(), to_carry_out=True).steps

@@ -26,7 +26,7 @@ steps:
   - repeat:
       times: $times
       steps:
-        - step: {segment: s, quantity: driving_torque, from_nm: 0, to_nm: $torque_nm, before_s: 0, after_s: 2}
+        - step: {segment: s, quantity: motor_torque, from_nm: 0, to_nm: $torque_nm, before_s: 0, after_s: 2}
 criteria:
   - {segment: s_1, metric: magnitude, channel: shaft_torque_nm, upper: "${limit_nm}", unit: N m}
 """

@@ -15,6 +15,7 @@ from hil.analysis.tuning._trial import Trial, Tried
 from hil.core.controller import Controller
 from hil.core.errors import BadInputError
 from hil.core.model import Model, refuse_without_vehicle
+from hil.plant import refuse_too_stiff
 
 Array = npt.NDArray[np.float64]
 
@@ -167,6 +168,7 @@ def refuse_model(model: Model, where: str) -> None:
             fix="give the physical.toml that hil identify writes beside it",
         )
     refuse_without_vehicle(model, where, "tune")
+    refuse_too_stiff(model)
 
 
 def refuse_start(trial: Trial) -> None:

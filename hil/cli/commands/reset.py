@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -13,6 +14,10 @@ from hil.cli.commands._options import BenchArgument
 def command(
     bench: BenchArgument,
     by: Annotated[str, typer.Option("--by", metavar="NAME", help="who has made sure that it is safe; kept")],
+    data: Annotated[
+        Path | None,
+        typer.Option("--data", metavar="DIR", help="of the service or agent whose simulated bench it is"),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
@@ -24,4 +29,4 @@ def command(
     import_python_can()
     from hil.cli.reset import carry_out
 
-    return carry_out(bench=bench, by=by, as_json=as_json)
+    return carry_out(bench=bench, by=by, data=data, as_json=as_json)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.model import Model
-from hil.plant import LONGEST_STEP_S, bench_sensor
+from hil.plant import LONGEST_STEP_S, bench_sensor, refuse_diverged_state, refuse_too_stiff
 from hil.plant import _kernel as K
 from hil.plant import _slots as P
 from hil.plant import _states as X
@@ -41,6 +41,20 @@ class State:
     sensors: Array
     past: Array
     noise: Array
+    source: str  # of the model
+
+    def refuse_diverged(self, time_s: float) -> None:
+        """Look at what came out, at a bench time in seconds.
+
+        Raises:
+            BadInputError: numbers that no axle has: names the model.
+        """
+        refuse_diverged_state(self.x, time_s, self.source, float(self.scalars[T.LONGEST_STEP]))
+
+    def stand_still(self) -> None:
+        """Be at rest from now on, with the drives free: for what goes on after the numbers are none."""
+        self.x[:] = self.torques[:] = self.past[:] = 0.0
+        self.drives[:, D.MODE] = D.FREE
 
     @property
     def vehicle(self) -> tuple[float, float, float]:
@@ -75,8 +89,10 @@ def state_at_rest(model: Model, wheel_radius_m: float, longest_step_s: float = L
     """An axle at rest with its drives free and its sensors without noise; `longest_step_s`: the integrator's.
 
     Raises:
-        BadInputError: an effect stands twice where there is one place for it, or a sensor is early.
+        BadInputError: an effect stands twice where there is one place for it, a sensor is early, or the
+            model is too stiff for the integrator.
     """
+    refuse_too_stiff(model, longest_step_s)
     vector = P.pack(model)
     scalars = np.zeros(T.SCALARS)
     scalars[T.RADIUS] = wheel_radius_m
@@ -92,4 +108,5 @@ def state_at_rest(model: Model, wheel_radius_m: float, longest_step_s: float = L
         sensors=np.array([bench_sensor(model, channel, share) for channel, share in _SENSED]),
         past=np.zeros((T.SENSORS, T.PAST)),
         noise=np.zeros(T.SENSORS + K.OUTPUT_COLUMNS),  # behind the noise is the tick's scratch room
+        source=model.source,
     )

@@ -36,8 +36,8 @@ class ClosedLoop:
     given. `longest_step_s` is the integrator's.
 
     Raises:
-        BadInputError: a model that has no shaft to load, an effect that stands twice, or a sensor that would
-            read what has not happened.
+        BadInputError: a model that has no shaft to load or is too stiff for the integrator, an effect that
+            stands twice, or a sensor that would read what has not happened.
     """
 
     def __init__(
@@ -186,6 +186,7 @@ class ClosedLoop:
             self._rows[self.samples : end],
         )
         self.samples = end
+        s.refuse_diverged(end * TICK_S)
 
     def _with_noise(self, samples: int) -> Array:
         """What sensors add to each sample, and the tick's scratch room behind it."""

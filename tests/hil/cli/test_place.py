@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from hil.cli import _place
 from hil.cli._place import refuse_file, results_in
 from hil.core.errors import BadInputError
 
@@ -140,3 +141,59 @@ def test_a_place_is_held_as_long_as_a_process_that_was_given_it_lives(tmp_path):
     heir.communicate(b"\n")
     with results_in(tmp_path, ("b",)):
         pass
+
+
+def test_the_folder_of_another_command_stays_when_both_come_at_the_same_moment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Both have found that it is not there; each order of making and locking it."""
+    out = tmp_path / "deep" / "out"
+    holder = "from pathlib import Path; from hil.cli._place import results_in; import sys\n"
+    holder += "with results_in(Path(sys.argv[1]), ['a.txt']) as place: print('in', flush=True); input()\n"
+    other: list[subprocess.Popen[str]] = []
+    make = Path.mkdir
+
+    def made(path: Path, *arguments: Any, **options: Any) -> None:
+        """Before or after this process makes it, another one takes it."""
+        if first == "we":
+            make(path, *arguments, **options)
+        if path == out and not other:
+            command = [sys.executable, "-c", holder, str(out)]
+            other.append(subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True))
+            assert other[0].stdout is not None
+            assert other[0].stdout.readline() == "in\n"
+        if first == "they":
+            make(path, *arguments, **options)
+
+    for order in ("we", "they"):
+        first = order
+        with monkeypatch.context() as patch:
+            patch.setattr(Path, "mkdir", made)
+            with pytest.raises(BadInputError, match="another command is writing here"), claim(out):
+                pass
+        assert out.is_dir()
+        process = other.pop()
+        process.communicate("\n", timeout=60)
+        if out.exists():
+            out.rmdir()
+
+
+def test_a_folder_that_another_command_removes_meanwhile_is_made_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, named = tmp_path / "out", _place._named
+    removed: list[Path] = []
+
+    def gone_then(out: Path, made: list[Path]) -> Path:
+        """Between making and locking it, twice."""
+        folder = named(out, made)
+        if len(removed) < 2:
+            removed.append(folder)
+            folder.rmdir()
+        return folder
+
+    monkeypatch.setattr(_place, "_named", gone_then)
+    with claim(out) as place:
+        place.write({"a.txt": b"x"})
+    assert len(removed) == 2
+    assert (out / "a.txt").read_bytes() == b"x"

@@ -9,6 +9,7 @@ import pytest
 
 from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import hil
+from tests.hil.cli.test_sim_bench import serving
 
 PLAN = "name: quick\nsteps: [{wait: {duration_s: 0.2}}]\n"
 STOP = """
@@ -33,21 +34,48 @@ def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.slow
-def test_nobody_arms_the_bench_until_it_is_reset(bench: Path, tmp_path: Path) -> None:
-    moving = tmp_path / "moving.yaml"
-    moving.write_text("name: moving\nsteps: [{hold_speed: {speed_km_h: 5, duration_s: 1}}]\n")
+def test_nobody_arms_the_bench_until_it_is_reset(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not from another home either, nor by another file of the same ports."""
+    monkeypatch.setenv("HIL_STATE", str(tmp_path / "state"))
+    (tmp_path / "moving.yaml").write_text(
+        "name: moving\nsteps: [{hold_speed: {speed_km_h: 5, duration_s: 1}}]\n"
+    )
     (tmp_path / "quick.yaml").write_text(PLAN)
-    told = json.loads(hil("run", moving, "--bench", bench, "--out", tmp_path / "a", "--json", code=3).stdout)
-    assert told["emergency_stop"]["by"] == "interlock 'still'"
-    assert told["emergency_stop"]["latched"]
-    again = hil("run", tmp_path / "quick.yaml", "--bench", bench, "--out", tmp_path / "b", code=3)
-    assert "emergency stop since" in again.stderr
-    assert "hil reset" in again.stderr
-    assert "--by names nobody" in hil("reset", bench, "--by", " ", code=2).stderr
-    done = hil("reset", bench, "--by", "A. Tester")
-    assert done.stdout.startswith("reset by A. Tester: emergency stop of 20")
-    assert "no emergency stop is latched" in hil("reset", bench, "--by", "A. Tester").stdout
-    hil("run", tmp_path / "quick.yaml", "--bench", bench, "--out", tmp_path / "b")
+    with serving(tmp_path, "--time-scale", "0.2") as (_, served):
+        bench, second = tmp_path / "bench.toml", tmp_path / "second.toml"
+        bench.write_text(served.read_text() + STOP)
+        options = "options = { receive_own_messages = true }"
+        text = served.read_text().replace('name = "', 'name = "second_', 1)
+        second.write_text(text.replace('interface = "hil-udp"', f'interface = "hil-udp"\n{options}'))
+        done = hil(
+            *("run", tmp_path / "moving.yaml", "--bench", bench, "--out", tmp_path / "a", "--json"), code=3
+        )
+        told = json.loads(done.stdout)
+        assert told["emergency_stop"]["by"] == "interlock 'still'"
+        assert told["emergency_stop"]["latched"]
+        monkeypatch.setenv("HOME", str(tmp_path / "another"))
+        again = hil("run", tmp_path / "quick.yaml", "--bench", second, "--out", tmp_path / "b", code=3)
+        assert "emergency stop since" in again.stderr
+        assert "hil reset" in again.stderr
+        hil("run", tmp_path / "quick.yaml", "--out", tmp_path / "simulated")  # another bench
+        assert "--by names nobody" in hil("reset", second, "--by", " ", code=2).stderr
+        done = hil("reset", second, "--by", "A. Tester")
+        assert done.stdout.startswith("reset by A. Tester: emergency stop of 20")
+        assert "no emergency stop is latched" in hil("reset", second, "--by", "A. Tester").stdout
+        hil("run", tmp_path / "quick.yaml", "--bench", second, "--out", tmp_path / "b")
+
+
+@pytest.mark.slow
+def test_a_simulated_bench_of_another_process_is_another_bench(bench: Path, tmp_path: Path) -> None:
+    (tmp_path / "moving.yaml").write_text(
+        "name: moving\nsteps: [{hold_speed: {speed_km_h: 5, duration_s: 1}}]\n"
+    )
+    for number in range(2):
+        arguments = ("run", tmp_path / "moving.yaml", "--bench", bench, "--out", tmp_path / str(number))
+        stopped = hil(*arguments, code=3)
+        assert "emergency stop: motor_speed_rad_s reached" in stopped.stderr
+        assert "ends with it" in stopped.stderr
+    assert "with its service" in hil("reset", bench, "--by", "A. Tester").stdout
 
 
 @pytest.mark.slow

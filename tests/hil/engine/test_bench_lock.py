@@ -33,6 +33,15 @@ def test_a_bench_that_shares_one_bus_is_refused_and_names_it() -> None:
         pass
 
 
+def test_options_of_the_adapter_make_no_other_bench() -> None:
+    with (
+        alone_on(bench(rmcu=udp(1))),
+        pytest.raises(BenchError, match="in use"),
+        alone_on(bench(rmcu=udp(1) | {"options": {"receive_own_messages": True}})),
+    ):
+        pass
+
+
 def test_other_buses_and_benches_inside_the_process_do_not_collide() -> None:
     with contextlib.ExitStack() as stack:
         stack.enter_context(alone_on(bench(rmcu=udp(1), dyno=udp(1))))  # two tables of one bus

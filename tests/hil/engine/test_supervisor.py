@@ -147,7 +147,7 @@ def test_an_emergency_stop_that_it_never_heard_is_one_all_the_same(
     terminal.waiting = ["e"]
     error = lost(tmp_path, process(TURNED, then="time.sleep(60)"), terminal=terminal)
     assert isinstance(error, EmergencyStopError)
-    assert list((tmp_path / "state" / "emergency-stops").glob("*.json"))
+    assert list((tmp_path / "state").glob("*/emergency-stops/*.json"))
 
 
 def test_lines_stops_and_signs_of_life_reach_it(tmp_path: Path):
