@@ -11,7 +11,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from hil.core.errors import BenchError, EmergencyStopError, HilError
+from hil.core.errors import BenchError, EmergencyStopError, HilError, StopWay
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import StoppedInEmergency
 from hil.engine.bench_tables import BenchFile
@@ -21,7 +21,7 @@ _PLACE_FIX = "look at the file; it is removed with: hil reset {bench} --by NAME"
 
 
 class LatchedStop(BaseModel):
-    """An emergency stop as it is kept on disk, until `reset_by` is somebody."""
+    """An emergency stop as it is kept on disk, until `reset_by` is somebody; `origin`: from where it came."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -31,6 +31,8 @@ class LatchedStop(BaseModel):
     why: str
     at: str
     run: str
+    origin: str = ""
+    way: StopWay = ""
     reset_by: str = ""
     reset_at: str = ""
 
@@ -54,14 +56,21 @@ def buses_of(file: BenchFile) -> tuple[str, ...]:
     )
 
 
-def latch(file: BenchFile, *, by: str, why: str, run: Path) -> None:
+def latch(file: BenchFile, *, by: str, why: str, run: Path, origin: str = "", way: StopWay = "") -> None:
     """Keep it on disk, also through a power cut.
 
     Raises:
         HilError: it cannot be written.
     """
     stop = LatchedStop(
-        bench=file.name, buses=buses_of(file), by=by, why=why, at=_now(), run=str(run.resolve())
+        bench=file.name,
+        buses=buses_of(file),
+        by=by,
+        why=why,
+        at=_now(),
+        run=str(run.resolve()),
+        origin=origin,
+        way=way,
     )
     folder = state_directory() / _FOLDER
     make_directory(folder)
@@ -80,14 +89,17 @@ def keep_latched(error: HilError | None, file: BenchFile, run: Path) -> StoppedI
     if not isinstance(error, EmergencyStopError):
         return None
     error.fix = f"make sure that nobody is in danger; then: hil reset {file.source} --by NAME"
+    latched = True
     try:
-        latch(file, by=error.by, why=error.what, run=run)
+        latch(file, by=error.by, why=error.what, run=run, origin=error.origin, way=error.way)
     except (HilError, OSError) as failure:
         error.fix += (
             f"\n  it could NOT be latched, nothing but you keeps the bench from being armed: {failure}"
         )
-        return StoppedInEmergency(by=error.by, why=error.what, latched=False)
-    return StoppedInEmergency(by=error.by, why=error.what, latched=True)
+        latched = False
+    return StoppedInEmergency(
+        by=error.by, why=error.what, latched=latched, origin=error.origin, way=error.way
+    )
 
 
 def refuse_latched(file: BenchFile) -> None:
