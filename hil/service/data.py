@@ -58,6 +58,10 @@ class Health(_Data):
     runs_not_stored: int = Field(0, description="runs whose files the store has not all; 0 without a store")
     results_not_stored: int = Field(0, description="studies and campaigns that are over, likewise")
     store_problem: str = Field("", description="why files do not reach the store; '' if they do")
+    stop_url: str = Field(
+        "",
+        description="the stop post: takes stops whatever the service is doing; '' if it is away",
+    )
     kept_apart: int = Field(0, description="files of an earlier version's folder that are not shared")
 
 

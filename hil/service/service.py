@@ -27,6 +27,7 @@ from hil.service.desk import Desk
 from hil.service.earlier_folders import EarlierFolders
 from hil.service.forecasts import Forecasts
 from hil.service.given_files import GivenFiles
+from hil.service.owners import OwnersKnown
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
@@ -34,6 +35,8 @@ from hil.service.run_files import files_in
 from hil.service.shared_results import SharedResults
 from hil.service.shelves import controller_shelf, model_shelf
 from hil.service.showing import Showing
+from hil.service.stop_post import StopPost
+from hil.service.stops import Stops
 from hil.service.store import (
     BenchStore,
     DatabaseAwayError,
@@ -87,6 +90,7 @@ class Service:
         held: the benches that it drives, for other services of the same database.
         archive: where files are kept for good; None keeps them in the folder.
         local_days: how long files that the archive has stay in the folder.
+        stop_post: takes emergency stops whatever becomes of this.
 
     Raises:
         BenchError: another service drives one of the benches, or the database is away.
@@ -101,6 +105,7 @@ class Service:
         commands: Commands,
         archive: Archive | None = None,
         local_days: float = 30.0,
+        stop_post: StopPost | None = None,
     ) -> None:
         self._own = benches
         self.database = Presence(engine)
@@ -131,7 +136,11 @@ class Service:
             files = FileStore(engine)
             self.keeper = Keeper(archive, files, held.service, runs_folder, self.showing.runs, local_days)
         source, changed = self.plans.source, self.showing.changed
-        self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, commands.run, source, changed)
+        self.queue = Queue(
+            benches, self.runs, self.leases, held, runs_folder, commands.run, source, changed, stop_post
+        )
+        self.owners = OwnersKnown(self.tokens, stop_post)
+        self.stops = Stops(self, stop_post)
         self.began_s = time.monotonic()
         self.closing = False
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
@@ -139,7 +148,7 @@ class Service:
         self.agents_forecasts = AgentsForecasts()
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
-        self._unwritten: list[tuple[str, str, str, str]] = []
+        self._unwritten: list[tuple[str, str, str, str, str]] = []
 
     async def _share(self) -> str:
         said = await self.studies.share(), await self.campaigns.share()
@@ -240,31 +249,6 @@ class Service:
         here = {name: one.file.source for name, one in self.benches.items() if isinstance(one, Bench)}
         return Places(self.plans.fresh_folder(), self.models.paths(), here)
 
-    def stop_run_in_emergency(self, bench: str) -> None:
-        """Tell the run under way, if there is one; asks nobody anything before."""
-        running = self.running(bench)
-        if running is not None:
-            running.process.stop_in_emergency()
-
-    async def stop_in_emergency(self, bench: str, by: str) -> None:
-        """Have a bench safe at once and keep it so, whatever its run is doing and whether there is one.
-
-        Raises:
-            HilError: the stop cannot be latched; a run was told to stop all the same.
-        """
-        self.stop_run_in_emergency(bench)
-        own = self.own(bench)
-        try:
-            running = self.running(bench)
-            folder = running.folder if running is not None else Path()
-            if own is not None:
-                own.stop(by, folder)
-            else:
-                with contextlib.suppress(DatabaseAwayError):  # its agent is told all the same
-                    self.agents.stop_in_emergency(bench, by)
-        finally:
-            self.changed(bench)
-
     async def forecast(self, plan: Plan, bench: str) -> ForecastData:
         """Duration, peaks and criteria as predicted where the bench is.
 
@@ -284,16 +268,17 @@ class Service:
             HilError: that cannot be written.
         """
         own = self.own(bench)
+        self.stops.reset(bench)
         if own is not None:
             return own.reset(by)
         return 1 if await self.agents.reset(bench, by) else None
 
-    def write_down(self, who: str, role: str, action: str, target: str) -> None:
+    def write_down(self, who: str, role: str, action: str, target: str, detail: str = "") -> None:
         """Write what must not fail for the audit log's sake: later, if the database is away."""
         try:
-            self.log.add(who, role, action, target)
+            self.log.add(who, role, action, target, detail)
         except DatabaseAwayError:
-            self._unwritten.append((who, role, action, target))
+            self._unwritten.append((who, role, action, target, detail))
             logger.warning("%s: %s, %s; to be written when the database answers", who, action, target)
 
     async def watch_database(self) -> None:
@@ -302,6 +287,7 @@ class Service:
         while not self.closing:
             await asyncio.sleep(_ASK_S)
             self.agents.look()
+            self.tell_stop_post()
             if self.database.away:
                 await apart(self.database.ask)
                 self.queue.wake()
@@ -313,6 +299,12 @@ class Service:
                 while self._unwritten:
                     self.log.add(*self._unwritten[0])
                     del self._unwritten[0]
+
+    def tell_stop_post(self) -> None:
+        """Have it know all benches that there are."""
+        if self.stops.post is not None:
+            own = {name: str(bench.file.source) for name, bench in self._own.items()}
+            self.stops.post.know_benches(own, [name for name in self.benches if name not in self._own])
 
     def give_benches_back(self) -> None:
         """Let other services drive them; while the database is away they are free by themselves later."""

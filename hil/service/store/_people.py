@@ -9,6 +9,7 @@ from sqlalchemy import Engine, func, select, update
 from sqlalchemy.orm import sessionmaker
 
 from hil.service.data import AuditEntry, Role, TokenData, TokenMade
+from hil.service.stop_post import Owner
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import AuditRow, TokenRow
 
@@ -40,6 +41,12 @@ class TokenStore:
             chosen = select(TokenRow).where(TokenRow.sha256 == _hashed(secret), TokenRow.revoked_at.is_(None))
             row = session.scalars(chosen).first()
             return None if row is None else _token(row)
+
+    def owners(self) -> dict[str, Owner]:
+        """Whose all valid tokens are, by the SHA-256 of their secrets."""
+        with self._transaction() as session:
+            chosen = select(TokenRow).where(TokenRow.revoked_at.is_(None))
+            return {row.sha256: Owner(name=row.name, role=row.role) for row in session.scalars(chosen)}
 
     def any(self) -> bool:
         """Whether a token is valid."""
