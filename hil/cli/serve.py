@@ -34,6 +34,7 @@ def carry_out(
     rate: float,
     for_s: float | None,
     add_token: str,
+    token_days: float,
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
@@ -53,7 +54,7 @@ def carry_out(
         raise BadInputError("--bench does not go with --no-bench", fix="leave one of them out")
     if add_token:
         name, _, role = add_token.rpartition("=")
-        made = make_token(data, database, name, role)
+        made = make_token(data, database, name, role, token_days)
         if as_json:
             print_json(made.model_dump(mode="json"))
         else:

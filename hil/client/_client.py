@@ -358,9 +358,9 @@ class Client(Requests):
         """All tokens, without their secrets."""
         return self._several(TokenData, "/tokens")
 
-    def make_token(self, name: str, role: Role) -> TokenMade:
-        """Make a token; its secret is told this once."""
-        return self._one(TokenMade, "POST", "/tokens", TokenWanted(name=name, role=role))
+    def make_token(self, name: str, role: Role, for_days: float = 365.0) -> TokenMade:
+        """Make a token that is valid for so many days; its secret is told this once."""
+        return self._one(TokenMade, "POST", "/tokens", TokenWanted(name=name, role=role, for_days=for_days))
 
     def audit(self, most: int = 100) -> list[AuditEntry]:
         """What was done by whom, newest first."""

@@ -9,25 +9,31 @@ import time
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import Engine
 
+from hil.core.errors import BadInputError
 from hil.service.agents import Agents
 from hil.service.agents_forecasts import AgentsForecasts
 from hil.service.apart import apart
 from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.arrivals import Arrivals
+from hil.service.audit import problem_of
 from hil.service.benches import Bench
 from hil.service.campaign_data import CampaignData
 from hil.service.campaigns import Campaigns, Places
 from hil.service.carrying_out import RunningRun
-from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
-from hil.service.desk import Desk
+from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, PlanData, RunData
+from hil.service.desk import Desk, TooLongError
 from hil.service.earlier_folders import EarlierFolders
 from hil.service.forecasts import Forecasts
+from hil.service.given_data import GivenKind
 from hil.service.given_files import GivenFiles
 from hil.service.owners import OwnersKnown
+from hil.service.plan_reading import GivenPlan
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
@@ -53,6 +59,7 @@ from hil.service.studies import Studies
 from hil.service.study_data import StudyData
 from test_plans import Plan
 
+_READ_WITHIN_S = 5.0  # 240 kB of YAML need 2 s, on a processor that others use
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
 _LAST = 2**31 - 1
@@ -107,7 +114,7 @@ class Service:
         local_days: float = 30.0,
         stop_post: StopPost | None = None,
     ) -> None:
-        self._own = benches
+        self._own, self._folder = benches, folder
         self.database = Presence(engine)
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
@@ -125,6 +132,7 @@ class Service:
         self.studies = Studies(folder / "studies", commands.hil, studies)
         # Recordings are read at one desk, so that who designs at the other need not wait.
         self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
+        self.reading = Desk(niceness=5, within_s=_READ_WITHIN_S)
         campaign = (*commands.hil, "campaign", *commands.simulating)
         self.campaigns = Campaigns(folder / "campaigns", campaign, self.desk, campaigns)
         self.sharing = Rounds(self._share, "files of studies and campaigns")
@@ -147,6 +155,7 @@ class Service:
         self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, source, changed)
         self.agents_forecasts = AgentsForecasts()
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
+        self.audit_problem = ""
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
         self._unwritten: list[tuple[str, str, str, str, str]] = []
 
@@ -244,6 +253,32 @@ class Service:
             return await self.keeper.bring_back(run, name)
         return self.queue.folder_of(run) / name
 
+    async def read_first(self, kind: GivenKind, name: str, text: str, **more: str) -> dict[str, Any]:
+        """What another process reads of a text that somebody gives: nothing here waits for what is hostile.
+
+        Raises:
+            BadInputError: it is none of its kind, or reading it takes too long.
+            BenchError: that process failed.
+        """
+        try:
+            return await self.reading.ask(f"read_{kind}", name=name, text=text, **more)
+        except TooLongError as error:
+            raise BadInputError(
+                f"takes more than {_READ_WITHIN_S:g} s to be read", where=name, fix="make it shorter"
+            ) from error
+
+    async def give_plan(self, name: str, text: str, by: str) -> PlanData:
+        """Keep a plan, read by another process first.
+
+        Raises:
+            NameTakenError: a built-in plan has the name, or somebody else has given one just now.
+            BadInputError: all that is wrong with it.
+        """
+        folder = str(self.plans.fresh_folder().resolve())
+        found = await self.read_first("plan", name, text, folder=folder)
+        read = GivenPlan(PlanData.model_validate(found["data"]), tuple(found["files"]))
+        return self.plans.give(name, text, by, read=read)
+
     def places(self) -> Places:
         """What a campaign may name."""
         here = {name: one.file.source for name, one in self.benches.items() if isinstance(one, Bench)}
@@ -284,6 +319,7 @@ class Service:
     async def watch_database(self) -> None:
         """Ask a database that is away whether it is back, until the service is closed."""
         shown = ""
+        self.audit_problem = await apart(partial(problem_of, self.log, self._folder))
         while not self.closing:
             await asyncio.sleep(_ASK_S)
             self.agents.look()
@@ -307,6 +343,8 @@ class Service:
             self.stops.post.know_benches(own, [name for name in self.benches if name not in self._own])
 
     def give_benches_back(self) -> None:
-        """Let other services drive them; while the database is away they are free by themselves later."""
+        """Keep where the audit log ends; let others drive the benches, which are free by themselves later."""
         with contextlib.suppress(DatabaseAwayError):
+            if not self.audit_problem:
+                problem_of(self.log, self._folder)
             self._held.give_back()

@@ -17,7 +17,6 @@ import uvicorn
 from sqlalchemy import Engine
 
 from hil.core.errors import BadInputError, BenchError
-from hil.core.files import make_directory
 from hil.core.printable import printable
 from hil.engine import StopRequest
 from hil.service.apart import going_on
@@ -25,13 +24,15 @@ from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
 from hil.service.benches import benches_of
 from hil.service.data import ROLES, Role, TokenMade
-from hil.service.data_folder import alone_in, name_in
+from hil.service.data_folder import alone_in, make_private, name_in
 from hil.service.service import Commands, Service
 from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, LogStore, TokenStore, open_database
 
 _LOOK_S = 0.1
 _LAST_ANSWERS_S = 2
+#: For an SQLite that is locked the loop waits so long, once: then it is away until it can be written.
+_LOCKED_S = 1.0
 _STOP_POST_WITHIN_S = 30.0
 _BACKLOG = 1024
 #: Between them is read what has come: who sends a request is not pushed out by a burst of others.
@@ -92,7 +93,7 @@ def serve(request: ServeRequest) -> None:
     benches = benches_of(list(request.benches))
     archive = Archive(request.store) if request.store else None
     with alone_in(request.folder, who="service", fix=_OTHER_FOLDER):
-        engine = _database(request.folder, request.database)
+        engine = _database(request.folder, request.database, _LOCKED_S)
         try:
             _refuse_open_to_all(request.host, TokenStore(engine))
             with (
@@ -109,8 +110,8 @@ def serve(request: ServeRequest) -> None:
             engine.dispose()
 
 
-def make_token(folder: Path, database: str, name: str, role: str) -> TokenMade:
-    """Make a token, whether the service runs or not.
+def make_token(folder: Path, database: str, name: str, role: str, for_days: float = 365.0) -> TokenMade:
+    """Make a token that is valid for so many days, whether the service runs or not.
 
     Raises:
         BadInputError: no such role, or no name.
@@ -121,12 +122,12 @@ def make_token(folder: Path, database: str, name: str, role: str) -> TokenMade:
         )
     if not name.strip() or not name.isprintable() or len(name) > 100:
         raise BadInputError("names nobody", where="--add-token", fix="write NAME=ROLE")
-    make_directory(folder, option="--data")
+    make_private(folder)
     engine = _database(folder, database)
     try:
         chosen: Role = next(known for known in ROLES if known == role)
-        made = TokenStore(engine).make(name.strip(), chosen)
-        LogStore(engine).add("command line", "", "token made", name, role)
+        made = TokenStore(engine).make(name.strip(), chosen, for_days)
+        LogStore(engine).add("command line", "", "token made", name, f"{role}, {for_days:g} days")
         return made
     finally:
         engine.dispose()
@@ -173,6 +174,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         await service.campaigns.close()
         service.desk.close()
         service.drawing.close()
+        service.reading.close()
         for bench in list(service.benches):
             service.changed(bench)
             service.agents.wake(bench)
@@ -231,8 +233,8 @@ def _place_of(folder: Path) -> str:
     return f"that of {socket.gethostname()}:{folder.resolve()}"
 
 
-def _database(folder: Path, url: str) -> Engine:
-    return open_database(url or f"sqlite:///{folder.resolve() / 'service.sqlite'}")
+def _database(folder: Path, url: str, locked_s: float = 10.0) -> Engine:
+    return open_database(url or f"sqlite:///{folder.resolve() / 'service.sqlite'}", locked_s)
 
 
 def _refuse_open_to_all(host: str, tokens: TokenStore) -> None:

@@ -90,6 +90,9 @@ def command(
             help="make a token, print it, and end; roles: viewer, operator, engineer, admin, agent",
         ),
     ] = "",
+    token_days: Annotated[
+        float, typer.Option(min=0.01, max=3650, metavar="DAYS", help="how long that token is valid")
+    ] = 365.0,
     as_json: Annotated[
         bool, typer.Option("--json", help="print one JSON object on stdout, nothing else there")
     ] = False,
@@ -108,5 +111,5 @@ def command(
         stop_port=stop_port, stop_url=stop_url, trusted_proxy=trusted_proxy or [],
         allow_host=allow_host or [],
         database=database, store=store, keep_local=keep_local, workers=workers, scheduler=scheduler,
-        rate=rate, for_s=for_s, add_token=add_token, as_json=as_json,
+        rate=rate, for_s=for_s, add_token=add_token, token_days=token_days, as_json=as_json,
     )  # fmt: skip

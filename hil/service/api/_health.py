@@ -30,6 +30,7 @@ async def health(service: TheService, request: Request) -> Health:
         results_not_stored=service.studies.not_stored + service.campaigns.not_stored,
         store_problem=(keeper.rounds.problem or service.sharing.problem) if keeper else "",
         kept_apart=len(service.kept_apart),
+        audit_problem=service.audit_problem,
         stop_url=stop.seen_from(request.headers.get("host", "")) if up else "",
     )
 
