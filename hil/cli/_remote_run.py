@@ -17,6 +17,7 @@ from hil.cli._output import progress
 from hil.cli._patience import OURS, Patience
 from hil.cli._place import Place, results_in
 from hil.cli._result_file import RESULT
+from hil.cli._sent_plan import give_plan
 from hil.cli._streams import complain
 from hil.cli._terminal import KEYS, StandardTerminal, operators_terminal
 from hil.client import Client, RefusedError
@@ -72,8 +73,7 @@ class RemoteRun:
         try:
             name = self.plan
             if Path(name).is_file():
-                plan = load_plan(name)
-                name = client.give_plan(plan.name, plan.text).name
+                name = give_plan(client, load_plan(name))
             wanted = RunWanted(
                 plan=name,
                 bench=self.bench,
