@@ -5,7 +5,6 @@ from __future__ import annotations
 import datetime
 import hashlib
 import math
-import tomllib
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +13,7 @@ from hil.core.errors import BadInputError
 from hil.core.files import sha256_of
 from hil.core.recording import VEHICLE, Recording
 from hil.core.result import Lateness, PeriodicRequests, RunResult
+from hil.core.toml_file import parse_toml
 from reports import quantities
 
 _CONTROLLER = "controller/"
@@ -227,8 +227,8 @@ def controller_table(recording: Recording) -> ControllerTable | None:
         if not name.startswith(_CONTROLLER):
             continue
         try:
-            values = tomllib.loads(content.decode())
-        except (UnicodeDecodeError, tomllib.TOMLDecodeError):
+            values = parse_toml(content.decode(), name)
+        except (UnicodeDecodeError, BadInputError):
             continue
         columns[name.removeprefix(_CONTROLLER).removesuffix(".toml")] = dict(_flat(values))
     keys = dict.fromkeys(key for column in columns.values() for key in column)

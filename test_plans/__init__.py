@@ -1,6 +1,6 @@
 """Test plans: what a plan is, the stimuli it plays, the metrics and criteria it is judged by."""
 
-from test_plans.choices import Choices, controller_choices
+from test_plans.choices import Choices, controller_choices, named_controllers
 from test_plans.conductor import PROMPT_TIMEOUT_S, Array, Conductor, PlannedSegment, Quantity, Work
 from test_plans.criteria import Criterion
 from test_plans.judging import judge
@@ -39,6 +39,7 @@ __all__ = [
     "library_sequences",
     "load_plan",
     "load_sequence",
+    "named_controllers",
     "plan_from_text",
     "plan_schema",
     "rejudged",

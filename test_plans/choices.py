@@ -66,6 +66,11 @@ def controller_choices(given: list[str], option: str) -> dict[str, Path]:
     return chosen
 
 
+def named_controllers(document: Document) -> dict[KeyPath, str]:
+    """What a plan calls the controller files that it loads, by where it says so."""
+    return dict(_named(document.value, ()))
+
+
 def _values(document: Document, chosen: Mapping[str, float]) -> Iterator[tuple[tuple[int, int], str]]:
     """Places of variables' defaults in the text, with the numbers that come there."""
     content = document.value

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import logging
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,6 +11,7 @@ from hil.core.errors import BadInputError
 from hil.core.file_kind import refuse_other_kind
 from hil.core.files import read_text
 from hil.core.suggestion import closest, did_you_mean
+from hil.core.toml_file import parse_toml
 from test_plans.building import build, list_at, mapping_at
 from test_plans.choices import Choices
 from test_plans.conductor import PlannedSegment
@@ -263,5 +262,8 @@ def _ids(steps: tuple[Step, ...]) -> Iterator[tuple[int, str]]:
 
 
 def _refuse_other_file(text: str, where: str) -> None:
-    with contextlib.suppress(tomllib.TOMLDecodeError):  # then it is looked at as a plan
-        refuse_other_kind(tomllib.loads(text), "plan", where)
+    try:
+        content = parse_toml(text, where)
+    except BadInputError:  # then it is looked at as a plan
+        return
+    refuse_other_kind(content, "plan", where)

@@ -5,13 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from hil.engine.border_messages import EmergencyAsked
+
 
 class Answering:
     """Types a line, Enter alone if it is empty, after each text that is shown to it."""
 
     def __init__(self, answer: str = "", then: Callable[[str], None] = lambda text: None) -> None:
         self.told: list[str] = []
-        self.waiting: list[str] = []
+        self.waiting: list[str | EmergencyAsked] = []
         self._answer, self.then = answer, then
 
     def tell(self, text: str) -> None:
@@ -19,7 +21,7 @@ class Answering:
         self.waiting.append(self._answer)
         self.then(text)
 
-    def typed(self) -> list[str]:
+    def typed(self) -> list[str | EmergencyAsked]:
         waiting, self.waiting = self.waiting, []
         return waiting
 
@@ -43,7 +45,7 @@ class Slow(Silent):
         super().tell(text)
         self._due_s = time.monotonic() + self._after_s
 
-    def typed(self) -> list[str]:
+    def typed(self) -> list[str | EmergencyAsked]:
         if time.monotonic() < self._due_s:
             return []
         self._due_s = float("inf")

@@ -10,6 +10,7 @@ from pathlib import Path
 from hil.agent._kept_runs import KeptRun
 from hil.core.errors import HilError
 from hil.core.printable import printable
+from hil.engine.border_messages import EmergencyAsked
 from hil.service.agent_data import AgentBench, Order
 from hil.service.benches import Bench
 from hil.service.carrying_out import CarriedRun
@@ -74,7 +75,7 @@ class DrivenBench:
         """Do what somebody asks; false if it has to be tried again. What is too late is done."""
         try:
             if order.kind == "emergency_stop":
-                self._stop_in_emergency(order.by)
+                self._stop_in_emergency(order)
             elif order.kind == "reset":
                 self.bench.reset(order.by)
             elif self.running is not None and order.run == self.running.data.id:
@@ -90,10 +91,12 @@ class DrivenBench:
             self._used_by, self._looked_s = self.bench.used_by(), time.monotonic()
         return self._used_by
 
-    def _stop_in_emergency(self, by: str) -> None:
+    def _stop_in_emergency(self, order: Order) -> None:
         if self.running is not None:
-            self.running.process.stop_in_emergency()
-        self.bench.stop(by, self.kept.folder if self.kept is not None else Path())
+            asked = EmergencyAsked(by=order.by, origin=order.origin, way=order.way or "api")
+            self.running.process.stop_in_emergency(asked)
+        folder = self.kept.folder if self.kept is not None else Path()
+        self.bench.stop(order.by, folder, origin=order.origin, way=order.way or "api")
 
     def _steer(self, running: CarriedRun, order: Order) -> None:
         process = running.process

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import os
+import queue
 import secrets
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,16 +17,19 @@ from hil.cli._output import progress
 from hil.cli._patience import OURS, Patience
 from hil.cli._place import Place, results_in
 from hil.cli._result_file import RESULT
+from hil.cli._sent_plan import give_plan
 from hil.cli._streams import complain
 from hil.cli._terminal import KEYS, StandardTerminal, operators_terminal
 from hil.client import Client, RefusedError
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.result import RunResult
 from hil.engine import StopRequest
+from hil.engine.operator import EMERGENCY
 from hil.service.data import OVER, RunData, RunWanted
 from test_plans import load_plan
 
 _LOOK_S = 0.3
+_KEYS_S = 0.05
 TOKEN = "HIL_TOKEN"
 
 Tell = Callable[[RunResult, Path], None]
@@ -52,6 +57,8 @@ class RemoteRun:
             ) as place,
             stop.by_signals(),
         ):
+            with contextlib.suppress(BenchError):
+                client.find_stop_post()  # now: a service that is flooded answers late
             run = self._queued(client)
             run = _Watching(client, run, stop).until_over()
             return _brought(client, run, place, tell)
@@ -66,8 +73,7 @@ class RemoteRun:
         try:
             name = self.plan
             if Path(name).is_file():
-                plan = load_plan(name)
-                name = client.give_plan(plan.name, plan.text).name
+                name = give_plan(client, load_plan(name))
             wanted = RunWanted(
                 plan=name,
                 bench=self.bench,
@@ -95,6 +101,7 @@ class _Watching:
     told_stop: bool = False
     said: str = ""
     terminal: StandardTerminal | None = field(default_factory=operators_terminal)
+    typed: queue.SimpleQueue[str] = field(default_factory=queue.SimpleQueue)
 
     def until_over(self) -> RunData:
         """The run as it ended.
@@ -104,6 +111,8 @@ class _Watching:
             InterruptError: somebody asked twice to stop.
         """
         patience = Patience()
+        if self.terminal is not None:
+            threading.Thread(target=self._read_keys, args=(self.terminal,), daemon=True).start()
         keys = f" ({KEYS})" if self.terminal is not None else ""
         with progress(f"run {self.run.id}: {self.run.plan} on {self.run.bench}{keys}") as show:
             while self.run.state not in OVER:
@@ -129,17 +138,34 @@ class _Watching:
         if self.run.told and self.run.told != self.said:
             self.said = self.run.told
             self.terminal.tell(self.said)
-        for line in self.terminal.typed():
-            self._ask(line)
+        while not self.typed.empty():
+            self._ask(self.typed.get())
+
+    def _read_keys(self, terminal: StandardTerminal) -> None:
+        """In a thread of its own: an emergency stop does not wait until the service says how the run is."""
+        while self.run.state not in OVER:
+            for line in terminal.typed():
+                if line.strip().lower() == EMERGENCY:
+                    self._stop_in_emergency()
+                else:
+                    self.typed.put(line)
+            time.sleep(_KEYS_S)
+
+    def _stop_in_emergency(self) -> None:
+        try:
+            self.client.stop_in_emergency(self.run.bench)
+        except RefusedError:
+            pass  # the bench is not there any more
+        except BenchError as error:
+            complain("error", f"the emergency stop has NOT been taken: {error}")
 
     def _ask(self, line: str) -> None:
         """What the keys of `hil run` mean, over the API; what is too late is no mistake."""
-        run, bench = self.run.id, self.run.bench
+        run = self.run.id
         known: dict[str, Callable[[], object]] = {
             "p": lambda: self.client.pause(run),
             "r": lambda: self.client.resume(run),
             "q": lambda: self.client.abort(run),
-            "e": lambda: self.client.stop_in_emergency(bench),
         }
         with contextlib.suppress(RefusedError):
             known.get(line.strip().lower(), lambda: self.client.answer(run, line.strip()))()

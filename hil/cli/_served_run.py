@@ -1,7 +1,8 @@
 """`python -m hil.cli._served_run`: one run for the bench service, which starts it; nobody else does.
 
 It does what `hil run` does. In place of a terminal it has two pipes with the messages of
-`hil.engine.border_messages`: asked and typed come in, progress, texts and the outcome go out.
+`hil.engine.border_messages`: asked and typed come in, progress, texts and the outcome go out. A second
+argument is the descriptor of its stop line: emergency stops come by it that no other message can hold up.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from hil.cli._interrupts import INTERRUPTS
 
 if TYPE_CHECKING:
     from hil.cli._output import Show
-    from hil.engine.border_messages import RunAsked
+    from hil.engine.border_messages import EmergencyAsked, RunAsked
     from hil.engine.border_pipe import BorderPipe
 
 _ASKED_WITHIN_S = 60.0
@@ -33,8 +34,8 @@ RUNNER = (sys.executable, "-m", "hil.cli._served_run")
 class _Service:
     """The service at the other end: the operator's terminal, and who is shown the progress."""
 
-    def __init__(self, pipe: BorderPipe) -> None:
-        self._pipe = pipe
+    def __init__(self, pipe: BorderPipe, stop_line: BorderPipe | None) -> None:
+        self._pipe, self._stop_line = pipe, stop_line
         self._told_end = False
 
     def asked(self) -> RunAsked | None:
@@ -55,11 +56,16 @@ class _Service:
 
         self._pipe.send(Told(text=text))
 
-    def typed(self) -> list[str]:
+    def typed(self) -> list[str | EmergencyAsked]:
         """What operators asked for since the last call; that the service has gone ends the run."""
-        from hil.engine.border_messages import Typed
+        from hil.engine.border_messages import EmergencyAsked, Typed
 
-        lines = [message.line for message in self._pipe.fetch() if isinstance(message, Typed)]
+        lines: list[str | EmergencyAsked] = []
+        for message in [*(self._stop_line.fetch() if self._stop_line else ()), *self._pipe.fetch()]:
+            if isinstance(message, Typed):
+                lines.append(message.line)
+            elif isinstance(message, EmergencyAsked):
+                lines.append(message)
         if self._pipe.gone and not self._told_end:
             self._told_end = True
             lines.append("q")
@@ -94,7 +100,7 @@ def main() -> None:
     from hil.engine.border_pipe import BorderPipe
 
     pipe = BorderPipe(reading, writing)
-    service = _Service(pipe)
+    service = _Service(pipe, _stop_line())
     LOG.begin(sys.argv)
     code = 130
     try:
@@ -116,6 +122,17 @@ def main() -> None:
     INTERRUPTS.ignore_from_now_on()
     LOG.end()
     sys.exit(code)
+
+
+def _stop_line() -> BorderPipe | None:
+    """Only read from; nobody else has this end of it."""
+    from hil.engine.border_pipe import BorderPipe
+
+    if len(sys.argv) < 3:
+        return None
+    line = int(sys.argv[2])
+    os.set_inheritable(line, False)
+    return BorderPipe(line, line)
 
 
 def _carried_out(asked: RunAsked, service: _Service, pipe: BorderPipe) -> int:

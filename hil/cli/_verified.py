@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,6 +29,20 @@ class Finding:
     holds: bool
     file: Path
     text: str
+
+
+def is_service(folder: Path) -> bool:
+    """Whether it is the folder of a bench service (`hil serve --data`)."""
+    return (folder / "service.id").is_file()
+
+
+def of_audit_log(folder: Path) -> Finding:
+    """A service's folder: its audit log, row by row."""
+    from hil.service.audit import checked
+
+    found = checked(folder, os.environ.get("HIL_DATABASE", ""))
+    said = found.problem or f"each of its {found.rows} rows fits the one before it; up to row {found.head.id}"
+    return Finding(not found.problem, folder, f"audit log: {said}")
 
 
 def of_run(folder: Path) -> Iterator[Finding]:

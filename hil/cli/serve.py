@@ -22,6 +22,9 @@ def carry_out(
     no_bench: bool,
     host: str,
     port: int,
+    stop_port: int | None,
+    stop_url: str,
+    trusted_proxy: list[str],
     allow_host: list[str],
     database: str,
     store: str,
@@ -31,6 +34,7 @@ def carry_out(
     rate: float,
     for_s: float | None,
     add_token: str,
+    token_days: float,
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
@@ -50,7 +54,7 @@ def carry_out(
         raise BadInputError("--bench does not go with --no-bench", fix="leave one of them out")
     if add_token:
         name, _, role = add_token.rpartition("=")
-        made = make_token(data, database, name, role)
+        made = make_token(data, database, name, role, token_days)
         if as_json:
             print_json(made.model_dump(mode="json"))
         else:
@@ -72,6 +76,9 @@ def carry_out(
         commands=Commands(HIL, RUNNER, simulating),
         host=host,
         port=port,
+        stop_port=stop_port,
+        stop_url=stop_url,
+        trusted_proxies=trusted_proxy,
         database=database,
         store=store,
         local_days=keep_local,

@@ -11,6 +11,8 @@ from hil.cli._verified import (
     RECORDINGS,
     REPORTS,
     Finding,
+    is_service,
+    of_audit_log,
     of_recording,
     of_report,
     of_run,
@@ -28,7 +30,7 @@ def carry_out(*, sources: list[Path], by: Path | None, as_json: bool) -> int:
             raise BadInputError(
                 f"is no folder and ends in none of {', '.join((*RECORDINGS, *REPORTS))}",
                 where=str(source),
-                fix="give a run's folder, a report or a recording",
+                fix="give a run's folder, a report, a recording, or a service's folder",
             )
     if by is not None and not any(source.is_dir() for source in sources):
         raise BadInputError("--by goes with a folder", fix="name the folder that was signed")
@@ -50,7 +52,9 @@ def carry_out(*, sources: list[Path], by: Path | None, as_json: bool) -> int:
 def _findings(sources: list[Path], key: bytes | None) -> Iterator[Finding]:
     recordings = [path for path in sources if path.suffix.lower() in RECORDINGS and not path.is_dir()]
     for source in sources:
-        if source.is_dir():
+        if source.is_dir() and is_service(source):
+            yield of_audit_log(source)
+        elif source.is_dir():
             yield from of_run(source)
             yield from of_signatures(source, key)
         elif source in recordings:

@@ -7,7 +7,8 @@ import urllib.parse
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from hil.client._requests import WITHIN_S, Requests, part
+from hil.client._requests import WITHIN_S, Requests, first_of, part
+from hil.core.errors import BenchError
 from hil.service.agent_data import (
     AgentData,
     AgentOrders,
@@ -74,6 +75,8 @@ class Client(Requests):
         token: who asks; a service without tokens asks nobody.
     """
 
+    _stop_url = ""
+
     def health(self) -> Health:
         """Whether it works."""
         return self._one(Health, "GET", "/health")
@@ -90,9 +93,28 @@ class Client(Requests):
         """A bench and what it does."""
         return self._one(BenchData, "GET", f"/benches/{part(bench)}")
 
-    def stop_in_emergency(self, bench: str) -> BenchData:
-        """Have a bench safe at once, and keep it so until it is reset."""
-        return self._one(BenchData, "POST", f"/benches/{part(bench)}/emergency-stop")
+    def find_stop_post(self) -> str:
+        """Where the service takes emergency stops whatever else it does; '' if it does not say so.
+
+        Who may have to stop a bench asks beforehand: a service that is flooded answers late.
+        """
+        self._stop_url = self.health().stop_url
+        return self._stop_url
+
+    def stop_in_emergency(self, bench: str) -> None:
+        """Have a bench safe at once, and keep it so until it is reset.
+
+        The stop post and the API are asked at the same moment; the first that has taken it is enough.
+        """
+        path = f"/benches/{part(bench)}/emergency-stop"
+        first_of([lambda: self._post_to_stop_post(path), lambda: self._done("POST", path)], WITHIN_S)
+
+    def _post_to_stop_post(self, path: str) -> None:
+        url = self._stop_url or self.find_stop_post()
+        if not url:
+            raise BenchError("the service has no stop post", where=self._url)
+        with Requests(url, self._token)._opened("POST", path, None, WITHIN_S):
+            pass
 
     def reset(self, bench: str) -> BenchData:
         """Let a bench be armed again after an emergency stop."""
@@ -336,9 +358,9 @@ class Client(Requests):
         """All tokens, without their secrets."""
         return self._several(TokenData, "/tokens")
 
-    def make_token(self, name: str, role: Role) -> TokenMade:
-        """Make a token; its secret is told this once."""
-        return self._one(TokenMade, "POST", "/tokens", TokenWanted(name=name, role=role))
+    def make_token(self, name: str, role: Role, for_days: float = 365.0) -> TokenMade:
+        """Make a token that is valid for so many days; its secret is told this once."""
+        return self._one(TokenMade, "POST", "/tokens", TokenWanted(name=name, role=role, for_days=for_days))
 
     def audit(self, most: int = 100) -> list[AuditEntry]:
         """What was done by whom, newest first."""

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import json
+import queue
 import shutil
+import threading
+import time
 import urllib.error
 import urllib.parse
 import urllib.request
+from collections.abc import Callable, Sequence
 from http.client import HTTPException, HTTPResponse
 from pathlib import Path
 from typing import Any, TypeVar
@@ -20,6 +24,7 @@ from hil.service.data import Problem
 A = TypeVar("A")
 T = TypeVar("T", bound=BaseModel)
 WITHIN_S = 30.0
+_AGAIN_S = 0.02
 #: What a request carries: JSON, a text, or bytes of a file.
 _Body = BaseModel | str | bytes | None
 
@@ -101,6 +106,43 @@ class Requests:
             where=self._url,
             fix="is it running (hil serve)? Is the URL what it said when it began?",
         )
+
+
+def first_of(ways: Sequence[Callable[[], object]], within_s: float) -> None:
+    """Go several ways at the same moment; return as soon as one has led there.
+
+    A way on which nobody answers is tried again and again: a flooded service closes connections.
+
+    Raises:
+        BenchError: none has led there in time, or each was refused; it is what the last one met.
+    """
+    ended: queue.SimpleQueue[BenchError | None] = queue.SimpleQueue()
+    until_s = time.monotonic() + within_s
+
+    def go(way: Callable[[], object]) -> None:
+        while True:
+            try:
+                way()
+            except RefusedError as error:
+                ended.put(error)
+            except BenchError as error:
+                if time.monotonic() < until_s:
+                    time.sleep(_AGAIN_S)
+                    continue
+                ended.put(error)
+            else:
+                ended.put(None)
+            return
+
+    for way in ways:
+        threading.Thread(target=go, args=(way,), daemon=True).start()
+    failure: BenchError | None = None
+    for _ in ways:
+        failure = ended.get()
+        if failure is None:
+            return
+    if failure is not None:
+        raise failure
 
 
 class _NoRedirect(urllib.request.HTTPRedirectHandler):

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
+
+#: By which way an emergency stop came: a key at the terminal of `hil run`, a request to the API or from the
+#: page, a device of the bench (its button, an EMCY), an interlock; '' of recordings that do not say it.
+StopWay = Literal["", "terminal", "api", "page", "device", "interlock"]
 
 
 class HilError(Exception):
@@ -57,12 +61,22 @@ class OrderlyEndError(BenchError):
 class EmergencyStopError(BenchError):
     """An emergency stop: nothing moves any more until a person has reset it (exit code 3).
 
-    `by`: who or what asked for it.
+    `by`: who or what asked for it; `origin`: the address or device that it came from; `way`: how.
     """
 
-    def __init__(self, what: str, *, by: str, where: str = "emergency stop", fix: str = "") -> None:
+    def __init__(
+        self,
+        what: str,
+        *,
+        by: str,
+        origin: str = "",
+        way: StopWay = "",
+        where: str = "emergency stop",
+        fix: str = "",
+    ) -> None:
         super().__init__(what, where=where, fix=fix)
-        self.by = by
+        self.by, self.origin = by, origin
+        self.way: StopWay = way
 
 
 class InterruptError(HilError):

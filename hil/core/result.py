@@ -7,6 +7,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from hil.core.errors import StopWay
 from hil.core.file_format import FORMAT, FormatNumber
 
 #: `done`: carried out, and no criterion of the plan has a limit.
@@ -252,11 +253,13 @@ class Hold(_Frozen):
 
 
 class StoppedInEmergency(_Frozen):
-    """Who or what asked for an emergency stop, and whether it was latched on disk."""
+    """Who or what asked for an emergency stop, from where and how, and whether it was latched on disk."""
 
     by: str
     why: str
     latched: bool
+    origin: str = Field("", description="the address, terminal or device that it came from")
+    way: StopWay = Field("", description="terminal, api, page, device or interlock")
 
 
 class VariableValue(_Frozen):

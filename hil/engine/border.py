@@ -17,6 +17,7 @@ from hil.core.other_process import OtherProcess
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from hil.engine.bench_tables import BenchFile
+from hil.engine.border_messages import EmergencyAsked
 from hil.engine.stopping import StopRequest
 from test_plans import Plan, Work
 
@@ -69,8 +70,8 @@ class Terminal(Protocol):
         """Show a text."""
         ...
 
-    def typed(self) -> Sequence[str]:
-        """Lines that were typed since the last call."""
+    def typed(self) -> Sequence[str | EmergencyAsked]:
+        """Lines that were typed since the last call, and emergency stops that others asked for."""
         ...
 
 

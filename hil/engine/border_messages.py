@@ -18,6 +18,7 @@ from hil.core.errors import (
     HilError,
     InterruptError,
     OrderlyEndError,
+    StopWay,
 )
 from hil.core.result import RunResult
 
@@ -27,31 +28,38 @@ _KINDS: dict[str, type[HilError]] = {
 }
 
 
+_WAYS: dict[StopWay, str] = {"api": " over the service's API", "page": " on the service's page"}
+
+
 class _Data(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class ErrorData(_Data):
-    """An error as it is told; `by`: who asked for an emergency stop."""
+    """An error as it passes; `by`, `origin`, `way`: who asked for an emergency stop, from where, how."""
 
     kind: str
     what: str
     where: str = ""
     fix: str = ""
     by: str = ""
+    origin: str = ""
+    way: StopWay = ""
 
     @classmethod
     def of(cls, error: HilError) -> Self:
         """What passes of an error; of a kind that is not known here, as the nearest that is."""
         kind = next(kind.__name__ for kind in type(error).__mro__ if kind.__name__ in _KINDS)
-        by = getattr(error, "by", "")
-        return cls(kind=kind, what=error.what, where=error.where, fix=error.fix, by=by)
+        stop = {name: getattr(error, name) for name in ("by", "origin", "way") if hasattr(error, name)}
+        return cls(kind=kind, what=error.what, where=error.where, fix=error.fix, **stop)
 
     def as_error(self) -> HilError:
         """The error again."""
         kind = _KINDS.get(self.kind, BenchError)
         if kind is EmergencyStopError:
-            return EmergencyStopError(self.what, by=self.by, where=self.where, fix=self.fix)
+            return EmergencyStopError(
+                self.what, by=self.by, origin=self.origin, way=self.way, where=self.where, fix=self.fix
+            )
         return kind(self.what, where=self.where, fix=self.fix)
 
 
@@ -95,6 +103,23 @@ class Typed(_Data):
 
     kind: Literal["typed"] = "typed"
     line: str
+
+
+class EmergencyAsked(_Data):
+    """An emergency stop that did not come from this run's terminal: by whom, from which address, how."""
+
+    kind: Literal["emergency"] = "emergency"
+    by: str
+    origin: str = ""
+    way: StopWay = "api"
+
+    def as_error(self) -> EmergencyStopError:
+        """What ends the run."""
+        place = f" from {self.origin}" if self.origin and self.origin not in self.by else ""
+        how = _WAYS.get(self.way, "")
+        return EmergencyStopError(
+            f"{self.by} asked for it{place}{how}", by=self.by, origin=self.origin, way=self.way
+        )
 
 
 # --- from the process that holds the hardware ---
@@ -158,7 +183,18 @@ class Ended(_Data):
 
 
 Message: TypeAlias = (
-    RunAsked | Here | StopAsked | Typed | Turned | Progressed | Told | Logged | Concluded | Refused | Ended
+    RunAsked
+    | Here
+    | StopAsked
+    | Typed
+    | EmergencyAsked
+    | Turned
+    | Progressed
+    | Told
+    | Logged
+    | Concluded
+    | Refused
+    | Ended
 )
 _MESSAGES: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from hil.core.errors import BenchError, EmergencyStopError, HilError
+from hil.core.errors import BenchError, EmergencyStopError, HilError, StopWay
 from hil.core.files import write_atomically
 from hil.core.result import StoppedInEmergency
 from hil.engine.bench_tables import BenchFile
@@ -35,7 +35,7 @@ _PLACE_FIX = "look at the file; then: {reset}"
 
 
 class LatchedStop(BaseModel):
-    """An emergency stop as it is kept on disk, until `reset_by` is somebody."""
+    """An emergency stop as it is kept on disk, until `reset_by` is somebody; `origin`: from where it came."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -46,6 +46,8 @@ class LatchedStop(BaseModel):
     at: str
     run: str
     identity: int = 1
+    origin: str = ""
+    way: StopWay = ""
     reset_by: str = ""
     reset_at: str = ""
 
@@ -57,11 +59,22 @@ def buses_of(file: BenchFile) -> tuple[str, ...]:
     return tuple(sorted(identities_of(file)))
 
 
-def latch(file: BenchFile, *, by: str, why: str, run: Path, owner: Path | None = None) -> Path:
+def latch(
+    file: BenchFile,
+    *,
+    by: str,
+    why: str,
+    run: Path,
+    owner: Path | None = None,
+    origin: str = "",
+    way: StopWay = "",
+) -> Path:
     """Keep it on disk, also through a power cut; the folder that it lies in.
 
     Args:
         owner: folder of the service or agent whose bench it is, if it is a simulated one.
+        origin: from where it was asked for.
+        way: by which way.
 
     Raises:
         HilError: it cannot be written anywhere.
@@ -74,6 +87,8 @@ def latch(file: BenchFile, *, by: str, why: str, run: Path, owner: Path | None =
         at=_now(),
         run=str(run.resolve()),
         identity=_BY_PORTS,
+        origin=origin,
+        way=way,
     )
     name = f"{file.name[:60]}-{secrets.token_hex(6)}.json"
     failure: HilError | OSError | None = None
@@ -108,16 +123,21 @@ def keep_latched(
     if not isinstance(error, EmergencyStopError):
         return None
     error.fix = f"make sure that nobody is in danger; then: {_how_to_reset(file, owner)}"
+    latched = True
     try:
-        place = latch(file, by=error.by, why=error.what, run=run, owner=owner)
+        place = latch(
+            file, by=error.by, why=error.what, run=run, owner=owner, origin=error.origin, way=error.way
+        )
+        if not within_process(file) and not seen_by_all(place):
+            error.fix += f"\n  {remark_on(place)}"
     except (HilError, OSError) as failure:
         error.fix += (
             f"\n  it could NOT be latched, nothing but you keeps the bench from being armed: {failure}"
         )
-        return StoppedInEmergency(by=error.by, why=error.what, latched=False)
-    if not within_process(file) and not seen_by_all(place):
-        error.fix += f"\n  {remark_on(place)}"
-    return StoppedInEmergency(by=error.by, why=error.what, latched=True)
+        latched = False
+    return StoppedInEmergency(
+        by=error.by, why=error.what, latched=latched, origin=error.origin, way=error.way
+    )
 
 
 def refuse_latched(file: BenchFile, owner: Path | None = None) -> None:

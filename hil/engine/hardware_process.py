@@ -14,6 +14,7 @@ from hil.engine.border import analysed_apart
 from hil.engine.border_data import ended_of, request_of
 from hil.engine.border_messages import (
     Concluded,
+    EmergencyAsked,
     ErrorData,
     Logged,
     Message,
@@ -75,7 +76,7 @@ class _Command:
 
     def __init__(self, pipe: BorderPipe, stop: StopRequest) -> None:
         self._pipe, self._stop = pipe, stop
-        self._lines: list[str] = []
+        self._lines: list[str | EmergencyAsked] = []
         self._process = os.getppid()
         self._heard_s = time.monotonic()
         self.alone_after_s = float("inf")
@@ -116,8 +117,8 @@ class _Command:
         """Show a text to the operator."""
         self._pipe.send(Told(text=text))
 
-    def typed(self) -> list[str]:
-        """What the operator has typed since the last call."""
+    def typed(self) -> list[str | EmergencyAsked]:
+        """What the operator has typed, and others asked for, since the last call."""
         lines, self._lines = self._lines, []
         return lines
 
@@ -125,6 +126,8 @@ class _Command:
         self._heard_s = time.monotonic()
         if isinstance(message, Typed):
             self._lines.append(message.line)
+        elif isinstance(message, EmergencyAsked):
+            self._lines.append(message)
         elif isinstance(message, StopAsked):
             while self._stop.times < message.times:
                 self._stop.ask()

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from drivers import BusLoop
 from hil.core.errors import EmergencyStopError, InterruptError
 from hil.engine.border import Terminal
+from hil.engine.border_messages import EmergencyAsked
 
 LOOK_S = 0.02  # how often it is looked whether a line was typed
 _VIRTUAL_TICK_S = 0.01  # what passes at once while nobody has to be awaited
@@ -34,6 +35,7 @@ class Operator:
         self._standing = standing
         self._wants_pause = self._wants_to_go_on = False
         self._answer: str | None = None
+        self._stopped = False
 
     @property
     def present(self) -> bool:
@@ -48,17 +50,29 @@ class Operator:
     def look(self) -> None:
         """Take what was typed since the last look; never waits.
 
+        An emergency stop counts once: one that is repeated, by the same or another way, does not disturb
+        what makes the bench safe.
+
         Raises:
             EmergencyStopError: somebody asked for it.
         """
         for line in self._terminal.typed() if self._terminal is not None else ():
+            if isinstance(line, EmergencyAsked):
+                self._stop(line.as_error())
+                continue
             word = line.strip().lower()
             if word == EMERGENCY:
-                raise EmergencyStopError("the operator typed e", by="the operator")
+                self._stop(typed_emergency())
+                continue
             self._loop.stop_requested |= word == END
             self._wants_pause |= word == PAUSE
             self._wants_to_go_on |= word == RESUME
             self._answer = line.strip()
+
+    def _stop(self, error: EmergencyStopError) -> None:
+        if not self._stopped:
+            self._stopped = True
+            raise error
 
     def take_pause(self) -> bool:
         """Whether a pause was asked for since the last call."""
@@ -137,3 +151,8 @@ class Operator:
         if self._loop.stop_requested:
             self._loop.stop_requested = False
             raise InterruptError("stopped by the operator")
+
+
+def typed_emergency() -> EmergencyStopError:
+    """The emergency stop of who sits at the run's terminal."""
+    return EmergencyStopError("the operator typed e", by="the operator", origin="terminal", way="terminal")

@@ -22,6 +22,7 @@ from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.border_data import asked_of, outcome_of
 from hil.engine.border_messages import (
     Concluded,
+    EmergencyAsked,
     Ended,
     Here,
     Logged,
@@ -37,7 +38,7 @@ from hil.engine.border_pipe import BorderPipe
 from hil.engine.emergency_stop import keep_latched
 from hil.engine.last_look import complaints_of
 from hil.engine.left_behind import identity_of, recording_left, result_left
-from hil.engine.operator import EMERGENCY, LOOK_S
+from hil.engine.operator import EMERGENCY, LOOK_S, typed_emergency
 from hil.engine.run import run_plan
 from hil.engine.stopping import held_back
 
@@ -125,7 +126,7 @@ class _Supervisor:
         self._here_s = -1.0
         self._asked_s: float | None = None
         self._told_stops = 0
-        self._emergency = False
+        self._emergency: EmergencyStopError | None = None
         self._path = request.out / RECORDING
         self._recorded_before = identity_of(self._path)
 
@@ -156,7 +157,12 @@ class _Supervisor:
         now_s = time.monotonic()
         terminal, stop = self._request.terminal, self._request.stop
         for line in terminal.typed() if terminal is not None else ():
-            self._emergency |= line.strip().lower() == EMERGENCY
+            if isinstance(line, EmergencyAsked):
+                self._emergency = self._emergency or line.as_error()
+                self._pipe.send(line)
+                continue
+            if line.strip().lower() == EMERGENCY:
+                self._emergency = self._emergency or typed_emergency()
             self._pipe.send(Typed(line=line))
         if stop.times > self._told_stops:
             self._told_stops = stop.times
@@ -241,7 +247,9 @@ class _Supervisor:
         fix = "; ".join(fixes)
         what = f"{why}; {said}"
         if self._emergency:
-            return EmergencyStopError(f"the operator typed e; {_WHERE} {what}", by="the operator", fix=fix)
+            stop = self._emergency
+            said = f"{stop.what}; {_WHERE} {what}"
+            return EmergencyStopError(said, by=stop.by, origin=stop.origin, way=stop.way, fix=fix)
         return BenchError(what, where=_WHERE, fix=fix)
 
 

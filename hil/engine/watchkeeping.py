@@ -57,7 +57,8 @@ class Watchkeeping:
         """What is done when a limit is reached that is no trip, or an interlock is lost."""
         self._event("limit", f"{reached.name}: {text}; response: {reached.response}")
         if reached.response == "emergency_stop":
-            raise EmergencyStopError(f"{text}; {reached.message}", by=f"interlock '{reached.name}'")
+            what, by = f"{text}; {reached.message}", f"interlock '{reached.name}'"
+            raise EmergencyStopError(what, by=by, origin=reached.name, way="interlock")
         if reached.response == "ramp_down":
             self.hold.end_run(text)
         elif reached.response in ("pause", "hold"):
@@ -75,7 +76,7 @@ class Watchkeeping:
             return
         for one in self._say_emergency:
             if one.emergency:
-                raise EmergencyStopError(one.emergency, by=one.name)
+                raise EmergencyStopError(one.emergency, by=one.name, origin=one.name, way="device")
         for device in self._bench.devices:
             troubles = device.troubles()
             if troubles:

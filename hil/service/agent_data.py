@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from hil.core.errors import StopWay
 from hil.service.data import BenchName, ForecastData, Number, PersonName, Problem, RunData, RunId
 
 AgentId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
@@ -65,6 +66,8 @@ class Order(_Data):
     kind: OrderKind
     run: RunId | None = Field(None, description="of which run; null where it is about the bench")
     by: str = ""
+    origin: str = Field("", description="of an emergency stop: from which address it came")
+    way: StopWay = Field("", description="and how")
     text: str = ""
     plan: PlanSent | None = Field(None, description="what is to be predicted")
 

@@ -18,6 +18,7 @@ from sqlalchemy import Engine
 
 from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
+from hil.engine.border_messages import EmergencyAsked
 from hil.service.agent_data import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
 from hil.service.carrying_out import PLAN, RunningRun
 from hil.service.plan_files import files_of
@@ -63,7 +64,7 @@ class Agents:
             bench = self.benches[row.bench.name] = RemoteBench(agent, row.bench)
             self._restore(bench)
             if row.stop_by:
-                self._stop(bench, row.stop_by)
+                self._stop(bench, EmergencyAsked(by=row.stop_by))
 
     def all(self) -> list[AgentData]:
         """Those that have benches here."""
@@ -197,16 +198,16 @@ class Agents:
             place.running = None
         self._changed(bench)
 
-    def stop_in_emergency(self, bench: str, by: str) -> None:
+    def stop_in_emergency(self, bench: str, asked: EmergencyAsked) -> None:
         """Have a bench safe and latched as soon as its agent hears it, also after this service has ended.
 
         Raises:
             DatabaseAwayError: only as long as this service lives.
         """
         place = self.benches[bench]
-        self._stop(place, by)
+        self._stop(place, asked)
         self._changed(bench)
-        self._store.stop(bench, by)
+        self._store.stop(bench, asked.by)
 
     async def reset(self, bench: str, by: str) -> bool:
         """Let a bench be armed again; whether its agent has done so within a few seconds."""
@@ -251,7 +252,7 @@ class Agents:
         before = self.benches.get(told.name)
         bench = self.benches[told.name] = RemoteBench(agent, told)
         if before is not None and before.stop_by:
-            self._stop(bench, before.stop_by)
+            self._stop(bench, EmergencyAsked(by=before.stop_by))
         self._restore(bench)
         return ""
 
@@ -291,9 +292,13 @@ class Agents:
                 bench.kept_s = time.monotonic()
         return there
 
-    def _stop(self, bench: RemoteBench, by: str) -> None:
-        bench.stop_by = by
-        bench.order("emergency_stop", by)
+    def _stop(self, bench: RemoteBench, asked: EmergencyAsked) -> None:
+        """One order that nobody has obeyed yet says it: who asks again adds none."""
+        if bench.stop_by and bench.stops():
+            bench.agent.told.set()
+            return
+        bench.stop_by = asked.by
+        bench.order("emergency_stop", asked.by, origin=asked.origin, way=asked.way)
 
     def _leave(self, agent: Agent) -> None:
         agent.heard_s = -1e9

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import threading
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import TypeVar
 
+from hil.core.errors import HilError
+
 T = TypeVar("T")
+_AGAIN_S = 0.5
+
+logger = logging.getLogger(__name__)
 
 
 async def apart(function: Callable[[], T]) -> T:
@@ -35,3 +41,19 @@ async def apart(function: Callable[[], T]) -> T:
 
     threading.Thread(target=work, daemon=True).start()
     return await future
+
+
+async def going_on(work: Callable[[], Awaitable[None]]) -> None:
+    """Have work done that goes on as long as the service does.
+
+    What the system refuses now (a descriptor, memory for a process, a disk) it gives later: such a failure
+    is written down, and the work goes on. A mistake of ours ends it.
+    """
+    while True:
+        try:
+            await work()
+        except (OSError, HilError) as error:
+            logger.error("%s", error)
+            await asyncio.sleep(_AGAIN_S)
+        else:
+            return

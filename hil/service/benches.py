@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.core.channels import unit_of
-from hil.core.errors import BadInputError, BenchError
+from hil.core.errors import BadInputError, BenchError, StopWay
 from hil.engine import BenchFile, load_bench
 from hil.engine.bench_lock import alone_on
 from hil.engine.emergency_stop import latch, refuse_latched, reset
@@ -75,13 +75,18 @@ class Bench:
         except BenchError as error:
             return error.what
 
-    def stop(self, by: str, folder: Path) -> None:
+    def stop(self, by: str, folder: Path, *, origin: str = "", way: StopWay = "api") -> None:
         """Latch it: no process arms it before a person has reset it.
+
+        Args:
+            by: who asks for it, from `origin`, by which way.
+            folder: of the run under way.
 
         Raises:
             HilError: that cannot be written.
         """
-        latch(self.file, by=by, why=f"{by} asked for it at the bench service", run=folder, owner=self.stops)
+        why = f"{by} asked for it at the bench service"
+        latch(self.file, by=by, why=why, run=folder, owner=self.stops, origin=origin, way=way)
 
     def reset(self, by: str) -> int:
         """Let it be armed again; how many stops there were.

@@ -11,7 +11,7 @@ from hil.core.errors import HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
-from hil.engine.border_messages import Progressed, Refused, RunAsked, Told
+from hil.engine.border_messages import EmergencyAsked, Progressed, Refused, RunAsked, Told
 from hil.service.agent_data import TakenRun
 from hil.service.benches import Bench
 from hil.service.data import RunData
@@ -34,7 +34,7 @@ class Steered(Protocol):
     def end(self) -> None:
         """End it, with its end steps."""
 
-    def stop_in_emergency(self) -> None:
+    def stop_in_emergency(self, asked: EmergencyAsked) -> None:
         """Have the bench safe at once."""
 
     def answer(self, text: str) -> None:
@@ -70,19 +70,27 @@ class CarriedRun(RunningRun):
     process: RunProcess
 
     @classmethod
-    async def begin(cls, command: Sequence[str], taken: TakenRun, bench: Bench, folder: Path) -> CarriedRun:
+    async def begin(
+        cls,
+        command: Sequence[str],
+        taken: TakenRun,
+        bench: Bench,
+        folder: Path,
+        stop_line: int | None = None,
+    ) -> CarriedRun:
         """Start its process.
 
         Args:
             command: starts a process that carries a run out (`hil.cli._served_run`).
             folder: for what the run leaves; made.
+            stop_line: a descriptor from which it takes emergency stops, too.
 
         Raises:
             HilError, OSError: the bench's file cannot be used any more, the folder cannot be written.
         """
         make_directory(folder)
         write_atomically(folder / PLAN, taken.plan_text)
-        process = await RunProcess.begin(command, _asked(taken, bench, folder))
+        process = await RunProcess.begin(command, _asked(taken, bench, folder), stop_line)
         run = cls(taken.data, folder, process)
         process.answered = run._asks_no_more
         return run

@@ -58,6 +58,13 @@ class Health(_Data):
     runs_not_stored: int = Field(0, description="runs whose files the store has not all; 0 without a store")
     results_not_stored: int = Field(0, description="studies and campaigns that are over, likewise")
     store_problem: str = Field("", description="why files do not reach the store; '' if they do")
+    stop_url: str = Field(
+        "",
+        description="the stop post: takes stops whatever the service is doing; '' if it is away",
+    )
+    audit_problem: str = Field(
+        "", description="what is wrong with the audit log; '' if it is as it was written"
+    )
     kept_apart: int = Field(0, description="files of an earlier version's folder that are not shared")
 
 
@@ -248,6 +255,7 @@ class TokenWanted(_Data):
 
     name: PersonName
     role: Role
+    for_days: float = Field(365.0, gt=0, le=3650, description="how long it is valid")
 
 
 class TokenData(_Data):
@@ -257,6 +265,7 @@ class TokenData(_Data):
     name: str
     role: Role
     made_at: datetime.datetime
+    expires_at: datetime.datetime | None = Field(None, description="null: valid until it is revoked")
     revoked_at: datetime.datetime | None = None
 
 

@@ -21,7 +21,7 @@ def alone_in(folder: Path, *, who: str, fix: str) -> Iterator[None]:
     Raises:
         BadInputError: somebody does, or the folder cannot be made.
     """
-    make_directory(folder, option="--data")
+    make_private(folder)
     try:
         with lock_on(folder):
             yield
@@ -29,6 +29,23 @@ def alone_in(folder: Path, *, who: str, fix: str) -> Iterator[None]:
         raise BadInputError(
             f"another {who} keeps its data here: {error}", where=str(folder), fix=fix
         ) from None
+
+
+def make_private(folder: Path) -> None:
+    """Make the folder if it is not there; nobody but its owner can read what is in it.
+
+    Raises:
+        BadInputError: it cannot be made, or is somebody else's.
+    """
+    make_directory(folder, option="--data")
+    try:
+        folder.chmod(0o700)
+    except OSError as error:
+        raise BadInputError(
+            f"cannot be made its owner's alone: {error.strerror}",
+            where=str(folder),
+            fix="give a folder of your own with --data",
+        ) from error
 
 
 def name_in(folder: Path, file: str) -> str:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
-from hil.core.printable import printable
-from hil.service.data import PlanData, VariableData
+from hil.service.data import PlanData
 from hil.service.given_files import GivenFiles, NameTakenError
-from hil.service.plan_files import files_of
-from test_plans import Choices, Plan, library_plans, load_plan, plan_from_text
+from hil.service.plan_reading import GivenPlan, data_of, given_plan, read_given
+from test_plans import Choices, Plan, library_plans, load_plan
 from test_plans.yaml_document import read_yaml
+
+_MOST_READ = 500
 
 
 class Plans:
@@ -28,6 +30,7 @@ class Plans:
     def __init__(self, given: GivenFiles, controllers: GivenFiles) -> None:
         self._given, self._controllers = given, controllers
         self._built_in = {name: load_plan(name) for name in library_plans()}
+        self._read: dict[str, GivenPlan] = {}
 
     def fresh_folder(self) -> Path:
         """Where given plans are, with the controllers that they load: as the database has them now."""
@@ -41,8 +44,8 @@ class Plans:
         for name, path in self._given.paths().items():
             with contextlib.suppress(BadInputError):
                 if name not in self._built_in:
-                    given.append(_data(load_plan(path), built_in=False))
-        return [*(_data(plan, built_in=True) for plan in self._built_in.values()), *given]
+                    given.append(self._known(path).data)
+        return [*(data_of(plan, built_in=True) for plan in self._built_in.values()), *given]
 
     def get(self, name: str) -> PlanData | None:
         """One of them.
@@ -50,8 +53,10 @@ class Plans:
         Raises:
             BadInputError: it cannot be read any more.
         """
+        if name in self._built_in:
+            return data_of(self._built_in[name], built_in=True)
         path = self._path(name)
-        return None if path is None else _data(load_plan(path), built_in=name in self._built_in)
+        return None if path is None else self._known(path).data
 
     def chosen(self, name: str, values: Mapping[str, float]) -> Plan | None:
         """A plan with its variables as chosen; None if there is none of the name.
@@ -73,12 +78,15 @@ class Plans:
             return self._built_in[name].source
         return self._with_controllers() / f"{name}.yaml"
 
-    def give(self, name: str, text: str, by: str, *, replace: bool = True) -> PlanData:
+    def give(
+        self, name: str, text: str, by: str, *, replace: bool = True, read: GivenPlan | None = None
+    ) -> PlanData:
         """Keep a plan; one of the same name is replaced. Runs that are queued keep theirs.
 
         Args:
             by: who gives it.
             replace: whether one of the same name may be replaced.
+            read: what it says, if another process has read it; None reads it here.
 
         Raises:
             NameTakenError: a built-in plan has the name, or somebody else has given one just now.
@@ -87,22 +95,11 @@ class Plans:
         if name in self._built_in:
             raise NameTakenError("is the name of a built-in plan", where=name, fix="give it another name")
         before = self._given.text(name) if replace else None
-        where, folder = f"{name}.yaml", self._with_controllers()
-        for file in files_of(plan_from_text(text, where, folder, files_required=False)):
-            if file.name != str(file):
-                raise BadInputError(
-                    f"loads the file {printable(repr(str(file)), 100)}",
-                    where=where,
-                    fix="a plan that is given to the service loads controllers that it has, by their names",
-                )
-        plan = plan_from_text(text, where, folder, to_carry_out=True)
-        if plan.name != name:
-            raise BadInputError(
-                f"the plan calls itself '{plan.name}'", where=where, fix="give it under that name"
-            )
+        read = read or read_given(name, text, self._with_controllers())
         fix = "look at it, then give yours again, or under another name"
         self._given.give(name, text, by, instead_of=before, fix=fix)
-        return _data(plan, built_in=False)
+        self._remember(text, read)
+        return read.data
 
     def copied(self, name: str, copy: str, controllers: Mapping[str, str], by: str) -> PlanData | None:
         """Keep a copy that loads other controllers, by the files that they replace; None if there is no plan.
@@ -130,13 +127,31 @@ class Plans:
         self._with_controllers()
         for name, path in self._given.paths().items():
             with contextlib.suppress(BadInputError):
-                if any(one.name == file for one in files_of(load_plan(path))):
+                if file in self._known(path).files:
                     found.append(name)
         return found
 
     def remove(self, name: str) -> bool:
         """Remove a plan that was given; false if there is none."""
         return name not in self._built_in and self._given.remove(name)
+
+    def _known(self, path: Path) -> GivenPlan:
+        """What a given plan says; read once, for a long one takes a second.
+
+        Raises:
+            BadInputError: it cannot be read any more.
+        """
+        text = read_text(path)
+        found = self._read.get(_hashed(text))
+        if found is None or not all((path.parent / file).is_file() for file in found.files):
+            found = given_plan(load_plan(path), path.parent)
+            self._remember(text, found)
+        return found
+
+    def _remember(self, text: str, read: GivenPlan) -> None:
+        self._read[_hashed(text)] = read
+        while len(self._read) > _MOST_READ:
+            del self._read[next(iter(self._read))]
 
     def _path(self, name: str) -> Path | None:
         if name in self._built_in:
@@ -163,28 +178,5 @@ def _renamed(text: str, name: str) -> str:
     return text
 
 
-def _data(plan: Plan, *, built_in: bool) -> PlanData:
-    return PlanData(
-        name=plan.name,
-        title=plan.title,
-        description=plan.description,
-        hazard=hazard_of(plan),
-        built_in=built_in,
-        variables={
-            name: VariableData(
-                default=one.default,
-                unit=one.unit,
-                lower=one.lower,
-                upper=one.upper,
-                description=one.description,
-            )
-            for name, one in plan.variables.items()
-        },
-    )
-
-
-def hazard_of(plan: Plan) -> str:
-    """Why a plan is hazardous, in its words; '' if it is not."""
-    if not plan.hazardous:
-        return ""
-    return plan.hazardous if isinstance(plan.hazardous, str) else "the plan says so"
+def _hashed(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()

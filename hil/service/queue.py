@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -21,6 +22,7 @@ from hil.service.carrying_out import CarriedRun, RunEnd, RunningRun, end_of_left
 from hil.service.data import BenchState, RunData
 from hil.service.run_files import folder_of
 from hil.service.run_process import alive_in
+from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore
 
 _LOOK_S = 0.5  # how often a bench is looked at that cannot be driven now
@@ -53,6 +55,7 @@ class Queue:
         command: starts a process that carries a run out (`hil.cli._served_run`).
         source: where a plan lies here by its name, with what it loads beside it.
         changed: called whenever something is to be shown anew, with the bench's name.
+        stop_post: has a stop line of each run from before its process begins until it has ended.
     """
 
     def __init__(
@@ -65,7 +68,9 @@ class Queue:
         command: Sequence[str],
         source: Callable[[str], Path],
         changed: Callable[[str], None],
+        stop_post: StopPost | None = None,
     ) -> None:
+        self._stop_post = stop_post
         self._places = {name: _Place(bench) for name, bench in benches.items()}
         self._runs, self._leases, self._held = runs, leases, held
         self._folder, self._command = folder, command
@@ -185,13 +190,16 @@ class Queue:
         run = taken.data
         try:
             taken = taken.model_copy(update={"plan_source": str(self._source(run.plan))})
-            place.running = await CarriedRun.begin(self._command, taken, place.bench, self.folder_of(run.id))
+            place.running = await self._carried(place.bench, taken)
         except DatabaseAwayError:
             place.unsure = run.id
             return
-        except (HilError, OSError) as error:
-            code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
-            why = str(error)
+        except OSError as error:  # no descriptor, no memory for a process: it is tried again
+            logger.error("run %d cannot be begun now: %s", run.id, error)
+            place.unsure = run.id
+            return
+        except HilError as error:
+            code, why = error.exit_code, str(error)
             await self._written(lambda: self._runs.end(run.id, "ended", exit_code=code, reason=why))
             self._changed(run.bench)
             return
@@ -200,6 +208,20 @@ class Queue:
         task = asyncio.create_task(self._watch(place, place.running))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+    async def _carried(self, bench: Bench, taken: TakenRun) -> CarriedRun:
+        """Begin a run with its stop line."""
+        run, folder, post = taken.data.id, self.folder_of(taken.data.id), self._stop_post
+        if post is None:
+            return await CarriedRun.begin(self._command, taken, bench, folder)
+        line = post.add_line(bench.name, run, folder)
+        try:
+            return await CarriedRun.begin(self._command, taken, bench, folder, line.reading)
+        except BaseException:
+            post.drop_line(run)
+            raise
+        finally:
+            os.close(line.reading)
 
     async def _watch(self, place: _Place, running: CarriedRun) -> None:
         """Listen to a run until it has ended, and write down how."""
@@ -210,6 +232,8 @@ class Queue:
             await self._written(lambda: self._write(running.data, end))
         finally:
             place.running = None
+            if self._stop_post is not None:
+                self._stop_post.drop_line(running.data.id)
             self.wake()
             self._changed(bench)
 

@@ -8,6 +8,8 @@ import secrets
 import time
 from dataclasses import dataclass, field
 
+from hil.core.errors import StopWay
+from hil.engine.border_messages import EmergencyAsked
 from hil.service.agent_data import AgentBench, Order, OrderKind, PlanSent
 from hil.service.carrying_out import RunningRun
 from hil.service.data import BenchState
@@ -78,7 +80,16 @@ class RemoteBench:
         """Units of the limited channels."""
         return self.told.units
 
-    def order(self, kind: OrderKind, by: str = "", text: str = "", plan: PlanSent | None = None) -> Order:
+    def order(
+        self,
+        kind: OrderKind,
+        by: str = "",
+        text: str = "",
+        plan: PlanSent | None = None,
+        *,
+        origin: str = "",
+        way: StopWay = "",
+    ) -> Order:
         """Have the agent told."""
         of_run = kind not in ("reset", "forecast")
         order = Order(
@@ -87,6 +98,8 @@ class RemoteBench:
             kind=kind,
             run=self.running.data.id if self.running is not None and of_run else None,
             by=by,
+            origin=origin,
+            way=way,
             text=text,
             plan=plan,
         )
@@ -137,7 +150,7 @@ class AgentsRun:
         """End it, with its end steps."""
         self._bench.order("end")
 
-    def stop_in_emergency(self) -> None:
+    def stop_in_emergency(self, asked: EmergencyAsked) -> None:
         """Nothing: the bench's order says it, whether there is a run or not."""
 
     def answer(self, text: str) -> None:

@@ -10,8 +10,8 @@ from pathlib import Path
 from hil.core.errors import BenchError
 from hil.core.locks import HeldError, lock_on
 from hil.core.result import RunResult
-from hil.engine.border_messages import Message, RunAsked, Typed, from_line, to_line
-from hil.engine.operator import EMERGENCY, END, PAUSE, RESUME
+from hil.engine.border_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
+from hil.engine.operator import END, PAUSE, RESUME
 from hil.service.background import begun
 from hil.service.run_files import LOCK
 
@@ -30,8 +30,11 @@ class RunProcess:
         self.answered: Callable[[], None] = lambda: None
 
     @classmethod
-    async def begin(cls, command: Sequence[str], asked: RunAsked) -> RunProcess:
+    async def begin(cls, command: Sequence[str], asked: RunAsked, stop_line: int | None = None) -> RunProcess:
         """Start the process and tell it what to do.
+
+        Args:
+            stop_line: a descriptor from which it takes emergency stops, besides what it is told by this one.
 
         Raises:
             OSError: it cannot be started, or its folder cannot be written.
@@ -42,10 +45,11 @@ class RunProcess:
             process = await begun(
                 *command,
                 Path(asked.out).name,
+                *([] if stop_line is None else [str(stop_line)]),
                 stdin=asyncio.subprocess.PIPE,
                 stdout=asyncio.subprocess.PIPE,
                 stderr=asyncio.subprocess.DEVNULL,
-                pass_fds=[lock],
+                pass_fds=[lock] if stop_line is None else [lock, stop_line],
                 limit=_LONGEST_LINE,
             )
         run = cls(process)
@@ -66,9 +70,9 @@ class RunProcess:
         self._say(Typed(line=END))
         self.answered()
 
-    def stop_in_emergency(self) -> None:
+    def stop_in_emergency(self, asked: EmergencyAsked) -> None:
         """Have the bench safe at once."""
-        self._say(Typed(line=EMERGENCY))
+        self._say(asked)
         self.answered()
 
     def answer(self, text: str) -> None:

@@ -9,24 +9,31 @@ import time
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import Engine
 
+from hil.core.errors import BadInputError
 from hil.service.agents import Agents
 from hil.service.agents_forecasts import AgentsForecasts
 from hil.service.apart import apart
 from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.arrivals import Arrivals
+from hil.service.audit import problem_of
 from hil.service.benches import Bench
 from hil.service.campaign_data import CampaignData
 from hil.service.campaigns import Campaigns, Places
 from hil.service.carrying_out import RunningRun
-from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
-from hil.service.desk import Desk
+from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, PlanData, RunData
+from hil.service.desk import Desk, TooLongError
 from hil.service.earlier_folders import EarlierFolders
 from hil.service.forecasts import Forecasts
+from hil.service.given_data import GivenKind
 from hil.service.given_files import GivenFiles
+from hil.service.owners import OwnersKnown
+from hil.service.plan_reading import GivenPlan
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
@@ -34,6 +41,8 @@ from hil.service.run_files import files_in
 from hil.service.shared_results import SharedResults
 from hil.service.shelves import controller_shelf, model_shelf
 from hil.service.showing import Showing
+from hil.service.stop_post import StopPost
+from hil.service.stops import Stops
 from hil.service.store import (
     BenchStore,
     DatabaseAwayError,
@@ -50,6 +59,7 @@ from hil.service.studies import Studies
 from hil.service.study_data import StudyData
 from test_plans import Plan
 
+_READ_WITHIN_S = 5.0  # 240 kB of YAML need 2 s, on a processor that others use
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
 _LAST = 2**31 - 1
@@ -87,6 +97,7 @@ class Service:
         held: the benches that it drives, for other services of the same database.
         archive: where files are kept for good; None keeps them in the folder.
         local_days: how long files that the archive has stay in the folder.
+        stop_post: takes emergency stops whatever becomes of this.
 
     Raises:
         BenchError: another service drives one of the benches, or the database is away.
@@ -101,8 +112,9 @@ class Service:
         commands: Commands,
         archive: Archive | None = None,
         local_days: float = 30.0,
+        stop_post: StopPost | None = None,
     ) -> None:
-        self._own = benches
+        self._own, self._folder = benches, folder
         self.database = Presence(engine)
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
@@ -120,6 +132,7 @@ class Service:
         self.studies = Studies(folder / "studies", commands.hil, studies)
         # Recordings are read at one desk, so that who designs at the other need not wait.
         self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
+        self.reading = Desk(niceness=5, within_s=_READ_WITHIN_S)
         campaign = (*commands.hil, "campaign", *commands.simulating)
         self.campaigns = Campaigns(folder / "campaigns", campaign, self.desk, campaigns)
         self.sharing = Rounds(self._share, "files of studies and campaigns")
@@ -131,15 +144,20 @@ class Service:
             files = FileStore(engine)
             self.keeper = Keeper(archive, files, held.service, runs_folder, self.showing.runs, local_days)
         source, changed = self.plans.source, self.showing.changed
-        self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, commands.run, source, changed)
+        self.queue = Queue(
+            benches, self.runs, self.leases, held, runs_folder, commands.run, source, changed, stop_post
+        )
+        self.owners = OwnersKnown(self.tokens, stop_post)
+        self.stops = Stops(self, stop_post)
         self.began_s = time.monotonic()
         self.closing = False
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
         self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, source, changed)
         self.agents_forecasts = AgentsForecasts()
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
+        self.audit_problem = ""
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
-        self._unwritten: list[tuple[str, str, str, str]] = []
+        self._unwritten: list[tuple[str, str, str, str, str]] = []
 
     async def _share(self) -> str:
         said = await self.studies.share(), await self.campaigns.share()
@@ -235,35 +253,36 @@ class Service:
             return await self.keeper.bring_back(run, name)
         return self.queue.folder_of(run) / name
 
+    async def read_first(self, kind: GivenKind, name: str, text: str, **more: str) -> dict[str, Any]:
+        """What another process reads of a text that somebody gives: nothing here waits for what is hostile.
+
+        Raises:
+            BadInputError: it is none of its kind, or reading it takes too long.
+            BenchError: that process failed.
+        """
+        try:
+            return await self.reading.ask(f"read_{kind}", name=name, text=text, **more)
+        except TooLongError as error:
+            raise BadInputError(
+                f"takes more than {_READ_WITHIN_S:g} s to be read", where=name, fix="make it shorter"
+            ) from error
+
+    async def give_plan(self, name: str, text: str, by: str) -> PlanData:
+        """Keep a plan, read by another process first.
+
+        Raises:
+            NameTakenError: a built-in plan has the name, or somebody else has given one just now.
+            BadInputError: all that is wrong with it.
+        """
+        folder = str(self.plans.fresh_folder().resolve())
+        found = await self.read_first("plan", name, text, folder=folder)
+        read = GivenPlan(PlanData.model_validate(found["data"]), tuple(found["files"]))
+        return self.plans.give(name, text, by, read=read)
+
     def places(self) -> Places:
         """What a campaign may name."""
         here = {name: one.file.source for name, one in self.benches.items() if isinstance(one, Bench)}
         return Places(self.plans.fresh_folder(), self.models.paths(), here)
-
-    def stop_run_in_emergency(self, bench: str) -> None:
-        """Tell the run under way, if there is one; asks nobody anything before."""
-        running = self.running(bench)
-        if running is not None:
-            running.process.stop_in_emergency()
-
-    async def stop_in_emergency(self, bench: str, by: str) -> None:
-        """Have a bench safe at once and keep it so, whatever its run is doing and whether there is one.
-
-        Raises:
-            HilError: the stop cannot be latched; a run was told to stop all the same.
-        """
-        self.stop_run_in_emergency(bench)
-        own = self.own(bench)
-        try:
-            running = self.running(bench)
-            folder = running.folder if running is not None else Path()
-            if own is not None:
-                own.stop(by, folder)
-            else:
-                with contextlib.suppress(DatabaseAwayError):  # its agent is told all the same
-                    self.agents.stop_in_emergency(bench, by)
-        finally:
-            self.changed(bench)
 
     async def forecast(self, plan: Plan, bench: str) -> ForecastData:
         """Duration, peaks and criteria as predicted where the bench is.
@@ -284,24 +303,27 @@ class Service:
             HilError: that cannot be written.
         """
         own = self.own(bench)
+        self.stops.reset(bench)
         if own is not None:
             return own.reset(by)
         return 1 if await self.agents.reset(bench, by) else None
 
-    def write_down(self, who: str, role: str, action: str, target: str) -> None:
+    def write_down(self, who: str, role: str, action: str, target: str, detail: str = "") -> None:
         """Write what must not fail for the audit log's sake: later, if the database is away."""
         try:
-            self.log.add(who, role, action, target)
+            self.log.add(who, role, action, target, detail)
         except DatabaseAwayError:
-            self._unwritten.append((who, role, action, target))
+            self._unwritten.append((who, role, action, target, detail))
             logger.warning("%s: %s, %s; to be written when the database answers", who, action, target)
 
     async def watch_database(self) -> None:
         """Ask a database that is away whether it is back, until the service is closed."""
         shown = ""
+        self.audit_problem = await apart(partial(problem_of, self.log, self._folder))
         while not self.closing:
             await asyncio.sleep(_ASK_S)
             self.agents.look()
+            self.tell_stop_post()
             if self.database.away:
                 await apart(self.database.ask)
                 self.queue.wake()
@@ -314,7 +336,15 @@ class Service:
                     self.log.add(*self._unwritten[0])
                     del self._unwritten[0]
 
+    def tell_stop_post(self) -> None:
+        """Have it know all benches that there are."""
+        if self.stops.post is not None:
+            own = {name: str(bench.file.source) for name, bench in self._own.items()}
+            self.stops.post.know_benches(own, [name for name in self.benches if name not in self._own])
+
     def give_benches_back(self) -> None:
-        """Let other services drive them; while the database is away they are free by themselves later."""
+        """Keep where the audit log ends; let others drive the benches, which are free by themselves later."""
         with contextlib.suppress(DatabaseAwayError):
+            if not self.audit_problem:
+                problem_of(self.log, self._folder)
             self._held.give_back()

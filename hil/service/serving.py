@@ -17,19 +17,26 @@ import uvicorn
 from sqlalchemy import Engine
 
 from hil.core.errors import BadInputError, BenchError
-from hil.core.files import make_directory
 from hil.core.printable import printable
 from hil.engine import StopRequest
-from hil.service.api import Rates, application
+from hil.service.apart import going_on
+from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
 from hil.service.benches import benches_of
 from hil.service.data import ROLES, Role, TokenMade
-from hil.service.data_folder import alone_in, name_in
+from hil.service.data_folder import alone_in, make_private, name_in
 from hil.service.service import Commands, Service
+from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, LogStore, TokenStore, open_database
 
 _LOOK_S = 0.1
 _LAST_ANSWERS_S = 2
+#: For an SQLite that is locked the loop waits so long, once: then it is away until it can be written.
+_LOCKED_S = 1.0
+_STOP_POST_WITHIN_S = 30.0
+_BACKLOG = 1024
+#: Between them is read what has come: who sends a request is not pushed out by a burst of others.
+_TAKEN_AT_ONCE = 8
 _AT_ONCE_S = 5.0  # of the rate: a page that is opened asks for many things at once
 _THIS_MACHINE = ("127.0.0.1", "localhost", "::1")
 _OTHER_FOLDER = "give another folder with --data, or use that service"
@@ -50,6 +57,9 @@ class ServeRequest:
         local_days: how long files that the store has stay in the folder.
         hosts: further names by which browsers may call it.
         port: 0 takes a free one.
+        stop_port: of the stop post; None takes the one after `port`, or a free one if that is 0.
+        stop_url: where others reach the stop post, if that is not this host at `stop_port`.
+        trusted_proxies: addresses of proxies before the service, which say for whom and how they ask.
         rate: requests that an address may send a second, in the long run.
         for_s: ends by itself after this many seconds.
         ready: called with the URL once it answers.
@@ -60,6 +70,9 @@ class ServeRequest:
     commands: Commands
     host: str = "127.0.0.1"
     port: int = 8080
+    stop_port: int | None = None
+    stop_url: str = ""
+    trusted_proxies: Sequence[str] = ()
     database: str = ""
     store: str = ""
     local_days: float = 30.0
@@ -80,21 +93,25 @@ def serve(request: ServeRequest) -> None:
     benches = benches_of(list(request.benches), request.folder.resolve())
     archive = Archive(request.store) if request.store else None
     with alone_in(request.folder, who="service", fix=_OTHER_FOLDER):
-        engine = _database(request.folder, request.database)
+        engine = _database(request.folder, request.database, _LOCKED_S)
         try:
             _refuse_open_to_all(request.host, TokenStore(engine))
-            with _listening(request.host, request.port) as listening:
+            with (
+                _listening(request.host, request.port, "--port") as listening,
+                _listening(request.host, _stop_port(request), "--stop-port") as stop_listening,
+            ):
                 held = BenchStore(engine, name_in(request.folder, "service.id"), _place_of(request.folder))
+                post = StopPost(stop_listening, _names(request), request.trusted_proxies)
                 service = Service(
-                    request.folder, engine, held, benches, request.commands, archive, request.local_days
+                    request.folder, engine, held, benches, request.commands, archive, request.local_days, post
                 )
-                asyncio.run(_served(request, service, listening))
+                asyncio.run(_served(request, service, listening, post))
         finally:
             engine.dispose()
 
 
-def make_token(folder: Path, database: str, name: str, role: str) -> TokenMade:
-    """Make a token, whether the service runs or not.
+def make_token(folder: Path, database: str, name: str, role: str, for_days: float = 365.0) -> TokenMade:
+    """Make a token that is valid for so many days, whether the service runs or not.
 
     Raises:
         BadInputError: no such role, or no name.
@@ -105,43 +122,41 @@ def make_token(folder: Path, database: str, name: str, role: str) -> TokenMade:
         )
     if not name.strip() or not name.isprintable() or len(name) > 100:
         raise BadInputError("names nobody", where="--add-token", fix="write NAME=ROLE")
-    make_directory(folder, option="--data")
+    make_private(folder)
     engine = _database(folder, database)
     try:
         chosen: Role = next(known for known in ROLES if known == role)
-        made = TokenStore(engine).make(name.strip(), chosen)
-        LogStore(engine).add("command line", "", "token made", name, role)
+        made = TokenStore(engine).make(name.strip(), chosen, for_days)
+        LogStore(engine).add("command line", "", "token made", name, f"{role}, {for_days:g} days")
         return made
     finally:
         engine.dispose()
 
 
-async def _served(request: ServeRequest, service: Service, listening: socket.socket) -> None:
+async def _served(request: ServeRequest, service: Service, listening: socket.socket, post: StopPost) -> None:
     host, port = listening.getsockname()[:2]
-    names = (*_THIS_MACHINE, request.host, *request.hosts)
-    config = uvicorn.Config(
-        application(service, hosts=names, rates=Rates(request.rate, _AT_ONCE_S * request.rate)),
-        log_config=None,
-        access_log=False,
-        lifespan="off",
-        server_header=False,
-        timeout_graceful_shutdown=_LAST_ANSWERS_S,
-        h11_max_incomplete_event_size=1 << 16,
-    )
-    server = _Server(config)
+    server = _Server(_config(request, service, post))
+    service.tell_stop_post()
+    posting = asyncio.create_task(post.work())
+    if not await post.until_up(_STOP_POST_WITHIN_S):
+        logger.error("the stop post is not there yet; stops go by the API alone until it is")
     tasks = [
-        asyncio.create_task(service.queue.work()),
-        asyncio.create_task(service.showing.follow(lambda: service.closing)),
+        asyncio.create_task(going_on(service.queue.work)),
+        asyncio.create_task(going_on(lambda: service.showing.follow(lambda: service.closing))),
         asyncio.create_task(server.serve(sockets=[listening])),
     ]
-    besides = [asyncio.create_task(service.watch_database())]
+    besides = [
+        asyncio.create_task(going_on(service.watch_database)),
+        asyncio.create_task(going_on(lambda: service.owners.follow(lambda: service.closing))),
+    ]
     service.campaigns.go_on()
-    besides.append(asyncio.create_task(service.sharing.work()))
+    besides.append(asyncio.create_task(going_on(service.sharing.work)))
     if service.keeper is not None:
-        besides.append(asyncio.create_task(service.keeper.work()))
+        besides.append(asyncio.create_task(going_on(service.keeper.work)))
     try:
         while not server.started and not tasks[2].done():
             await asyncio.sleep(0.01)
+        listening.listen(_BACKLOG)  # more may wait than are taken at once
         shown = f"[{host}]" if ":" in host else host
         request.ready(f"http://{shown}:{port}")
         until_s = time.monotonic() + request.for_s
@@ -159,14 +174,50 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         await service.campaigns.close()
         service.desk.close()
         service.drawing.close()
+        service.reading.close()
         for bench in list(service.benches):
             service.changed(bench)
             service.agents.wake(bench)
     done, _ = await asyncio.wait([*tasks, *besides], timeout=_LAST_ANSWERS_S + 3.0)
+    post.close()
+    await asyncio.wait([posting], timeout=_LAST_ANSWERS_S)
     for task in done:
         if not task.cancelled():
             task.result()  # a mistake of ours in one of them is told
     service.give_benches_back()
+
+
+def _config(request: ServeRequest, service: Service, post: StopPost) -> uvicorn.Config:
+    guard = Guarding(
+        _names(request),
+        Rates(request.rate, _AT_ONCE_S * request.rate),
+        StopAddress(post.port, request.stop_url),
+        frozenset(request.trusted_proxies),
+    )
+    return uvicorn.Config(
+        application(service, guard),
+        http=bounded(frozenset(request.trusted_proxies)),
+        ws="none",
+        log_config=None,
+        access_log=False,
+        lifespan="off",
+        server_header=False,
+        proxy_headers=bool(request.trusted_proxies),
+        forwarded_allow_ips=list(request.trusted_proxies),
+        timeout_graceful_shutdown=_LAST_ANSWERS_S,
+        h11_max_incomplete_event_size=1 << 16,
+        backlog=_TAKEN_AT_ONCE,
+    )
+
+
+def _names(request: ServeRequest) -> tuple[str, ...]:
+    return (*_THIS_MACHINE, request.host, *request.hosts)
+
+
+def _stop_port(request: ServeRequest) -> int:
+    if request.stop_port is not None:
+        return request.stop_port
+    return request.port + 1 if request.port else 0
 
 
 class _Server(uvicorn.Server):
@@ -182,8 +233,8 @@ def _place_of(folder: Path) -> str:
     return f"that of {socket.gethostname()}:{folder.resolve()}"
 
 
-def _database(folder: Path, url: str) -> Engine:
-    return open_database(url or f"sqlite:///{folder.resolve() / 'service.sqlite'}")
+def _database(folder: Path, url: str, locked_s: float = 10.0) -> Engine:
+    return open_database(url or f"sqlite:///{folder.resolve() / 'service.sqlite'}", locked_s)
 
 
 def _refuse_open_to_all(host: str, tokens: TokenStore) -> None:
@@ -201,16 +252,16 @@ def _refuse_open_to_all(host: str, tokens: TokenStore) -> None:
 
 
 @contextlib.contextmanager
-def _listening(host: str, port: int) -> Iterator[socket.socket]:
+def _listening(host: str, port: int, option: str) -> Iterator[socket.socket]:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
-        listening = socket.create_server((host, port), family=family)
+        listening = socket.create_server((host, port), family=family, backlog=_BACKLOG)
     except (OSError, OverflowError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise BenchError(
             f"the service cannot listen there: {reason}",
             where=f"{printable(host)}:{port}",
-            fix="is another service running? Name another port with --port, or 0 for a free one",
+            fix=f"is another service running? Name another port with {option}, or 0 for a free one",
         ) from error
     with listening:
         yield listening

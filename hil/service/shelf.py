@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Generic, TypeVar
@@ -10,6 +11,7 @@ from hil.core.files import read_text
 from hil.service.given_files import GivenFiles, NameTakenError
 
 T = TypeVar("T")
+_KEPT = 200  # texts that stay read
 
 
 class Shelf(Generic[T]):
@@ -24,7 +26,8 @@ class Shelf(Generic[T]):
     def __init__(
         self, given: GivenFiles, built_in: Mapping[str, Path], parse: Callable[[str, str], T]
     ) -> None:
-        self._given, self._built_in, self._parse = given, dict(built_in), parse
+        self._given, self._built_in = given, dict(built_in)
+        self._parse = functools.lru_cache(_KEPT)(parse)
 
     def paths(self) -> dict[str, Path]:
         """Where all are by name, those that are built in first."""

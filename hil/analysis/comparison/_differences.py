@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -10,6 +9,8 @@ from typing import Any, Literal
 import yaml
 
 from hil.analysis.comparison._runs import CONTROLLERS, PLAN, ComparedRun, loaded_in_turn
+from hil.core.errors import BadInputError
+from hil.core.toml_file import parse_toml
 
 Kind = Literal["controller", "model", "bench", "plan"]
 _NOTHING = "–"
@@ -63,8 +64,8 @@ def _table(run: ComparedRun, name: str) -> dict[str, str]:
     """Values of an attached file by dotted key; nothing where there is no such file or it cannot be read."""
     text = run.recording.attachments.get(name, b"").decode("utf-8", "replace")
     try:
-        content = yaml.safe_load(text) if name == PLAN else tomllib.loads(text)
-    except (yaml.YAMLError, tomllib.TOMLDecodeError):
+        content = yaml.safe_load(text) if name == PLAN else parse_toml(text, name)
+    except (yaml.YAMLError, BadInputError):
         return {}
     if not isinstance(content, dict):
         return {}

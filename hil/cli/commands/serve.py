@@ -9,7 +9,7 @@ import typer
 
 from hil.cli._lean_imports import import_python_can
 
-SEVERAL = ("--bench", "--allow-host")
+SEVERAL = ("--bench", "--allow-host", "--trusted-proxy")
 
 
 def command(
@@ -24,6 +24,23 @@ def command(
         str, typer.Option(help="address to listen at; another than this machine's needs tokens")
     ] = ("127.0.0.1"),
     port: Annotated[int, typer.Option(min=0, max=65535, help="port; 0 takes a free one")] = 8080,
+    stop_port: Annotated[
+        int | None,
+        typer.Option(
+            min=0, max=65535, help="port of the stop post; default: the one after --port; 0 takes a free one"
+        ),
+    ] = None,
+    stop_url: Annotated[
+        str,
+        typer.Option(metavar="URL", help="where browsers reach the stop post, if a proxy stands before it"),
+    ] = "",
+    trusted_proxy: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="a proxy before the service: who asks, and whether by TLS, is what it says",
+        ),
+    ] = None,
     allow_host: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME", help="further names by which browsers may call the service"),
@@ -73,6 +90,9 @@ def command(
             help="make a token, print it, and end; roles: viewer, operator, engineer, admin, agent",
         ),
     ] = "",
+    token_days: Annotated[
+        float, typer.Option(min=0.01, max=3650, metavar="DAYS", help="how long that token is valid")
+    ] = 365.0,
     as_json: Annotated[
         bool, typer.Option("--json", help="print one JSON object on stdout, nothing else there")
     ] = False,
@@ -87,7 +107,9 @@ def command(
     from hil.cli.serve import carry_out
 
     return carry_out(
-        data=data, bench=bench or [], no_bench=no_bench, host=host, port=port, allow_host=allow_host or [],
+        data=data, bench=bench or [], no_bench=no_bench, host=host, port=port,
+        stop_port=stop_port, stop_url=stop_url, trusted_proxy=trusted_proxy or [],
+        allow_host=allow_host or [],
         database=database, store=store, keep_local=keep_local, workers=workers, scheduler=scheduler,
-        rate=rate, for_s=for_s, add_token=add_token, as_json=as_json,
+        rate=rate, for_s=for_s, add_token=add_token, token_days=token_days, as_json=as_json,
     )  # fmt: skip

@@ -10,7 +10,10 @@ import typer
 
 def command(
     sources: Annotated[
-        list[Path], typer.Argument(metavar="DIR|REPORT|RECORDING...", help="what belongs together")
+        list[Path],
+        typer.Argument(
+            metavar="DIR|REPORT|RECORDING...", help="what belongs together; or a service's folder"
+        ),
     ],
     by: Annotated[
         Path | None,
@@ -21,6 +24,9 @@ def command(
     ] = False,
 ) -> int:
     """Prove that reports belong to their recording and that nothing changed; check who signed.
+
+    Of the folder of a bench service (`hil serve --data`) it is the audit log that is read: whether a row was
+    changed, put in or taken out.
 
     A report is held against the recordings that are named, or else against the one beside it. Exit code: 0
     all of it is proven, 1 something does not match or cannot be proven.

@@ -11,12 +11,12 @@ from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBea
 from hil.service.api._problems import RefusedError
 from hil.service.data import LADDER, Me, Role
 from hil.service.service import Service
+from hil.service.stop_post import COOKIE
 from hil.service.store import DatabaseAwayError
 
-COOKIE = "hil_token"
 _MOST = 1000
 _bearer = HTTPBearer(auto_error=False, description="a token of the service")
-_cookie = APIKeyCookie(name=COOKIE, auto_error=False, description="the same, as the page has it")
+_cookie = APIKeyCookie(name=COOKIE, auto_error=False, description="a session of the page")
 
 
 def service_of(request: Request) -> Service:
@@ -41,8 +41,11 @@ def who(
     """
     if not service.tokens.any():
         return Me(name="local", role="admin", tokens=False)
-    secret = header.credentials if header is not None else cookie
-    owner = service.tokens.owner_of(secret) if secret else None
+    tokens, owner = service.tokens, None
+    if header is not None:
+        owner = tokens.owner_of(header.credentials)
+    elif cookie:
+        owner = tokens.owner_of_session(cookie)
     if owner is None:
         raise RefusedError(401, "a valid token is needed", fix="send it as 'Authorization: Bearer TOKEN'")
     return Me(name=owner.name, role=owner.role, tokens=True)

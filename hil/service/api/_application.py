@@ -23,7 +23,7 @@ from hil.service.api import (
     _studies,
     _trends,
 )
-from hil.service.api._guard import Guard, Rates
+from hil.service.api._guard import Guard, Guarding
 from hil.service.api._problems import RESPONSES, answer_problems
 from hil.service.service import Service
 
@@ -44,14 +44,11 @@ _PARTS = (
 )
 
 
-def application(service: Service, *, hosts: tuple[str, ...], rates: Rates) -> ASGIApp:
-    """The whole of it, guarded.
-
-    Args:
-        hosts: names by which browsers may call it; `*` for any.
-        rates: of requests that one address may send.
-    """
-    return Guard(_bare(service), hosts, rates)
+def application(service: Service, guarding: Guarding) -> ASGIApp:
+    """The whole of it, guarded."""
+    app = _bare(service)
+    app.state.stop_address = guarding.stop
+    return Guard(app, guarding)
 
 
 def openapi_text() -> str:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
-
 from fastapi import APIRouter, Request
 
-from hil.service.api._access import COOKIE, Engineer, Operator, TheService, Viewer
+from hil.core.errors import StopWay
+from hil.engine.border_messages import EmergencyAsked
+from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.data import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.service.service import Service
-from hil.service.store import DatabaseAwayError
+from hil.service.stop_post import COOKIE
 
 router = APIRouter(tags=["benches"])
 
@@ -43,36 +43,31 @@ async def get_bench(bench: BenchName, service: TheService, me: Viewer) -> BenchD
 @router.post("/benches/{bench}/emergency-stop", name="stop_in_emergency")
 async def stop_in_emergency(bench: BenchName, service: TheService, request: Request) -> BenchData:
     """Have a bench safe at once, and keep it so until it is reset. Everybody may; no token is asked for."""
-    service.stop_run_in_emergency(known(service, bench))
-    by, role = _named(service, request)
-    await service.stop_in_emergency(bench, by)
-    service.write_down(by, role, "emergency stop", bench)
+    asked, role = _asked(service, request)
+    await service.stops.stop(known(service, bench), asked, role)
     return service.bench_data(bench)
 
 
 @router.post("/emergency-stop", name="stop_all_in_emergency")
 async def stop_all_in_emergency(service: TheService, request: Request) -> list[BenchData]:
     """Have all benches safe at once, and keep them so. Everybody may; no token is asked for."""
+    asked, role = _asked(service, request)
     for bench in list(service.benches):
-        service.stop_run_in_emergency(bench)
-    by, role = _named(service, request)
+        service.stops.tell_run(bench, asked)
     for bench in list(service.benches):
-        await service.stop_in_emergency(bench, by)
-    service.write_down(by, role, "emergency stop", "all benches")
+        await service.stops.stop(bench, asked, role)
     return [service.bench_data(name) for name in service.benches]
 
 
-def _named(service: Service, request: Request) -> tuple[str, str]:
-    """Who asks, if they say so and the database knows them: nobody is refused here."""
+def _asked(service: Service, request: Request) -> tuple[EmergencyAsked, str]:
+    """Who asks, if they say so and are known, with their role: nobody is refused here, no database asked."""
     header = request.headers.get("authorization", "")
-    secret = header[7:] if header.lower().startswith("bearer ") else request.cookies.get(COOKIE)
-    owner = None
-    with contextlib.suppress(DatabaseAwayError):
-        owner = service.tokens.owner_of(secret) if secret else None
-    if owner is not None:
-        return owner.name, owner.role
+    secret = header[7:] if header.lower().startswith("bearer ") else request.cookies.get(COOKIE, "")
     address = request.client.host if request.client else "unknown"
-    return f"somebody at {address}", ""
+    owner = service.owners.of(secret)
+    by, role = (owner.name, owner.role) if owner is not None else (f"somebody at {address}", "")
+    way: StopWay = "page" if "origin" in request.headers else "api"
+    return EmergencyAsked(by=by, origin=address, way=way), role
 
 
 @router.post("/benches/{bench}/reset", name="reset_bench")

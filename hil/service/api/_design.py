@@ -52,7 +52,9 @@ async def get_model_text(model: FileName, service: TheService, me: Viewer) -> Re
 @router.put("/models/{model}", name="give_model", openapi_extra=_GIVEN)
 async def give_model(model: FileName, request: Request, service: TheService, me: Engineer) -> ModelData:
     """Give a model file (TOML); a name stands for one content."""
-    service.models.give(model, await _body(request, model), me.name)
+    text = await _body(request, model)
+    await service.read_first("model", model, text)
+    service.models.give(model, text, me.name)
     service.log.add(me.name, me.role, "model given", model)
     return _there(service.models, model_data, "model", model)
 
@@ -84,7 +86,9 @@ async def give_controller(
     controller: FileName, request: Request, service: TheService, me: Engineer
 ) -> ControllerData:
     """Give a controller file (TOML); plans that are given may load it by its name."""
-    service.controllers.give(controller, await _body(request, controller), me.name)
+    text = await _body(request, controller)
+    await service.read_first("controller", controller, text)
+    service.controllers.give(controller, text, me.name)
     service.log.add(me.name, me.role, "controller given", controller)
     return _there(service.controllers, controller_data, "controller", controller)
 

@@ -18,6 +18,7 @@ MOST_BODY_BYTES = 256_000
 #: What an agent sends of a run's file may be longer: MOST_PIECE_BYTES.
 _PIECE = re.compile(r"/api/v1/agents/[0-9a-f]{32}/runs/[0-9]+/files/[^/]+")
 _EMERGENCY = "/emergency-stop"
+_PLAIN_NAME = re.compile(r"[A-Za-z0-9.:-]{1,255}")
 _MOST_ADDRESSES = 10_000
 _SAFE = ("GET", "HEAD", "OPTIONS")
 _POLICY = (
@@ -34,11 +35,44 @@ class Rates:
     at_once: float
 
 
+@dataclass(frozen=True)
+class StopAddress:
+    """Where the stop post is: at this port of the service's host, or at a URL of its own."""
+
+    port: int = 0
+    url: str = ""
+
+    def seen_from(self, host: str) -> str:
+        """Its URL for who calls the service by this `Host`; '' if there is none."""
+        name = _name(host)
+        if self.url or not self.port or not _PLAIN_NAME.fullmatch(name):
+            return self.url
+        return f"http://[{name}]:{self.port}" if ":" in name else f"http://{name}:{self.port}"
+
+
+@dataclass(frozen=True)
+class Guarding:
+    """What requests have to be.
+
+    Attributes:
+        hosts: names by which browsers may call the service; `*` for any.
+        rates: of requests that one address may send.
+        stop: where the stop post is, to which its page may send, too.
+        proxies: addresses of trusted proxies.
+    """
+
+    hosts: tuple[str, ...]
+    rates: Rates
+    stop: StopAddress = StopAddress()
+    proxies: frozenset[str] = frozenset()
+
+
 class Guard:
     """Wraps the application. An emergency stop is never refused for its rate."""
 
-    def __init__(self, app: ASGIApp, hosts: tuple[str, ...], rates: Rates) -> None:
-        self._app, self._hosts, self._rates = app, hosts, rates
+    def __init__(self, app: ASGIApp, guarding: Guarding) -> None:
+        self._app, self._hosts, self._rates = app, guarding.hosts, guarding.rates
+        self._stop = guarding.stop
         self._spent: OrderedDict[str, tuple[float, float]] = OrderedDict()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -51,7 +85,11 @@ class Guard:
         if refusal is not None:
             await _refuse(send, *refusal)
             return
-        await self._app(scope, _Limited(receive, _most(scope)).receive, _with_headers(send))
+        await self._app(
+            scope,
+            _Limited(receive, _most(scope)).receive,
+            _with_headers(send, self._stop.seen_from(headers.get("host", ""))),
+        )
 
     def _refusal(self, scope: Scope, headers: Headers) -> tuple[int, str] | None:
         host = headers.get("host", "")
@@ -116,11 +154,13 @@ async def _refuse(send: Send, status: int, what: str) -> None:
     await send({"type": "http.response.body", "body": body})
 
 
-def _with_headers(send: Send) -> Send:
+def _with_headers(send: Send, stop: str) -> Send:
+    policy = f"{_POLICY}; connect-src 'self' {stop}" if stop else _POLICY
+
     async def sending(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
-            headers.setdefault("content-security-policy", _POLICY)
+            headers.setdefault("content-security-policy", policy)
             headers.setdefault("cache-control", "no-store")
             headers["x-content-type-options"] = "nosniff"
             headers["referrer-policy"] = "no-referrer"

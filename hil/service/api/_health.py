@@ -5,17 +5,20 @@ from __future__ import annotations
 import importlib.metadata
 import time
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Request, Response
 
 from hil.service.api._access import TheService, Viewer
+from hil.service.api._guard import StopAddress
 from hil.service.data import Health
 
 router = APIRouter(tags=["service"])
 
 
 @router.get("/health", name="health")
-async def health(service: TheService) -> Health:
-    """Whether the service and its store work; asks for no token."""
+async def health(service: TheService, request: Request) -> Health:
+    """Whether the service and its store work, and where its stop post is; asks for no token."""
+    stop: StopAddress = request.app.state.stop_address
+    up = service.stops.post is not None and service.stops.post.up
     service.tokens.any()
     keeper = service.keeper
     version = importlib.metadata.version("eaxle-hil")
@@ -27,6 +30,8 @@ async def health(service: TheService) -> Health:
         results_not_stored=service.studies.not_stored + service.campaigns.not_stored,
         store_problem=(keeper.rounds.problem or service.sharing.problem) if keeper else "",
         kept_apart=len(service.kept_apart),
+        audit_problem=service.audit_problem,
+        stop_url=stop.seen_from(request.headers.get("host", "")) if up else "",
     )
 
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import datetime
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Response
+from fastapi import APIRouter, Query, Request, Response
 
-from hil.service.api._access import COOKIE, Admin, TheService, Viewer
+from hil.service.api._access import Admin, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.data import AuditEntry, Login, Me, RunId, TokenData, TokenMade, TokenWanted
+from hil.service.stop_post import COOKIE
+from hil.service.store import SESSION_S
 
 router = APIRouter(tags=["people"])
 _LAST = 2**31 - 1
@@ -21,18 +24,26 @@ async def get_me(me: Viewer) -> Me:
 
 
 @router.post("/session", name="log_in", status_code=204)
-async def log_in(login: Login, service: TheService, response: Response) -> None:
-    """Keep a token in a cookie, for the page: no script can read it, no other site can use it."""
+async def log_in(login: Login, service: TheService, request: Request, response: Response) -> None:
+    """Open a session with a token, for the page: its cookie is no token, and no script can read it."""
     owner = service.tokens.owner_of(login.secret)
     if owner is None:
         raise RefusedError(401, "is no valid token")
-    response.set_cookie(COOKIE, login.secret, httponly=True, samesite="strict", max_age=12 * 3600)
+    session, by_tls = service.tokens.open_session(owner), request.url.scheme == "https"
+    response.set_cookie(
+        COOKIE, session, httponly=True, samesite="strict", secure=by_tls, max_age=int(SESSION_S)
+    )
+    service.owners.changed()
     service.log.add(owner.name, owner.role, "log in", "page")
 
 
 @router.delete("/session", name="log_out", status_code=204)
-async def log_out(response: Response) -> None:
-    """Forget the cookie."""
+async def log_out(service: TheService, request: Request, response: Response) -> None:
+    """Close the session: its cookie is worth nothing from then on."""
+    session = request.cookies.get(COOKIE)
+    if session:
+        service.tokens.close_session(session)
+        service.owners.changed()
     response.delete_cookie(COOKIE, httponly=True, samesite="strict")
 
 
@@ -50,19 +61,26 @@ async def make_token(wanted: TokenWanted, service: TheService, me: Admin) -> Tok
         raise RefusedError(
             403, "the first token is made on the service's machine", fix="hil serve --add-token NAME=admin"
         )
-    made = service.tokens.make(wanted.name, wanted.role)
-    service.log.add(me.name, me.role, "token made", wanted.name, wanted.role)
+    made = service.tokens.make(wanted.name, wanted.role, wanted.for_days)
+    service.owners.changed()
+    service.log.add(me.name, me.role, "token made", wanted.name, f"{wanted.role}, {wanted.for_days:g} days")
     return made
 
 
 @router.delete("/tokens/{token}", name="revoke_token", status_code=204)
 async def revoke_token(token: RunId, service: TheService, me: Admin) -> None:
     """Make a token worthless; the last administrator's stays."""
-    valid = [one for one in service.tokens.all() if one.revoked_at is None]
+    moment = datetime.datetime.now(datetime.UTC)
+    valid = [
+        one
+        for one in service.tokens.all()
+        if one.revoked_at is None and (one.expires_at is None or one.expires_at > moment)
+    ]
     if [one.id for one in valid if one.role == "admin"] == [token]:
         raise RefusedError(409, "is the last administrator's", fix="make another administrator's token first")
     if not service.tokens.revoke(token):
         raise missing("valid token", token)
+    service.owners.changed()
     service.log.add(me.name, me.role, "token revoked", str(token))
 
 

@@ -14,7 +14,7 @@ from hil.service.api._left_files import disposition_of, headers_of, left_file, m
 from hil.service.api._problems import RefusedError, missing
 from hil.service.carrying_out import RunningRun
 from hil.service.data import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunWanted
-from hil.service.plans import hazard_of
+from hil.service.plan_reading import hazard_of
 from hil.service.remote_bench import RemoteBench
 from hil.service.service import Service
 from hil.service.store import NewRun

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.desk import _campaigning, _comparing, _designing, _fitting
+from hil.service.desk import _campaigning, _comparing, _designing, _fitting, _reading
 from hil.service.desk._desk import ANSWERED, REFUSED
 
 _IDLE_S = 600.0
@@ -24,6 +24,9 @@ TASKS: dict[str, Callable[..., dict[str, Any]]] = {
     "campaign": _campaigning.given,
     "campaign_so_far": _campaigning.so_far,
     "campaign_table": _campaigning.table,
+    "read_plan": _reading.plan,
+    "read_model": _reading.model,
+    "read_controller": _reading.controller,
     "campaign_examples": _campaigning.examples,
 }
 

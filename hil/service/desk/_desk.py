@@ -17,15 +17,20 @@ ANSWERED, REFUSED = b"+", b"-"
 _LONGEST_ANSWER_BYTES = 1 << 26
 
 
+class TooLongError(BenchError):
+    """An answer took too long, and its process was ended."""
+
+
 class Desk:
     """A process that answers one question after the other; begun with the first, ended when nobody asks.
 
     Args:
         niceness: added to that of the service.
+        within_s: how long an answer may take.
     """
 
-    def __init__(self, niceness: int) -> None:
-        self._niceness = niceness
+    def __init__(self, niceness: int, within_s: float = _WITHIN_S) -> None:
+        self._niceness, self._within_s = niceness, within_s
         self._turn = asyncio.Lock()
         self._process: asyncio.subprocess.Process | None = None
 
@@ -48,11 +53,11 @@ class Desk:
         question = json.dumps({"task": task, "asked": asked}).encode() + b"\n"
         async with self._turn:
             try:
-                line = await asyncio.wait_for(self._answer(question), _WITHIN_S)
+                line = await asyncio.wait_for(self._answer(question), self._within_s)
             except BaseException as error:
                 self.close()  # its answer would be taken for the next question's
                 if isinstance(error, TimeoutError):
-                    raise BenchError(f"took more than {_WITHIN_S:g} s", where=task) from error
+                    raise TooLongError(f"took more than {self._within_s:g} s", where=task) from error
                 raise
         if not line:
             raise BenchError("its process ended", where=task, fix="look at the service's log")

@@ -1,6 +1,6 @@
 // The page: one bench at a time, its state, its run, its queue and its results. The service says what is new.
 
-import { get, post, ask } from "./api.js";
+import { ask, findStopPost, get, post, stopNow } from "./api.js";
 import { beginCampaigns } from "./campaigns.js";
 import { SpectrumChart, TimeChart } from "./chart.js";
 import { beginComparison, list as listCompared } from "./compare.js";
@@ -70,6 +70,7 @@ async function open() {
 
 // Agents may bring more at any time.
 async function showBenches(chosen) {
+  findStopPost().catch(() => {});
   const names = (await get("/benches")).map((one) => one.name), shown = [...at("bench").options].map((one) => one.value);
   if (names.join() !== shown.join()) at("bench").replaceChildren(...names.map((name) => new Option(name, name)));
   if (names.length) at("bench").value = names.includes(chosen) ? chosen : names[0];
@@ -203,7 +204,7 @@ async function showResults() {
 }
 
 at("stop").onclick = () => act(async () => {
-  await post(bench ? `/benches/${encodeURIComponent(bench)}/emergency-stop` : "/emergency-stop");
+  await stopNow(bench ? `/benches/${encodeURIComponent(bench)}/emergency-stop` : "/emergency-stop");
 });
 at("bench").onchange = () => { watch(); predictAgain(() => bench); };
 at("criterion").onchange = drawTrend;

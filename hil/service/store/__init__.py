@@ -1,19 +1,23 @@
 """What the service keeps, in SQLite or another database by URL: made and migrated when it is opened."""
 
 from hil.service.store._agents import AgentStore, RegisteredBench
+from hil.service.store._audit import AuditCheck, AuditHead, LogStore
 from hil.service.store._benches import BenchStore
 from hil.service.store._files import FileStore, KeptFile
 from hil.service.store._given import GivenStore, GivenText
 from hil.service.store._leases import LeaseStore
 from hil.service.store._opening import open_database
-from hil.service.store._people import LogStore, TokenStore
+from hil.service.store._people import SESSION_S, TokenStore
 from hil.service.store._presence import DatabaseAwayError, Presence
 from hil.service.store._results import ResultKind, ResultStore, Told
 from hil.service.store._runs import NewRun, RunStore
 from hil.service.store._tables import Base
 
 __all__ = [
+    "SESSION_S",
     "AgentStore",
+    "AuditCheck",
+    "AuditHead",
     "Base",
     "BenchStore",
     "DatabaseAwayError",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import ssl
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ _PG8000 = "postgresql+pg8000"
 #: The service's loop waits for the database: for one that does not answer this long, once.
 _WITHIN_S = 2
 _MIGRATED_WITHIN_S = 30
+_LOCKED_S = 10.0
 _MIGRATING = 0x68696C  # no two services make the tables at once
 
 
@@ -46,10 +48,11 @@ def aware(moment: datetime.datetime | None) -> datetime.datetime | None:
     return moment.replace(tzinfo=datetime.UTC)
 
 
-def open_database(url: str) -> Engine:
+def open_database(url: str, locked_s: float = _LOCKED_S) -> Engine:
     """Open it, with all migrations done.
 
     Args:
+        locked_s: how long a statement waits for an SQLite that another process writes to.
         url: `sqlite:////data/service.sqlite`, `postgresql://user@host/name`; of other drivers as SQLAlchemy
             has it.
 
@@ -61,7 +64,7 @@ def open_database(url: str) -> Engine:
         chosen, options = _for_driver(make_url(url))
         if chosen.drivername == _PG8000:
             options["timeout"] = _MIGRATED_WITHIN_S
-        migrating = _engine(chosen, options)
+        migrating = _engine(chosen, options, _LOCKED_S)
     except (ArgumentError, NoSuchModuleError, ImportError, ValueError, TypeError, OSError) as error:
         raise BadInputError(
             f"no database can be opened by this URL: {_cannot(error)}",
@@ -79,13 +82,13 @@ def open_database(url: str) -> Engine:
         ) from error
     finally:
         migrating.dispose()
-    return _engine(chosen, options | ({"timeout": _WITHIN_S} if "timeout" in options else {}))
+    return _engine(chosen, options | ({"timeout": _WITHIN_S} if "timeout" in options else {}), locked_s)
 
 
-def _engine(url: URL, options: dict[str, Any]) -> Engine:
+def _engine(url: URL, options: dict[str, Any], locked_s: float) -> Engine:
     engine = create_engine(url, connect_args=options)
     if engine.dialect.name == "sqlite":
-        event.listen(engine, "connect", _settle)
+        event.listen(engine, "connect", partial(_settle, round(1e3 * locked_s)))
     return engine
 
 
@@ -127,11 +130,11 @@ def _cannot(error: Exception) -> str:
     return known or (str(error) if ours else type(error).__name__)
 
 
-def _settle(connection: object, record: object) -> None:
+def _settle(locked_ms: int, connection: object, record: object) -> None:
     """A commit is on the disk when it returns, also through a power cut; readers do not wait for writers."""
     del record
     cursor = connection.cursor()  # type: ignore[attr-defined]
-    for setting in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=10000"):
+    for setting in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", f"busy_timeout={locked_ms}"):
         cursor.execute(f"PRAGMA {setting}")
     cursor.close()
 

@@ -54,7 +54,10 @@ class Presence:
         token = _asking.set(True)
         try:
             with self._engine.connect() as connection:
-                connection.execute(text("SELECT 1"))
+                # An SQLite that is locked can be read, and not be worked with.
+                locking = "BEGIN IMMEDIATE" if self._engine.dialect.name == "sqlite" else "SELECT 1"
+                connection.execute(text(locking))
+                connection.rollback()
         except (SQLAlchemyError, DatabaseAwayError):
             return False
         finally:

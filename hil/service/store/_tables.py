@@ -167,6 +167,17 @@ class TokenRow(Base):
     sha256: Mapped[str] = mapped_column(String(64), unique=True)
     made_at: Mapped[datetime.datetime] = mapped_column(_MOMENT)
     revoked_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+    expires_at: Mapped[datetime.datetime | None] = mapped_column(_MOMENT)
+
+
+class SessionRow(Base):
+    """A page that somebody opened with a token; `sha256` of what is in its cookie, 256 random bits."""
+
+    __tablename__ = "sessions"
+
+    sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
+    token: Mapped[int]
+    until: Mapped[datetime.datetime] = mapped_column(_MOMENT)
 
 
 class LeaseRow(Base):
@@ -191,3 +202,4 @@ class AuditRow(Base):
     action: Mapped[str] = mapped_column(String(60))
     target: Mapped[str] = mapped_column(String(200))
     detail: Mapped[str] = mapped_column(Text)
+    chain: Mapped[str] = mapped_column(String(64), server_default="")

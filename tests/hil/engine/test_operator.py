@@ -6,6 +6,7 @@ import pytest
 
 from drivers import BusLoop
 from hil.core.errors import EmergencyStopError, InterruptError
+from hil.engine.border_messages import EmergencyAsked
 from hil.engine.operator import LOOK_S, Operator
 from tests.clocks import SteppedClock
 from tests.operators import Answering, Silent
@@ -36,7 +37,7 @@ def at(
 def test_single_letters_are_orders(lines: list[str], paused: bool, resumed: bool, stopped: bool) -> None:
     terminal = Silent()
     operator, loop = at(terminal)
-    terminal.waiting = lines
+    terminal.waiting = [*lines]
     operator.look()
     assert (operator.take_pause(), operator.take_resume()) == (paused, resumed)
     assert (operator.take_pause(), operator.take_resume()) == (False, False)  # each counts once
@@ -50,7 +51,18 @@ def test_an_emergency_stop_is_raised_at_once(line: str) -> None:
     terminal.waiting = [line]
     with pytest.raises(EmergencyStopError) as caught:
         operator.look()
-    assert caught.value.by == "the operator"
+    assert (caught.value.by, caught.value.way) == ("the operator", "terminal")
+
+
+def test_an_emergency_stop_of_another_way_says_who_from_where_and_how_and_counts_once() -> None:
+    terminal = Silent()
+    operator, _ = at(terminal)
+    terminal.waiting = [EmergencyAsked(by="anna", origin="10.0.0.7", way="page")]
+    with pytest.raises(EmergencyStopError, match="anna asked for it from 10.0.0.7 on the") as found:
+        operator.look()
+    assert (found.value.by, found.value.origin, found.value.way) == ("anna", "10.0.0.7", "page")
+    terminal.waiting = ["e"]
+    operator.look()  # what makes the bench safe is not disturbed
 
 
 @pytest.mark.parametrize("virtual", [False, True])

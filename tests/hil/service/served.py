@@ -124,12 +124,18 @@ def ended(process: subprocess.Popen[str]) -> None:
 
 
 @contextlib.contextmanager
-def served(data: Path, *arguments: str, state: Path | None = None, token: str = "") -> Iterator[Served]:
-    """Start it and end it; it may be killed meanwhile."""
+def served(
+    data: Path,
+    *arguments: str,
+    state: Path | None = None,
+    token: str = "",
+    through: tuple[str, ...] = (),
+) -> Iterator[Served]:
+    """Start it, `through` a command that starts it, and end it; it may be killed meanwhile."""
     environment = environment_of(data)
     if state is not None:
         environment["HIL_STATE"] = str(state)
-    command = [*HIL, "serve", "--data", str(data), "--port", "0", "--json", *arguments]
+    command = [*through, *HIL, "serve", "--data", str(data), "--port", "0", "--json", *arguments]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
     try:
         yield Served(process, told_by(process)["url"], data, token)

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from sqlalchemy import Engine, create_engine, text
 
 from hil.core.errors import BadInputError, BenchError
+from hil.engine.border_messages import EmergencyAsked
 from hil.service.agent_data import AgentBench, AgentReport, FileMade, RunEnding
 from hil.service.agents import Agents
 from hil.service.arrivals import Arrivals
@@ -193,7 +194,7 @@ def test_an_emergency_stop_of_a_bench_that_was_let_go_is_told_whoever_has_it_nex
 ) -> None:
     there.agents.heard(ONE, _report())
     there.lapse()
-    there.agents.stop_in_emergency("far", "anna")
+    there.agents.stop_in_emergency("far", EmergencyAsked(by="anna"))
     there.agents.let_go("far", "anna")
     assert there.agents.benches["far"].state()[0] == "emergency_stop"
     there.agents = there.begun()
@@ -210,7 +211,7 @@ def test_an_emergency_stop_is_told_until_the_agent_has_obeyed_also_by_the_next_s
     there: _There,
 ) -> None:
     there.agents.heard(ONE, _report())
-    there.agents.stop_in_emergency("far", "anna")
+    there.agents.stop_in_emergency("far", EmergencyAsked(by="anna"))
     there.queue()
     assert there.agents.orders(ONE, {}).waiting == []
     there.lapse()

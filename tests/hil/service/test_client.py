@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -15,6 +16,7 @@ from hil.client import Client, RefusedError
 from hil.core.errors import BenchError
 from hil.core.recording import read_recording
 from hil.service.data import RunWanted
+from test_plans import library_controllers
 from tests.hil.service.served import HIL, SHORT, Served
 
 PLAN = SHORT.replace("name: short", "name: mine")
@@ -60,6 +62,25 @@ def test_a_run_of_a_service_has_the_exit_code_and_the_files_of_one_here(
     folder = tmp_path / "out/mine-001"
     assert {path.name for path in folder.iterdir()} == set(result["files"].values()) | {"result.json"}
     assert json.loads((folder / "result.json").read_text()) == result
+
+
+def test_files_that_a_plan_names_travel_with_it(service: Served, tmp_path: Path) -> None:
+    """Also from another folder, and where the service has another content under the name."""
+    built_in = library_controllers()["phase_stabilization"].read_text()
+    (tmp_path / "plans").mkdir()
+    (tmp_path / "controller.toml").write_text(built_in)
+    plan = PLAN.replace("name: mine", "name: starter").replace("upper: 400, unit: N m", "unit: N m")
+    named = plan.replace("phase_stabilization.toml", "../controller.toml")
+    (tmp_path / "plans/starter.yaml").write_text(named)
+    folder = tmp_path / "out/starter-00"
+    for number, torque_limit_nm in enumerate((150.0, 20.0), start=1):
+        text = re.sub("torque_limit_nm = .*", f"torque_limit_nm = {torque_limit_nm}", built_in)
+        (tmp_path / "controller.toml").write_text(text)
+        done = hil("--server", service.url, "run", "plans/starter.yaml", "--json", cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        recording = read_recording(Path(f"{folder}{number}/recording.mcap"))
+        loaded = [content.decode() for content in recording.attachments.values()]
+        assert text in loaded  # the one that lay here then
 
 
 @pytest.mark.parametrize(

@@ -169,7 +169,7 @@ def _wanted(
     port: int = 0,
     database: str = "",
 ) -> ServeRequest:
-    return ServeRequest(folder, benches, Commands((), ()), host, port, database)
+    return ServeRequest(folder, benches, Commands((), ()), host, port, database=database)
 
 
 def _answer_until_over(service: Served, run: int) -> None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 
 import numpy as np
 
 from hil.core.channels import OUTPUTS
+from hil.core.errors import BadInputError
 from hil.core.recording import Recording
+from hil.core.toml_file import parse_toml
 
 _BENCH_FILE, _TABLE = "bench.toml", "noise"
 
@@ -30,8 +31,8 @@ def stated_noise(recordings: Sequence[Recording]) -> dict[str, float]:
 
 def _table(recording: Recording) -> dict[str, object]:
     try:
-        bench = tomllib.loads(recording.attachments.get(_BENCH_FILE, b"").decode())
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError):
+        bench = parse_toml(recording.attachments.get(_BENCH_FILE, b"").decode(), _BENCH_FILE)
+    except (UnicodeDecodeError, BadInputError):
         return {}
     table = bench.get(_TABLE)
     return table if isinstance(table, dict) else {}

@@ -1,0 +1,60 @@
+"""Whether the audit log is as it was written: read when a service begins and ends, and by `hil verify`."""
+
+from __future__ import annotations
+
+import json
+import logging
+from pathlib import Path
+
+from hil.core.errors import BadInputError
+from hil.core.files import read_text, write_atomically
+from hil.service.store import AuditCheck, AuditHead, LogStore, open_database
+
+#: Where the log ended when the service last looked: rows that are missing at its end are seen by it.
+HEAD = "audit.head"
+DATABASE = "service.sqlite"
+
+logger = logging.getLogger(__name__)
+
+
+def problem_of(log: LogStore, folder: Path) -> str:
+    """What is wrong with the log; '' if nothing is. Where it ends is kept in the service's folder."""
+    found = log.check(_head(folder))
+    if found.problem:
+        logger.error("the audit log is NOT as it was written: %s", found.problem)
+    elif found.head.id:
+        content = {"id": found.head.id, "chain": found.head.chain}
+        write_atomically(folder / HEAD, json.dumps(content) + "\n")
+    return found.problem
+
+
+def checked(folder: Path, database: str = "") -> AuditCheck:
+    """The log of a service by its folder; it may run meanwhile.
+
+    Raises:
+        BadInputError: the folder is none of a service.
+        BenchError: its database cannot be used.
+    """
+    if not is_service_folder(folder):
+        raise BadInputError("is no folder of a service", where=str(folder), fix="give what --data named")
+    engine = open_database(database or f"sqlite:///{folder.resolve() / DATABASE}")
+    try:
+        return LogStore(engine).check(_head(folder))
+    finally:
+        engine.dispose()
+
+
+def is_service_folder(folder: Path) -> bool:
+    """Whether a service keeps its data there."""
+    return (folder / "service.id").is_file() or (folder / DATABASE).is_file()
+
+
+def _head(folder: Path) -> AuditHead | None:
+    path = folder / HEAD
+    if not path.is_file():
+        return None
+    try:
+        found = json.loads(read_text(path))
+        return AuditHead(int(found["id"]), str(found["chain"]))
+    except (ValueError, KeyError, TypeError):
+        return None

@@ -1,0 +1,77 @@
+"""What a plan says, and whether a service may take it; also for a process that reads what is given first."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from hil.core.errors import BadInputError
+from hil.core.printable import printable
+from hil.service.data import PlanData, VariableData
+from hil.service.plan_files import files_of
+from test_plans import Plan, plan_from_text
+
+
+@dataclass(frozen=True)
+class GivenPlan:
+    """A given plan: what is shown of it, and names of the files that it loads from beside itself."""
+
+    data: PlanData
+    files: tuple[str, ...]
+
+
+def read_given(name: str, text: str, folder: Path) -> GivenPlan:
+    """Read a plan that somebody gives under a name; `folder` has the controllers that it may load.
+
+    Raises:
+        BadInputError: all that is wrong with it.
+    """
+    where = f"{name}.yaml"
+    for file in files_of(plan_from_text(text, where, folder, files_required=False)):
+        if file.name != str(file):
+            raise BadInputError(
+                f"loads the file {printable(repr(str(file)), 100)}",
+                where=where,
+                fix="a plan that is given to the service loads controllers that it has, by their names",
+            )
+    plan = plan_from_text(text, where, folder, to_carry_out=True)
+    if plan.name != name:
+        raise BadInputError(
+            f"the plan calls itself '{plan.name}'", where=where, fix="give it under that name"
+        )
+    return given_plan(plan, folder)
+
+
+def given_plan(plan: Plan, folder: Path) -> GivenPlan:
+    """What a given plan says; `folder` has the controllers that it may load."""
+    beside = folder.resolve()
+    files = (file for file in files_of(plan) if file.resolve().parent == beside)
+    return GivenPlan(data_of(plan, built_in=False), tuple(sorted({file.name for file in files})))
+
+
+def data_of(plan: Plan, *, built_in: bool) -> PlanData:
+    """What is shown of a plan."""
+    return PlanData(
+        name=plan.name,
+        title=plan.title,
+        description=plan.description,
+        hazard=hazard_of(plan),
+        built_in=built_in,
+        variables={
+            name: VariableData(
+                default=one.default,
+                unit=one.unit,
+                lower=one.lower,
+                upper=one.upper,
+                description=one.description,
+            )
+            for name, one in plan.variables.items()
+        },
+    )
+
+
+def hazard_of(plan: Plan) -> str:
+    """Why a plan is hazardous, in its words; '' if it is not."""
+    if not plan.hazardous:
+        return ""
+    return plan.hazardous if isinstance(plan.hazardous, str) else "the plan says so"

@@ -1,0 +1,150 @@
+"""A request for a stop as it comes over the network, and the answer to it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+import time
+import urllib.parse
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from http import HTTPStatus
+from http.cookies import CookieError, SimpleCookie
+
+from hil.core.errors import StopWay
+from hil.service.stop_post._messages import Owner
+
+COOKIE = "hil_session"
+#: A request is not longer: whatever is sent before its empty line.
+LONGEST_BYTES = 8192
+ALL = "/api/v1/emergency-stop"
+_ONE = re.compile(r"/api/v1/benches/([A-Za-z0-9][A-Za-z0-9_.-]{0,63})/emergency-stop")
+
+
+class RefusedError(Exception):
+    """An answer that is no stop."""
+
+    def __init__(self, status: HTTPStatus, what: str) -> None:
+        super().__init__(what)
+        self.status = status
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A stop that is asked for: of a bench, or of all; by whom, from where, how."""
+
+    bench: str | None
+    by: str
+    role: str
+    origin: str
+    way: StopWay
+
+
+@dataclass
+class Answering:
+    """Reads requests.
+
+    Attributes:
+        hosts: names by which browsers may call; `*` for any.
+        proxies: addresses of proxies, which say for whom they ask.
+        owners: whose tokens and sessions are, by SHA-256.
+    """
+
+    hosts: frozenset[str]
+    proxies: frozenset[str] = frozenset()
+    owners: Mapping[str, Owner] = field(default_factory=dict)
+
+    def asked(self, request: bytes, address: str) -> Asked | None:
+        """What a whole head of a request asks for; None if it only asks whether this is the stop post.
+
+        Raises:
+            RefusedError: something else, or from the page of another site.
+        """
+        first, headers = _head(request)
+        method, _, rest = first.partition(" ")
+        path = rest.partition(" ")[0].partition("?")[0]
+        self._refuse_other_sites(headers)
+        one = _ONE.fullmatch(path)
+        if one is None and path != ALL:
+            raise RefusedError(HTTPStatus.NOT_FOUND, "here is nothing but emergency stops")
+        if method in ("OPTIONS", "GET", "HEAD"):
+            return None
+        if method != "POST":
+            raise RefusedError(HTTPStatus.METHOD_NOT_ALLOWED, "an emergency stop is a POST")
+        if address in self.proxies:
+            address = headers.get("x-forwarded-for", address).rpartition(",")[2].strip()[:64] or address
+        owner = self._owner(headers)
+        by, role = (owner.name, owner.role) if owner is not None else (f"somebody at {address}", "")
+        way: StopWay = "page" if "origin" in headers else "api"
+        return Asked(one[1] if one else None, by, role, address, way)
+
+    def allowed_origin(self, request: bytes) -> str:
+        """The origin of a page that may read the answer; '' if there is none."""
+        try:
+            headers = _head(request)[1]
+            self._refuse_other_sites(headers)
+        except RefusedError:
+            return ""
+        return headers.get("origin", "")
+
+    def _refuse_other_sites(self, headers: Mapping[str, str]) -> None:
+        host = _name(f"//{headers.get('host', '')}")
+        if "*" not in self.hosts and host not in self.hosts:
+            raise RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "the service is not called by this name")
+        if "origin" in headers and (_name(headers["origin"]) or None) not in self.hosts | {host}:
+            raise RefusedError(HTTPStatus.FORBIDDEN, "the request comes from another site's page")
+
+    def _owner(self, headers: Mapping[str, str]) -> Owner | None:
+        """Who asks, if they say so and are known: nobody is refused a stop."""
+        header = headers.get("authorization", "")
+        secret = header[7:].strip() if header.lower().startswith("bearer ") else ""
+        if not secret:
+            try:
+                found = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+            except CookieError:
+                found = None
+            secret = found.value if found is not None else ""
+        owner = self.owners.get(hashlib.sha256(secret.encode("utf-8", "replace")).hexdigest())
+        if owner is not None and owner.until_s is not None and owner.until_s < time.time():
+            return None
+        return owner
+
+
+def answer(status: HTTPStatus, content: Mapping[str, object], origin: str) -> bytes:
+    """An answer as it goes over the network; `origin` may read it."""
+    body = json.dumps(content).encode()
+    lines = [
+        f"HTTP/1.1 {status.value} {status.phrase}",
+        "Content-Type: application/json",
+        f"Content-Length: {len(body)}",
+        "Cache-Control: no-store",
+        "Connection: close",
+    ]
+    if origin and origin.isascii() and origin.isprintable():
+        lines += [
+            f"Access-Control-Allow-Origin: {origin}",
+            "Access-Control-Allow-Credentials: true",
+            "Access-Control-Allow-Methods: POST",
+            "Access-Control-Allow-Headers: authorization, content-type",
+            "Vary: Origin",
+        ]
+    return "\r\n".join([*lines, "", ""]).encode() + body
+
+
+def refusal(error: RefusedError) -> bytes:
+    """What is answered to what is no stop."""
+    return answer(error.status, {"what": str(error), "where": "", "fix": ""}, "")
+
+
+def _head(request: bytes) -> tuple[str, dict[str, str]]:
+    first, *lines = request.decode("latin-1").split("\r\n")
+    pairs = (line.partition(":") for line in lines if line)
+    return first, {name.strip().lower(): value.strip() for name, _, value in pairs}
+
+
+def _name(url: str) -> str:
+    try:
+        return urllib.parse.urlsplit(url).hostname or ""
+    except ValueError:
+        return ""

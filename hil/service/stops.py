@@ -1,0 +1,114 @@
+"""Emergency stops as the service has them: from its API, and from its stop post.
+
+A stop on a bench that is stopped already changes nothing: it is told again to whatever may move, and leaves
+a row in the audit log only if somebody else asks than before. So however often it is repeated, rows are few.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections import defaultdict
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hil.engine.border_messages import EmergencyAsked
+from hil.service.apart import apart
+from hil.service.benches import Bench
+from hil.service.stop_post import Stopped, StopPost
+from hil.service.store import DatabaseAwayError
+
+if TYPE_CHECKING:
+    from hil.service.service import Service
+
+_MOST_ROWS = 16  # of one stop, until it is reset
+_LATCHED_WITHIN_S = 5.0
+
+logger = logging.getLogger(__name__)
+
+
+class Stops:
+    """Tells runs and agents, latches benches, and writes down who asked."""
+
+    def __init__(self, service: Service, stop_post: StopPost | None) -> None:
+        self._service, self.post = service, stop_post
+        self._rows: dict[str, tuple[str, set[tuple[str, str]]]] = {}  # of the latch that there is now
+        self._repeated: defaultdict[str, int] = defaultdict(int)
+        if stop_post is not None:
+            stop_post.stopped = self._of_post
+
+    def tell_run(self, bench: str, asked: EmergencyAsked) -> None:
+        """Tell the run under way, if there is one; asks nobody anything before."""
+        running = self._service.running(bench)
+        if running is not None:
+            running.process.stop_in_emergency(asked)
+
+    async def stop(self, bench: str, asked: EmergencyAsked, role: str) -> None:
+        """Have a bench safe at once and keep it so, whatever its run is doing and whether there is one.
+
+        Raises:
+            HilError: the stop cannot be latched; a run was told to stop all the same.
+        """
+        self.tell_run(bench, asked)
+        service = self._service
+        own, running = service.own(bench), service.running(bench)
+        folder = running.folder if running is not None else Path()
+        try:
+            if own is None:
+                with contextlib.suppress(DatabaseAwayError):  # its agent is told all the same
+                    service.agents.stop_in_emergency(bench, asked)
+            else:
+                await asyncio.wait_for(apart(partial(_latch, own, asked, folder)), _LATCHED_WITHIN_S)
+        except TimeoutError:  # a disk that hangs; it goes on
+            logger.error("%s: its emergency stop is not on the disk yet", bench)
+        finally:
+            self._write_down(bench, asked, role)
+            service.changed(bench)
+
+    def reset(self, bench: str) -> None:
+        """Somebody lets a bench be armed again: the next stop is a new one."""
+        self._rows.pop(bench, None)
+        repeated = self._repeated.pop(bench, 0)
+        if repeated:
+            logger.info("%s: its emergency stop was asked for %d times more", bench, repeated)
+        if self.post is not None:
+            self.post.reset(bench)
+
+    def _of_post(self, stopped: Stopped) -> None:
+        """The stop post has told the run and the disk; agents are told from here."""
+        service = self._service
+        if stopped.problem:
+            logger.error("%s: its emergency stop is NOT latched: %s", stopped.bench, stopped.problem)
+        if stopped.bench not in service.benches:
+            return
+        asked = EmergencyAsked(by=stopped.by, origin=stopped.origin, way=stopped.way)
+        if service.own(stopped.bench) is None:
+            with contextlib.suppress(DatabaseAwayError):
+                service.agents.stop_in_emergency(stopped.bench, asked)
+        self._write_down(stopped.bench, asked, stopped.role)
+        service.changed(stopped.bench)
+
+    def _write_down(self, bench: str, asked: EmergencyAsked, role: str) -> None:
+        own, one = self._service.own(bench), (asked.by, asked.origin)
+        latch = own.stopped() if own is not None else ""
+        if self._rows.get(bench, (None,))[0] != latch:
+            self._rows[bench] = latch, set()
+        rows = self._rows[bench][1]
+        if one in rows or len(rows) >= _MOST_ROWS:
+            self._repeated[bench] += 1
+            return
+        rows.add(one)
+        detail = f"from {asked.origin}, {asked.way}"
+        self._service.write_down(asked.by, role, "emergency stop", bench, detail)
+
+
+def _latch(bench: Bench, asked: EmergencyAsked, folder: Path) -> None:
+    """One latch says it; more would only fill the disk.
+
+    Raises:
+        HilError: it cannot be written.
+    """
+    if not bench.stopped():
+        bench.stop(asked.by, folder, origin=asked.origin, way=asked.way)
