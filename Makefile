@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run autotune browser serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run autotune browser serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow nightly wrong-controllers test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -59,9 +59,14 @@ compile: setup
 test-can-vm: setup
 	$(BIN)/python -m tests.can_vm
 
-# What takes minutes: the fixed part of the blind diagnosis set, bad inputs, the wheel, long hunts for faults.
-test-slow: setup browser
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m slow --durations 40
+# What takes minutes and gates a change: tests/gate.py says which, and what they prove.
+test-slow: setup
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "slow and not nightly" --durations 40
+
+# What takes hours: all other slow tests and the long sets, by parts; docs/reference/nightly.md. PARTS: which of them.
+PARTS ?=
+nightly: setup browser
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m tests.nightly $(PARTS)
 
 # Debian's Chromium, in which the page of the service is tested; as root on Debian it is installed.
 browser:
@@ -88,6 +93,10 @@ blind: setup
 # Every fault in every phase of a run: docs/reference/faults.md.
 faults: setup
 	$(BIN)/python -m tests.faults --write
+
+# Wrong controllers through the shipped plans: docs/reference/wrong-controllers.md.
+wrong-controllers: setup
+	$(BIN)/python -m tests.wrong_controllers --write
 
 # Each process of a run killed or frozen in every phase, in real time: docs/reference/process-faults.md.
 process-faults: setup

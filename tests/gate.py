@@ -1,0 +1,38 @@
+"""Which slow tests gate a change: those that prove most in ten minutes. The others run at night.
+
+A test that takes more than a few seconds is marked `slow`. Of those, the ones of a module below are part of
+`make test-slow`, with what they prove; every other one is marked `nightly` as it is collected, and runs by
+`make nightly` (tests/nightly.py). What proves what stands in docs/reference/nightly.md.
+"""
+
+from __future__ import annotations
+
+#: Modules below tests/ whose slow tests gate, and what they prove. A name behind `::` takes single tests.
+GATE = {
+    "test_wheel.py": "the wheel installs and runs a plan away from the source",
+    "transports/test_run_ends.py": "a run over each transport ends safely when its wire fails",
+    "hil/cli/test_run_to_the_end.py": "results, overwriting, signals, pipes of whole runs",
+    "hil/cli/test_full_disk.py": "a full disk costs no evidence and leaves a safe bench",
+    "hil/cli/test_kills.py": "a killed run leaves no torque",
+    "hil/cli/test_reset.py": "an emergency stop stays latched until it is reset",
+    "hil/cli/test_recover.py": "what a crash left opens",
+    "hil/cli/test_tune.py::test_a_controller_with_more_margin": "a tuning gives a controller with reasons",
+    "hil/core/recording/test_damage.py": "damaged recordings are found out",
+    "hil/engine/test_hardware_process.py": "the hardware process and its supervisor",
+    "hil/engine/test_wall_clock.py": "a bench in real time",
+    "hil/analysis/diagnosis/test_diagnose.py": "a missing effect is named, added, and the gap shrinks",
+    "hil/service/test_serve.py": "the service begins, runs and ends",
+    "hil/service/test_stop_under_attack.py": "the emergency stop is answered under attack",
+    "hil/test_pytest_plugin.py": "plans as tests",
+    "faults/test_faults.py::frozen": "frozen values end a run",
+    "faults/test_faults.py::stepping": "faults while torque is on",
+    "wrong_controllers/test_wrong_controllers.py": "wrong controllers do not pass",
+    "formats/test_formats.py": "files of earlier versions are read",
+}
+
+
+def gates(nodeid: str) -> bool:
+    """Whether a slow test gates; `nodeid` is pytest's, from the repository's root."""
+    below = nodeid.removeprefix("tests/")
+    module, _, name = below.partition("::")
+    return any(module == place.partition("::")[0] and place.partition("::")[2] in name for place in GATE)
