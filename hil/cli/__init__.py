@@ -22,6 +22,9 @@ def main() -> None:
         gc.set_threshold(*_LOOKED_THROUGH_EVERY)
         # The matrices here are small: more threads of OpenBLAS would only wait for each other, and cost time.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+        os.environ.setdefault(
+            "PYTHONWARNINGS", "ignore"
+        )  # of processes begun by this one; here the log has them
         from hil.cli._app import run_command_line
 
         code = run_command_line()

@@ -54,6 +54,7 @@ class Log:
         for name in _PACKAGES:
             logging.getLogger(name).setLevel(logging.DEBUG)
         self._add(self._recent, logging.DEBUG)
+        logging.captureWarnings(capture=True)  # what libraries warn of is for the log
         logger.info("hil %s", shlex.join(arguments))
         logger.debug("Python %s on %s", platform.python_version(), sys.platform)
 
@@ -93,6 +94,7 @@ class Log:
 
     def end(self) -> None:
         """Close the file."""
+        logging.captureWarnings(capture=False)
         for handler in self._handlers:
             logging.getLogger().removeHandler(handler)
             handler.close()

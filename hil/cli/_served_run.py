@@ -88,6 +88,7 @@ def main() -> None:
     """Carry out the run that is asked for on standard input, and exit with the code that `hil run` has."""
     INTERRUPTS.raise_from_now_on()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    os.environ.setdefault("PYTHONWARNINGS", "ignore")  # of processes begun by this one; here the log has them
     reading, writing = os.dup(0), os.dup(1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # what a library prints is no message

@@ -10,7 +10,7 @@ from pathlib import Path
 from hil.cli._result_file import RESULT, text_of
 from hil.core.errors import BadInputError
 from hil.core.files import read_bytes, sha256_of
-from hil.core.recording import Recording, read_recording, run_of
+from hil.core.recording import RUN, Recording, read_recording, run_of
 from hil.core.result import RunResult
 from hil.core.signatures import BrokenSignatureError, fingerprint, hashes_of, read_signature, signatures_in
 from hil.engine import RECORDING
@@ -19,6 +19,8 @@ from reports.provenance import stored_files
 from test_plans import rejudged
 
 RECORDINGS = (".mcap", ".csv", ".parquet", ".mf4", ".mat")
+#: Of a run whose process was lost, what only the command that watched it can say.
+_ONLY_THERE = ("bench", "plan", "verdict", "safe_state", "reason", "emergency_stop", "end_steps")
 REPORTS = (".html", ".pdf", ".json")
 
 
@@ -90,11 +92,24 @@ def _of_result(file: Path, text: str, result: RunResult, path: Path) -> Finding:
         return Finding(False, file, "cannot be compared with the recording")
     if text_of(result) != text:
         return Finding(False, file, "was changed after it had been written")
+    if RUN not in recording.attachments and told and recording.damage:
+        return _of_a_lost_run(file, result, told)
     if result.of_the_run not in [run.of_the_run for run in told]:
         return Finding(False, file, "was changed: the recording says something else of the run")
     if result.samples_sha256 != recording.samples_sha256:
         return Finding(False, file, "was changed: it names other samples than the recording")
     return Finding(True, file, "says what the recording says of the run")
+
+
+def _of_a_lost_run(file: Path, result: RunResult, told: Iterable[RunResult]) -> Finding:
+    """Of a run whose process was lost: the rest must be what the recording gives, as far as it goes."""
+    said = {name: getattr(result, name) for name in _ONLY_THERE}
+    if result.verdict != "error" or result.of_the_run not in [
+        run.of_the_run.model_copy(update=said) for run in told
+    ]:
+        return Finding(False, file, "was changed: what was recorded until the run was cut off says otherwise")
+    text = "agrees with what was recorded until the run was cut off; how it ended stands here alone, unproven"
+    return Finding(False, file, text)
 
 
 def of_recording(path: Path) -> Iterator[Finding]:

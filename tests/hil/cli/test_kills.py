@@ -26,7 +26,7 @@ from drivers import read_rmcu
 from hil.core.frames import SENT_BY_HOST, FrameBlock, joined
 from hil.core.recording import Recording, read_recording, run_of
 from tests.benches_for_tests import SIM
-from tests.hil.cli.test_commands import HIL
+from tests.hil.cli.test_commands import HIL, hil
 from tests.hil.cli.test_sim_bench import serving
 
 TIME_SCALE = 0.25
@@ -153,6 +153,17 @@ def readable(folder: Path) -> Recording:
     return read_recording(folder / "out" / "recording.mcap", allow_missing=True)
 
 
+def assert_verify_tells_a_cut_off_run_from_a_changed_one(out: Path) -> None:
+    said = hil("verify", out, code=1).stdout
+    assert "was changed" not in said
+    assert "agrees with what was recorded until the run was cut off" in said
+    result = out / "result.json"
+    text = result.read_text()
+    result.write_text(text.replace('"complete": false', '"complete": true'))
+    assert "result.json: was changed: what was recorded" in hil("verify", out, code=1).stdout
+    result.write_text(text)
+
+
 def assert_went_to_zero_by_itself(observer: Observer) -> None:
     """After its last request the RMCU waited for its time-out, then asked for no torque any more."""
     frames = observer.frames
@@ -192,6 +203,7 @@ def test_a_run_that_is_killed_leaves_no_torque_and_at_most_half_a_second_is_lost
     assert (result["verdict"], result["safe_state"]) == ("error", "confirmed")
     assert [segment["complete"] for segment in result["segments"]] == [False]
     assert_went_to_zero_by_itself(observer)
+    assert_verify_tells_a_cut_off_run_from_a_changed_one(tmp_path / "out")
     frames = observer.frames
     own = frames[frames["id"] == REQUEST.id]
     recording = readable(tmp_path)

@@ -3,11 +3,15 @@
 import json
 import logging
 import re
+import warnings
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from hil.cli import schema
 from hil.cli._app import guarded
+from hil.cli._log import LOG
 
 RECORDING = "time_s,motor_torque_ref_nm,motor_speed_rad_s\n" + "".join(f"{k / 10},1,2\n" for k in range(20))
 
@@ -84,3 +88,16 @@ def test_a_command_leaves_no_handlers_behind(recording):
     before = list(logging.getLogger().handlers)
     guarded(["schema", "--verbose"])
     assert logging.getLogger().handlers == before
+
+
+def test_what_a_library_warns_of_stands_in_the_log_and_not_on_the_terminal(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        LOG.begin(["hil", "x"])
+        LOG.send(tmp_path / "log.txt", verbose=False)
+        assert np.isnan(np.mean(np.zeros(0)))
+        LOG.end()
+    assert capfd.readouterr().err == ""
+    assert "Mean of empty slice" in (tmp_path / "log.txt").read_text()

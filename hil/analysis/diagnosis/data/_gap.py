@@ -67,6 +67,9 @@ def channel_gaps(traces: Sequence[Trace], floor: Array, simulated: Sequence[Arra
         if not pairs:
             continue
         measured = np.concatenate([m for m, _ in pairs])
+        if not len(measured):  # nothing of it is judged
+            gaps[channel] = ChannelGap(np.nan, np.nan)
+            continue
         error = measured - np.concatenate([s for _, s in pairs])
         spread = max(float(np.std(measured)), 1e-12)
         rms = float(np.sqrt(np.mean(error**2)))

@@ -295,7 +295,8 @@ def _even(time: Array, dt: float) -> tuple[Array, float]:
     must not make the count of samples slip.
     """
     steps = np.diff(time)
-    dt = float(np.mean(steps[np.abs(steps - dt) < 0.5 * dt]))
+    near = steps[np.abs(steps - dt) < 0.5 * dt]
+    dt = float(np.mean(near)) if len(near) else dt
     seen = FIRST_STAMPS
     while seen < 4 * len(time):
         passed = time[:seen] - time[0]
