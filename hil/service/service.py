@@ -157,6 +157,7 @@ class Service:
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
         self.audit_problem = ""
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
+        self._to_write = asyncio.Event()
         self._unwritten: list[tuple[str, str, str, str, str]] = []
 
     async def _share(self) -> str:
@@ -194,9 +195,10 @@ class Service:
         """Something of a bench is to be shown anew."""
         self.showing.changed(bench)
 
-    def bench_data(self, name: str) -> BenchData:
-        """A bench as it is now."""
-        bench, running, waiting = self.benches[name], self.running(name), self.waiting(name)
+    def bench_data(self, name: str, *, ask: bool = True) -> BenchData:
+        """A bench as it is now; what waits for it, without asking the database, as it was known last."""
+        bench, running = self.benches[name], self.running(name)
+        waiting = self.waiting(name) if ask else self._waiting[name]
         state, why = self.state(name)
         agent = bench.agent if isinstance(bench, RemoteBench) else None
         why = f"{why}; {self.database.away}".removeprefix("; ") if self.database.away else why
@@ -309,12 +311,23 @@ class Service:
         return 1 if await self.agents.reset(bench, by) else None
 
     def write_down(self, who: str, role: str, action: str, target: str, detail: str = "") -> None:
-        """Write what must not fail for the audit log's sake: later, if the database is away."""
-        try:
-            self.log.add(who, role, action, target, detail)
-        except DatabaseAwayError:
-            self._unwritten.append((who, role, action, target, detail))
-            logger.warning("%s: %s, %s; to be written when the database answers", who, action, target)
+        """Write what must not wait for the audit log: soon, or when the database answers."""
+        self._unwritten.append((who, role, action, target, detail))
+        self._to_write.set()
+
+    async def write_late(self) -> None:
+        """Write what was not waited for, until the service is closed."""
+        while not self.closing:
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._to_write.wait(), _ASK_S)
+            self._to_write.clear()
+            self._write_all()
+
+    def _write_all(self) -> None:
+        with contextlib.suppress(DatabaseAwayError):
+            while self._unwritten:
+                self.log.add(*self._unwritten[0])
+                del self._unwritten[0]
 
     async def watch_database(self) -> None:
         """Ask a database that is away whether it is back, until the service is closed."""
@@ -331,10 +344,6 @@ class Service:
                 shown = self.database.away
                 for bench in self.benches:
                     self.changed(bench)
-            with contextlib.suppress(DatabaseAwayError):
-                while self._unwritten:
-                    self.log.add(*self._unwritten[0])
-                    del self._unwritten[0]
 
     def tell_stop_post(self) -> None:
         """Have it know all benches that there are."""
@@ -342,9 +351,10 @@ class Service:
             own = {name: str(bench.file.source) for name, bench in self._own.items()}
             self.stops.post.know_benches(own, [name for name in self.benches if name not in self._own])
 
-    def give_benches_back(self) -> None:
+    async def leave(self) -> None:
         """Keep where the audit log ends; let others drive the benches, which are free by themselves later."""
+        self._write_all()
         with contextlib.suppress(DatabaseAwayError):
             if not self.audit_problem:
-                problem_of(self.log, self._folder)
+                await apart(partial(problem_of, self.log, self._folder))
             self._held.give_back()
