@@ -191,4 +191,4 @@ def _row(name: str, stops: Stops) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main(int((sys.argv[1:2] or [COUNT])[0]), *sys.argv[2:3]))
+    sys.exit(main(int(sys.argv[1]) if sys.argv[1:] else COUNT, *sys.argv[2:3]))

@@ -146,7 +146,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         asyncio.create_task(server.serve(sockets=[listening])),
     ]
     besides = [
-        asyncio.create_task(going_on(lambda: in_turns(service.write_late()))),
+        asyncio.create_task(going_on(lambda: in_turns(service.late_log.work(lambda: service.closing)))),
         asyncio.create_task(going_on(lambda: in_turns(service.watch_database()))),
         asyncio.create_task(going_on(lambda: in_turns(service.owners.follow(lambda: service.closing)))),
     ]
@@ -175,7 +175,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         await service.campaigns.close()
         service.desk.close()
         service.drawing.close()
-        service.reading.close()
+        service.giving.close()
         for bench in list(service.benches):
             service.changed(bench)
             service.agents.wake(bench)

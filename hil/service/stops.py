@@ -113,7 +113,7 @@ class Stops:
             return
         rows.add(one)
         detail = f"from {asked.origin}, {asked.way}"
-        self._service.write_down(asked.by, role, "emergency stop", bench, detail)
+        self._service.late_log.add(asked.by, role, "emergency stop", bench, detail)
 
 
 def _latch(bench: Bench, asked: EmergencyAsked, folder: Path) -> None:
