@@ -1,4 +1,4 @@
-"""What people give is read by another process; it is ended if that takes too long, and there is a next one."""
+"""What people give is read by another process, which is ended if it takes too long; a next one reads on."""
 
 from __future__ import annotations
 
@@ -26,6 +26,9 @@ def test_what_takes_too_long_ends_the_process_that_reads_it_and_the_next_is_read
             text = library_controllers()["phase_stabilization"].read_text()
             assert await desk.ask("read_controller", name="mine", text=text) == {}
         finally:
+            process = desk._process
             desk.close()
+            if process is not None:
+                await process.wait()
 
     asyncio.run(ask())
