@@ -1,7 +1,8 @@
 """How long an emergency stop over the service takes while something holds the service up.
 
-`python -m benchmarks.stop_under_attack [COUNT]`: `hil serve` with a bench in another process in real time,
-`hil.client` that asks for a stop at random moments with torque on, COUNT times under each attack. The answer
+`python -m benchmarks.stop_under_attack [COUNT [WORD]]`: `hil serve` with a bench in another process in real
+time, `hil.client` that asks for a stop at random moments with torque on, COUNT times under each attack, or
+under those that have WORD in their names. The answer
 is timed here; the torque by the stamps of the stand-in's frames, from the moment of asking. Beside it, how
 late a thread of this process wakes up that only sleeps: what the machine itself adds.
 """
@@ -80,13 +81,15 @@ ATTACKS: dict[str, tuple[attacks.Attack, int | None]] = {
 }
 
 
-def main(count: int = COUNT) -> int:
+def main(count: int = COUNT, word: str = "") -> int:
     """The table."""
     moments = random.Random(SEED)
     load = [os.getloadavg()[0]]
     print("| attack | answered: p50 | p99 | largest | no torque: p50 | p99 | largest | a sleeper: p99 |")
     print("|---|---|---|---|---|---|---|---|")
     for name, (attack, descriptors) in ATTACKS.items():
+        if word not in name:
+            continue
         print(_row(name, stopped(attack, descriptors, count, moments)), flush=True)
         load.append(os.getloadavg()[0])
     print(f"\nms; {count} stops each; load average {min(load):.1f} to {max(load):.1f}, ", end="")
@@ -188,4 +191,4 @@ def _row(name: str, stops: Stops) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main(*map(int, sys.argv[1:2])))
+    sys.exit(main(int(sys.argv[1]) if sys.argv[1:] else COUNT, *sys.argv[2:3]))

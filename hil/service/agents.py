@@ -91,12 +91,13 @@ class Agents:
 
     def look(self) -> None:
         """Have it shown which agents are away, and whose runs have come to another service meanwhile."""
-        for bench in self.benches.values():
-            if bench.agent.away and bench.running is not None:
+        for bench in list(self.benches.values()):
+            running = bench.running
+            if bench.agent.away and running is not None:
                 with contextlib.suppress(DatabaseAwayError):
-                    run = self._runs.get(bench.running.data.id)
+                    run = self._runs.get(running.data.id)
                     if run is None or run.state != "running":
-                        self.over(bench.running.data.id, bench.name)
+                        self.over(running.data.id, bench.name)
             if bench.agent.away != bench.was_away:
                 bench.was_away = bench.agent.away
                 (logger.warning if bench.was_away else logger.info)(
@@ -199,14 +200,16 @@ class Agents:
         self._changed(bench)
 
     def stop_in_emergency(self, bench: str, asked: EmergencyAsked) -> None:
-        """Have a bench safe and latched as soon as its agent hears it, also after this service has ended.
+        """Have a bench safe and latched as soon as its agent hears it; asks no database."""
+        self._stop(self.benches[bench], asked)
+        self._changed(bench)
+
+    def remember_stop(self, bench: str, asked: EmergencyAsked) -> None:
+        """Have the agent told also by the next service.
 
         Raises:
             DatabaseAwayError: only as long as this service lives.
         """
-        place = self.benches[bench]
-        self._stop(place, asked)
-        self._changed(bench)
         self._store.stop(bench, asked.by)
 
     async def reset(self, bench: str, by: str) -> bool:
@@ -302,7 +305,7 @@ class Agents:
 
     def _leave(self, agent: Agent) -> None:
         agent.heard_s = -1e9
-        for bench in self.benches.values():
+        for bench in list(self.benches.values()):
             if bench.agent is agent and bench.running is None:
                 agent.held.give_back(bench.name)
 

@@ -6,8 +6,8 @@ import asyncio
 import contextlib
 import logging
 import threading
-from collections.abc import Awaitable, Callable
-from typing import TypeVar
+from collections.abc import Callable, Coroutine
+from typing import Any, TypeVar
 
 from hil.core.errors import HilError
 
@@ -43,7 +43,7 @@ async def apart(function: Callable[[], T]) -> T:
     return await future
 
 
-async def going_on(work: Callable[[], Awaitable[None]]) -> None:
+async def going_on(work: Callable[[], Coroutine[Any, Any, None]]) -> None:
     """Have work done that goes on as long as the service does.
 
     What the system refuses now (a descriptor, memory for a process, a disk) it gives later: such a failure

@@ -34,6 +34,7 @@ from hil.service.command_process import CommandProcess, kill_left
 from hil.service.desk import Desk
 from hil.service.numbered import Numbered, files_in_results
 from hil.service.shared_results import SharedResults
+from hil.service.store import in_turns
 
 _AT_ONCE = 1  # each has every processor that campaigns may use
 _MOST_WAITING = 20
@@ -230,7 +231,7 @@ class Campaigns:
             raise BadInputError(f"{_MOST_WAITING} wait already", where="campaign", fix="cancel one of them")
 
     def _begin(self, number: int) -> None:
-        self._tasks[number] = asyncio.create_task(self._carried_out(number))
+        self._tasks[number] = asyncio.create_task(in_turns(self._carried_out(number)))
 
     async def _carried_out(self, number: int) -> None:
         try:

@@ -11,13 +11,14 @@ from pathlib import Path
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, of_the_system, sha256_of, write_atomically
 from hil.service.given_data import GivenKind
-from hil.service.store import GivenStore, GivenText
+from hil.service.store import GivenStore, GivenText, asked_apart
 
 
 class NameTakenError(BadInputError):
     """A name stands for another content."""
 
 
+@asked_apart
 class GivenFiles:
     """Those of a kind, by name.
 

@@ -23,7 +23,7 @@ from hil.service.data import BenchState, RunData
 from hil.service.run_files import folder_of
 from hil.service.run_process import alive_in
 from hil.service.stop_post import StopPost
-from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore
+from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore, in_turns
 
 _LOOK_S = 0.5  # how often a bench is looked at that cannot be driven now
 _USED_S = 1.0  # how old that look may be for those who ask over the API
@@ -205,7 +205,7 @@ class Queue:
             return
         logger.info("run %d begins on %s", run.id, run.bench)
         self._changed(run.bench)
-        task = asyncio.create_task(self._watch(place, place.running))
+        task = asyncio.create_task(in_turns(self._watch(place, place.running)))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 

@@ -11,11 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from sqlalchemy import Engine
 
-from hil.core.errors import BadInputError
 from hil.service.agents import Agents
 from hil.service.agents_forecasts import AgentsForecasts
 from hil.service.apart import apart
@@ -26,14 +24,14 @@ from hil.service.benches import Bench
 from hil.service.campaign_data import CampaignData
 from hil.service.campaigns import Campaigns, Places
 from hil.service.carrying_out import RunningRun
-from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, PlanData, RunData
-from hil.service.desk import Desk, TooLongError
+from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
+from hil.service.desk import Desk
 from hil.service.earlier_folders import EarlierFolders
 from hil.service.forecasts import Forecasts
-from hil.service.given_data import GivenKind
 from hil.service.given_files import GivenFiles
+from hil.service.giving import Giving
+from hil.service.late_log import LateLog
 from hil.service.owners import OwnersKnown
-from hil.service.plan_reading import GivenPlan
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
@@ -59,7 +57,6 @@ from hil.service.studies import Studies
 from hil.service.study_data import StudyData
 from test_plans import Plan
 
-_READ_WITHIN_S = 5.0  # 240 kB of YAML need 2 s, on a processor that others use
 _ASK_S = 1.0  # a database that is away
 _MOST_SHOWN = 100
 _LAST = 2**31 - 1
@@ -132,7 +129,7 @@ class Service:
         self.studies = Studies(folder / "studies", commands.hil, studies)
         # Recordings are read at one desk, so that who designs at the other need not wait.
         self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
-        self.reading = Desk(niceness=5, within_s=_READ_WITHIN_S)
+        self.giving = Giving(self.plans)
         campaign = (*commands.hil, "campaign", *commands.simulating)
         self.campaigns = Campaigns(folder / "campaigns", campaign, self.desk, campaigns)
         self.sharing = Rounds(self._share, "files of studies and campaigns")
@@ -157,7 +154,7 @@ class Service:
         self.arrivals = Arrivals(held.service, self.runs, runs_folder)
         self.audit_problem = ""
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
-        self._unwritten: list[tuple[str, str, str, str, str]] = []
+        self.late_log = LateLog(self.log)
 
     async def _share(self) -> str:
         said = await self.studies.share(), await self.campaigns.share()
@@ -194,9 +191,10 @@ class Service:
         """Something of a bench is to be shown anew."""
         self.showing.changed(bench)
 
-    def bench_data(self, name: str) -> BenchData:
-        """A bench as it is now."""
-        bench, running, waiting = self.benches[name], self.running(name), self.waiting(name)
+    def bench_data(self, name: str, *, ask: bool = True) -> BenchData:
+        """A bench as it is now; what waits for it, without asking the database, as it was known last."""
+        bench, running = self.benches[name], self.running(name)
+        waiting = self.waiting(name) if ask else self._waiting[name]
         state, why = self.state(name)
         agent = bench.agent if isinstance(bench, RemoteBench) else None
         why = f"{why}; {self.database.away}".removeprefix("; ") if self.database.away else why
@@ -253,32 +251,6 @@ class Service:
             return await self.keeper.bring_back(run, name)
         return self.queue.folder_of(run) / name
 
-    async def read_first(self, kind: GivenKind, name: str, text: str, **more: str) -> dict[str, Any]:
-        """What another process reads of a text that somebody gives: nothing here waits for what is hostile.
-
-        Raises:
-            BadInputError: it is none of its kind, or reading it takes too long.
-            BenchError: that process failed.
-        """
-        try:
-            return await self.reading.ask(f"read_{kind}", name=name, text=text, **more)
-        except TooLongError as error:
-            raise BadInputError(
-                f"takes more than {_READ_WITHIN_S:g} s to be read", where=name, fix="make it shorter"
-            ) from error
-
-    async def give_plan(self, name: str, text: str, by: str) -> PlanData:
-        """Keep a plan, read by another process first.
-
-        Raises:
-            NameTakenError: a built-in plan has the name, or somebody else has given one just now.
-            BadInputError: all that is wrong with it.
-        """
-        folder = str(self.plans.fresh_folder().resolve())
-        found = await self.read_first("plan", name, text, folder=folder)
-        read = GivenPlan(PlanData.model_validate(found["data"]), tuple(found["files"]))
-        return self.plans.give(name, text, by, read=read)
-
     def places(self) -> Places:
         """What a campaign may name."""
         here = {name: one.file.source for name, one in self.benches.items() if isinstance(one, Bench)}
@@ -308,14 +280,6 @@ class Service:
             return own.reset(by)
         return 1 if await self.agents.reset(bench, by) else None
 
-    def write_down(self, who: str, role: str, action: str, target: str, detail: str = "") -> None:
-        """Write what must not fail for the audit log's sake: later, if the database is away."""
-        try:
-            self.log.add(who, role, action, target, detail)
-        except DatabaseAwayError:
-            self._unwritten.append((who, role, action, target, detail))
-            logger.warning("%s: %s, %s; to be written when the database answers", who, action, target)
-
     async def watch_database(self) -> None:
         """Ask a database that is away whether it is back, until the service is closed."""
         shown = ""
@@ -331,10 +295,6 @@ class Service:
                 shown = self.database.away
                 for bench in self.benches:
                     self.changed(bench)
-            with contextlib.suppress(DatabaseAwayError):
-                while self._unwritten:
-                    self.log.add(*self._unwritten[0])
-                    del self._unwritten[0]
 
     def tell_stop_post(self) -> None:
         """Have it know all benches that there are."""
@@ -342,9 +302,10 @@ class Service:
             own = {name: str(bench.file.source) for name, bench in self._own.items()}
             self.stops.post.know_benches(own, [name for name in self.benches if name not in self._own])
 
-    def give_benches_back(self) -> None:
+    async def leave(self) -> None:
         """Keep where the audit log ends; let others drive the benches, which are free by themselves later."""
+        self.late_log.write()
         with contextlib.suppress(DatabaseAwayError):
             if not self.audit_problem:
-                problem_of(self.log, self._folder)
+                await apart(partial(problem_of, self.log, self._folder))
             self._held.give_back()

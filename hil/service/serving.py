@@ -27,7 +27,7 @@ from hil.service.data import ROLES, Role, TokenMade
 from hil.service.data_folder import alone_in, make_private, name_in
 from hil.service.service import Commands, Service
 from hil.service.stop_post import StopPost
-from hil.service.store import BenchStore, LogStore, TokenStore, open_database
+from hil.service.store import BenchStore, LogStore, TokenStore, in_turns, open_database
 
 _LOOK_S = 0.1
 _LAST_ANSWERS_S = 2
@@ -141,18 +141,19 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
     if not await post.until_up(_STOP_POST_WITHIN_S):
         logger.error("the stop post is not there yet; stops go by the API alone until it is")
     tasks = [
-        asyncio.create_task(going_on(service.queue.work)),
-        asyncio.create_task(going_on(lambda: service.showing.follow(lambda: service.closing))),
+        asyncio.create_task(going_on(lambda: in_turns(service.queue.work()))),
+        asyncio.create_task(going_on(lambda: in_turns(service.showing.follow(lambda: service.closing)))),
         asyncio.create_task(server.serve(sockets=[listening])),
     ]
     besides = [
-        asyncio.create_task(going_on(service.watch_database)),
-        asyncio.create_task(going_on(lambda: service.owners.follow(lambda: service.closing))),
+        asyncio.create_task(going_on(lambda: in_turns(service.late_log.work(lambda: service.closing)))),
+        asyncio.create_task(going_on(lambda: in_turns(service.watch_database()))),
+        asyncio.create_task(going_on(lambda: in_turns(service.owners.follow(lambda: service.closing)))),
     ]
     service.campaigns.go_on()
-    besides.append(asyncio.create_task(going_on(service.sharing.work)))
-    if service.keeper is not None:
-        besides.append(asyncio.create_task(going_on(service.keeper.work)))
+    besides.append(asyncio.create_task(going_on(lambda: in_turns(service.sharing.work()))))
+    if (keeper := service.keeper) is not None:
+        besides.append(asyncio.create_task(going_on(lambda: in_turns(keeper.work()))))
     try:
         while not server.started and not tasks[2].done():
             await asyncio.sleep(0.01)
@@ -174,7 +175,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         await service.campaigns.close()
         service.desk.close()
         service.drawing.close()
-        service.reading.close()
+        service.giving.close()
         for bench in list(service.benches):
             service.changed(bench)
             service.agents.wake(bench)
@@ -184,7 +185,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
     for task in done:
         if not task.cancelled():
             task.result()  # a mistake of ours in one of them is told
-    service.give_benches_back()
+    await in_turns(service.leave())
 
 
 def _config(request: ServeRequest, service: Service, post: StopPost) -> uvicorn.Config:

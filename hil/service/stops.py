@@ -18,7 +18,7 @@ from hil.engine.border_messages import EmergencyAsked
 from hil.service.apart import apart
 from hil.service.benches import Bench
 from hil.service.stop_post import Stopped, StopPost
-from hil.service.store import DatabaseAwayError
+from hil.service.store import DatabaseAwayError, in_turns
 
 if TYPE_CHECKING:
     from hil.service.service import Service
@@ -35,6 +35,7 @@ class Stops:
     def __init__(self, service: Service, stop_post: StopPost | None) -> None:
         self._service, self.post = service, stop_post
         self._rows: dict[str, tuple[str, set[tuple[str, str]]]] = {}  # of the latch that there is now
+        self._tasks: set[asyncio.Task[None]] = set()
         self._repeated: defaultdict[str, int] = defaultdict(int)
         if stop_post is not None:
             stop_post.stopped = self._of_post
@@ -57,8 +58,8 @@ class Stops:
         folder = running.folder if running is not None else Path()
         try:
             if own is None:
-                with contextlib.suppress(DatabaseAwayError):  # its agent is told all the same
-                    service.agents.stop_in_emergency(bench, asked)
+                service.agents.stop_in_emergency(bench, asked)
+                self._remember(bench, asked)
             else:
                 await asyncio.wait_for(apart(partial(_latch, own, asked, folder)), _LATCHED_WITHIN_S)
         except TimeoutError:  # a disk that hangs; it goes on
@@ -85,10 +86,21 @@ class Stops:
             return
         asked = EmergencyAsked(by=stopped.by, origin=stopped.origin, way=stopped.way)
         if service.own(stopped.bench) is None:
-            with contextlib.suppress(DatabaseAwayError):
-                service.agents.stop_in_emergency(stopped.bench, asked)
+            service.agents.stop_in_emergency(stopped.bench, asked)
+            self._remember(stopped.bench, asked)
         self._write_down(stopped.bench, asked, stopped.role)
         service.changed(stopped.bench)
+
+    def _remember(self, bench: str, asked: EmergencyAsked) -> None:
+        """Have the next service tell the agent too, if this one ends before; nobody waits for it."""
+
+        async def remembered() -> None:
+            with contextlib.suppress(DatabaseAwayError):  # the agent is told all the same
+                self._service.agents.remember_stop(bench, asked)
+
+        task = asyncio.create_task(in_turns(remembered()))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
 
     def _write_down(self, bench: str, asked: EmergencyAsked, role: str) -> None:
         own, one = self._service.own(bench), (asked.by, asked.origin)
@@ -101,7 +113,7 @@ class Stops:
             return
         rows.add(one)
         detail = f"from {asked.origin}, {asked.way}"
-        self._service.write_down(asked.by, role, "emergency stop", bench, detail)
+        self._service.late_log.add(asked.by, role, "emergency stop", bench, detail)
 
 
 def _latch(bench: Bench, asked: EmergencyAsked, folder: Path) -> None:

@@ -17,6 +17,7 @@ from hil.core.errors import BadInputError
 from hil.service.command_process import CommandProcess, kill_left
 from hil.service.numbered import Numbered, files_in_results
 from hil.service.shared_results import SharedResults
+from hil.service.store import in_turns
 from hil.service.study_data import STUDY_OVER, StudyData, StudyKind
 
 _AT_ONCE = 1  # a run needs the other processor
@@ -129,7 +130,7 @@ class Studies:
             asked_at=datetime.datetime.now(datetime.UTC),
         )
         self._records.keep(study)
-        self._tasks[number] = asyncio.create_task(self._carried_out(number, arguments, within_s))
+        self._tasks[number] = asyncio.create_task(in_turns(self._carried_out(number, arguments, within_s)))
         return study
 
     async def cancel(self, number: int) -> bool:

@@ -70,7 +70,7 @@ async def take_run(agent: AgentId, bench: BenchName, service: TheService, me: Ag
     try:
         taken = service.agents.take(agent, bench)
     except HilError as error:
-        service.write_down(me.name, me.role, "run not taken", f"{bench}: {error}")
+        service.late_log.add(me.name, me.role, "run not taken", f"{bench}: {error}")
         raise
     if taken is not None:
         service.log.add(

@@ -45,7 +45,7 @@ async def stop_in_emergency(bench: BenchName, service: TheService, request: Requ
     """Have a bench safe at once, and keep it so until it is reset. Everybody may; no token is asked for."""
     asked, role = _asked(service, request)
     await service.stops.stop(known(service, bench), asked, role)
-    return service.bench_data(bench)
+    return service.bench_data(bench, ask=False)
 
 
 @router.post("/emergency-stop", name="stop_all_in_emergency")
@@ -56,7 +56,7 @@ async def stop_all_in_emergency(service: TheService, request: Request) -> list[B
         service.stops.tell_run(bench, asked)
     for bench in list(service.benches):
         await service.stops.stop(bench, asked, role)
-    return [service.bench_data(name) for name in service.benches]
+    return [service.bench_data(name, ask=False) for name in service.benches]
 
 
 def _asked(service: Service, request: Request) -> tuple[EmergencyAsked, str]:

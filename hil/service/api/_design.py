@@ -53,7 +53,7 @@ async def get_model_text(model: FileName, service: TheService, me: Viewer) -> Re
 async def give_model(model: FileName, request: Request, service: TheService, me: Engineer) -> ModelData:
     """Give a model file (TOML); a name stands for one content."""
     text = await _body(request, model)
-    await service.read_first("model", model, text)
+    await service.giving.read("model", model, text)
     service.models.give(model, text, me.name)
     service.log.add(me.name, me.role, "model given", model)
     return _there(service.models, model_data, "model", model)
@@ -87,7 +87,7 @@ async def give_controller(
 ) -> ControllerData:
     """Give a controller file (TOML); plans that are given may load it by its name."""
     text = await _body(request, controller)
-    await service.read_first("controller", controller, text)
+    await service.giving.read("controller", controller, text)
     service.controllers.give(controller, text, me.name)
     service.log.add(me.name, me.role, "controller given", controller)
     return _there(service.controllers, controller_data, "controller", controller)

@@ -13,6 +13,7 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from hil.service.agent_data import MOST_PIECE_BYTES
+from hil.service.store import in_turns
 
 MOST_BODY_BYTES = 256_000
 #: What an agent sends of a run's file may be longer: MOST_PIECE_BYTES.
@@ -85,11 +86,12 @@ class Guard:
         if refusal is not None:
             await _refuse(send, *refusal)
             return
-        await self._app(
-            scope,
-            _Limited(receive, _most(scope)).receive,
-            _with_headers(send, self._stop.seen_from(headers.get("host", ""))),
-        )
+        limited = _Limited(receive, _most(scope)).receive
+        sending = _with_headers(send, self._stop.seen_from(headers.get("host", "")))
+        await in_turns(self._answered(scope, limited, sending))
+
+    async def _answered(self, scope: Scope, receive: Receive, send: Send) -> None:
+        await self._app(scope, receive, send)
 
     def _refusal(self, scope: Scope, headers: Headers) -> tuple[int, str] | None:
         host = headers.get("host", "")

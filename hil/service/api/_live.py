@@ -19,6 +19,7 @@ from hil.service.drawn_numbers import numbers
 from hil.service.live import BUCKET_S, Spectrum, Stretch
 from hil.service.service import Service
 from hil.service.showing import OnShow
+from hil.service.store import in_turns
 
 router = APIRouter(tags=["live"])
 #: What the page draws.
@@ -70,7 +71,7 @@ class _Watching:
         try:
             while not self._service.closing:
                 told.clear()
-                news = "".join(self._news())
+                news = await in_turns(self._gathered())
                 yield news or _event("here", {})
                 await asyncio.sleep(_SHORTEST_S)
                 try:
@@ -79,6 +80,9 @@ class _Watching:
                     continue
         finally:
             viewers.discard(told)
+
+    async def _gathered(self) -> str:
+        return "".join(self._news())
 
     def _news(self) -> list[str]:
         service, bench = self._service, self._bench

@@ -54,7 +54,7 @@ async def give_plan(plan: PlanName, request: Request, service: TheService, me: E
         text = (await request.body()).decode("utf-8")
     except UnicodeDecodeError as error:
         raise RefusedError(422, "is not UTF-8", where=plan) from error
-    found = await service.give_plan(plan, text, me.name)
+    found = await service.giving.plan(plan, text, me.name)
     service.log.add(me.name, me.role, "plan given", plan)
     return found
 

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import logging
 import os
 import select
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from hil.core.errors import BadInputError, HilError
 from hil.service.desk import _campaigning, _comparing, _designing, _fitting, _reading
-from hil.service.desk._desk import ANSWERED, REFUSED
+from hil.service.desk._desk import ANSWERED, READ_WITHIN_S, READING, REFUSED
 
 _IDLE_S = 600.0
 TASKS: dict[str, Callable[..., dict[str, Any]]] = {
@@ -45,7 +47,8 @@ def main() -> None:
 
 def _answer(question: dict[str, Any]) -> bytes:
     try:
-        return ANSWERED + _json(TASKS[question["task"]](**question["asked"]))
+        with _limited(question["task"]):
+            return ANSWERED + _json(TASKS[question["task"]](**question["asked"]))
     except HilError as error:
         bad = isinstance(error, BadInputError)
         return _refusal(error.what, error.where, error.fix, bad_input=bad)
@@ -53,6 +56,17 @@ def _answer(question: dict[str, Any]) -> bytes:
         logging.getLogger(__name__).exception("internal error")
         what = f"internal error: {type(error).__name__}: {error}"
         return _refusal(what, question["task"], "please report it", bad_input=False)
+
+
+@contextlib.contextmanager
+def _limited(task: str) -> Iterator[None]:
+    """Of what people give, reading takes so much of a processor; the system ends this process after that."""
+    if task.startswith(READING):
+        signal.setitimer(signal.ITIMER_VIRTUAL, READ_WITHIN_S)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
 
 
 def _refusal(what: str, where: str, fix: str, *, bad_input: bool) -> bytes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import signal
 import sys
 from typing import Any
 
@@ -14,11 +15,13 @@ from hil.service.background import begun
 _WITHIN_S = 60.0
 #: What an answer begins with; JSON follows.
 ANSWERED, REFUSED = b"+", b"-"
+#: Reading what people give may take so much of a processor, however busy that is; 240 kB of YAML need 2 s.
+READING, READ_WITHIN_S = "read_", 5.0
 _LONGEST_ANSWER_BYTES = 1 << 26
 
 
 class TooLongError(BenchError):
-    """An answer took too long, and its process was ended."""
+    """Reading took more than `READ_WITHIN_S` of a processor, and its process was ended."""
 
 
 class Desk:
@@ -26,11 +29,10 @@ class Desk:
 
     Args:
         niceness: added to that of the service.
-        within_s: how long an answer may take.
     """
 
-    def __init__(self, niceness: int, within_s: float = _WITHIN_S) -> None:
-        self._niceness, self._within_s = niceness, within_s
+    def __init__(self, niceness: int) -> None:
+        self._niceness = niceness
         self._turn = asyncio.Lock()
         self._process: asyncio.subprocess.Process | None = None
 
@@ -53,11 +55,11 @@ class Desk:
         question = json.dumps({"task": task, "asked": asked}).encode() + b"\n"
         async with self._turn:
             try:
-                line = await asyncio.wait_for(self._answer(question), self._within_s)
+                line = await asyncio.wait_for(self._answer(question), _WITHIN_S)
             except BaseException as error:
                 self.close()  # its answer would be taken for the next question's
                 if isinstance(error, TimeoutError):
-                    raise TooLongError(f"took more than {self._within_s:g} s", where=task) from error
+                    raise BenchError(f"took more than {_WITHIN_S:g} s", where=task) from error
                 raise
         if not line:
             raise BenchError("its process ended", where=task, fix="look at the service's log")
@@ -85,8 +87,10 @@ class Desk:
             await process.stdin.drain()
         line = await process.stdout.readline()
         if not line:
-            await process.wait()
+            code = await process.wait()
             self._process = None
+            if code == -signal.SIGVTALRM:
+                raise TooLongError(f"took more than {READ_WITHIN_S:g} s of a processor", where="reading")
         return line
 
     async def _begun(self) -> asyncio.subprocess.Process:

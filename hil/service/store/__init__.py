@@ -3,6 +3,7 @@
 from hil.service.store._agents import AgentStore, RegisteredBench
 from hil.service.store._audit import AuditCheck, AuditHead, LogStore
 from hil.service.store._benches import BenchStore
+from hil.service.store._books import asked_apart, in_turns
 from hil.service.store._files import FileStore, KeptFile
 from hil.service.store._given import GivenStore, GivenText
 from hil.service.store._leases import LeaseStore
@@ -35,5 +36,7 @@ __all__ = [
     "RunStore",
     "TokenStore",
     "Told",
+    "asked_apart",
+    "in_turns",
     "open_database",
 ]

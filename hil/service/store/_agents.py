@@ -9,6 +9,7 @@ from sqlalchemy import Engine, delete, select, update
 from sqlalchemy.orm import sessionmaker
 
 from hil.service.agent_data import AgentBench
+from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now_there
 from hil.service.store._tables import AgentRow
 
@@ -26,6 +27,7 @@ class RegisteredBench:
     stop_by: str = ""
 
 
+@asked_apart
 class AgentStore:
     """What a service has to know of agents when it begins anew; whose a bench is says `BenchStore`.
 

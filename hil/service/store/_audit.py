@@ -16,6 +16,7 @@ from sqlalchemy import Engine, select, text
 from sqlalchemy.orm import Session, sessionmaker
 
 from hil.service.data import AuditEntry
+from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import AuditRow
 
@@ -42,6 +43,7 @@ class AuditCheck:
     problem: str = ""
 
 
+@asked_apart
 class LogStore:
     """The audit log."""
 

@@ -7,6 +7,7 @@ import datetime
 from sqlalchemy import Engine, and_, delete, exists, or_, select
 from sqlalchemy.orm import sessionmaker
 
+from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now_there
 from hil.service.store._tables import BenchRow, RunRow
 from hil.service.store._upsert import put
@@ -14,6 +15,7 @@ from hil.service.store._upsert import put
 HELD_S = 60.0
 
 
+@asked_apart
 class BenchStore:
     """Benches that a service drives, each until a moment that it puts off again and again.
 

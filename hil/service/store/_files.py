@@ -8,6 +8,7 @@ from sqlalchemy import ColumnElement, Engine, func, select, update
 from sqlalchemy.orm import sessionmaker
 
 from hil.service.data import OVER
+from hil.service.store._books import asked_apart
 from hil.service.store._opening import now
 from hil.service.store._tables import FileRow, RunRow
 
@@ -21,6 +22,7 @@ class KeptFile:
     sha256: str
 
 
+@asked_apart
 class FileStore:
     """What was confirmed in the archive, and of which runs all was."""
 

@@ -10,6 +10,7 @@ from sqlalchemy import Engine, or_, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
 from hil.service.given_data import GivenKind
+from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import GivenRow
 from hil.service.store._upsert import put
@@ -27,6 +28,7 @@ class GivenText:
     removed: bool
 
 
+@asked_apart
 class GivenStore:
     """All of them, by kind and name. The database says which of two of a name was first."""
 

@@ -8,11 +8,13 @@ from sqlalchemy import Engine, delete, or_
 from sqlalchemy.orm import sessionmaker
 
 from hil.service.data import LeaseData
+from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now_there
 from hil.service.store._tables import LeaseRow
 from hil.service.store._upsert import put
 
 
+@asked_apart
 class LeaseStore:
     """Benches that somebody has for themselves until a moment that they put off again and again."""
 

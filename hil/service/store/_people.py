@@ -11,6 +11,7 @@ from sqlalchemy.orm import sessionmaker
 
 from hil.service.data import Role, TokenData, TokenMade
 from hil.service.stop_post import Owner
+from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import SessionRow, TokenRow
 
@@ -18,6 +19,7 @@ _PREFIX, _SESSION_PREFIX = "hil_", "hilsession_"  # so that a secret that went a
 SESSION_S = 12 * 3600.0
 
 
+@asked_apart
 class TokenStore:
     """Tokens: 256 random bits each, of which only the SHA-256 is kept.
 

@@ -9,6 +9,7 @@ from sqlalchemy import Engine, case, delete, select, update
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import sessionmaker
 
+from hil.service.store._books import asked_apart
 from hil.service.store._files import KeptFile
 from hil.service.store._opening import now
 from hil.service.store._tables import NumberRow, ResultFileRow, ResultRow
@@ -26,6 +27,7 @@ class Told:
     place: str
 
 
+@asked_apart
 class ResultStore:
     """All of them, by kind and number. One is its service's, which alone may change or remove it.
 

@@ -15,6 +15,7 @@ from hil.core.result import CriterionResult, RunResult
 from hil.service.agent_data import TakenRun
 from hil.service.data import RunData, RunState, TrendPoint
 from hil.service.store._benches import HELD_S
+from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now, now_there
 from hil.service.store._tables import BenchRow, CriterionRow, RunRow
 
@@ -43,6 +44,7 @@ class NewRun:
     key: str = ""
 
 
+@asked_apart
 class RunStore:
     """Every call is one transaction; what has returned survives a kill and a power cut."""
 

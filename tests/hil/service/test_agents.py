@@ -195,6 +195,7 @@ def test_an_emergency_stop_of_a_bench_that_was_let_go_is_told_whoever_has_it_nex
     there.agents.heard(ONE, _report())
     there.lapse()
     there.agents.stop_in_emergency("far", EmergencyAsked(by="anna"))
+    there.agents.remember_stop("far", EmergencyAsked(by="anna"))
     there.agents.let_go("far", "anna")
     assert there.agents.benches["far"].state()[0] == "emergency_stop"
     there.agents = there.begun()
@@ -212,6 +213,7 @@ def test_an_emergency_stop_is_told_until_the_agent_has_obeyed_also_by_the_next_s
 ) -> None:
     there.agents.heard(ONE, _report())
     there.agents.stop_in_emergency("far", EmergencyAsked(by="anna"))
+    there.agents.remember_stop("far", EmergencyAsked(by="anna"))
     there.queue()
     assert there.agents.orders(ONE, {}).waiting == []
     there.lapse()
