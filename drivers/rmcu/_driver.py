@@ -180,11 +180,24 @@ class RmcuDriver:
         """Nothing of its own is open."""
 
     def identify(self) -> dict[str, str]:
-        """Software, hardware revision and checksum of the calibration, if its DBC has a message for them."""
+        """Software, hardware revision and checksum of the calibration, if its DBC has a message for them.
+
+        And which of the frames that carry its values have no checksum or no counter, if any.
+        """
         layout = self._layouts.get("RMCU_Identification")
-        heard = self._loop.clock.now_s() - self.last_seen_s < _SILENT_S
-        if layout is None or not heard:
+        if self._loop.clock.now_s() - self.last_seen_s >= _SILENT_S:
             return {}
+        return self._unprotected() | (self._asked_who(layout) if layout else {})
+
+    def _unprotected(self) -> dict[str, str]:
+        frames = {name: self._layouts[name] for name in _SENT_BY_IT}
+        found = {
+            "frames without checksum": [name for name, one in frames.items() if not has_checksum(one)],
+            "frames without counter": [name for name, one in frames.items() if "Counter" not in one.signals],
+        }
+        return {what: ", ".join(names) for what, names in found.items() if names}
+
+    def _asked_who(self, layout: FrameLayout) -> dict[str, str]:
         self._loop.wait_for(lambda: self._identification is not None, _IDENTIFIES_WITHIN_S)
         if self._identification is None:
             return {}

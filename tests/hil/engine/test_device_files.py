@@ -78,6 +78,18 @@ def test_a_speed_as_a_float_gives_the_same_channels(turn, tmp_path):
     np.testing.assert_allclose(found["motor_torque_ref_nm"], there["motor_torque_ref_nm"], atol=0.006)
 
 
+def test_frames_without_checksum_or_counter_are_named_in_the_result(tmp_path):
+    path = tmp_path / "bare.dbc"
+    path.write_text(with_floats(DBC))
+    bench = sim_bench("bare", rmcu=SIM.rmcu.model_copy(update={"dbc": path}))
+    outcome = run_plan(RunRequest(plan(STEPS), bench, tmp_path / "out"))
+    said = {one.name: one.value for one in outcome.result.identities if one.device == "rmcu"}
+    assert said["frames without checksum"] == "RMCU_Status"
+    assert said["frames without counter"] == "RMCU_Status"
+    checked = run_plan(RunRequest(plan(STEPS), sim_bench("checked"), tmp_path / "checked"))
+    assert not any("without" in one.name for one in checked.result.identities)
+
+
 @pytest.mark.parametrize("big", [False, True])
 @pytest.mark.parametrize(("length", "is_float"), [(16, False), (32, True), (64, True)])
 def test_limits_read_a_signal_as_it_is_laid_out(length, is_float, big):
