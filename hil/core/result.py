@@ -317,7 +317,9 @@ class RunResult(_Frozen):
     holds: tuple[Hold, ...] = ()
     emergency_stop: StoppedInEmergency | None = None
     end_steps: str = Field("", description="what became of the plan's end steps, as read back")
-    missing: tuple[str, ...] = Field((), description="devices and parts that were not there and not needed")
+    missing: tuple[str, ...] = Field(
+        (), description="devices and parts that were not there and not needed; frames that came damaged"
+    )
     accepted_expired: AcceptedExpiry | None = Field(
         None, description="who answered for sensors whose calibration had run out"
     )

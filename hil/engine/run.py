@@ -217,8 +217,12 @@ class _Run:
     def _blame(self) -> str:
         """What may be the cause of a failure, whatever it looks like."""
         pause = self._watch.limits.pauses.blamed_at(self._bench.loop.clock.now_s())
-        damage = [device.damage for device in self._bench.devices if isinstance(device, SaysDamage)]
-        return "; ".join(filter(None, [pause, *damage]))
+        return "; ".join(filter(None, [pause, *self._damage()]))
+
+    def _damage(self) -> list[str]:
+        """Frames that came damaged and were left out, as devices say."""
+        found = (device.damage for device in self._bench.devices if isinstance(device, SaysDamage))
+        return [text for text in found if text]
 
     def _event(self, kind: str, text: str) -> None:
         self._recorder.event(self._bench.loop.clock.now_s(), kind, text)
@@ -237,6 +241,9 @@ class _Run:
         for wire in loop.wires:
             for remark in wire.remarks:
                 self._failures.tell("bus", f"{wire.name}: {remark}")
+        damage = self._damage()
+        for text in damage:
+            self._failures.tell("bus", text)
         bench_time_s = loop.clock.now_s() - self._begin_s
         recording = self._recording()
         self._watch.rows_finished = True
@@ -263,7 +270,7 @@ class _Run:
             holds=tuple(self._watch.hold.holds),
             emergency_stop=self._stopped,
             end_steps=self._end_steps,
-            missing=self._arming.missing,
+            missing=(*self._arming.missing, *damage),
             accepted_expired=self._expired,
             reason=str(failures.error) if failures.error else "",
             limit_tripped=tripped,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sim_backend.bench import DYNO_BUS
 from tests.faults import injecting as I
-from tests.faults.expected import EITHER, PASSED, FaultRow, row
+from tests.faults.expected import EITHER, LIVE, PASSED, FaultRow, row
 
 _FROZEN = "repeats bit for bit"
 _UNDER_TORQUE = ("stepping",)
@@ -42,5 +42,13 @@ SENSORS: tuple[FaultRow, ...] = (
         code=PASSED,
         within_s=None,
         phases=_UNDER_TORQUE,
+    ),
+    row(
+        "damaged",
+        "1 of 50 of the RMCU's frames has flipped bits",
+        lambda: I.Received(I.damaged(50)),
+        code=PASSED,
+        within_s=None,
+        phases=LIVE[1:],
     ),
 )

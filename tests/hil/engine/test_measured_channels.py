@@ -14,7 +14,7 @@ from hil.core.frames import FrameBlock
 from hil.core.recording import read_recording
 from hil.engine import RunOutcome, RunRequest, run_plan
 from hil.plant.closed_loop import tick as T
-from sim_backend.bench import DYNO_BUS, SensorFault, SimulatedBench
+from sim_backend.bench import DYNO_BUS, RMCU_BUS, SensorFault, SimulatedBench
 from sim_backend.can_interface import prepare
 from test_plans import rejudged
 from tests.benches_for_tests import plan, sim_bench
@@ -101,3 +101,21 @@ def test_values_that_freeze_under_torque_end_the_run(frames: tuple[int, ...], tm
     segment = outcome.result.segments[0]
     assert segment.end_s - segment.step_s < 0.02 + 0.1 + 0.02  # a block of bus time on either side
     assert {c.verdict for c in outcome.result.criteria} == {"not_judged"}
+
+
+def test_damaged_frames_are_left_out_and_named(tmp_path: Path) -> None:
+    change = injecting.damaged(50)
+
+    class Damages(Freezes):
+        def to_hosts(self, bus: str, block: FrameBlock) -> FrameBlock:
+            return change(block) if bus == RMCU_BUS else block
+
+    prepare("damaged", lambda world: setattr(world, "tamper", Damages(change)))
+    outcome = run_plan(RunRequest(plan(STEPS, CRITERIA), sim_bench("damaged"), tmp_path / "damaged"))
+    sound = ran("undamaged", tmp_path / "sound", {})
+    assert outcome.result.verdict == sound.result.verdict == "pass"
+    assert any("came damaged (wrong checksum)" in text for text in outcome.result.missing)
+    recording = read_recording(outcome.recording)
+    limits = read_recording(sound.recording)
+    for name in ("motor_speed_rad_s", "motor_torque_ref_nm", "motor_torque_nm"):
+        assert np.max(np.abs(recording[name])) < 1.05 * np.max(np.abs(limits[name])) + 0.1
