@@ -14,6 +14,7 @@ from hil.core.errors import BenchError, EmergencyStopError, InterruptError
 from hil.core.recording import Recording
 from hil.engine import RunRequest, run_plan
 from hil.engine.border import analysed_apart
+from hil.engine.border_messages import EmergencyAsked
 from test_plans import Conductor, Outlook, Pace, Plan, Step
 from tests.benches_for_tests import plan, sim_bench
 from tests.hil.engine.test_wall_clock import bench_in_real_time, ran_in_real_time
@@ -66,7 +67,7 @@ def test_on_hardware_it_is_done_by_another_process_while_heartbeats_go_on(tmp_pa
 @pytest.mark.parametrize(("typed", "kind"), [("", InterruptError), ("e", EmergencyStopError)])
 def test_what_ends_the_run_ends_it(typed: str, kind: type[Exception], tmp_path: Path) -> None:
     class Impatient(Silent):
-        def typed(self) -> list[str]:
+        def typed(self) -> list[str | EmergencyAsked]:
             if not (tmp_path / "begun").exists():
                 return []
             if not typed:
