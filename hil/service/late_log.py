@@ -1,4 +1,4 @@
-"""Rows of the audit log that nobody waits for: a stop is answered before it is written down."""
+"""Rows of the audit log that no one waits for: a stop is answered before it is written down."""
 
 from __future__ import annotations
 

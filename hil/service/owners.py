@@ -16,7 +16,7 @@ _LOOK_S = 2.0  # another process may make and revoke tokens, too
 
 
 class OwnersKnown:
-    """What the database said last of tokens and sessions; its stop post knows the same."""
+    """What the database had last of tokens and sessions; its stop post knows the same."""
 
     def __init__(self, tokens: TokenStore, stop_post: StopPost | None) -> None:
         self._tokens, self._stop_post = tokens, stop_post
@@ -26,7 +26,7 @@ class OwnersKnown:
             self._take(tokens.owners())
 
     def of(self, secret: str) -> Owner | None:
-        """Whose a secret is; None if it is nobody's, or its time is over."""
+        """Whose a secret is; None if it is no one's, or its time is over."""
         found = self._known.get(hashlib.sha256(secret.encode("utf-8", "replace")).hexdigest())
         over = found is not None and found.until_s is not None and found.until_s < time.time()
         return None if over else found

@@ -1,6 +1,6 @@
 """Emergency stops as the service has them: from its API, and from its stop post.
 
-A stop on a bench that is stopped already changes nothing: it is told again to whatever may move, and leaves
+A stop on a bench that is stopped already changes nothing: it goes again to whatever may move, and leaves
 a row in the audit log only if somebody else asks than before. So however often it is repeated, rows are few.
 """
 
@@ -41,7 +41,7 @@ class Stops:
             stop_post.stopped = self._of_post
 
     def tell_run(self, bench: str, asked: EmergencyAsked) -> None:
-        """Tell the run under way, if there is one; asks nobody anything before."""
+        """Tell the run under way, if there is one; asks no one anything before."""
         running = self._service.running(bench)
         if running is not None:
             running.process.stop_in_emergency(asked)
@@ -50,7 +50,7 @@ class Stops:
         """Have a bench safe at once and keep it so, whatever its run is doing and whether there is one.
 
         Raises:
-            HilError: the stop cannot be latched; a run was told to stop all the same.
+            HilError: the stop cannot be latched; a run has been stopped all the same.
         """
         self.tell_run(bench, asked)
         service = self._service
@@ -78,7 +78,7 @@ class Stops:
             self.post.reset(bench)
 
     def _of_post(self, stopped: Stopped) -> None:
-        """The stop post has told the run and the disk; agents are told from here."""
+        """The stop post has stopped the run and latched the bench; agents hear of it from here."""
         service = self._service
         if stopped.problem:
             logger.error("%s: its emergency stop is NOT latched: %s", stopped.bench, stopped.problem)
@@ -92,10 +92,10 @@ class Stops:
         service.changed(stopped.bench)
 
     def _remember(self, bench: str, asked: EmergencyAsked) -> None:
-        """Have the next service tell the agent too, if this one ends before; nobody waits for it."""
+        """Have the next service tell the agent too, if this one ends before; no one waits for it."""
 
         async def remembered() -> None:
-            with contextlib.suppress(DatabaseAwayError):  # the agent is told all the same
+            with contextlib.suppress(DatabaseAwayError):  # the agent hears of it all the same
                 self._service.agents.remember_stop(bench, asked)
 
         task = asyncio.create_task(in_turns(remembered()))

@@ -1,4 +1,4 @@
-"""`python -m hil.service.stop_post`: the process behind the stop post; the service starts it, nobody else.
+"""`python -m hil.service.stop_post`: the process behind the stop post; the service starts it, no one else.
 
 It has what an emergency stop needs and nothing else: a socket that listens, a stop line of each run under
 way, and names of those who may ask. No database, no parser, no pool and no lock of the service is on its way.
@@ -37,7 +37,7 @@ from hil.service.stop_post._messages import (
 )
 
 _LOOK_S = 0.5
-_MOST_SAID = 16  # who asks for a stop that there is already is told the service so many times
+_MOST_REPORTED = 16  # who asks for a stop that there is already the service hears of so many times
 _AT_ONCE = 1 << 16
 
 logger = logging.getLogger(__name__)
@@ -51,7 +51,7 @@ class StopPostProcess:
         self._benches = Benches(own={})
         self._lines: dict[int, Line] = {}  # by descriptor
         self._pending: dict[str, Asked] = {}  # asked for, and not known to be on the disk
-        self._said: dict[str, set[tuple[str, str]]] = {}
+        self._reported: dict[str, set[tuple[str, str]]] = {}
         self._unread, self._descriptors = bytearray(), list[int]()
         self._latched: queue.SimpleQueue[Latched] = queue.SimpleQueue()
         self._bell, self._hammer = socket.socketpair()
@@ -93,15 +93,15 @@ class StopPostProcess:
             raise RefusedError(HTTPStatus.NOT_FOUND, f"there is no bench '{asked.bench}'")
         stopped: list[dict[str, object]] = []
         for bench in known if asked.bench is None else [asked.bench]:
-            told = self._tell_runs(bench, asked)
-            stopped.append({"bench": bench, "run": told.run if told is not None else None})
+            line = self._tell_runs(bench, asked)
+            stopped.append({"bench": bench, "run": line.run if line is not None else None})
             if bench in self._benches.own:
                 again = bench in self._pending
                 self._pending[bench] = asked
-                if not again or told is not None:
-                    self._latches.latch(bench, asked, Path(told.folder if told is not None else ""))
+                if not again or line is not None:
+                    self._latches.latch(bench, asked, Path(line.folder if line is not None else ""))
             else:
-                self._report(bench, asked, told, latched=False)
+                self._report(bench, asked, line, latched=False)
         return stopped
 
     def _tell_runs(self, bench: str, asked: Asked) -> Line | None:
@@ -117,7 +117,7 @@ class StopPostProcess:
         try:
             os.write(descriptor, to_run(message))
         except BlockingIOError:
-            return True  # it has been told a thousand times
+            return True  # it knows since long
         except OSError:
             return False
         return True
@@ -133,18 +133,18 @@ class StopPostProcess:
             if not one.problem:
                 self._pending.pop(one.bench, None)
             if one.new or one.problem:
-                self._said.pop(one.bench, None)
+                self._reported.pop(one.bench, None)
             self._report(one.bench, one.asked, None, latched=not one.problem, problem=one.problem)
 
     def _report(
-        self, bench: str, asked: Asked, told: Line | None, *, latched: bool, problem: str = ""
+        self, bench: str, asked: Asked, line: Line | None, *, latched: bool, problem: str = ""
     ) -> None:
         """Say it to the service; of one and the same who asks again and again only once."""
-        said = self._said.setdefault(bench, set())
+        known_already = self._reported.setdefault(bench, set())
         one = asked.by, asked.origin
-        if told is None and (one in said or len(said) >= _MOST_SAID):
+        if line is None and (one in known_already or len(known_already) >= _MOST_REPORTED):
             return
-        said.add(one)
+        known_already.add(one)
         self._tell(
             Stopped(
                 bench=bench,
@@ -152,7 +152,7 @@ class StopPostProcess:
                 role=asked.role,
                 origin=asked.origin,
                 way=asked.way,
-                told=told.run if told is not None else None,
+                run=line.run if line is not None else None,
                 latched=latched,
                 problem=problem,
             )
@@ -188,7 +188,7 @@ class StopPostProcess:
             self._answering.owners = message.by_sha256
         elif isinstance(message, Reset):
             self._pending.pop(message.bench, None)
-            self._said.pop(message.bench, None)
+            self._reported.pop(message.bench, None)
         elif isinstance(message, Line):
             self._add(message, self._descriptors.pop(0))
 

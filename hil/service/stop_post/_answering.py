@@ -96,7 +96,7 @@ class Answering:
             raise RefusedError(HTTPStatus.FORBIDDEN, "the request comes from another site's page")
 
     def _owner(self, headers: Mapping[str, str]) -> Owner | None:
-        """Who asks, if they say so and are known: nobody is refused a stop."""
+        """Who asks, if they say so and are known: no one is refused a stop."""
         header = headers.get("authorization", "")
         secret = header[7:].strip() if header.lower().startswith("bearer ") else ""
         if not secret:

@@ -96,7 +96,7 @@ class Listener:
             self._close(caller)
             return
         if caller.answered:
-            return  # a body that nobody needs
+            return  # a body that no one needs
         caller.head += data
         head, end, _ = bytes(caller.head).partition(b"\r\n\r\n")
         if end:

@@ -67,7 +67,7 @@ class Up(_Data):
 class Stopped(_Data):
     """Somebody has asked for a stop.
 
-    `told`: the run that was told; `latched`: it is on the disk; `problem`: why it is not.
+    `run`: the run that was run; `latched`: it is on the disk; `problem`: why it is not.
     """
 
     kind: Literal["stopped"] = "stopped"
@@ -76,7 +76,7 @@ class Stopped(_Data):
     role: str
     origin: str
     way: StopWay
-    told: int | None
+    run: int | None
     latched: bool
     problem: str = ""
 

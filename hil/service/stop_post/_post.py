@@ -79,17 +79,17 @@ class StopPost:
         return int(self._listening.getsockname()[1])
 
     async def work(self) -> None:
-        """Keep it running until `close`: one that has ended, whatever ended it, is begun anew."""
+        """Keep it running until `close`: one that has ended, whatever ended it, is started anew."""
         while not self._closing:
             try:
                 process = await self._begin()
             except OSError as error:
-                logger.error("the stop post cannot be begun: %s", error)
+                logger.error("the stop post cannot be started: %s", error)
             else:
                 code = await process.wait()
                 self._let_go()
                 if not self._closing:
-                    logger.error("the stop post ended with code %s; it is begun anew", code)
+                    logger.error("the stop post ended with code %s; it is started anew", code)
             if not self._closing:
                 await asyncio.sleep(_AGAIN_S)
 
@@ -180,7 +180,7 @@ class StopPost:
             self._control = None
 
     def _say(self, message: Message, descriptor: int | None = None) -> None:
-        """Tell it, if it is there; one that does not read is given up, and the next is told all."""
+        """Tell it, if it is there; one that does not read is given up, and the next hears all."""
         if self._control is None:
             return
         data = to_line(message)
@@ -193,7 +193,7 @@ class StopPost:
             logger.error("the stop post does not hear: %s", error)
             sent = -1
         if sent != len(data):
-            self._let_go()  # it ends when nobody is at the other end
+            self._let_go()  # it ends when no one is at the other end
 
     def _hear(self) -> None:
         assert self._control is not None

@@ -92,7 +92,7 @@ class LogStore:
 
 
 def _alone(session: Session) -> None:
-    """Nobody else adds a row before this transaction has ended."""
+    """No one else adds a row before this transaction has ended."""
     if session.get_bind().dialect.name == "postgresql":
         session.execute(text("SELECT pg_advisory_xact_lock(:key)"), {"key": _ADDING})
     else:
@@ -109,9 +109,9 @@ def _of_unchained(rows: Iterable[AuditRow]) -> str:
 def _chained(before: str, row: AuditRow) -> str:
     moment = aware(row.at)
     assert moment is not None
-    said = row.who, row.role, row.action, row.target, row.detail
-    content = [before, moment.isoformat(timespec="microseconds"), *said]
-    return hashlib.sha256(json.dumps(content, ensure_ascii=True).encode()).hexdigest()
+    content = row.who, row.role, row.action, row.target, row.detail
+    everything = [before, moment.isoformat(timespec="microseconds"), *content]
+    return hashlib.sha256(json.dumps(everything, ensure_ascii=True).encode()).hexdigest()
 
 
 def _in_words(row: AuditRow) -> str:

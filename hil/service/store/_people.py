@@ -30,7 +30,7 @@ class TokenStore:
         self._transaction = sessionmaker(engine, expire_on_commit=False).begin
 
     def make(self, name: str, role: Role, for_days: float | None = None) -> TokenMade:
-        """Make a token; its secret is told this once. None: it is valid until it is revoked."""
+        """Make a token; its secret is shown this once. None: it is valid until it is revoked."""
         secret = _PREFIX + secrets.token_urlsafe(32)
         expires_at = None if for_days is None else now() + datetime.timedelta(days=for_days)
         row = TokenRow(name=name, role=role, sha256=_hashed(secret), made_at=now(), expires_at=expires_at)

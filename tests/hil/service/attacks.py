@@ -106,7 +106,7 @@ def _hold_half_open(place: str, count: int) -> None:
     resource.setrlimit(resource.RLIMIT_NOFILE, (min(limit, count + 100), limit))
     host, _, port = place.rpartition(":")
     held: list[socket.socket] = []
-    said = False
+    shown = False
     while True:
         while len(held) < count:
             with contextlib.suppress(OSError):
@@ -114,9 +114,9 @@ def _hold_half_open(place: str, count: int) -> None:
                 one.setblocking(False)
                 one.sendall(b"GET /api/v1/health HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Never: ")
                 held.append(one)
-        if not said:
+        if not shown:
             print("on", flush=True)
-            said = True
+            shown = True
         time.sleep(0.05)
         held = [one for one in held if _is_open(one)]
 

@@ -36,7 +36,7 @@ def test_a_log_that_nobody_touched_is_whole_also_if_several_write(engine: Engine
 @pytest.mark.parametrize(
     "change",
     [
-        "UPDATE audit SET who = 'nobody' WHERE id = 3",
+        "UPDATE audit SET who = 'no one' WHERE id = 3",
         "UPDATE audit SET at = '2020-01-01 00:00:00.000000' WHERE id = 1",
         "DELETE FROM audit WHERE id = 3",
         "REPLACE INTO audit SELECT id, at, 'x', role, action, target, detail, chain FROM audit WHERE id = 2",
@@ -110,4 +110,4 @@ def _until_told(service: Served) -> None:
         if service.get("/health")["audit_problem"]:
             return
         time.sleep(0.05)
-    raise AssertionError("nothing was told")
+    raise AssertionError("nothing is shown")

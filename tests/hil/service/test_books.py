@@ -14,7 +14,7 @@ import pytest
 from hil.service.store import asked_apart, in_turns
 from tests.hil.service.served import RefusedError, Served, served
 
-_said = contextvars.ContextVar("said", default=0)
+_number = contextvars.ContextVar("number", default=0)
 
 
 @asked_apart
@@ -50,10 +50,10 @@ def test_the_loop_goes_on_while_a_store_is_asked() -> None:
     store = Store()
 
     async def work(number: int) -> tuple[int, int]:
-        _said.set(number)
+        _number.set(number)
         found = plain(store, number)
         await asyncio.sleep(0)
-        return found, _said.get()
+        return found, _number.get()
 
     async def all_of_it() -> list[tuple[int, int]]:
         several = [asyncio.create_task(in_turns(work(number))) for number in (1, 2)]
@@ -125,7 +125,7 @@ def test_who_needs_no_database_is_answered_while_one_that_is_locked_is_waited_fo
             waiting.start()
             time.sleep(0.3)
             service.ask("GET", "/")
-            assert waiting.is_alive()  # it waits for the lock, and nobody waits with it
+            assert waiting.is_alive()  # it waits for the lock, and no one waits with it
             waiting.join()
         finally:
             connection.execute("ROLLBACK")

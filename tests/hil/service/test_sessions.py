@@ -1,4 +1,4 @@
-"""Tokens end, a page's cookie is no token, and nobody else reads the folder of a service."""
+"""Tokens end, a page's cookie is no token, and no one else reads the folder of a service."""
 
 from __future__ import annotations
 

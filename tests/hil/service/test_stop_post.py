@@ -126,8 +126,8 @@ def test_a_stop_that_is_repeated_leaves_one_latch_and_one_row(tmp_path: Path) ->
         latches = list((tmp_path / "state").rglob("*.json"))
         assert [json.loads(path.read_text())["origin"] for path in latches] == ["127.0.0.1"]
         service.post("/benches/sim/reset")
-        status, told = _stopped(stop_url, {"Origin": service.url})
-        assert (status, told["stopped"]) == (200, [{"bench": "sim", "run": None}])
+        status, answer = _stopped(stop_url, {"Origin": service.url})
+        assert (status, answer["stopped"]) == (200, [{"bench": "sim", "run": None}])
         rows = _until(lambda: _rows(service, 2))
         assert rows[0]["detail"] == "from 127.0.0.1, page"
 

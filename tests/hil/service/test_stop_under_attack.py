@@ -131,8 +131,8 @@ def test_a_stop_post_that_was_killed_is_there_again_and_knows_the_run(tmp_path: 
         while not (url := one.service.get("/health")["stop_url"]):
             assert time.monotonic() < until_s
             time.sleep(0.1)
-        told = Served(one.service.process, url, one.service.data).post("/emergency-stop")
-        assert told == {"stopped": [{"bench": "bench", "run": run}]}
+        answer = Served(one.service.process, url, one.service.data).post("/emergency-stop")
+        assert answer == {"stopped": [{"bench": "bench", "run": run}]}
         assert one.over(run)["exit_code"] == 3
 
 
