@@ -59,7 +59,7 @@ def _noticed(found: Iterable[Tried]) -> list[str]:
     """A row a number: what notices it at each factor."""
     rows: dict[tuple[str, str], dict[str, str]] = {}
     for one in found:
-        cell = f"✗ {one.noticed[0].rpartition('.')[2]}" if one.noticed else f"{100 * one.moved:.0f} %"
+        cell = f"✗ {_by(one.noticed[0])}" if one.noticed else f"{100 * one.moved:.0f} %"
         rows.setdefault((one.file, one.mutant.what), {})[one.mutant.change] = cell
     factors = [f"× {factor:g}" for factor in FACTORS]
     lines = [
@@ -72,6 +72,15 @@ def _noticed(found: Iterable[Tried]) -> list[str]:
         other = "; ".join(f"{change}: {cell}" for change, cell in cells.items() if change not in factors)
         lines.append(f"| {file} | `{what}` | {' | '.join(cells.get(f, '') for f in factors)} | {other} |")
     return lines
+
+
+def _by(noticed: str) -> str:
+    """What noticed it, without the segment."""
+    if noticed.startswith("refused"):
+        return "refused"
+    return (
+        noticed.split(".")[1] + (" (compared)" if ".below." in noticed else "") if "." in noticed else noticed
+    )
 
 
 def _argued(found: Iterable[Tried]) -> list[str]:
