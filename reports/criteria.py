@@ -91,7 +91,7 @@ def _row(criterion: CriterionResult, definition: int) -> CriterionRow:
         id=criterion.id,
         title=criterion.title or criterion.id.rpartition(".")[2].replace("_", " ").capitalize(),
         value=quantities.number(criterion.value, decimals),
-        unit=quantities.unit(criterion.unit),
+        unit="" if criterion.unit == "1" else quantities.unit(criterion.unit),  # a share is a number
         limit=_limit(criterion),
         margin=_margin(criterion.margin),
         verdict=criterion.verdict,

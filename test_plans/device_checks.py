@@ -85,7 +85,7 @@ def is_step(segment: PlannedSegment) -> bool:
 _TITLES = {
     "response_time": "90 % of the step is reached",
     "arrival": "What was asked for arrives",
-    "stability_oscillation": "Strongest line that does not decay",
+    "stability_oscillation": "Oscillation at the end, without the orders of the wheel",
     "stability_torque_request": "Share of time at the torque limit, or against the request",
 }
 
