@@ -199,6 +199,17 @@ class PredictedCriterion(_Data):
     reason: str = ""
 
 
+class LoopData(_Data):
+    """Margins of the speed loop that a controller closes on the bench's model; null: no crossing."""
+
+    stable: bool
+    gain_margin_db: float | None
+    phase_margin_deg: float | None
+    delay_margin_s: float | None
+    sensitivity_peak: float | None
+    sensitivity_peak_hz: float | None
+
+
 class ForecastData(_Data):
     """Duration, peaks and criteria of a plan on a bench, as predicted."""
 
@@ -209,6 +220,7 @@ class ForecastData(_Data):
     bus_loads: dict[str, float] = Field(
         {}, description="share of each bus that the frames of every millisecond take, at most"
     )
+    loops: dict[str, LoopData] = Field({}, description="by controller, of those that the plan loads")
 
 
 class TrendPoint(_Data):

@@ -108,7 +108,7 @@ def _criteria(runs: Sequence[ComparedRun]) -> tuple[CriterionRow, ...]:
             tuple(table[criterion.id].value for table in tables),
             tuple(table[criterion.id].verdict for table in tables),
             _limit(criterion),
-            not criterion.below,
+            criterion.source == "plan" and not criterion.below,
         )
         for criterion in runs[0].result.criteria
     )

@@ -110,8 +110,8 @@ def test_damaged_frames_are_left_out_and_named(tmp_path: Path) -> None:
         def to_hosts(self, bus: str, block: FrameBlock) -> FrameBlock:
             return change(block) if bus == RMCU_BUS else block
 
-    prepare("damaged", lambda world: setattr(world, "tamper", Damages(change)))
-    outcome = run_plan(RunRequest(plan(STEPS, CRITERIA), sim_bench("damaged"), tmp_path / "damaged"))
+    prepare("damaged-frames", lambda world: setattr(world, "tamper", Damages(change)))
+    outcome = run_plan(RunRequest(plan(STEPS, CRITERIA), sim_bench("damaged-frames"), tmp_path / "damaged"))
     sound = ran("undamaged", tmp_path / "sound", {})
     assert outcome.result.verdict == sound.result.verdict == "pass"
     assert any("came damaged (wrong checksum)" in text for text in outcome.result.missing)
