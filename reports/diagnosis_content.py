@@ -15,6 +15,7 @@ from hil.analysis.diagnosis import (
     Diagnosis,
     GapMap,
     NamedEffect,
+    why_no_step,
 )
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
@@ -130,7 +131,7 @@ def parts(found: Diagnosis) -> list[Part]:
             "leaves open of its numbers. Energy: of what rings in the 5 s from the step on. What becomes of "
             "a run with a controller tells hil compare."
             if found.consequences
-            else "The model takes its load from recordings: what its wheels meet in a step is not in it.",
+            else why_no_step(found.model),
             _if_any(_consequences(found)),
         ),
         Part(
