@@ -1,7 +1,7 @@
 """`make bench`: every figure that the documentation states, printed side by side in one run.
 
-`python -m benchmarks [PART…]` runs some; with `--write` what each prints goes into its page, with date, commit
-and load average. A page has no other figures: what is old can be seen, and is made again by the same command.
+`python -m benchmarks [PART…]` runs some; with `--write` what each prints goes into its page, with date,
+commit and load average. A page has no other figures: what is old can be seen and made anew.
 """
 
 from __future__ import annotations
