@@ -167,3 +167,25 @@ def test_why_no_step_is_judged_is_of_this_model(found: Diagnosis) -> None:
         (part,) = (one for one in parts(bare) if one.id == "consequences")
         assert part.text.startswith(said)
         assert "recordings" not in part.text
+
+
+def test_gaps_over_next_to_no_noise_have_no_digits_that_mean_nothing(found: Diagnosis) -> None:
+    """Recordings of a simulation have hardly any noise, and effects any evidence."""
+    bare = {c: ChannelGap(0.3, 1e-9) for c in (MOTOR, SHAFT)}
+    (effect,) = found.effects
+    shown = dataclasses.replace(
+        found,
+        gap_before=bare,
+        gap_after=bare,
+        holdout_after={},
+        holdout_before={},
+        effects=(dataclasses.replace(effect, drop=2.9e19),),
+        by_chance=11.0,
+        considered=(Considered("dead_time", "", 2.9e19, 3392320.78, "not fitted"),),
+    )
+    assert "leaves > 1000 times the noise at most" in lead(shown)
+    text = {part.id: part for part in parts(shown)}
+    assert "more than 11 noise variances" in text["effects"].text
+    assert "> 1000 times as much or more" in text["effects"].text
+    assert text["considered"].tables[0].rows[0][1:3] == (">\u202f10⁶", ">\u202f1000")
+    assert "e+" not in " ".join(cell for table in text["gap"].tables for row in table.rows for cell in row)
