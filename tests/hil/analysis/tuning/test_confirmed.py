@@ -1,5 +1,7 @@
 """Predicted beside measured."""
 
+import pytest
+
 from hil.analysis.tuning import confirmation
 from hil.core.result import CriterionResult
 
@@ -20,7 +22,7 @@ def test_without_a_limit_no_distance_is_more_than_both_values():
     """What is next to nothing in the prediction is no yardstick for what was measured."""
     predicted = [result("a", 1e-9), result("b", 0.0, 0.0), result("c", 0.0)]
     told = confirmation(predicted, [result("a", 0.4), result("b", 0.3, 0.0), result("c", 0.0)], 0.05)
-    assert [round(one.apart, 6) for one in told.criteria] == [1.0, 1.0, 0.0]
+    assert [one.apart for one in told.criteria] == [pytest.approx(1.0), 1.0, 0.0]
 
 
 def test_more_than_allowed_or_no_value_is_beyond():
