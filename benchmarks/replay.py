@@ -46,7 +46,8 @@ def main() -> None:
     first = ours[0][1]
     named = signals_with_names()
     same = [
-        f"{name}: {len(values)} signals, {sum(map(len, values.values())):,} values, {apart(first, values, named)}"
+        f"{name}: {len(values)} signals, {sum(map(len, values.values())):,} values, "
+        f"{apart(first, values, named)}"
         for name, values in (("asammdf", theirs[0][1]), ("cantools", frame_by_frame[1]))
     ]
     own_s, asammdf_s = (statistics.median(s for s, _ in turns) for turns in (ours, theirs))
