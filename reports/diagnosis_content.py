@@ -153,7 +153,7 @@ def _gaps(found: Diagnosis) -> tuple[Table, ...]:
         rows = tuple(
             (
                 channel_label(c).text,
-                *(quantities.share(v, 2) for v in _figures(before[c], after[c])),
+                *(quantities.share(v, 2, digits=3) for v in _figures(before[c], after[c])),
                 quantities.factor(before[c].noises),
                 quantities.factor(after[c].noises),
             )
@@ -216,7 +216,9 @@ def _cell(ratio: float) -> Cell:
 def _start_text(found: Diagnosis) -> str:
     if found.start is None:
         return ""
-    gaps = ", ".join(f"{channel_label(c).text.lower()} {share(g.gap, 2)}" for c, g in found.start.gap.items())
+    gaps = ", ".join(
+        f"{channel_label(c).text.lower()} {share(g.gap, 2, digits=3)}" for c, g in found.start.gap.items()
+    )
     return (
         "The base model was far from the data as a whole: its numbers were wrong, which is not physics "
         f"that is missing. Other numbers alone, from {', '.join(found.start.recordings)}, leave a gap "

@@ -24,7 +24,7 @@ def effects_text(found: Diagnosis) -> str:
     drops = [e.drop for e in found.effects if e.drop is not None]
     if not drops or found.by_chance is None:
         return said
-    chance = quantities.number(found.by_chance, significant=2)
+    chance = quantities.number(float(f"{found.by_chance:.2g}"), significant=2)
     return (
         f"{said} Evidence: in {BOOTSTRAP_DRAWS} draws of noise alone no effect took more than {chance} "
         "noise variances off the squared error; each named one takes "

@@ -109,8 +109,9 @@ class AutotuneLoop:
             why = found.unfinished or found.signature or "no known effect closes the gap"
             self._decide(number, "diagnose", what, "end", why, folder)
             raise EndedError(f"the diagnosis does not know what is missing: {why}")
+        was = {name: share(found.gap_before[name].gap, 2, digits=3) for name in found.gap_after}
         gaps = ", ".join(
-            f"{name} {share(found.gap_before[name].gap, 2)} to {share(gap.gap, 2)} of the signal"
+            f"{name} {was[name]} to {share(gap.gap, 2, digits=3)} of the signal"
             for name, gap in found.gap_after.items()
         )
         names = ", ".join(effect.use.id for effect in found.effects)

@@ -147,7 +147,7 @@ def text_of(found: Diagnosis, out: Path) -> str:
     ):
         for name, gap in after.items():
             figures = (before[name].gap, gap.gap, gap.noise_floor)
-            shown = "".join(f"{share(figure, 2):>14}" for figure in figures)
+            shown = "".join(f"{share(figure, 2, digits=3):>14}" for figure in figures)
             lines.append(f"{name + suffix:<28}{shown}{factor(gap.noises):>13}")
     if found.open_channels and found.verdict == "named":
         lines.append(f"what stays is more than noise: {', '.join(found.open_channels)}")

@@ -15,14 +15,15 @@ MOST_TIMES = 1000.0
 LEAST_TIMES = 1e-3
 
 
-def share(value: float, decimals: int = 1, *, signed: bool = False) -> str:
+def share(value: float, decimals: int = 1, *, digits: int = 1, signed: bool = False) -> str:
     """A share in percent, "12.3 %"; from ten on as a multiple, "63 times", at most "> 1000 times".
 
     What is not zero is never written as zero: "0.004 %", "-5e-05 %".
 
     Args:
         value: a ratio, 1 for 100 %; "-" if it is NaN.
-        decimals: of the percent.
+        decimals: of the percent, at least.
+        digits: that it has at least, where those decimals would leave fewer: of a gap near its noise three.
         signed: a plus stands before what is positive.
     """
     if math.isnan(value):
@@ -31,9 +32,12 @@ def share(value: float, decimals: int = 1, *, signed: bool = False) -> str:
     if abs(value) > MOST_SHARE:
         return f"{plus if abs(value) <= MOST_TIMES else ''}{_times(value)} times"
     percent = 100.0 * value
-    text = f"{percent:.{decimals}f}" if percent else f"{0.0:.{decimals}f}"  # no negative zero
-    if percent and not text.strip("-0."):
-        text = f"{percent:.1g}"
+    if not percent:
+        return f"{0.0:.{decimals}f} %"  # no negative zero
+    text = f"{percent:.{decimals}f}"
+    needed = digits - 1 - math.floor(math.log10(abs(percent)))
+    if needed > decimals and (digits > 1 or not text.strip("-0.")):
+        text = f"{percent:.{digits}g}"
     return f"{plus}{text} %"
 
 

@@ -33,6 +33,13 @@ def test_a_share_is_a_percentage_or_a_multiple(value: float, text: str) -> None:
     assert share(value) == text
 
 
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.7338, "73.38 %"), (0.0217, "2.17 %"), (0.000217, "0.0217 %"), (0.0, "0.00 %")]
+)
+def test_a_gap_near_its_noise_keeps_three_digits(value: float, text: str) -> None:
+    assert share(value, 2, digits=3) == text
+
+
 def test_a_change_has_its_sign() -> None:
     assert share(0.02, signed=True) == "+2.0 %"
     assert share(-0.02, signed=True) == "-2.0 %"

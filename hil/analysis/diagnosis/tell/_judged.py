@@ -124,7 +124,7 @@ class Judged:
         gaps = back.after.gaps
         worst = max(gaps, key=lambda channel: gaps[channel].noises)
         gap = gaps[worst]
-        size = f"{share(gap.gap, 2)} of {worst} stay unexplained, {multiple(gap.noises)} its noise"
+        size = f"{share(gap.gap, 2, digits=3)} of {worst} stay unexplained, {multiple(gap.noises)} its noise"
         tried = self.found.best.hypothesis.ids
         if not tried and self.unfinished:
             fits = [f for step in self.found.steps[:1] for f in step.fits[:1]]
