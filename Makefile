@@ -59,8 +59,8 @@ compile: setup
 test-can-vm: setup
 	$(BIN)/python -m tests.can_vm
 
-# What takes minutes and gates a change: tests/gate.py says which, and what they prove.
-test-slow: setup
+# What takes minutes and gates a change: tests/gate.py says which, and what it proves.
+test-slow: setup browser
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "slow and not nightly" --durations 40
 
 # What takes hours: all other slow tests and the long sets, by parts; docs/reference/nightly.md. PARTS: which of them.

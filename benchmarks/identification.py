@@ -10,6 +10,7 @@ import control
 import numpy as np
 from scipy import signal
 
+from benchmarks.answers import largest_difference
 from hil.analysis.control_design import DesignSpec, design, margins
 from hil.analysis.frequency_response import averaged_spectra, estimate, experiments_of
 from hil.analysis.identification import choose_chain, choose_order, fit
@@ -18,6 +19,8 @@ from tests.hil.analysis import paper_plant, paper_table
 from tests.hil.analysis.conftest import GRID, exact
 
 REPEATS = 5
+#: How far another way may be off and count as an answer: median of a response, a share; |S|, dB and degrees.
+SAME_RESPONSE, SAME_MARGINS = 0.05, 0.2
 
 
 def main() -> None:
@@ -68,7 +71,9 @@ def _responses() -> list[tuple[str, float, float, str]]:
     def error(frequency: np.ndarray, response: np.ndarray) -> str:
         inside = (frequency >= 0.05) & (frequency <= 30)
         truth = paper_plant.response(OUTPUTS[0], frequency[inside])
-        return f"median error of ω_m {np.median(np.abs(response[inside] / truth - 1)):.2%}"
+        off = float(np.median(np.abs(response[inside] / truth - 1)))
+        largest_difference("the response", off, 0.0, SAME_RESPONSE)
+        return f"median error of ω_m {off:.2%}"
 
     def local() -> str:
         frf = estimate(experiments)
@@ -100,15 +105,25 @@ def _loops() -> list[tuple[str, float, float, str]]:
     loop = found.loop("phase").sampled
     data = control.FrequencyResponseData(loop, 2 * np.pi * found.frequency_hz)
 
-    def mine() -> str:
-        m = margins(found.frequency_hz, loop, 2)
-        return f"|S|max {m.sensitivity_peak:.4f}, {m.gain_margin_db:.2f} dB, {m.phase_margin_deg:.2f}°"
+    def words(peak: float, decibel: float, turn: float) -> str:
+        return f"|S|max {peak:.4f}, {decibel:.2f} dB, {turn:.2f}°"
 
-    def other() -> str:
+    def own() -> tuple[float, float, float]:
+        m = margins(found.frequency_hz, loop, 2)
+        return m.sensitivity_peak, m.gain_margin_db, m.phase_margin_deg
+
+    def controls() -> tuple[float, float, float]:
         gain, phase, modulus, *_ = control.stability_margins(data, returnall=True)
         turn = np.min(np.abs((np.asarray(phase) + 180) % 360 - 180))
-        decibel = np.min(np.abs(20 * np.log10(gain)))
-        return f"|S|max {1 / np.min(modulus):.4f}, {decibel:.2f} dB, {turn:.2f}°"
+        return float(1 / np.min(modulus)), float(np.min(np.abs(20 * np.log10(gain)))), float(turn)
+
+    def mine() -> str:
+        return words(*own())
+
+    def other() -> str:
+        return words(*controls())
+
+    largest_difference("python-control's margins", own(), controls(), SAME_MARGINS)
 
     def optimum() -> str:
         best = design(model, DesignSpec(optimise=True)).loop("phase").margins.comfort_peak

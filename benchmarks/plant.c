@@ -1,72 +1,41 @@
-/* The plant's equations and integrator as in sim_backend/plant, in C: the yardstick for the compiled kernel. */
+/* The chain's equations and integrator as in hil/plant, in C: the yardstick for the compiled kernel.
+ *
+ * slots.h is made by benchmarks/c_plant.py from hil/plant/_slots.py: `#define AT_gear_ratio 2`, and so on. Three
+ * inertias with drag, lag and the order of the wheel; whatever else the vector holds must be off, which the same
+ * module checks before it calls `run`.
+ */
 #include <math.h>
+#include "slots.h"
 
-enum {
-    KIND, J_M, N, K_S, D_S, J_W, K_T, D_T, J_V, DELAY, LAG, SATURATION, RATE, DEADBAND, GAP, CUBIC, K_H, SLIP_RAD,
-    COULOMB, STRIBECK, OFFSET, DRAG, J_H, K_M, D_M, W_ORDER, W_AMPLITUDE, W_PHASE, M_ORDER, M_AMPLITUDE, M_PHASE,
-    ROLLING, AERO
-};
-enum { ROTOR, TWIST, WHEEL, TYRE, VEHICLE, ANGLE, LAGGED, H_ANGLE, HOUSING, SLIP, STATES };
+enum { ROTOR, TWIST, WHEEL, TYRE, VEHICLE, ANGLE, LAGGED, STATES };
 
 static double shaft(const double *x, const double *p)
 {
-    double v = x[HOUSING] + (x[ROTOR] - x[HOUSING]) / p[N] - x[WHEEL], e = x[TWIST], t;
-    if (p[GAP] > 0.0) {
-        if (e > p[GAP]) { e -= p[GAP]; t = fmax(0.0, p[K_S] * e + p[D_S] * v); }
-        else if (e < -p[GAP]) { e += p[GAP]; t = fmin(0.0, p[K_S] * e + p[D_S] * v); }
-        else { e = 0.0; t = 0.0; }
-    } else t = p[K_S] * e + p[D_S] * v;
-    t += p[CUBIC] * e * e * e + p[K_H] * x[SLIP];
-    if (p[W_AMPLITUDE] != 0.0) t += p[W_AMPLITUDE] * sin(p[W_ORDER] * x[ANGLE] + p[W_PHASE]);
+    double v = x[ROTOR] / p[AT_gear_ratio] - x[WHEEL];
+    double t = p[AT_shaft_stiffness] * x[TWIST] + p[AT_shaft_damping] * v;
+    double amplitude = p[AT_wheel_order_disturbance_amplitude_nm];
+    if (amplitude != 0.0)
+        t += amplitude * sin(p[AT_wheel_order_disturbance_order] * x[ANGLE] + p[AT_wheel_order_disturbance_phase_rad]);
     return t;
-}
-
-static double losses(const double *x, const double *p)
-{
-    double speed = x[ROTOR] - x[HOUSING], loss = p[DRAG] * speed + p[OFFSET];
-    if (p[COULOMB] != 0.0 || p[STRIBECK] != 0.0) {
-        double r = speed / 2.0;
-        loss += (p[COULOMB] + p[STRIBECK] * exp(-r * r)) * tanh(speed / 0.2);
-    }
-    if (p[M_AMPLITUDE] != 0.0)
-        loss -= p[M_AMPLITUDE] * sin(p[M_ORDER] * p[N] * (x[TWIST] + x[ANGLE] - x[H_ANGLE]) + p[M_PHASE]);
-    return loss;
-}
-
-static double resistance(double speed, const double *p)
-{
-    if (p[ROLLING] == 0.0 && p[AERO] == 0.0) return 0.0;
-    return p[ROLLING] * tanh(speed / 0.05) + p[AERO] * speed * fabs(speed);
 }
 
 static double road(const double *x, const double *p)
 {
-    return p[K_T] * x[TYRE] + p[D_T] * (x[WHEEL] - x[VEHICLE]);
+    return p[AT_tyre_stiffness] * x[TYRE] + p[AT_tyre_damping] * (x[WHEEL] - x[VEHICLE]);
 }
 
 static void derivative(const double *x, const double *p, double torque, double *d)
 {
     double lagged = 0.0;
-    if (p[LAG] > 0.0) { lagged = (torque - x[LAGGED]) / p[LAG]; torque = x[LAGGED]; }
-    double relative = x[ROTOR] - x[HOUSING], v = x[HOUSING] + relative / p[N] - x[WHEEL];
-    double s = shaft(x, p), loss = losses(x, p), housing = 0.0, slip = 0.0;
-    if (p[J_H] > 0.0)
-        housing = (loss - torque + s / p[N] - s - p[K_M] * x[H_ANGLE] - p[D_M] * x[HOUSING]) / p[J_H];
-    if (p[K_H] != 0.0) {
-        double r = x[SLIP] / p[SLIP_RAD];
-        slip = r * v <= 0.0 ? v : v * (1.0 - r * r);
-    }
-    double t = road(x, p);
-    d[ROTOR] = (torque - loss - s / p[N]) / p[J_M];
-    d[TWIST] = v;
-    d[WHEEL] = (s - t) / p[J_W];
+    if (p[AT_torque_lag] > 0.0) { lagged = (torque - x[LAGGED]) / p[AT_torque_lag]; torque = x[LAGGED]; }
+    double s = shaft(x, p), t = road(x, p);
+    d[ROTOR] = (torque - p[AT_viscous_drag] * x[ROTOR] - s / p[AT_gear_ratio]) / p[AT_motor_inertia];
+    d[TWIST] = x[ROTOR] / p[AT_gear_ratio] - x[WHEEL];
+    d[WHEEL] = (s - t) / p[AT_wheel_inertia];
     d[TYRE] = x[WHEEL] - x[VEHICLE];
-    d[VEHICLE] = (t - resistance(x[VEHICLE], p)) / p[J_V];
+    d[VEHICLE] = t / p[AT_vehicle_inertia];
     d[ANGLE] = x[WHEEL];
     d[LAGGED] = lagged;
-    d[H_ANGLE] = x[HOUSING];
-    d[HOUSING] = housing;
-    d[SLIP] = slip;
 }
 
 static void steps(double *x, const double *p, double torque, double duration, int count)
@@ -89,19 +58,20 @@ static int steps_for(double duration, double longest) { return (int)fmax(1.0, ce
 
 void run(const double *torque, long samples, double dt, const double *p, double longest, double *out)
 {
-    long whole = (long)floor(p[DELAY] / dt + 1e-9);
-    double late = fmax(0.0, p[DELAY] - whole * dt), x[STATES] = {0};
+    long whole = (long)floor(p[AT_torque_delay] / dt + 1e-9);
+    double late = fmax(0.0, p[AT_torque_delay] - whole * dt), acted = 0.0, x[STATES] = {0};
     if (late < 1e-9 * dt) late = 0.0;
     for (long k = 0; k < samples; k++) {
-        double fresh = torque[k - whole > 0 ? k - whole : 0], old = torque[k - whole - 1 > 0 ? k - whole - 1 : 0];
+        double fresh = k >= whole ? torque[k - whole] : 0.0, old = k > whole ? torque[k - whole - 1] : 0.0;
         double *row = out + 6 * k;
-        row[0] = x[ROTOR] - x[HOUSING];
+        row[0] = x[ROTOR];
         row[1] = x[WHEEL];
         row[2] = shaft(x, p);
-        row[3] = fresh;
+        row[3] = acted;
         row[4] = x[VEHICLE];
         row[5] = road(x, p);
         if (late > 0.0) steps(x, p, old, late, steps_for(late, longest));
         if (late < dt) steps(x, p, fresh, dt - late, steps_for(dt - late, longest));
+        acted = fresh;
     }
 }

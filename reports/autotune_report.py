@@ -29,7 +29,7 @@ def autotune_page(
         title=title,
         headline="No controller confirmed"
         if best is None
-        else f"Worst margin measured {_percent(best.worst)}",
+        else f"Worst margin measured {quantities.share(best.worst)}",
         tone="pass" if closing.content else "fail",
         lead=closing_verdict(closing),
         notes=(consented,),
@@ -82,13 +82,19 @@ def _margins(closing: Closing) -> Table:
     rows = [
         (
             name.replace(".", " "),
-            _percent(closing.before_margins.get(name)),
-            *(_percent(of[name]) for of in (best.predicted.margins, best.expected, best.measured)),
+            quantities.share(closing.before_margins.get(name)),
+            *(quantities.share(of[name]) for of in (best.predicted.margins, best.expected, best.measured)),
         )
         for name in best.measured
     ]
     least = (best.predicted.margins, best.expected, best.measured)
-    rows.append(("worst", _percent(closing.before_worst), *(_percent(min(of.values())) for of in least)))
+    rows.append(
+        (
+            "worst",
+            quantities.share(closing.before_worst),
+            *(quantities.share(min(of.values())) for of in least),
+        )
+    )
     return Table(("criterion", "before", "predicted", "expected", "measured"), tuple(rows))
 
 
@@ -114,7 +120,3 @@ def _compared(run: Shown) -> ComparedRun:
         segments=run.segments,
     )
     return ComparedRun(run.name, run.recording, result)
-
-
-def _percent(share: float | None) -> str:
-    return quantities.DASH if share is None else f"{quantities.number(100 * share, 1)}{quantities.THIN}%"

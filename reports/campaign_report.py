@@ -29,7 +29,7 @@ def campaign_page(
     return Page(
         kind="Campaign",
         title=title,
-        headline=f"{_percent(found.least_share)} pass",
+        headline=f"{quantities.share(found.least_share)} pass",
         tone="quiet" if reached is None else "pass" if reached else "fail",
         lead=_lead(found, wanted),
         notes=(description.strip(),) if description.strip() else (),
@@ -44,7 +44,7 @@ def _lead(found: Findings, wanted: float | None) -> str:
     if wanted is None:
         return f"{count}{several}. No share was asked for."
     reached = "reached" if passed(found, wanted) else "not reached"
-    return f"{count}{several}. At least {_percent(wanted)} were to pass: {reached}."
+    return f"{count}{several}. At least {quantities.share(wanted)} were to pass: {reached}."
 
 
 def _parts(found: Findings, random: bool) -> list[Part]:
@@ -90,7 +90,7 @@ def _criteria(one: OfController, found: Findings) -> Table:
     rows = tuple(
         (
             criterion.id.replace(".", " "),
-            _percent(criterion.share.value) if criterion.limited else quantities.DASH,
+            quantities.share(criterion.share.value) if criterion.limited else quantities.DASH,
             _limit(criterion),
             *(quantities.number(criterion.quantile(share)) for share in (0.01, 0.5, 0.99)),
             quantities.unit(criterion.unit),
@@ -172,7 +172,7 @@ def _worst(one: OfController, found: Findings) -> Table:
         rows.append(
             (
                 str(case.simulation),
-                _percent(case.margin),
+                quantities.share(case.margin),
                 case.binding.replace(".", " "),
                 words or quantities.DASH,
             )
@@ -182,7 +182,3 @@ def _worst(one: OfController, found: Findings) -> Table:
 
 def _or_zero(value: float) -> float:
     return 0.0 if math.isnan(value) else value
-
-
-def _percent(share: float) -> str:
-    return f"{quantities.number(100 * share, 1)}{quantities.THIN}%"

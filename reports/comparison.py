@@ -36,7 +36,7 @@ def lead(found: Comparison) -> str:
     """How far each run is from the first, in one sentence."""
     first, *others = found.runs
     told = [
-        f"{run.name} {100 * distance:.2g} %"
+        f"{run.name} {quantities.share(distance)}"
         for run, distance in zip(others, found.distances[1:], strict=True)
         if distance is not None
     ]
@@ -50,7 +50,7 @@ def value_text(row: CriterionRow, run: int) -> str:
     value, relative = row.values[run], row.relative[run]
     text = quantities.number(value, significant=4)
     if run and relative is not None:
-        text += f" ({100 * relative:+.1f} %)".replace("-", quantities.MINUS)
+        text += f" ({quantities.share(relative, signed=True)})"
     return text + _MARKS.get(row.verdicts[run], "")
 
 
@@ -95,7 +95,7 @@ def _runs(found: Comparison) -> Table:
     for run, distance in zip(found.runs, found.distances, strict=True):
         about = run.recording.metadata.get("run", {})
         simulated = about.get("simulated", "").lower() == "true"
-        share = quantities.DASH if distance is None else f"{100 * distance:.2g} %"
+        share = quantities.share(distance)
         rows.append(
             (
                 run.name,
@@ -122,7 +122,7 @@ def _responses(found: Comparison, names: tuple[str, ...]) -> Table:
         (
             row.segment,
             channel_label(row.channel).text,
-            *(quantities.DASH if np.isnan(gap) else f"{100 * gap:.2g} %" for gap in row.gaps),
+            *(quantities.share(gap) for gap in row.gaps),
         )
         for row in found.responses
     ]

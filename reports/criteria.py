@@ -93,7 +93,7 @@ def _row(criterion: CriterionResult, definition: int) -> CriterionRow:
         value=quantities.number(criterion.value, decimals),
         unit="" if criterion.unit == "1" else quantities.unit(criterion.unit),  # a share is a number
         limit=_limit(criterion),
-        margin=_margin(criterion.margin),
+        margin=quantities.share(criterion.margin),
         verdict=criterion.verdict,
         unmet=criterion.failed or criterion.verdict in ("error", "not_judged"),
         reason=criterion.reason,
@@ -109,16 +109,6 @@ def _decimals(criterion: CriterionResult) -> int:
     while room and room < 10.0**-decimals and decimals < _MOST_DECIMALS:
         decimals += 1
     return decimals
-
-
-def _margin(share: float | None) -> str:
-    """A margin in percent of the limit, never rounded across zero."""
-    if share is None:
-        return quantities.DASH
-    percent = 100 * share
-    if abs(percent) >= 0.05:
-        return quantities.quantity(percent, "%", 1)
-    return quantities.quantity(percent, "%", significant=1)
 
 
 def _bound(value: float | None) -> str:

@@ -9,18 +9,19 @@ import numpy.typing as npt
 
 from hil.analysis.diagnosis import (
     BANDS_HZ,
-    BOOTSTRAP_DRAWS,
     CONDITIONS,
     ChannelGap,
     Diagnosis,
     GapMap,
-    NamedEffect,
+    why_no_step,
 )
 from hil.core.channels import OUTPUTS
+from hil.core.digits import multiple, share
 from hil.core.effects import EFFECTS
 from hil.core.model import parameter_unit
 from reports import quantities
 from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay
+from reports.diagnosis_names import alternatives_table, considered_table, effects_table, effects_text
 from reports.gap_bars import GapBars, GapRow
 from reports.labels import Label, channel_label
 from reports.parts import Cell, Map, Part, Table
@@ -33,7 +34,6 @@ _HEADLINES = {
     "unknown": "A gap that no known effect closes",
 }
 _HELD_OUT = "Recordings held out disagree with the model"
-_MOST_CONSIDERED = 20
 _MOST_WORSE = 3
 _HALF_INTERVAL = 1.96  # of 95 %, in standard errors
 _DARKEST = 30.0  # error over noise
@@ -61,12 +61,12 @@ def lead(found: Diagnosis) -> str:
     worst, left = max(before, key=lambda c: before[c]), max(after.values())
     name = channel_label(worst).text.lower()
     held = max(_over_noise(found.holdout_after).values(), default=None)
-    also = "" if held is None else f", {held:.2f} times in recordings that no fit has seen"
+    also = "" if held is None else f", {multiple(held)} in recordings that no fit has seen"
     if found.verdict == "none":
-        return f"The gap is at most {left:.2f} times the noise{also}."
+        return f"The gap is at most {multiple(left)} the noise{also}."
     return (
-        f"The model as it came leaves a gap of up to {before[worst]:.3g} times the noise ({name}); the model "
-        f"given back leaves {left:.2f} times the noise at most{also}."
+        f"The model as it came leaves a gap of up to {multiple(before[worst])} the noise ({name}); the model "
+        f"given back leaves {multiple(left)} the noise at most{also}."
     )
 
 
@@ -100,11 +100,11 @@ def parts(found: Diagnosis) -> list[Part]:
     return [
         Part("glance", "At a glance", "", figures=(_bars(found),)),
         *([first] if found.start is not None else []),
-        Part("effects", "Effects named", _effects_text(found), _if_any(_effects(found))),
+        Part("effects", "Effects named", effects_text(found), _if_any(effects_table(found))),
         Part(
             "gap",
             "Gap per channel",
-            "Rms of measured minus simulated in per cent of the rms of the measured channel around its "
+            "Rms of measured minus simulated as a share of the rms of the measured channel around its "
             "mean. The noise floor is the same for the noise that is proven: by the spectrum above all "
             f"modes, by rest, by repeats of a request, or as stated.{_what_stays(found)}",
             _gaps(found),
@@ -130,62 +130,17 @@ def parts(found: Diagnosis) -> list[Part]:
             "leaves open of its numbers. Energy: of what rings in the 5 s from the step on. What becomes of "
             "a run with a controller tells hil compare."
             if found.consequences
-            else "The model takes its load from recordings: what its wheels meet in a step is not in it.",
+            else why_no_step(found.model),
             _if_any(_consequences(found)),
         ),
         Part(
             "considered",
             "Considered and not named",
             "Expected drop: of the squared error in noise variances, by the linearised score.",
-            _if_any(_considered(found)),
+            _if_any(considered_table(found)),
         ),
-        Part("alternatives", "Other names for the same gap", "", _if_any(_alternatives(found))),
+        Part("alternatives", "Other names for the same gap", "", _if_any(alternatives_table(found))),
     ]
-
-
-def _if_any(table: Table) -> tuple[Table, ...]:
-    return (table,) if table.rows else ()
-
-
-def _effects_text(found: Diagnosis) -> str:
-    if not found.effects:
-        return "None."
-    effects = [EFFECTS[id_] for id_ in dict.fromkeys(e.use.id for e in found.effects)]
-    said = " ".join(f"{e.title}: {e.summary} {e.signature}" for e in effects)
-    drops = [e.drop for e in found.effects if e.drop is not None]
-    if not drops or found.by_chance is None:
-        return said
-    least, chance = (quantities.number(x, significant=2) for x in (min(drops), found.by_chance))
-    return (
-        f"{said} Evidence: each takes {least} noise variances or more off the squared error; in "
-        f"{BOOTSTRAP_DRAWS} draws of noise alone no effect took more than {chance}."
-    )
-
-
-def _effects(found: Diagnosis) -> Table:
-    rows = []
-    for e in found.effects:
-        units = {p.name: p.unit for p in EFFECTS[e.use.id].parameters}
-        for index, (name, value) in enumerate(e.use.values.items()):
-            shown = value if isinstance(value, str) else quantities.quantity(value, units.get(name, ""))
-            error = e.standard_error.get(name)
-            rows.append(
-                (
-                    EFFECTS[e.use.id].title if index == 0 else "",
-                    name,
-                    shown,
-                    quantities.number(error, significant=2) if error is not None else "",
-                    quantities.chance(e.confidence) if index == 0 else "",
-                    _place(e) if index == 0 else "",
-                )
-            )
-    return Table(("effect", "parameter", "value", "standard error", "confidence", "where"), tuple(rows), 2, 5)
-
-
-def _place(effect: NamedEffect) -> str:
-    low, high = effect.where.band_hz
-    channels = ", ".join(channel_label(c).text.lower() for c in effect.where.channels)
-    return f"{channels}; {low:g}-{high:g} Hz; {effect.where.condition}"
 
 
 def _gaps(found: Diagnosis) -> tuple[Table, ...]:
@@ -198,14 +153,14 @@ def _gaps(found: Diagnosis) -> tuple[Table, ...]:
         rows = tuple(
             (
                 channel_label(c).text,
-                *(quantities.number(100.0 * v, significant=3) for v in _figures(before[c], after[c])),
-                quantities.number(before[c].noises, significant=3),
-                quantities.number(after[c].noises, significant=3),
+                *(quantities.share(v, 2, digits=3) for v in _figures(before[c], after[c])),
+                quantities.factor(before[c].noises),
+                quantities.factor(after[c].noises),
             )
             for c in after
         )
         if rows:
-            head = (name, "before, %", "after, %", "noise floor, %", "before / noise", "after / noise")
+            head = (name, "before", "after", "noise floor", "before / noise", "after / noise")
             tables.append(Table(head, rows))
     return tuple(tables)
 
@@ -255,14 +210,14 @@ def _cell(ratio: float) -> Cell:
     if not np.isfinite(ratio):
         return Cell(quantities.DASH, 0.0)
     shade = float(np.clip(np.log(max(ratio, 1.0)) / np.log(_DARKEST), 0.0, 1.0))
-    return Cell(quantities.number(ratio, significant=2), round(shade, 3))
+    return Cell(quantities.factor(ratio), round(shade, 3))
 
 
 def _start_text(found: Diagnosis) -> str:
     if found.start is None:
         return ""
     gaps = ", ".join(
-        f"{channel_label(c).text.lower()} {100.0 * g.gap:.3g} %" for c, g in found.start.gap.items()
+        f"{channel_label(c).text.lower()} {share(g.gap, 2, digits=3)}" for c, g in found.start.gap.items()
     )
     return (
         "The base model was far from the data as a whole: its numbers were wrong, which is not physics "
@@ -286,7 +241,7 @@ def _changes(changes: Mapping[str, tuple[float, float, float]]) -> Table:
             quantities.number(old),
             quantities.number(new),
             quantities.number(error, significant=2),
-            f"{new / old - 1.0:+.2%}" if old else quantities.DASH,
+            quantities.share(new / old - 1.0, 2, signed=True) if old else quantities.DASH,
             _unit(name),
         )
         for name, (old, new, error) in changes.items()
@@ -322,28 +277,5 @@ def _uncertain(standard_error: float | None) -> str:
     return quantities.number(_HALF_INTERVAL * standard_error, significant=2)
 
 
-def _considered(found: Diagnosis) -> Table:
-    rows = tuple(
-        (
-            c.id + (f" ({c.about})" if c.about else ""),
-            quantities.number(float(f"{c.score:.3g}"), significant=3),
-            f"{c.left:.3g}" if c.left is not None else quantities.DASH,
-            c.reason,
-        )
-        for c in found.considered[:_MOST_CONSIDERED]
-    )
-    return Table(("effect", "expected drop", "gap left / noise", "why not"), rows, 1, 3)
-
-
-def _alternatives(found: Diagnosis) -> Table:
-    rows = tuple(
-        (_about(a.use.id, a.use.values), quantities.chance(a.confidence), a.separating_test, a.plan or "")
-        for a in found.alternatives
-    )
-    return Table(("effect", "confidence", "separating test", "plan for hil run"), rows, 1, 2)
-
-
-def _about(id_: str, values: Mapping[str, float | str]) -> str:
-    """An effect's id, with the channel or parameter that it speaks of."""
-    about = values.get("channel", values.get("parameter"))
-    return f"{id_} ({about})" if about else id_
+def _if_any(table: Table) -> tuple[Table, ...]:
+    return (table,) if table.rows else ()

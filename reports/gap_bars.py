@@ -99,4 +99,4 @@ class GapBars:
 
 def _percent(value: float) -> str:
     """As the tables of a diagnosis have it."""
-    return f"{quantities.number(value, significant=3)} %"
+    return quantities.share(value / 100.0, 2, digits=3)

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
+
+from hil.core.digits import factor as plain_factor
+from hil.core.digits import share as plain_share
 
 THIN = "\u202f"  # narrow no-break space
 MINUS = "\u2212"
@@ -35,6 +39,20 @@ def number(value: float | None, decimals: int | None = None, significant: int = 
     if text.startswith("-") and not text.strip("-0."):
         text = text[1:]  # no negative zero
     return text.replace("-", MINUS)
+
+
+def share(value: float | None, decimals: int = 1, *, digits: int = 1, signed: bool = False) -> str:
+    """A share in percent, from ten on a multiple (`hil.core.digits`); a dash for None and NaN."""
+    if value is None or math.isnan(value):
+        return DASH
+    text = plain_share(value, decimals, digits=digits, signed=signed)
+    text = re.sub(r"e([+-]\d+)", lambda found: f" × 10{_superscript(int(found[1]))}", text)
+    return text.replace(" ", THIN).replace("-", MINUS)
+
+
+def factor(value: float | None) -> str:
+    """A multiple that is never negative, at most "> 1000"; a dash for None and NaN."""
+    return DASH if value is None or math.isnan(value) else plain_factor(value).replace(" ", THIN)
 
 
 def chance(share: float) -> str:

@@ -14,7 +14,7 @@ from reports.outputs.refinement import REFINEMENT_HEAD, refinement_rows, refinem
 from reports.parts import Page, Part, Table
 
 _TEXT = (
-    "Worst margins in %. Predicted: by the model. Expected: as earlier runs correct that. Radius: of the "
+    "Worst margins. Predicted: by the model. Expected: as earlier runs correct that. Radius: of the "
     "trust region around the best run so far, in ranges of the parameters."
 )
 
@@ -26,7 +26,9 @@ def refined_page(page: Page, found: Refinement, consented: str) -> Page:
     best = found.best
     return replace(
         page,
-        headline="Nothing was measured" if best is None else f"Worst margin measured {_percent(best.worst)}",
+        headline="Nothing was measured"
+        if best is None
+        else f"Worst margin measured {quantities.share(best.worst)}",
         tone="fail" if best is None or best.worst < 0 else "pass",
         lead=f"{refinement_verdict(found)} On the model: {page.lead}",
         parts=(*refinement_parts(found, consented), *page.parts),
@@ -49,8 +51,8 @@ def _margins(found: Refinement, best: RefinedRun) -> Table:
     rows = [
         (
             name.replace(".", " "),
-            *(_percent(one[name]) for one in (first.predicted.margins, first.measured)),
-            *(_percent(one[name]) for one in (best.predicted.margins, best.measured)),
+            *(quantities.share(one[name]) for one in (first.predicted.margins, first.measured)),
+            *(quantities.share(one[name]) for one in (best.predicted.margins, best.measured)),
         )
         for name in best.measured
     ]
@@ -79,7 +81,3 @@ def _figure(found: Refinement) -> Figure:
         ),
         wide=True,
     )
-
-
-def _percent(share: float) -> str:
-    return f"{quantities.number(100 * share, 1)}{quantities.THIN}%"

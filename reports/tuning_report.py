@@ -54,7 +54,7 @@ def tuning_page(
     return Page(
         kind="Tuning",
         title=title,
-        headline=f"Worst margin {_percent(worst.worst)}",
+        headline=f"Worst margin {quantities.share(worst.worst)}",
         tone="pass" if worst.worst >= 0 else "fail",
         lead=verdict(found),
         notes=tuple(notes),
@@ -117,17 +117,21 @@ def _confirmed(found: Confirmation | None) -> tuple[Part, ...]:
             one.id.replace(".", " "),
             quantities.number(one.predicted.value),
             quantities.number(one.measured.value),
-            quantities.DASH if one.apart is None else _percent(one.apart),
+            quantities.number(one.difference, significant=3),
             quantities.unit(one.unit),
+            quantities.share(one.apart, 2) if one.of_limit else quantities.DASH,
             one.measured.verdict,
         )
         for one in found.criteria
     )
     words = "as predicted" if found.agrees else "not as predicted: see the diagnosis"
-    allowed = _percent(found.allowed)
-    text = f"The plan run with the tuned controller, over the wire. Allowed: {allowed} of a limit; {words}."
-    head = ("criterion", "predicted", "measured", "apart", "unit", "run")
-    return (Part("confirmed", "Predicted and measured", text, (Table(head, rows, 1, 4),)),)
+    allowed = quantities.share(found.allowed)
+    text = (
+        f"The plan run with the tuned controller, over the wire. Allowed: {allowed} of a limit, of the "
+        f"larger value where there is none; {words}."
+    )
+    head = ("criterion", "predicted", "measured", "difference", "unit", "of the limit", "run")
+    return (Part("confirmed", "Predicted and measured", text, (Table(head, rows, 1, 6),)),)
 
 
 def _compared(run: Shown, found: Tuning) -> ComparedRun:
@@ -162,19 +166,15 @@ def _margins(found: Tuning) -> Table:
 def _worst(one: Standing, found: Tuning) -> str:
     if not one.worst.feasible:
         return "none"
-    return _percent(min(one.least_margin(criterion.id) for criterion in found.trial.driven.criteria))
+    return quantities.share(min(one.least_margin(criterion.id) for criterion in found.trial.driven.criteria))
 
 
 def _margin(one: Standing, id_: str) -> str:
-    least = _percent(one.least_margin(id_)) if all(t.margins for t in one.tried) else quantities.DASH
+    least = quantities.share(one.least_margin(id_)) if all(t.margins for t in one.tried) else quantities.DASH
     if len(one.tried) == 1:
         return least
     own = one.nominal.margins.get(id_)
-    return f"{least} ({quantities.DASH if own is None else _percent(own)})"
-
-
-def _percent(share: float) -> str:
-    return f"{quantities.number(100 * share, 1)}{quantities.THIN}%"
+    return f"{least} ({quantities.share(own)})"
 
 
 def _limits_text(found: Tuning) -> str:
@@ -187,7 +187,9 @@ def _limits(found: Tuning) -> Table:
     names = tuple(one.name for one in found.shown)
     rows = []
     for name in found.chosen.nominal.limits:
-        cells = (_percent(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown)
+        cells = (
+            quantities.share(min(t.limits.get(name, float("nan")) for t in one.tried)) for one in found.shown
+        )
         limit = getattr(found.trial.free.limits, name)
         value = "yes" if isinstance(limit, bool) else quantities.nominal(limit)
         rows.append((_LIMITS.get(name, name.replace("_", " ")), value, *cells))
@@ -225,7 +227,7 @@ def _binding(found: Tuning) -> Table:
         differs = found.trial.draws[tried.draw].differs
         words = ", ".join(f"{name} {quantities.number(value)}" for name, value in differs.items())
         car = "the model itself" if tried.draw == 0 else f"draw\u00a0{tried.draw}"
-        rows.append((car, _percent(tried.worst), tried.binding.replace(".", " "), words))
+        rows.append((car, quantities.share(tried.worst), tried.binding.replace(".", " "), words))
     return Table(("car", "worst margin", "binding criterion", "differs"), tuple(rows), 1, 2)
 
 

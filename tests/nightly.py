@@ -102,7 +102,6 @@ PARTS: dict[str, Part] = {
     "readers": Part("readers of other people on every file that is written", ("tests/readers",)),
     "fuzz": Part("damaged inputs at every parser", ("tests/fuzz",)),
     "blind-slow": Part("the fixed part of the blind diagnosis set, and its scoring", ("tests/blind",)),
-    "controllers": Part("wrong controllers through shipped plans", ("tests/wrong_controllers",)),
     "hunt": Part("hundreds of further cases of all the sets", ("tests",), "hunt"),
     "can-vm": Part(
         "a minute of frames at the limit of an emulated machine",

@@ -16,6 +16,7 @@ from hil.cli._on_bench import WireBench
 from hil.cli._refine_on_bench import Refined
 from hil.cli._streams import complain
 from hil.cli._tuning import Asked
+from hil.core.digits import share
 from hil.core.errors import HilError
 from hil.engine import RECORDING
 from reports.outputs.autotune import Closing, Decision, Stage, effects_in_words
@@ -70,12 +71,10 @@ class AutotuneLoop:
         closing.before_margins = trial.margins_of(carried.criteria)
         self.shown.append(carried.shown("before"))
         what = (
-            f"worst margin {_percent(min(closing.before_margins.values()))}; the given model is {_off(found)}"
+            f"worst margin {share(min(closing.before_margins.values()), 2)}; the given model is {_off(found)}"
         )
         agrees = "agrees" if found.agrees else "does not agree"
-        why = (
-            f"it {agrees} within {_percent(found.allowed)}; what is missing shows in recordings of excitation"
-        )
+        why = f"it {agrees} within {share(found.allowed)}; what is missing shows in recordings of excitation"
         self._decide(0, "before", what, "diagnose", why, carried.folder)
         return found
 
@@ -87,8 +86,8 @@ class AutotuneLoop:
         found = self._stages.tune(asked, number)
         worst = found.chosen.worst
         binds = worst.binding.replace(".", " ")
-        what = f"predicted worst margin {_percent(worst.worst)} ({binds}); {found.runs} predictions"
-        why = f"the plan's own controller has {_percent(found.start.worst.worst)} on this model"
+        what = f"predicted worst margin {share(worst.worst)} ({binds}); {found.runs} predictions"
+        why = f"the plan's own controller has {share(found.start.worst.worst)} on this model"
         self._decide(number, "tune", what, "confirm it on the bench", why, folder / "tuned")
         came, wire = self._stages.confirm(asked, found, folder / "tuned")
         grown = self._weigh(number, came, wire, folder / "tuned")
@@ -110,8 +109,9 @@ class AutotuneLoop:
             why = found.unfinished or found.signature or "no known effect closes the gap"
             self._decide(number, "diagnose", what, "end", why, folder)
             raise EndedError(f"the diagnosis does not know what is missing: {why}")
+        was = {name: share(found.gap_before[name].gap, 2, digits=3) for name in found.gap_after}
         gaps = ", ".join(
-            f"{name} {100 * found.gap_before[name].gap:.3g} % to {100 * gap.gap:.3g} %"
+            f"{name} {was[name]} to {share(gap.gap, 2, digits=3)} of the signal"
             for name, gap in found.gap_after.items()
         )
         names = ", ".join(effect.use.id for effect in found.effects)
@@ -128,7 +128,7 @@ class AutotuneLoop:
             self._explained.append(recording)
         what = f"of the plan as it was run before, the better model is {_off(found)}"
         decided = "tune on it" if enough else "let the diagnosis explain that run, too"
-        self._decide(number, "diagnose", what, decided, f"{_percent(found.allowed)} are allowed")
+        self._decide(number, "diagnose", what, decided, f"{share(found.allowed)} are allowed")
         return enough
 
     def _weigh(self, number: int, came: Refined, wire: WireBench, folder: Path) -> bool:
@@ -148,8 +148,8 @@ class AutotuneLoop:
             closing.best, closing.best_round, closing.agrees = best, number, first.agrees
             self.shown[1:] = [wire.carried[best.number].shown("autotuned"), wire.predicted(best.controller)]
         what = (
-            f"{len(came.found.runs)} runs, the prediction of the first {_off(first)}; "
-            f"best measured worst margin {_percent(best.worst)}"
+            f"{len(came.found.runs)} runs, the prediction of the first is {_off(first)}; "
+            f"best measured worst margin {share(best.worst)}"
         )
         if first.agrees:
             decided, why = ("keep it" if kept else "keep the earlier one"), came.found.ended
@@ -157,7 +157,7 @@ class AutotuneLoop:
             last = number == self._told.sequence.rounds
             decided = "end" if last else "let the diagnosis explain that run, too"
             names = ", ".join(one.id.replace(".", " ") for one in first.beyond)
-            why = f"not as predicted within {_percent(first.allowed)}: {names}"
+            why = f"not as predicted within {share(first.allowed)}: {names}"
         self._decide(number, "confirm", what, decided, why, folder)
         return best.worst - earlier[1] >= self._told.sequence.grow_percent / 100
 
@@ -184,11 +184,13 @@ class AutotuneLoop:
 
 
 def _off(found: Confirmation) -> str:
+    """How far a prediction is off: the criterion that is furthest, in its unit and against its limit."""
     unknown = [one.id.replace(".", " ") for one in found.criteria if one.apart is None]
     if unknown:
         return f"of another mind whether there is a value for {', '.join(unknown)}"
-    return f"up to {_percent(max((one.apart or 0.0 for one in found.criteria), default=0.0))} of a limit off"
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.2f} %"
+    worst = max(found.criteria, key=lambda one: one.apart or 0.0, default=None)
+    if worst is None or not worst.apart or worst.difference is None:
+        return "not off at all"
+    of = "its limit" if worst.of_limit else "the larger value, without a limit"
+    name, by = worst.id.replace(".", " "), f"{worst.difference:+.3g} {worst.unit}".strip()
+    return f"off by up to {share(worst.apart, 2)} of {of} ({name}: {by})"

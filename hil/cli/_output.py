@@ -16,6 +16,7 @@ from rich.table import Table
 
 from hil.cli._log import LOG
 from hil.cli._streams import complain
+from hil.core.digits import share
 from hil.core.printable import printable
 from hil.core.result import AcceptedExpiry, CriterionResult, CriterionVerdict, Identity
 
@@ -197,7 +198,7 @@ def _table(criteria: tuple[CriterionResult, ...]) -> Table:
             c.id,
             f"{c.value:.4g}" if c.value is not None else "-",
             " ".join(limits) or "-",
-            f"{c.margin:.1%}" if c.margin is not None else "-",
+            share(c.margin) if c.margin is not None else "-",
             c.unit,
             f"[{_STYLE[c.verdict]}]{c.verdict.replace('_', ' ')}[/]",
         )

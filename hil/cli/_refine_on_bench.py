@@ -33,7 +33,7 @@ class Refined:
 
     def tell(self) -> None:
         """The runs as a table."""
-        page, table = console(), plain_table("\non the bench: worst margins, %")
+        page, table = console(), plain_table("\non the bench: worst margins")
         for number, name in enumerate(REFINEMENT_HEAD):
             table.add_column(name, justify="right" if number < 5 else "left", no_wrap=number < 6)
         for row in refinement_rows(self.found):

@@ -10,6 +10,7 @@ from hil.analysis.tuning import Confirmation, Tuning, confirmation
 from hil.cli import diagnose
 from hil.cli._one_run import Runs
 from hil.cli._output import console, plain_table
+from hil.core.digits import share
 from hil.core.errors import BadInputError, HilError
 from hil.core.recording import Recording, read_recording
 from hil.core.result import Segment
@@ -134,21 +135,23 @@ def tell(ran: Ran) -> None:
     """Predicted and measured side by side."""
     page, table = console(), plain_table("\npredicted and measured")
     table.add_column("criterion", no_wrap=True)
-    for name in ("predicted", "measured", "apart"):
+    for name in ("predicted", "measured", "difference"):
         table.add_column(name, justify="right")
     table.add_column("unit")
+    table.add_column("of the limit", justify="right")
     table.add_column("run")
     for one in ran.confirmation.criteria:
-        apart = "-" if one.apart is None else f"{100 * one.apart:.2f} %"
+        difference = "-" if one.difference is None else f"{one.difference:+.3g}"
+        apart = share(one.apart, 2) if one.of_limit and one.apart is not None else "-"
         style = "bold red" if one in ran.confirmation.beyond else ""
         values = ("-" if v is None else f"{v:.5g}" for v in (one.predicted.value, one.measured.value))
-        table.add_row(one.id, *values, apart, one.unit, one.measured.verdict, style=style)
+        table.add_row(one.id, *values, difference, one.unit, apart, one.measured.verdict, style=style)
     page.print(table)
     page.print(_verdict(ran), highlight=False, markup=False, soft_wrap=True)
 
 
 def _verdict(ran: Ran) -> str:
-    allowed = f"{100 * ran.confirmation.allowed:g} % of the limit"
+    allowed = f"{100 * ran.confirmation.allowed:g} % of the limit (of the larger value where there is none)"
     if ran.confirmation.agrees:
         return f"As predicted, within {allowed}."
     names = ", ".join(one.id for one in ran.confirmation.beyond)

@@ -13,6 +13,7 @@ from hil.cli._choices import choices_of
 from hil.cli._loop_margins import loop_margins, margins_json, margins_table, warnings_of
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
 from hil.core.channels import CHANNELS
+from hil.core.digits import share
 from hil.core.errors import BadInputError
 from hil.core.mistakes import all_of
 from hil.engine import BenchFile, load_bench
@@ -125,7 +126,7 @@ def _table(peaks: dict[str, tuple[float, float]]) -> Table:
         table.add_column(name, justify="right")
     table.add_column("unit")
     for name, (value, limit) in peaks.items():
-        used = f"{value / limit:.0%}"
+        used = share(value / limit, 0)
         style = "" if value <= limit else "bold red"
         table.add_row(name, f"{value:.4g}", f"{limit:.4g}", used, CHANNELS[name].unit, style=style)
     return table

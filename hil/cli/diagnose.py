@@ -11,6 +11,7 @@ from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_values import named_numbers
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import results_in
+from hil.core.digits import factor, share
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model, model_to_toml
 from hil.core.recording import Recording, driven_by_torque, read_recording
@@ -139,15 +140,15 @@ def text_of(found: Diagnosis, out: Path) -> str:
         lines.append("  the base model was far from the data; identified first:")
         for parameter, (old, new, error) in found.start.parameters.items():
             lines.append(f"    {parameter} = {new:.5g} ± {error:.2g} in place of {old:g}")
-    lines += ["", f"{'gap, % of the signal':<28}{'before':>10}{'after':>10}{'noise':>10}{'after/noise':>13}"]
+    lines += ["", f"{'gap, of the signal':<28}{'before':>14}{'after':>14}{'noise':>14}{'after/noise':>13}"]
     for suffix, before, after in (
         ("", found.gap_before, found.gap_after),
         (" (held)", found.holdout_before, found.holdout_after),
     ):
         for name, gap in after.items():
             figures = (before[name].gap, gap.gap, gap.noise_floor)
-            shown = "".join(f"{100.0 * figure:>10.4g}" for figure in figures)
-            lines.append(f"{name + suffix:<28}{shown}{gap.noises:>13.3g}")
+            shown = "".join(f"{share(figure, 2, digits=3):>14}" for figure in figures)
+            lines.append(f"{name + suffix:<28}{shown}{factor(gap.noises):>13}")
     if found.open_channels and found.verdict == "named":
         lines.append(f"what stays is more than noise: {', '.join(found.open_channels)}")
     lines += [f"made worse: {place}" for place in found.worse[:_MOST_WORSE]]

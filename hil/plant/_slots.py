@@ -77,6 +77,11 @@ def _without_effects() -> npt.NDArray[np.float64]:
 _PLAIN = _without_effects()
 
 
+def pack_nothing() -> npt.NDArray[np.float64]:
+    """Parameter vector of no model: every number as it is where nothing is given, every effect off."""
+    return _PLAIN.copy()
+
+
 def pack(model: Model) -> npt.NDArray[np.float64]:
     """Parameter vector of a mechanical model; of a transfer-function model that of its torque path.
 

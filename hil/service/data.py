@@ -197,6 +197,7 @@ class PredictedCriterion(_Data):
     margin: float | None = None
     title: str = ""
     reason: str = ""
+    source: str = Field("plan", description="plan, or device: what any device must do")
 
 
 class LoopData(_Data):

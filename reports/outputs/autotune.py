@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from hil.analysis.diagnosis import Diagnosis
 from hil.analysis.tuning import Confirmation, RefinedRun
+from hil.core.digits import share
 
 Stage = Literal["consent", "identify", "before", "diagnose", "tune", "confirm"]
 
@@ -107,12 +108,12 @@ def closing_verdict(closing: Closing) -> str:
     before, best = closing.before_worst, closing.best
     if best is None:
         return f"No controller was confirmed: {closing.ended or 'not yet'}."
-    own = "" if before is None else f"; the plan's own controller has {100 * before:.1f} % on that bench"
+    own = "" if before is None else f"; the plan's own controller has {share(before)} on that bench"
     how = "as predicted" if closing.agrees else "not as predicted"
     names = ", ".join(name.replace(".", " ") for name in closing.traded)
     less = f" Less margin than before have: {names}." if names else ""
     return (
-        f"Worst margin measured {100 * best.worst:.1f} % (round {closing.best_round}, run {best.number}), "
+        f"Worst margin measured {share(best.worst)} (round {closing.best_round}, run {best.number}), "
         f"{how}{own}.{less} Ended: {closing.ended or 'not yet'}."
     )
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hil.analysis.campaigns import Findings, OfController, OfCriterion, Share, Worst
+from hil.core.digits import share as percent
 
 QUANTILES = (0.01, 0.05, 0.5, 0.95, 0.99)
 OWN = "the plan's own"
@@ -112,7 +113,7 @@ def text_of(found: Findings, *, random: bool, wanted: float | None, out: str) ->
         if one.worst:
             worst = one.worst[0]
             what = f"simulation {worst.simulation}, {worst.binding}"
-            lines.append(f"  worst: {what}, margin {100 * worst.margin:.1f} %")
+            lines.append(f"  worst: {what}, margin {percent(worst.margin)}")
     for words, count in list(found.errors.items())[:3]:
         lines.append(f"{count} with: {words}")
     if wanted is not None:

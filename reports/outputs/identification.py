@@ -12,6 +12,7 @@ from hil.analysis.control_design import resonance_hz
 from hil.analysis.frequency_response import Experiment, frf_to_csv
 from hil.analysis.identification import CHAINS, Identification
 from hil.core.channels import CHANNELS
+from hil.core.digits import share
 from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT
 from hil.core.model import model_to_toml
@@ -175,7 +176,8 @@ def text_of(found: Identification, summary: dict[str, Any], out: Path) -> str:
         mark = "  <- taken" if c["chosen"] else ""
         name = f"{c['order']}{kind}"
         lines.append(
-            f"{name:<18}{c['held_out']:>7.4g}  {c['relative_excess']:>11.2%}  {c['whiteness']:>11.2g}{mark}"
+            f"{name:<18}{c['held_out']:>7.4g}  {share(c['relative_excess'], 2):>11}  "
+            f"{c['whiteness']:>11.2g}{mark}"
         )
     if summary["chains"]:
         symbols = [CHANNELS[o].symbol for o in frf.outputs]

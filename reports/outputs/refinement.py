@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from hil.analysis.tuning import RefinedRun, Refinement
+from hil.core.digits import share
 
 
 def refinement_summary(found: Refinement, asked: Mapping[str, Any]) -> dict[str, Any]:
@@ -33,7 +34,7 @@ def _run(run: RefinedRun) -> dict[str, Any]:
 
 
 def refinement_rows(found: Refinement) -> list[tuple[str, ...]]:
-    """For each run: number, radius, worst margin in % predicted, expected, measured; decision and reason."""
+    """For each run: number, radius, worst margin predicted, expected, measured; decision and reason."""
     rows = []
     for run in found.runs:
         worst = (_worst(margins) for margins in (run.predicted.margins, run.expected, run.measured))
@@ -51,9 +52,10 @@ def refinement_verdict(found: Refinement) -> str:
     gained = found.best.worst - found.runs[0].worst
     return (
         f"Run {found.best.number} of {len(found.runs)} is the best: worst margin measured "
-        f"{100 * found.best.worst:.1f} %, {100 * gained:.1f} more than the first run's. Ended: {found.ended}."
+        f"{share(found.best.worst)}, {share(gained)} of a limit more than the first run's. "
+        f"Ended: {found.ended}."
     )
 
 
 def _worst(margins: Mapping[str, float]) -> str:
-    return f"{100 * min(margins.values()):.2f}" if margins else "–"
+    return share(min(margins.values()), 2) if margins else "–"

@@ -10,6 +10,7 @@ import numpy as np
 
 from hil.analysis.tuning import RefinedRun, Standing, Tuning, front_of, metrics_of, point_of, values_of
 from hil.core.controller import Controller, controller_to_toml
+from hil.core.digits import share
 from hil.core.result import Segment
 from reports import drawings
 
@@ -150,7 +151,7 @@ def text_of(found: Tuning, out: str) -> str:
     columns = "".join(f"{name:>16}" for name in names)
     lines = [f"{'margin, least of ' + _cars(found):<{width}}{columns}"]
     for criterion in found.trial.driven.criteria:
-        cells = "".join(f"{100 * one.least_margin(criterion.id):>14.1f} %" for one in found.shown)
+        cells = "".join(f"{share(one.least_margin(criterion.id)):>16}" for one in found.shown)
         lines.append(f"{criterion.id:<{width}}{cells}")
     lines.append("")
     own = values_of(found.trial.start)
@@ -164,7 +165,7 @@ def verdict(found: Tuning) -> str:
     """What came out, in a sentence or two."""
     worst, before = found.chosen.worst, found.start.worst
     told = (
-        f"Worst margin {100 * worst.worst:.1f} % ({worst.binding}, {_car(worst.draw)}); "
+        f"Worst margin {share(worst.worst)} ({worst.binding}, {_car(worst.draw)}); "
         f"the plan's own controller has {_margin(found.start)} ({before.binding or 'not run'}, "
         f"{_car(before.draw)})."
     )
@@ -174,7 +175,7 @@ def verdict(found: Tuning) -> str:
 
 
 def _margin(one: Standing) -> str:
-    return f"{100 * one.worst.worst:.1f} %" if one.worst.feasible else "none within the hard limits"
+    return share(one.worst.worst) if one.worst.feasible else "none within the hard limits"
 
 
 def _car(number: int) -> str:

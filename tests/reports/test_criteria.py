@@ -57,3 +57,11 @@ def test_no_value_shows_as_a_dash_with_its_reason(result: RunResult) -> None:
 def test_words_for_messages() -> None:
     failed = CriterionResult(id="a.b", value=600.0, unit="N m", upper=564.0, verdict="fail")
     assert in_words(failed) == "600.0\u202fN\u202fm, allowed is ≤\u202f564\u202fN\u202fm"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(376.0, "33.3\u202f%"), (36255.0, "−63\u202ftimes"), (5e9, "<\u202f−1000\u202ftimes")],
+)
+def test_a_margin_far_beyond_its_limit_is_a_multiple(result: RunResult, value: float, text: str) -> None:
+    assert row(result, value=value, upper=564.0, verdict="fail").margin == text

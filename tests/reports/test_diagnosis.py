@@ -25,7 +25,7 @@ from hil.analysis.diagnosis import (
     Where,
 )
 from hil.core.channels import OUTPUTS
-from hil.core.model import EffectUse, load_model
+from hil.core.model import EffectUse, Model, load_model
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
 from reports.diagnosis_content import headline, lead, parts
 from reports.diagnosis_figures import overlay_figures
@@ -157,3 +157,35 @@ def test_a_recording_shorter_than_the_window_is_drawn_whole(found: Diagnosis) ->
     short = Overlay("short", 1e-3, np.zeros(200), swing, 0.5 * swing, 0.99 * swing)
     figures = overlay_figures(short)
     assert [len(trace.x) for trace in figures[0].traces] == [200, 200, 200]
+
+
+def test_why_no_step_is_judged_is_of_this_model(found: Diagnosis) -> None:
+    """No consequences alone do not mean that the load is recorded."""
+    rigid = Model("rigid", {"motor_inertia": 0.05, "gear_ratio": 9.0, "vehicle_inertia": 300.0})
+    for model, said in ((MODEL, ""), (rigid, "The model's axle is rigid")):
+        bare = dataclasses.replace(found, model=model, consequences={})
+        (part,) = (one for one in parts(bare) if one.id == "consequences")
+        assert part.text.startswith(said)
+        assert "recordings" not in part.text
+
+
+def test_gaps_over_next_to_no_noise_have_no_digits_that_mean_nothing(found: Diagnosis) -> None:
+    """Recordings of a simulation have hardly any noise, and effects any evidence."""
+    bare = {c: ChannelGap(0.3, 1e-9) for c in (MOTOR, SHAFT)}
+    (effect,) = found.effects
+    shown = dataclasses.replace(
+        found,
+        gap_before=bare,
+        gap_after=bare,
+        holdout_after={},
+        holdout_before={},
+        effects=(dataclasses.replace(effect, drop=2.9e19),),
+        by_chance=11.0,
+        considered=(Considered("dead_time", "", 2.9e19, 3392320.78, "not fitted"),),
+    )
+    assert "leaves > 1000 times the noise at most" in lead(shown)
+    text = {part.id: part for part in parts(shown)}
+    assert "more than 11 noise variances" in text["effects"].text
+    assert "> 1000 times as much or more" in text["effects"].text
+    assert text["considered"].tables[0].rows[0][1:3] == (">\u202f10⁶", ">\u202f1000")
+    assert "e+" not in " ".join(cell for table in text["gap"].tables for row in table.rows for cell in row)

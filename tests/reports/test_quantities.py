@@ -49,3 +49,23 @@ def test_file_sizes() -> None:
 @pytest.mark.parametrize(("share", "said"), [(0.001, "<1%"), (0.26, "26%"), (0.99, "99%"), (0.995, ">99%")])
 def test_nothing_is_quite_certain(share, said):
     assert quantities.chance(share) == said
+
+
+@pytest.mark.parametrize(
+    ("share", "text"),
+    [
+        (0.123, "12.3\u202f%"),
+        (-63.279, "−63\u202ftimes"),
+        (-5.3e-7, "−5\u202f×\u202f10⁻⁵\u202f%"),
+        (None, "–"),
+        (math.nan, "–"),
+    ],
+)
+def test_shares_are_set_with_thin_spaces_and_a_true_minus(share: float | None, text: str) -> None:
+    assert quantities.share(share) == text
+
+
+def test_a_factor_has_digits_that_mean_something() -> None:
+    assert quantities.factor(1.0512) == "1.05"
+    assert quantities.factor(3392320.78) == ">\u202f1000"
+    assert quantities.factor(None) == "–"

@@ -6,6 +6,7 @@ from hil.analysis.diagnosis.data._sanity import examine
 from hil.analysis.diagnosis.data._thresholds import LEAST_SAMPLES
 from hil.analysis.diagnosis.data._trace import unbroken
 from hil.analysis.diagnosis.search._thresholds import BOOTSTRAP_DRAWS
+from hil.analysis.diagnosis.tell._consequences import why_no_step
 from hil.analysis.diagnosis.tell._result import (
     INTERRUPTED,
     Alternative,
@@ -33,4 +34,5 @@ __all__ = [
     "diagnose",
     "examine",
     "unbroken",
+    "why_no_step",
 ]

@@ -48,11 +48,13 @@ CHECKS = {
     "tracking": _TESTS.format("search/test_tracking.py"),
     "wandering": _TESTS.format("search/test_wandering.py"),
     "width": _TESTS.format("search/test_width.py"),
+    "confidence": _TESTS.format("tell/test_confidence.py"),
     "consequences": _TESTS.format("tell/test_consequences.py"),
     "drift": _TESTS.format("tell/test_drift.py"),
     "least": _TESTS.format("tell/test_least.py"),
     "named": _TESTS.format("tell/test_named.py"),
     "separating": _TESTS.format("tell/test_separating.py"),
     "verdict": _TESTS.format("tell/test_verdict.py"),
+    "lines": _TESTS.format("tell/test_lines.py"),
     "words": _TESTS.format("tell/test_words.py"),
 }

@@ -15,6 +15,7 @@ import numpy.typing as npt
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.analysis.identification._order import Candidate
+from hil.core.digits import share
 from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]
@@ -77,8 +78,8 @@ def judge(frf: FrequencyResponse, taken: Candidate) -> Judgement:
         )
     elif taken.excess > LARGEST_EXCESS:
         warnings.append(
-            f"on frequencies left out of the fit the model is wrong by {taken.excess:.0%} rms beyond noise "
-            f"({LARGEST_EXCESS:.0%} is allowed): look at the figures where"
+            f"on frequencies left out of the fit the model is wrong by {share(taken.excess, 0)} rms beyond "
+            f"noise ({LARGEST_EXCESS:.0%} is allowed): look at the figures where"
         )
     if distortion and (worst := {o: d for o, d in distortion.items() if d > LARGEST_DISTORTION}):
         warnings.append(
@@ -117,7 +118,7 @@ def _refuse_hopeless(misfit: dict[str, float], distortion: dict[str, float] | No
 
 
 def _shares(values: dict[str, float]) -> str:
-    return ", ".join(f"{value:.0%} ({name})" for name, value in values.items())
+    return ", ".join(f"{share(value, 0)} ({name})" for name, value in values.items())
 
 
 def _misfit(frf: FrequencyResponse, found: Fit) -> list[float]:

@@ -12,8 +12,8 @@ from hil.core.result import CriterionResult
 class Agreement:
     """One criterion, predicted and measured.
 
-    `apart` is the distance as a share of the limit where there is one, else of what was predicted; None where
-    one of them has no value.
+    `difference` is measured less predicted, in the criterion's unit; `apart` its size as a share of the
+    limit, of the larger of both values where there is none or it is zero. None where one has no value.
     """
 
     id: str
@@ -21,6 +21,18 @@ class Agreement:
     predicted: CriterionResult
     measured: CriterionResult
     apart: float | None
+
+    @property
+    def difference(self) -> float | None:
+        """By how much more was measured than predicted, in `unit`."""
+        if self.predicted.value is None or self.measured.value is None:
+            return None
+        return self.measured.value - self.predicted.value
+
+    @property
+    def of_limit(self) -> bool:
+        """Whether `apart` is a share of a limit."""
+        return bool(_limit(self.predicted))
 
 
 @dataclass(frozen=True)
@@ -60,6 +72,11 @@ def confirmation(
 def _apart(predicted: CriterionResult, measured: CriterionResult) -> float | None:
     if predicted.value is None or measured.value is None:
         return None
-    limit = predicted.upper if predicted.upper is not None else predicted.lower
-    size = abs(predicted.value if limit is None else limit)
-    return abs(measured.value - predicted.value) / max(size, 1e-12)
+    difference = abs(measured.value - predicted.value)
+    size = abs(_limit(predicted)) or max(abs(measured.value), abs(predicted.value))
+    return difference / size if difference else 0.0
+
+
+def _limit(criterion: CriterionResult) -> float:
+    """The limit that counts, 0 without one."""
+    return (criterion.upper if criterion.upper is not None else criterion.lower) or 0.0

@@ -21,6 +21,7 @@ from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Trial, Tried
 from hil.analysis.tuning._trust_step import Promise, TrustStep
 from hil.core.controller import Controller
+from hil.core.digits import share as percent
 from hil.core.result import CriterionResult
 
 Array = npt.NDArray[np.float64]
@@ -181,7 +182,7 @@ class _Refining:
             return "stopped"
         gain = found.worst - self._runs[self._best].worst
         if gain < self._patience.least_gain:
-            return f"the worst margin would grow by no more than {100 * max(gain, 0.0):.2f} % of a limit"
+            return f"the worst margin would grow by no more than {percent(max(gain, 0.0), 2)} of a limit"
         return self._carried_out(found, self._decided)
 
     def _carried_out(self, promise: Promise, decide: Callable[[RefinedRun], tuple[Decision, str]]) -> str:
@@ -222,14 +223,14 @@ class _Refining:
         return "two runs in a row gained nothing" if self._in_vain > 1 else ""
 
     def _first_decided(self, run: RefinedRun) -> tuple[Decision, str]:
-        return "first", f"the prediction; worst margin {_percent(run.worst)}"
+        return "first", f"the prediction; worst margin {percent(run.worst, 2)}"
 
     def _decided(self, run: RefinedRun) -> tuple[Decision, str]:
         """Whether it is the new centre, and how large the region is from now on."""
         before = self._runs[self._best].worst
         gain, expected = run.worst - before, min(run.expected.values()) - before
         share = gain / expected
-        words = f"gained {_percent(gain)}, expected {_percent(expected)}"
+        words = f"gained {percent(gain, 2)}, expected {percent(expected, 2)}"
         self._in_vain = 0 if gain >= self._patience.least_gain else self._in_vain + 1
         if share >= AS_GOOD:
             self._radius = min(_GROW * self._radius, LARGEST_RADIUS)
@@ -242,7 +243,3 @@ class _Refining:
 
 def _numbers(margins: Mapping[str, float]) -> Array:
     return np.array(list(margins.values()))
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.2f} %"

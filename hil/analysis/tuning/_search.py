@@ -18,6 +18,7 @@ from hil.analysis.tuning._ascent import Ascent, scatter, score
 from hil.analysis.tuning._parameters import Space
 from hil.analysis.tuning._pool import Pool
 from hil.analysis.tuning._trial import Tried
+from hil.core.digits import share
 
 Array = npt.NDArray[np.float64]
 
@@ -192,7 +193,7 @@ class Search:
             if score(tried) > self._best_score:
                 self.best, self._best_score = np.array(point), score(tried)
                 self._best_worst = min(one.worst for one in tried)
-        worst = f"worst margin {100 * self._best_worst:.1f} %"
+        worst = f"worst margin {share(self._best_worst)}"
         self._show(f"{self._doing}: {self._pool.runs} runs, {worst}", None)
         return each
 

@@ -129,6 +129,7 @@ class Effect:
         forms: laws of other authors, each the numbers that it moves with the values to try them from: tried
             by a diagnosis where the effect as it is leaves more than noise, fitted in every other way.
         least: the smallest size worth naming; None: any that the data prove.
+        needs_reversals: recordings in which the axle always turns one way hide it.
         derived: numbers that users know beside the fitted ones: of its values, name (with its unit): number.
     """
 
@@ -152,6 +153,7 @@ class Effect:
     many_laws: bool = False
     forms: tuple[Mapping[str, tuple[float, ...]], ...] = ()
     least: Least | None = None
+    needs_reversals: bool = False
     derived: Callable[[Mapping[str, float]], Mapping[str, float]] | None = None
     source: str = ""
 

@@ -20,7 +20,8 @@ _TAIL = """
 ## What cannot be told apart
 Dead time and lag (the separation is in high-frequency amplitude), Coulomb friction and running resistance
 when the axle always turns one way, Coulomb and Stribeck, bush mode and cubic stiffness at one amplitude,
-viscous drag and running resistance at one speed, tyre slip and a softer tyre at one speed. Where the data at
+viscous drag and running resistance at one speed, tyre slip and a softer tyre at one speed, torque gain and a
+common factor of all inertias by speeds alone. Where the data at
 hand cannot separate two effects, the honest answer is both names and the test that would separate them.
 """
 
@@ -54,6 +55,8 @@ def _section(effect: Effect) -> str:
     lines.append(f"\nIn data: {effect.signature[:1].lower()}{effect.signature[1:]} ")
     lines.append(f"Shown by: {effect.shown_by[:1].lower()}{effect.shown_by[1:]}")
     lines.append(f" For models of kind {', '.join(effect.needs)}.")
+    if effect.needs_reversals:
+        lines.append(" An axle that always turns one way hides it.")
     if effect.least is not None:
         unit = effect.least.of or effect.parameter(effect.acting()[0]).unit
         least = f"{effect.least.amount:g} {unit}".strip()

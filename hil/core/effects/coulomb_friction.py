@@ -113,7 +113,8 @@ EFFECT = Effect(
     stage=Stage.ROTOR,
     summary="Dry friction on the rotor side, with an optional Stribeck peak, asymmetry and angle of turning.",
     signature="A constant torque against the motion; at standstill small torques move nothing.",
-    shown_by="Speed reversals: an axle that always turns one way hides it.",
+    shown_by="Speed reversals.",
+    needs_reversals=True,
     source="Armstrong-Hélouvry, Dupont, Canudas de Wit, Automatica 30 (1994); P. R. Dahl (1968); "
     "Canudas de Wit, Olsson, Åström, Lischinsky, IEEE Trans. Automatic Control 40 (1995)",
     parameters=(

@@ -24,7 +24,7 @@ EFFECT = Effect(
     stage=Stage.TORQUE_PATH,
     summary="The acting torque is gain times the request, as with a wrong torque constant.",
     signature="All outputs off by one factor at all frequencies and amplitudes, from the motor on.",
-    shown_by="Any chirp with shaft torque measured; speeds alone cannot tell it from all inertias.",
+    shown_by="Any chirp with shaft torque measured.",
     parameters=(
         Parameter("gain", "", 0.01, 100.0, "acting per requested torque", typical=0.01, within=(0.2, 5.0)),
     ),

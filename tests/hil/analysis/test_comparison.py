@@ -48,8 +48,8 @@ def test_values_stand_beside_each_other_with_their_difference_from_the_first():
     assert row.values == (400.0, 300.0, 396.0)
     assert row.relative == pytest.approx((0.0, -0.25, -0.01))
     assert found.distances == pytest.approx((0.0, 0.25, 0.01))  # a relative criterion does not count twice
-    assert value_text(row, 1) == "300.0 (−25.0 %)"
-    assert lead(found) == "Mean distance of the criteria from bench: base 25 %, augmented 1 %."
+    assert value_text(row, 1) == "300.0 (−25.0\u202f%)"
+    assert lead(found) == "Mean distance of the criteria from bench: base 25.0\u202f%, augmented 1.0\u202f%."
 
 
 def test_a_run_that_began_later_is_aligned_at_its_step():

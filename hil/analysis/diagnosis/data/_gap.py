@@ -18,6 +18,7 @@ from hil.analysis.diagnosis.data._thresholds import (
 )
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import OUTPUTS
+from hil.core.digits import factor, multiple
 
 Array = npt.NDArray[np.float64]
 
@@ -105,7 +106,7 @@ def made_worse(before: GapMap, after: GapMap) -> list[str]:
         old, new = before.by_band[row, column, band], after.by_band[row, column, band]
         words.append(
             f"{OUTPUTS[column]} at {low:g}-{high:g} Hz in {before.recordings[row]}: "
-            f"from {old:.2g} to {new:.2g} times the noise"
+            f"from {factor(old)} to {multiple(new)} the noise"
         )
     return words
 

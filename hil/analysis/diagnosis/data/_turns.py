@@ -21,6 +21,7 @@ from hil.analysis.diagnosis.data._thresholds import (
 )
 from hil.analysis.diagnosis.data._trace import Trace
 from hil.core.channels import INPUT, OUTPUTS
+from hil.core.digits import multiple
 from hil.core.errors import BadInputError
 
 Array = npt.NDArray[np.float64]
@@ -77,7 +78,7 @@ def refused_push(pushes: dict[str, list[Pair]], fine: list[str]) -> BadInputErro
     for channel, pairs in told.items():
         if channel in fine and all(p.correlation > -AGAINST and p.factor > TOO_FAST for p in pairs):
             return BadInputError(
-                f"{channel} changes {pairs[0].factor:.3g} times as fast as the torque can make it",
+                f"{channel} changes {multiple(pairs[0].factor)} as fast as the torque can make it",
                 fix="is it in rpm, or the model of another axle?",
             )
     return None

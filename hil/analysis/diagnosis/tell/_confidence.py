@@ -26,9 +26,10 @@ from hil.analysis.diagnosis.tell._thresholds import (
     LESS_SURE,
     NOISELESS,
     OPEN_CONFIDENCE,
+    STANDSTILL_NOISES,
     WORTH_A_PLAN,
 )
-from hil.core.effects import EFFECTS
+from hil.core.effects import EFFECTS, Effect
 from hil.core.model import EffectUse
 
 
@@ -102,8 +103,8 @@ def alternatives_of(found: Found, verdict: str) -> tuple[Alternative, ...]:
         if not others or key_of(others[0]) in kept:
             continue
         use = others[0]
-        text, plan = EFFECTS[use.id].shown_by, None
         problem = found.evidence.problem
+        text, plan = _experiment(EFFECTS[use.id], problem), None
         torque = max(float(np.max(np.abs(t.torque))) for t in problem.traces)
         # Without any torque in the recordings nobody knows what a test may ask of this bench.
         if confidence > WORTH_A_PLAN and mine is not one and torque > LEAST_TORQUE_NM:
@@ -119,6 +120,25 @@ def alternatives_of(found: Found, verdict: str) -> tuple[Alternative, ...]:
         name = "_".join(part for part in ("separate", *key_of(use)) if part) + ".yaml" if plan else None
         kept[key_of(use)] = Alternative(use, confidence, text, name, plan)
     return tuple(sorted(kept.values(), key=lambda a: -a.confidence)[:5])
+
+
+def _experiment(effect: Effect, problem: Problem) -> str:
+    """Which experiment shows an effect, and that these recordings hide it where they do."""
+    if effect.needs_reversals and turns_one_way(problem):
+        return f"{effect.shown_by} In these recordings the axle always turns one way, which hides it."
+    return effect.shown_by
+
+
+def turns_one_way(problem: Problem) -> bool:
+    """Whether the axle turns to one side alone, beyond noise; False where a recording has no speed."""
+    ways: set[int] = set()
+    for trace in problem.traces:
+        column = 0 if trace.has[0] else 1
+        if not trace.has[column]:
+            return False
+        level = STANDSTILL_NOISES * float(problem.noise[column]) / np.sqrt(trace.block)
+        ways |= {sign for sign in (-1, 1) if np.any(sign * trace.measured[:, column] > level)}
+    return len(ways) == 1
 
 
 def _largest(problem: Problem, column: int) -> float:

@@ -25,15 +25,13 @@ def consequences(before: Model, after: Model, as_likely: Sequence[Model] = ()) -
     An open-loop step of `STEP_NM` from `STEP_FROM_RAD_S` wheel speed, the model before and after. The energy
     is the mean square within the band of what rings in the 5 s from the step on. It is not that of an
     acceptance run, in which a controller acts and which looks from 4 s after the step on, when nothing of
-    this rings. Nothing for a rigid axle, which neither overshoots nor rings, for a model whose load comes
-    from a recording (what its wheels would meet in a step is not in it), and for functions that do not give
-    both; no overshoot where little of the peak lasts: drag holds the motor then, the shaft carries nothing.
+    this rings. Nothing where `why_no_step` has a reason; no overshoot where little of the peak lasts: drag
+    holds the motor then, the shaft passes nothing on.
 
     Args:
         as_likely: models that the data allow as well as `after`: their scatter is its standard error.
     """
-    functions = after.transfer_functions
-    if after.kind == "rigid" or after.load_input or (functions and not {_MOTOR, _SHAFT} <= {*functions}):
+    if why_no_step(after):
         return {}
     shown = [before, after, *(as_likely if len(as_likely) > 1 else ())]
     old, new, *drawn = [_figures(outputs) for outputs in _stepped(shown)]
@@ -43,6 +41,20 @@ def consequences(before: Model, after: Model, as_likely: Sequence[Model] = ()) -
         if len(scatter) > 1:
             value["after_standard_error"] = float(np.std(scatter, ddof=1))
     return result
+
+
+def why_no_step(model: Model) -> str:
+    """Why no torque step of a model is judged, in a sentence; "" where it is."""
+    functions = model.transfer_functions
+    if model.load_input:
+        return "The model takes its load from recordings: what its wheels meet in a step is not in it."
+    if model.kind == "rigid":
+        return "The model's axle is rigid: it neither overshoots nor rings."
+    if functions and (missing := [name for name in (_MOTOR, _SHAFT) if name not in functions]):
+        return (
+            f"The model has no transfer function of {' and '.join(missing)}: a step of it cannot be judged."
+        )
+    return ""
 
 
 def _stepped(models: Sequence[Model]) -> Array:

@@ -15,6 +15,7 @@ from hil.analysis.diagnosis.fit._thresholds import TOLERANCE
 from hil.analysis.diagnosis.search._from_base import moved
 from hil.analysis.diagnosis.search._search import Found
 from hil.analysis.diagnosis.tell._result import NamedEffect, Start
+from hil.core.digits import multiple
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
@@ -56,7 +57,7 @@ def suiting_a_gap(corrected: Mapping[str, Correction], gaps: Mapping[str, float]
     if not (corrected and gaps):
         return []
     worst = max(gaps, key=lambda channel: gaps[channel])
-    left = f"{gaps[worst]:.3g} times its noise left in {worst}"
+    left = f"{multiple(gaps[worst])} its noise left in {worst}"
     suits, theirs = (
         ("it suits", "its standard error") if len(corrected) == 1 else ("they suit", "their standard errors")
     )

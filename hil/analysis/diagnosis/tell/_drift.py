@@ -16,6 +16,7 @@ from hil.analysis.diagnosis.data._trace import Trace
 from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.tell._thresholds import DRIFT_SHARE, DRIFTS_NOISES, SHARED
 from hil.core.channels import OUTPUTS
+from hil.core.digits import multiple
 
 Array = npt.NDArray[np.float64]
 
@@ -47,7 +48,7 @@ def drifts(problem: Problem, simulated: Sequence[Array]) -> list[str]:
         lasts, noises = len(trace.torque) * trace.dt, swing / float(problem.noise[column])
         told.append(
             f"{OUTPUTS[column]} drifts slowly beside all else: by {swing:.3g} {_UNITS[column]} within the "
-            f"{lasts:.3g} s of {trace.name}, {noises:.2g} times its noise"
+            f"{lasts:.3g} s of {trace.name}, {multiple(noises)} its noise"
         )
     return told
 

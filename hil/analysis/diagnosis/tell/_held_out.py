@@ -21,6 +21,7 @@ from hil.analysis.diagnosis.search._tracking import track
 from hil.analysis.diagnosis.tell._result import Verdict
 from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES, EVENT_NOISES, EVENT_S
 from hil.core.channels import OUTPUTS
+from hil.core.digits import multiple
 
 Array = npt.NDArray[np.float64]
 Gaps = dict[str, ChannelGap]
@@ -64,12 +65,12 @@ class HeldOut:
             return ""
         said = []
         if channels := self.open(verdict):
-            kept = ", ".join(f"{self.after[c].noises:.3g} times its noise in {c}" for c in channels)
+            kept = ", ".join(f"{multiple(self.after[c].noises)} its noise in {c}" for c in channels)
             said.append(f"held-out recordings leave {kept}")
         if verdict == "none" and self.event is not None and self.event.noises > EVENT_NOISES:
             e = self.event
             said.append(
-                f"held-out recording {e.recording} is off by {e.noises:.3g} times the noise in {e.channel} "
+                f"held-out recording {e.recording} is off by {multiple(e.noises)} the noise in {e.channel} "
                 f"at {e.time_s:.4g} s"
             )
         return f"{'; '.join(said)}: {_WHAT_TO_DO}" if said else ""

@@ -26,6 +26,7 @@ from hil.analysis.diagnosis.tell._result import Diagnosis, NamedEffect, Overlay,
 from hil.analysis.diagnosis.tell._thresholds import CHANNEL_NOISES
 from hil.analysis.diagnosis.tell._words import signature
 from hil.core.channels import OUTPUTS
+from hil.core.digits import multiple, share
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
@@ -122,8 +123,8 @@ class Judged:
         """How much stays that neither the model nor a proven noise accounts for, and what it looks like."""
         gaps = back.after.gaps
         worst = max(gaps, key=lambda channel: gaps[channel].noises)
-        share = f"{100.0 * gaps[worst].gap:.3g} % of {worst}"
-        size = f"{share} stay unexplained, {gaps[worst].noises:.3g} times its noise"
+        gap = gaps[worst]
+        size = f"{share(gap.gap, 2, digits=3)} of {worst} stay unexplained, {multiple(gap.noises)} its noise"
         tried = self.found.best.hypothesis.ids
         if not tried and self.unfinished:
             fits = [f for step in self.found.steps[:1] for f in step.fits[:1]]

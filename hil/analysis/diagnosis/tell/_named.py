@@ -18,6 +18,7 @@ from hil.analysis.diagnosis.tell._given_back import GivenBack
 from hil.analysis.diagnosis.tell._result import Considered, NamedEffect
 from hil.analysis.diagnosis.tell._thresholds import NOTHING_SIGMAS
 from hil.analysis.diagnosis.tell._words import Where, where
+from hil.core.digits import multiple
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse, Model
 
@@ -138,5 +139,5 @@ def _reason(one: Fit | None, gain: float, fits: list[Fit]) -> str:
     if one is None:
         return "explains far less than the best by its linearised score; not fitted"
     if fits and one is not fits[0]:
-        return f"leaves {np.sqrt(one.cost / fits[0].cost):.3g} times the gap of {fits[0].hypothesis.ids[-1]}"
+        return f"leaves {multiple(np.sqrt(one.cost / fits[0].cost))} the gap of {fits[0].hypothesis.ids[-1]}"
     return "closes too small a share of what is left"

@@ -17,6 +17,9 @@ DRAWN_MODELS: Annotated[
 LEAST_TORQUE_NM: Annotated[
     float, Means("N m", "without more in the recordings nobody knows what a test may ask", "separating")
 ] = 0.1
+STANDSTILL_NOISES: Annotated[
+    float, Means("noise levels", "a speed below it is no turning to either side", "confidence")
+] = 6.0
 WORTH_A_PLAN: Annotated[float, Means("probability", "a less likely rival gets no plan", "separating")] = 0.02
 CLOSED_WELL: Annotated[
     float, Means("gap over noise floor", "below it only the least doubt stays", "blind")
@@ -174,8 +177,15 @@ NOTHING_SIGMAS: Annotated[
     float, Means("standard errors", "an effect whose own number is less is named for another of its", "named")
 ] = 2.0
 WORDS_SEGMENT: Annotated[int, Means("blocks", "of a spectrum that is told in words", "words")] = 1024
-SLOW_BINS: Annotated[int, Means("frequencies", "what lies below drifts, it is no line", "words")] = 2
-LINE: Annotated[float, Means("times its neighbours", "a spectral line stands so far above them", "words")] = (
+STRETCH: Annotated[
+    int, Means("blocks", "of a stretch of a recording, slow ones beside fast ones", "lines")
+] = 256
+LINE_WIDTH: Annotated[int, Means("frequencies", "lines that are no further apart are one line", "lines")] = 2
+NEIGHBOURS: Annotated[
+    int, Means("frequencies", "to either side, whose median a line is held against", "lines")
+] = 20
+SLOW_BINS: Annotated[int, Means("frequencies", "what lies below drifts, it is no line", "lines")] = 2
+LINE: Annotated[float, Means("times its neighbours", "a spectral line stands so far above them", "lines")] = (
     8.0
 )
 CHANNEL_SHARE: Annotated[
@@ -188,10 +198,10 @@ DEPENDS: Annotated[
     float, Means("correlation", "of logarithms: above it what is left depends on torque or speed", "words")
 ] = 0.75
 SPEED_SPREAD: Annotated[
-    tuple[float, float], Means("percentiles", "of the speed: its slow and fast ends", "words")
+    tuple[float, float], Means("percentiles", "of the speed: its slow and fast ends", "lines")
 ] = (20.0, 80.0)
 SPEEDS_DIFFER: Annotated[
-    float, Means("fast over slow end", "above it a line that follows the speed would have moved", "words")
+    float, Means("fast over slow end", "above it a line that follows the speed would have moved", "lines")
 ] = 1.3
 EVERYWHERE: Annotated[
     float,

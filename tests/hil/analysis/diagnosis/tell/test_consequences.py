@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import signal
 
-from hil.analysis.diagnosis.tell._consequences import consequences
+from hil.analysis.diagnosis.tell._consequences import consequences, why_no_step
 from hil.analysis.diagnosis.tell._result import derived_of
 from hil.core.model import EffectUse, Model
 from hil.plant import Start, simulate
@@ -46,6 +46,11 @@ def test_a_rigid_axle_neither_overshoots_nor_rings() -> None:
     inertias = {k: MODEL.parameters[k] for k in ("motor_inertia", "gear_ratio", "vehicle_inertia")}
     rigid = Model("rigid", {**inertias, "viscous_drag": 0.01, "torque_delay": 0.0})
     assert consequences(rigid, rigid) == {}
+    assert "rigid" in why_no_step(rigid)
+
+
+def test_a_model_that_is_stepped_has_no_reason_against_it() -> None:
+    assert why_no_step(MODEL) == ""
 
 
 def test_no_overshoot_over_a_shaft_torque_that_does_not_last() -> None:

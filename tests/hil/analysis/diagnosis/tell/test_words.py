@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
-from hil.analysis.diagnosis.data._gap import gap_map
+from hil.analysis.diagnosis.data._gap import CONDITIONS, GapMap, gap_map
 from hil.analysis.diagnosis.fit._coordinates import Hypothesis
-from hil.analysis.diagnosis.fit._fit import fit
+from hil.analysis.diagnosis.fit._fit import Fit, fit
+from hil.analysis.diagnosis.fit._problem import Problem
 from hil.analysis.diagnosis.fit._simulated import simulated_samples
-from hil.analysis.diagnosis.tell._words import _speeds_differ, signature, where
+from hil.analysis.diagnosis.tell._words import _dependence, signature, where
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse
 from tests.hil.analysis.diagnosis.one_recording import MODEL, NOISE, one_problem
@@ -36,21 +36,42 @@ def test_what_is_left_is_told_by_its_channel() -> None:
     assert told.startswith(f"the gap is largest in {OUTPUTS[2]}")
 
 
-@pytest.mark.parametrize(
-    ("speeds", "differ"),
-    [
-        ((100.0, 100.0), False),
-        ((90.0, 110.0), False),
-        ((50.0, 150.0), True),
-        ((0.0, 100.0), True),
-        ((0.0, 0.0), False),
-    ],
-)
-def test_only_other_speeds_tell_whether_a_line_follows_them(
-    speeds: tuple[float, float], differ: bool
-) -> None:
+def _left(problem: Problem, errors: list[np.ndarray]) -> Fit:
+    """A fit that leaves these errors, blocks x 3 each recording."""
+    one = fit(problem, Hypothesis(MODEL), rounds=0)
+    kept = tuple(replace(e, rows=np.ravel(rows)) for e, rows in zip(one.errors, errors, strict=True))
+    return replace(one, errors=kept)
+
+
+def test_a_channel_that_was_not_recorded_is_never_the_worst() -> None:
+    """What noise leaves of the others may be less than is expected of it: nothing is more than that."""
     problem = one_problem()
     trace = problem.traces[0]
-    measured = trace.measured.copy()
-    measured[:, 0] = np.linspace(*speeds, len(measured))
-    assert _speeds_differ(replace(problem, traces=(replace(trace, measured=measured),))) == differ
+    samples, measured = trace.samples.copy(), trace.measured.copy()
+    samples[:, 1] = measured[:, 1] = np.nan
+    problem = replace(problem, traces=(replace(trace, samples=samples, measured=measured),))
+    errors = np.full(measured.shape, 0.9)
+    errors[:, 1] = 0.0
+    gaps = gap_map(problem.traces, problem.noise, [samples])
+    words = signature(problem, _left(problem, [errors]), gaps)
+    assert "largest in" in words
+    assert OUTPUTS[1] not in words
+
+
+def test_no_condition_is_the_strongest_of_one() -> None:
+    problem = one_problem()
+    errors = np.full(problem.traces[0].measured.shape, 2.0)
+    by = np.full((len(CONDITIONS), 3), np.nan)
+    by[3] = 5.0
+    gaps = GapMap(("one",), np.full((1, 3, 7), 5.0), by)
+    assert "strongest at" not in signature(problem, _left(problem, [errors]), gaps)
+
+
+def test_recordings_that_are_alike_tell_no_dependence() -> None:
+    problem = one_problem()
+    four = replace(problem, traces=problem.traces * 4)
+    errors = [
+        np.random.default_rng(i).normal(0.0, 1.0 + i, problem.traces[0].measured.shape) for i in range(4)
+    ]
+    kept = replace(_left(problem, errors[:1]), errors=tuple(_left(problem, [e]).errors[0] for e in errors))
+    assert _dependence(four, kept, 2) == ""

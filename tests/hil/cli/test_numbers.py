@@ -1,0 +1,64 @@
+"""Numbers of tables and sentences of commands (docs/reference/numbers.md)."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from hil.analysis.tuning import confirmation
+from hil.cli import _then_run
+from hil.cli._autotune_loop import _off
+from hil.cli._output import print_criteria
+from hil.core.recording import Recording
+from hil.core.result import CriterionResult
+
+
+def _result(id_: str, value: float, upper: float | None = None) -> CriterionResult:
+    verdict = "informational" if upper is None else "pass" if value <= upper else "fail"
+    return CriterionResult(id=id_, value=value, unit="N m", upper=upper, verdict=verdict)
+
+
+def test_margins_in_the_table_of_a_run_have_digits_that_mean_something() -> None:
+    page = Console(file=io.StringIO(), width=200)
+    far = (_result("a.peak", 376.0, 564.0), _result("b.peak", 36255.0, 564.0), _result("c.peak", 20.0, 1.0))
+    print_criteria(page, far)
+    text = page.file.getvalue()  # type: ignore[attr-defined]
+    for said in (" 33.3 % ", " -63 times ", " -19 times "):
+        assert said in text
+    assert "%%" not in text
+    assert "6328" not in text
+
+
+def test_a_difference_stands_in_its_unit_and_against_the_limit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Next to nothing was predicted of one criterion, which has no limit."""
+    predicted = [_result("a.peak", 300.0, 600.0), _result("b.energy", 1e-9)]
+    measured = [_result("a.peak", 330.0, 600.0), _result("b.energy", 0.3952982)]
+    page = Console(file=io.StringIO(), width=200)
+    monkeypatch.setattr(_then_run, "console", lambda: page)
+    ran = _then_run.Ran(
+        confirmation(predicted, measured, 0.02), Recording({}, Path("recording.mcap")), (), 0, "diagnosis"
+    )
+    _then_run.tell(ran)
+    text = page.file.getvalue()  # type: ignore[attr-defined]
+    rows = {
+        line.split()[0]: line.split()[1:]
+        for line in text.splitlines()
+        if ".peak" in line or ".energy" in line
+    }
+    assert rows["a.peak"][:7] == ["300", "330", "+30", "N", "m", "5.00", "%"]
+    assert rows["b.energy"][:6] == ["1e-09", "0.3953", "+0.395", "N", "m", "-"]
+    assert "of the larger value where there is none" in text
+
+
+def test_autotune_says_by_how_much_a_prediction_is_off_and_in_what() -> None:
+    predicted = [_result("a.peak", 300.0, 600.0), _result("b.energy", 1e-9)]
+    one = confirmation(predicted, [_result("a.peak", 330.0, 600.0)], 0.02)
+    assert _off(one) == "off by up to 5.00 % of its limit (a peak: +30 N m)"
+    both = confirmation(predicted, [_result("a.peak", 330.0, 600.0), _result("b.energy", 0.4)], 0.02)
+    assert _off(both) == "off by up to 100.00 % of the larger value, without a limit (b energy: +0.4 N m)"
+    assert _off(confirmation(predicted[:1], predicted[:1], 0.02)) == "not off at all"
