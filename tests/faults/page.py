@@ -30,7 +30,7 @@ _GOES_ON = """\
 What ends no run: single frames lost, doubled, swapped or late; garbage among the frames; a pause of the
 loop before anything is armed. *Torque does not follow* is noticed where the bench file limits
 `motor_torque_error_nm` (docs/reference/limits.md), or where a criterion of the plan sees it. A
-stuck speed is noticed when the speed is to change. A panel that is busy, or answers all with errors, is
+value that is stuck is noticed within 60 ms of torque, before that when it is to change. A panel that is busy, or answers all with errors, is
 heard: it ends a run where something is asked of it, in pre-flight or by a step `set_vehicle`.
 """
 
