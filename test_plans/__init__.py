@@ -3,6 +3,7 @@
 from test_plans.choices import Choices, controller_choices, named_controllers
 from test_plans.conductor import PROMPT_TIMEOUT_S, Array, Conductor, PlannedSegment, Quantity, Work
 from test_plans.criteria import Criterion
+from test_plans.device_checks import CHECKS
 from test_plans.judging import judge
 from test_plans.loading import library_controllers, library_plans, load_plan, plan_from_text
 from test_plans.metrics import METRICS, Metric, NoValueError
@@ -14,6 +15,7 @@ from test_plans.sequence import Sequence, library_sequences, load_sequence
 from test_plans.steps import STEPS, Step
 
 __all__ = [
+    "CHECKS",
     "METRICS",
     "PROMPT_TIMEOUT_S",
     "STEPS",

@@ -19,6 +19,14 @@ from test_plans.metrics import (
     StabilityTorqueRequest,
 )
 
+_TITLES = {
+    "response_time": "90 % of the step is reached",
+    "arrival": "What was asked for arrives",
+    "stability_oscillation": "Oscillation at the end, without the orders of the wheel",
+    "stability_torque_request": "Share of time at the torque limit, or against the request",
+}
+#: Names of the checks, as they end the ids of their criteria.
+CHECKS = tuple(_TITLES)
 #: What follows a step of each quantity.
 _FOLLOWS = {"driving_torque": "shaft_torque_nm", "motor_torque": "motor_torque_nm"}
 #: Of the time after the step: the mean at its end, and what is left for the response.
@@ -80,14 +88,6 @@ def is_step(segment: PlannedSegment) -> bool:
     """Whether a segment is a step of torque with time enough to judge what comes of it."""
     moved = segment.reference_before != segment.reference_after
     return segment.kind == "step" and moved and segment.end_s - segment.step_s >= _LEAST_S
-
-
-_TITLES = {
-    "response_time": "90 % of the step is reached",
-    "arrival": "What was asked for arrives",
-    "stability_oscillation": "Oscillation at the end, without the orders of the wheel",
-    "stability_torque_request": "Share of time at the torque limit, or against the request",
-}
 
 
 def _criterion(

@@ -8,6 +8,7 @@ import statistics
 from collections.abc import Iterable, Sequence
 
 from hil.service.data import TrendData, TrendPoint
+from test_plans import CHECKS
 
 #: Mean range of two values of a normal distribution, in standard deviations (ISO 7870-2, d2 for n = 2).
 _RANGE_OF_TWO = 1.128
@@ -19,11 +20,15 @@ _IN_95 = 1.959964  # standard deviations
 
 
 def trends(points: Iterable[tuple[str, TrendPoint]]) -> list[TrendData]:
-    """Trends by criterion, in the order in which criteria come first; points in the order of their runs."""
+    """Trends by criterion, in the order in which criteria come first, the checks of any device last.
+
+    Points are in the order of their runs.
+    """
     by_criterion: dict[str, list[TrendPoint]] = {}
     for criterion, point in points:
         by_criterion.setdefault(criterion, []).append(point)
-    return [_trend(criterion, some) for criterion, some in by_criterion.items()]
+    ordered = sorted(by_criterion, key=lambda criterion: criterion.rpartition(".")[2] in CHECKS)
+    return [_trend(criterion, by_criterion[criterion]) for criterion in ordered]
 
 
 def _trend(criterion: str, points: list[TrendPoint]) -> TrendData:

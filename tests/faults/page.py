@@ -29,9 +29,10 @@ readable up to the fault (after `hil recover` if need be), and no traceback.
 _GOES_ON = """\
 What ends no run: single frames lost, doubled, swapped or late; garbage among the frames; a pause of the
 loop before anything is armed. *Torque does not follow* is noticed where the bench file limits
-`motor_torque_error_nm` (docs/reference/limits.md), or where a criterion of the plan sees it. A
-value that is stuck is noticed within 60 ms of torque, before that when it is to change. A panel that is busy, or answers all with errors, is
-heard: it ends a run where something is asked of it, in pre-flight or by a step `set_vehicle`.
+`motor_torque_error_nm` (docs/reference/limits.md), or where a criterion of the plan sees it. A value
+that is stuck is noticed within 60 ms of torque, before that when it is to change. A panel that is busy,
+or answers all with errors, is heard: it ends a run where something is asked of it, in pre-flight or by a
+step `set_vehicle`.
 """
 
 Cell = tuple[FaultRow, str, Outcome, list[str]]
