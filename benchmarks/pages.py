@@ -52,7 +52,7 @@ def with_figures(page: str, part: str, first: str, printed: str) -> str:
     if part not in blocks(page):
         raise ValueError(f"the page has no block '<!-- figures: {part} -->'")
     lines = "\n".join(line.rstrip() for line in printed.strip("\n").splitlines())
-    block = f"<!-- figures: {part} -->\n{first}\n\n```\n{lines}\n```\n<!-- end of figures -->"
+    block = f"<!-- figures: {part} -->\n{first}\n\n```text\n{lines}\n```\n<!-- end of figures -->"
     return _BLOCK.sub(lambda found: block if found["part"] == part else found[0], page)
 
 
