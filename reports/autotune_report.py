@@ -72,7 +72,7 @@ def _effects(closing: Closing) -> Table:
                 continue
             error = quantities.number(effect.standard_error[name])
             number = value if isinstance(value, str) else quantities.number(value)
-            rows.append((effect.use.id, f"{100 * effect.confidence:.0f} %", name, number, error))
+            rows.append((effect.use.id, quantities.chance(effect.confidence), name, number, error))
     return Table(("effect", "chance", "parameter", "value", "standard error"), tuple(rows), 3)
 
 

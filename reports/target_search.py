@@ -39,10 +39,9 @@ def caution(found: Explanation) -> str:
         "what is ranked here is what could be, not what is. Only a recording decides (hil diagnose)."
     )
     if found.separating is not None:
-        level = quantities.number(found.separating.level, significant=2)
         text += (
             f" The run that would tell the first two apart: {found.separating.words}; they differ there by "
-            f"{level} noise levels rms."
+            f"{found.separating.in_words()}."
         )
     return text
 

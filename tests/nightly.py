@@ -98,7 +98,6 @@ PARTS: dict[str, Part] = {
         "processes of a run killed and frozen; faults put into the code",
         ("tests/process_faults", "tests/mutants"),
     ),
-    "faults": Part("every fault in one phase of a run", ("tests/faults",)),
     "readers": Part("readers of other people on every file that is written", ("tests/readers",)),
     "fuzz": Part("damaged inputs at every parser", ("tests/fuzz",)),
     "blind-slow": Part("the fixed part of the blind diagnosis set, and its scoring", ("tests/blind",)),

@@ -17,7 +17,7 @@ def test_what_gates_is_there(place: str) -> None:
     module, _, name = place.partition("::")
     text = (ROOT / "tests" / module).read_text("utf-8")
     assert "slow" in text
-    assert name in text or module.startswith("faults/")  # whose cells are named by their table
+    assert name in text
     assert gates(f"tests/{module}::test_{name}")
 
 

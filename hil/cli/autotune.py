@@ -17,6 +17,7 @@ from hil.cli._output import console, plain_table, print_json, progress, to_json
 from hil.cli._place import Place, results_in
 from hil.cli._tuning import Asked
 from hil.core.controller import controller_to_toml
+from hil.core.digits import share
 from hil.core.errors import BadInputError
 from hil.core.model import Model
 from hil.engine.envelope import envelope_of
@@ -187,14 +188,14 @@ def _tell_newest(closing: Closing) -> None:
 def _tell(closing: Closing, folder: Path) -> None:
     page, best = console(), closing.best
     if best is not None:
-        table = plain_table("\nmargins, %")
+        table = plain_table("\nmargins, of the limits")
         table.add_column("criterion", no_wrap=True)
         for name in ("before", "predicted", "measured"):
             table.add_column(name, justify="right")
         for name, measured in best.measured.items():
             before = closing.before_margins.get(name)
-            own = "-" if before is None else f"{100 * before:.1f}"
-            table.add_row(name, own, f"{100 * best.predicted.margins[name]:.1f}", f"{100 * measured:.1f}")
+            own = "-" if before is None else share(before)
+            table.add_row(name, own, share(best.predicted.margins[name]), share(measured))
         page.print(table)
     text = f"{closing_verdict(closing)}\nreport: {folder / HTML}"
     page.print(text, highlight=False, markup=False, soft_wrap=True)

@@ -55,6 +55,20 @@ def multiple(value: float) -> str:
     return f"{factor(value)} times"
 
 
+def quantity(value: float, unit: str, digits: int = 3) -> str:
+    """A value in its unit with as many digits, all those before the point: "12.3 N m", "6104 rad/s".
+
+    Powers of ten only from ten million on and below a ten-thousandth.
+    """
+    size = abs(value)
+    if not math.isfinite(value) or size >= 1e7 or 0.0 < size < 1e-4:
+        text = f"{value:.{digits - 1}e}" if math.isfinite(value) else "-"
+    else:
+        decimals = max(digits - 1 - math.floor(math.log10(size)), 0) if size else 0
+        text = f"{value:.{decimals}f}"
+    return f"{text} {unit}".rstrip()
+
+
 def _times(value: float) -> str:
     """Two digits of a multiple between ten and a hundred, three of a larger one."""
     if value > MOST_TIMES:

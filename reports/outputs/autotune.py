@@ -9,6 +9,7 @@ from typing import Any, Literal
 from hil.analysis.diagnosis import Diagnosis
 from hil.analysis.tuning import Confirmation, RefinedRun
 from hil.core.digits import share
+from reports.quantities import chance
 
 Stage = Literal["consent", "identify", "before", "diagnose", "tune", "confirm"]
 
@@ -119,7 +120,7 @@ def closing_verdict(closing: Closing) -> str:
 
 
 def effects_in_words(found: Diagnosis) -> str:
-    """Names with their numbers: "backlash (90 %): half_gap_rad = 0.01"."""
+    """Names with their numbers: "backlash (90%): half_gap_rad = 0.01"."""
     told = []
     for effect in found.effects:
         numbers = ", ".join(
@@ -127,5 +128,5 @@ def effects_in_words(found: Diagnosis) -> str:
             for name, value in effect.use.values.items()
             if name in effect.standard_error or isinstance(value, str)
         )
-        told.append(f"{effect.use.id} ({100 * effect.confidence:.0f} %): {numbers}")
+        told.append(f"{effect.use.id} ({chance(effect.confidence)}): {numbers}")
     return "; ".join(told)

@@ -42,6 +42,7 @@ def test_a_column_of_words_is_refused_by_name() -> None:
         notebook.recording_of(pd.DataFrame({"word": ["a"]}, index=[0.0]), "mine")
 
 
+@pytest.mark.slow
 def test_a_run_gives_its_result_and_recording(tmp_path: Path) -> None:
     (tmp_path / "short.yaml").write_text(PLAN)
     run = notebook.run(tmp_path / "short.yaml", tmp_path / "out", variables={"torque_nm": 10})

@@ -37,6 +37,7 @@ def test_without_a_bench_it_does_nothing_and_imports_nothing(tmp_path: Path) -> 
     assert "no bench: give --bench" in said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "bench", "told"),
     [

@@ -29,6 +29,7 @@ from hil.core.model import EffectUse, Model, load_model
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
 from reports.diagnosis_content import headline, lead, parts
 from reports.diagnosis_figures import overlay_figures
+from reports.outputs.autotune import effects_in_words
 
 MODEL = load_model(Path(__file__).parents[2] / "benches/three_inertia.toml")
 MOTOR, WHEEL, SHAFT = OUTPUTS
@@ -189,3 +190,8 @@ def test_gaps_over_next_to_no_noise_have_no_digits_that_mean_nothing(found: Diag
     assert "> 1000 times as much or more" in text["effects"].text
     assert text["considered"].tables[0].rows[0][1:3] == (">\u202f10⁶", ">\u202f1000")
     assert "e+" not in " ".join(cell for table in text["gap"].tables for row in table.rows for cell in row)
+
+
+def test_a_name_is_never_quite_certain(found: Diagnosis) -> None:
+    sure = dataclasses.replace(found.effects[0], confidence=0.9999)
+    assert "(>99%)" in effects_in_words(dataclasses.replace(found, effects=(sure,)))

@@ -7,6 +7,7 @@ the controller out of it.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,8 @@ import numpy as np
 import yaml
 
 from hil.analysis.target_search._trial import Guess, Predicted, Trial
+from hil.core.channels import unit_of
+from hil.core.digits import quantity
 from hil.core.errors import HilError
 from test_plans import Plan, plan_from_text
 from test_plans.steps import SetController
@@ -27,11 +30,20 @@ _CHANNELS = {"shaft_torque_nm": 0.7, "motor_speed_rad_s": 0.02}  # with the nois
 
 @dataclass(frozen=True)
 class Separating:
-    """A plan file, what it is in words, and by how many noise levels rms the two differ in it."""
+    """A plan file, what it is in words, and by how much the two differ in it.
+
+    `level`: rms over time and channels, in the noise of a usual sensor; `differs`: by channel, in its unit.
+    """
 
     text: str
     words: str
     level: float
+    differs: Mapping[str, float]
+
+    def in_words(self) -> str:
+        """The difference in the channel that shows it best: "12.3 N m rms in shaft_torque_nm"."""
+        channel = max(self.differs, key=lambda name: self.differs[name] / _CHANNELS[name])
+        return f"{quantity(self.differs[channel], unit_of(channel))} rms in {channel}"
 
 
 def separating(one: Guess, two: Guess, trial: Trial, names: tuple[str, str]) -> Separating | None:
@@ -43,9 +55,10 @@ def separating(one: Guess, two: Guess, trial: Trial, names: tuple[str, str]) -> 
             a, b = (trial.run(plan, guess) for guess in (one, two))
         except HilError:
             continue
-        level = _level(a, b)
+        differs = _differences(a, b)
+        level = float(np.sqrt(np.mean([(rms / _CHANNELS[name]) ** 2 for name, rms in differs.items()])))
         if best is None or level > best.level:
-            best = Separating(text, words, level)
+            best = Separating(text, words, level, differs)
     return best
 
 
@@ -94,13 +107,15 @@ def _plan(steps: list[dict[str, Any]], words: str, names: tuple[str, str]) -> tu
     return plan_from_text(text, "separating plan", Path()), text
 
 
-def _level(one: Predicted, two: Predicted) -> float:
-    """Rms over time of the difference over the noise, both channels together."""
-    squares = []
-    for a, b in zip(one.segments, two.segments, strict=True):
-        for channel, noise in _CHANNELS.items():
+def _differences(one: Predicted, two: Predicted) -> dict[str, float]:
+    """Rms over time of the difference in each channel, all segments alike."""
+    differs = {}
+    for channel in _CHANNELS:
+        squares = []
+        for a, b in zip(one.segments, two.segments, strict=True):
             x = one.recording.between(a.step_s, a.end_s)[channel]
             y = two.recording.between(b.step_s, b.end_s)[channel]
             count = min(len(x), len(y))
-            squares.append(np.mean(((x[:count] - y[:count]) / noise) ** 2))
-    return float(np.sqrt(np.mean(squares)))
+            squares.append(np.mean((x[:count] - y[:count]) ** 2))
+        differs[channel] = float(np.sqrt(np.mean(squares)))
+    return differs

@@ -1,6 +1,7 @@
 """What brings a predicted run to target figures: sizes, targets, search, conditions and what is told."""
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
@@ -19,6 +20,7 @@ from hil.analysis.target_search import (
     read_targets,
 )
 from hil.analysis.target_search._search import Search
+from hil.analysis.target_search._separating import Separating
 from hil.analysis.target_search._trial import Outcome
 from hil.core.effects import EFFECTS, Stage
 from hil.core.errors import BadInputError
@@ -259,3 +261,11 @@ def test_what_is_no_step_does_not_settle(tmp_path):
     (tmp_path / "t.toml").write_text("[targets]\n'c.peak_shaft_torque' = 1.0\n[settles]\nc = 1.0")
     with pytest.raises(BadInputError, match="is no step"):
         read_targets(tmp_path / "t.toml", str(tmp_path / "p.yaml"), {})
+
+
+def test_the_run_that_tells_two_apart_says_by_how_much_in_a_unit() -> None:
+    test = Separating("", "a step", 3e5, {"shaft_torque_nm": 12.345, "motor_speed_rad_s": 6100.0})
+    assert test.in_words() == "6100 rad/s rms in motor_speed_rad_s"
+    assert replace(test, differs={**test.differs, "motor_speed_rad_s": 0.01}).in_words() == (
+        "12.3 N m rms in shaft_torque_nm"
+    )

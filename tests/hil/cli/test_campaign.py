@@ -34,6 +34,7 @@ def table_of(out):
     return pd.read_parquet(out / "simulations").sort_values("simulation", ignore_index=True)
 
 
+@pytest.mark.slow
 def test_what_it_writes_and_says_and_goes_on_with(tmp_path, capsys):
     file, out = written(tmp_path, CAMPAIGN + "pass_share: 0.5\n"), tmp_path / "out"
     assert campaign(file, "--workers", 0, "--out", out) == 0

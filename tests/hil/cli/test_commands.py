@@ -143,6 +143,7 @@ def test_a_place_that_cannot_be_written_is_said_before_the_run(tmp_path):
     assert "--out" in done.stderr
 
 
+@pytest.mark.slow
 def test_a_bench_that_fails_is_exit_code_3_and_keeps_the_data(tmp_path):
     bench = (Path(__file__).parents[3] / "benches" / "sim.toml").read_text()
     source = Path(__file__).parents[3] / "benches"
@@ -159,6 +160,7 @@ def test_a_bench_that_fails_is_exit_code_3_and_keeps_the_data(tmp_path):
     assert len(read_recording(tmp_path / "out" / "recording.mcap").time_s) > 100
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c_is_exit_code_130_and_keeps_the_data(number, tmp_path):
     process = subprocess.Popen(
@@ -212,6 +214,7 @@ def test_a_recording_that_was_cut_off_is_reported_with_its_plan(finished, tmp_pa
     assert "cut off" in (tmp_path / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_the_report_is_opened_and_nothing_said_where_no_browser_is(tmp_path, monkeypatch):
     browser = tmp_path / "browser"
     browser.write_text(f'#!/bin/sh\necho "$1" > {tmp_path}/opened\n')

@@ -36,6 +36,7 @@ def assert_ended_safe(done: subprocess.CompletedProcess[str], folder: Path) -> N
     assert "safe state confirmed" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_file_that_may_not_grow_any_more_ends_the_run_safe(tmp_path: Path) -> None:
     (tmp_path / "long.yaml").write_text(PLAN)
     done = subprocess.run(

@@ -18,6 +18,8 @@ from hil.core.model import load_model
 from hil.core.recording import write_recording
 from tests.hil.analysis import paper_plant
 
+pytestmark = pytest.mark.slow
+
 _FIGURES = {f"{n}.{kind}" for n in ("nyquist", "sensitivity", "trade_off") for kind in ("png", "svg")}
 
 

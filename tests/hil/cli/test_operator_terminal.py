@@ -82,6 +82,7 @@ def plan(timeout_s: float = 60, after_s: float = 0.2) -> str:
     return PROMPT.replace("TIMEOUT", str(timeout_s)).replace("AFTER", str(after_s))
 
 
+@pytest.mark.slow
 def test_a_prompt_is_answered_and_what_is_typed_is_kept(tmp_path: Path) -> None:
     operator = Operator(tmp_path, plan())
     operator.wait_for("Is the cage shut?")
@@ -92,6 +93,7 @@ def test_a_prompt_is_answered_and_what_is_typed_is_kept(tmp_path: Path) -> None:
     assert "confirmed by the operator: yes, by A. Tester" in [e.text for e in events if e.kind == "prompt"]
 
 
+@pytest.mark.slow
 def test_a_prompt_without_an_answer_ends_the_run_like_an_operators_stop(tmp_path: Path) -> None:
     code, result = Operator(tmp_path, plan(timeout_s=0.5)).ended()
     assert (code, result["safe_state"]) == (130, "confirmed")

@@ -46,6 +46,7 @@ def test_a_run_that_was_killed_is_recovered_and_reported(run: Path, tmp_path: Pa
     assert "cut off" in (tmp_path / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_a_whole_recording_is_left_alone(run: Path) -> None:
     before = sorted(run.iterdir())
     assert "is whole" in hil("recover", run).stdout
@@ -53,6 +54,7 @@ def test_a_whole_recording_is_left_alone(run: Path) -> None:
     assert sorted(run.iterdir()) == before
 
 
+@pytest.mark.slow
 def test_bad_input_is_one_message(tmp_path: Path) -> None:
     (tmp_path / "r.csv").write_text("time_s\n1.0\n")
     assert "only recordings in MCAP" in hil("recover", tmp_path / "r.csv", code=2).stderr

@@ -62,6 +62,7 @@ def test_without_out_runs_are_numbered(tmp_path: Path) -> None:
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["quick-001", "quick-002"]
 
 
+@pytest.mark.slow
 def test_a_bench_without_devices_is_exit_code_3_and_points_to_what_exists(tmp_path: Path) -> None:
     dead = bench_in(tmp_path, ('interface = "hil-sim"', 'interface = "virtual"'))
     text = dead.read_text()
@@ -74,6 +75,7 @@ def test_a_bench_without_devices_is_exit_code_3_and_points_to_what_exists(tmp_pa
         assert (tmp_path / "out" / name).is_file()
 
 
+@pytest.mark.slow
 def test_a_plan_without_criteria_is_not_green(tmp_path: Path) -> None:
     text = QUICK[: QUICK.index("criteria:")]
     done = hil("run", plan_in(tmp_path, text), "--out", tmp_path / "out")

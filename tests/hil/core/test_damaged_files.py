@@ -80,6 +80,7 @@ def test_a_mismatch_of_a_parameter_that_the_model_lacks_is_refused(parameter: st
         model_from_dict(with_effects(entry), "m.toml")
 
 
+@pytest.mark.slow
 def test_a_mismatch_speaks_of_what_the_kind_has() -> None:
     entry = {"id": "parameter_mismatch", "parameter": "vehicle_inertia", "value": 300.0}
     simulate(model_from_dict(with_effects(entry), "m.toml"), [1.0] * 10, 1e-3)  # type: ignore[arg-type]

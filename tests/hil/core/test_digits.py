@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from hil.core.digits import factor, multiple, share
+from hil.core.digits import factor, multiple, quantity, share
 
 
 @pytest.mark.parametrize(
@@ -65,3 +65,20 @@ def test_a_change_has_its_sign() -> None:
 def test_a_multiple_has_three_digits(value: float, text: str) -> None:
     assert factor(value) == text
     assert multiple(value) == f"{text} times"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (12.345, "12.3 N m"),
+        (6104.4, "6104 N m"),
+        (0.0, "0 N m"),
+        (-0.01234, "-0.0123 N m"),
+        (3.92e-9, "3.92e-09 N m"),
+        (2.9e19, "2.90e+19 N m"),
+        (math.nan, "- N m"),
+    ],
+)
+def test_a_quantity_has_three_digits_and_its_unit(value: float, text: str) -> None:
+    assert quantity(value, "N m") == text
+    assert quantity(value, "") == text.removesuffix(" N m")

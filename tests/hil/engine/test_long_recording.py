@@ -44,6 +44,7 @@ def test_acceptance_is_judged_and_drawn_the_same(tmp_path: Path) -> None:
     assert all(drawn[0][figure].read_bytes() == drawn[1][figure].read_bytes() for figure in drawn[0])
 
 
+@pytest.mark.slow
 def test_an_identification_run_gives_the_same_experiments(tmp_path: Path) -> None:
     outcome, held, stored = ran("short_identification", tmp_path / "run")
     assert rejudged(held) == rejudged(stored)

@@ -33,6 +33,7 @@ def test_a_log_that_nobody_touched_is_whole_also_if_several_write(engine: Engine
     assert log.check(found.head).problem == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change",
     [
@@ -53,6 +54,7 @@ def test_a_row_that_was_changed_past_the_guards_is_seen(change: str, tmp_path: P
     assert "was changed, removed or put in" in done.stdout
 
 
+@pytest.mark.slow
 def test_rows_that_are_missing_at_the_end_are_seen_by_where_it_ended_once(tmp_path: Path) -> None:
     data = tmp_path / "data"
     _made(data)

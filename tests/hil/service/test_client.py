@@ -52,6 +52,7 @@ def test_the_client_tells_refusals_from_services_that_are_not_there(service: Ser
         Client("not an address").health()
 
 
+@pytest.mark.slow
 def test_a_run_of_a_service_has_the_exit_code_and_the_files_of_one_here(
     service: Served, tmp_path: Path
 ) -> None:
@@ -64,6 +65,7 @@ def test_a_run_of_a_service_has_the_exit_code_and_the_files_of_one_here(
     assert json.loads((folder / "result.json").read_text()) == result
 
 
+@pytest.mark.slow
 def test_files_that_a_plan_names_travel_with_it(service: Served, tmp_path: Path) -> None:
     """Also from another folder, and where the service has another content under the name."""
     built_in = library_controllers()["phase_stabilization"].read_text()

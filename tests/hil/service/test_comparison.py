@@ -9,6 +9,8 @@ from hil.client import Client, RefusedError
 from hil.core.recording import read_recording
 from tests.hil.service.served import Served
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def two(service: Served) -> tuple[int, int]:

@@ -21,6 +21,7 @@ def client(service: Served) -> Client:
     return Client(service.url)
 
 
+@pytest.mark.slow
 def test_a_draft_is_what_the_design_says_of_the_model_itself(client: Client) -> None:
     found = client.draft(DraftWanted(model="three_inertia", lead_deg=30))
     whole = design(load_model(shipped("three_inertia.toml")), DesignSpec(lead_deg=30))
@@ -69,6 +70,7 @@ def test_what_cannot_be_drafted_is_said(client: Client, wrong: dict[str, object]
     assert said in str(refused.value)
 
 
+@pytest.mark.slow
 def test_a_saved_controller_runs_in_a_copy_of_a_plan(client: Client, service: Served) -> None:
     found = client.design(DraftWanted(model="three_inertia", lead_deg=30, name="softer"))
     assert controller_from_toml(found.controller, "it").name == "softer"

@@ -48,6 +48,7 @@ def test_a_session_ends_with_its_token_or_when_it_is_closed(engine: Engine) -> N
     assert tokens.owner_of_session(tokens.open_session(ending.token)) is None
 
 
+@pytest.mark.slow
 def test_the_cookie_is_no_token_and_is_secure_behind_a_trusted_proxy(tmp_path: Path) -> None:
     data = tmp_path / "data"
     database = environment_of(data)["HIL_DATABASE"]
@@ -68,6 +69,7 @@ def test_the_cookie_is_no_token_and_is_secure_behind_a_trusted_proxy(tmp_path: P
         assert left > datetime.timedelta(days=29)
 
 
+@pytest.mark.slow
 def test_a_header_of_a_proxy_that_is_not_trusted_makes_no_cookie_secure(tmp_path: Path) -> None:
     data = tmp_path / "data"
     database = environment_of(data)["HIL_DATABASE"]
@@ -76,6 +78,7 @@ def test_a_header_of_a_proxy_that_is_not_trusted_makes_no_cookie_secure(tmp_path
         assert "secure" not in _logged_in(service, secret, "https").lower()
 
 
+@pytest.mark.slow
 def test_an_expired_token_opens_nothing(tmp_path: Path) -> None:
     data = tmp_path / "data"
     database = environment_of(data)["HIL_DATABASE"]

@@ -113,6 +113,7 @@ def test_one_address_does_not_hold_all_unless_it_is_a_proxy() -> None:
     assert crowd.give_way("a") == (False, None)
 
 
+@pytest.mark.slow
 def test_a_stop_that_is_repeated_leaves_one_latch_and_one_row(tmp_path: Path) -> None:
     with served(tmp_path / "data", "--rate", "1000", state=tmp_path / "state") as service:
         stop_url = service.get("/health")["stop_url"]
@@ -132,6 +133,7 @@ def test_a_stop_that_is_repeated_leaves_one_latch_and_one_row(tmp_path: Path) ->
         assert rows[0]["detail"] == "from 127.0.0.1, page"
 
 
+@pytest.mark.slow
 def test_the_page_may_send_to_the_stop_post_and_no_other_site_may(tmp_path: Path) -> None:
     with served(tmp_path / "data", state=tmp_path / "state") as service:
         stop_url = service.get("/health")["stop_url"]

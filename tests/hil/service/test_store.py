@@ -73,6 +73,7 @@ def test_a_hazardous_run_waits_for_approval(engine: Engine) -> None:
     assert not runs.approve(run.id, "bert")
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(st.sampled_from("ab"), st.integers(-3, 3)), max_size=12))
 def test_each_bench_gets_its_runs_by_priority_and_then_as_they_came(asked: list[tuple[str, int]]) -> None:
     engine = _in_memory()

@@ -28,6 +28,8 @@ from hil.analysis.diagnosis.tell._thresholds import (
     TELLS,
     WHEEL_RADIUS_M,
 )
+from hil.core.channels import OUTPUTS, unit_of
+from hil.core.digits import multiple, quantity
 from hil.core.model import Model
 from hil.plant import gear_ratio_of
 from test_plans import Plan, plan_from_text
@@ -92,35 +94,48 @@ def separating_plan(
             if all(_within(o, speed_rad_s, most_shaft) for o in (a, b)):
                 candidates.append((_rms(((a - b) / noise)[:, np.isfinite(noise)]), test))
                 break
-    level, chosen = _best(one, other, candidates, noise)
+    levels, chosen = _best(one, other, candidates, noise)
     if chosen is None:
         return "no test of ours stays within the recordings' speed and shaft torque", ""
-    whole = level * np.sqrt(len(chosen.torque))
+    whole = float(np.linalg.norm(levels)) * np.sqrt(len(chosen.torque))
     if whole < TELLS:
         shown = f"{whole:.3g} noise levels of difference over its whole length, and {TELLS:g} are needed"
         return f"no test of ours tells them apart: the best shows {shown}", ""
-    differ = f"by {level:.2g} noise levels rms, {whole:.3g} over the whole test"
     peak = float(np.max(np.abs(chosen.torque)))
-    return f"{_WORDS[chosen.name]}, up to {peak:.3g} N m: the two differ {differ}", chosen.text
+    return f"{_WORDS[chosen.name]}, up to {peak:.3g} N m: {_difference(levels, noise)}", chosen.text
+
+
+def _difference(levels: Array, noise: Array) -> str:
+    """The difference in the channel that shows it best, in its unit and beside its noise.
+
+    Args:
+        levels: rms of the difference in each output, in its noise; 0 where it is not measured.
+    """
+    column = int(np.argmax(levels))
+    channel, level = OUTPUTS[column], float(levels[column])
+    rms = quantity(level * float(noise[column]), unit_of(channel))
+    return f"the two differ by {rms} rms in {channel}, {multiple(level)} its noise in a sample"
 
 
 def _best(
     one: Model, other: Model, candidates: list[tuple[float, _Test]], noise: Array
-) -> tuple[float, _Test | None]:
-    """The test that tells most beyond what numbers make up for, and by how many noise levels, rms.
+) -> tuple[Array, _Test | None]:
+    """The test that tells most beyond what numbers make up for, and how much: noise levels rms, by output.
 
     Args:
         candidates: tests with what they tell before numbers have made up for anything: never less.
     """
     measured = np.isfinite(noise)
-    level, chosen = 0.0, None
+    level, levels, chosen = 0.0, np.zeros(len(noise)), None
     for most, test in sorted(candidates, key=lambda c: -c[0]):
         if most <= level:
             break
-        left = _rms(apart(one, other, partial(_measured, test, measured), noise[measured]))
+        errors = apart(one, other, partial(_measured, test, measured), noise[measured])
+        left = _rms(errors)
         if left > level:
             level, chosen = left, test
-    return level, chosen
+            levels[measured] = np.sqrt(np.mean(np.nan_to_num(errors) ** 2, axis=0))
+    return levels, chosen
 
 
 def _measured(test: _Test, measured: npt.NDArray[np.bool_], models: Sequence[Model]) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 import pytest
 
 from hil.analysis.diagnosis.tell._separating import _WORDS, _outputs, _test, separating_plan
-from hil.core.channels import OUTPUTS
+from hil.core.channels import OUTPUTS, unit_of
 from hil.core.model import EffectUse, Model, save_model
 from hil.core.recording import driven_by_torque, read_recording, write_recording
 from hil.engine import RunRequest, run_plan
@@ -38,7 +39,11 @@ def test_the_separating_test_is_a_plan_that_loads(tmp_path: Path) -> None:
     lag = MODEL.with_effects(EffectUse("actuator_lag", {"time_constant_s": 0.004}))
     delay = MODEL.with_effects(EffectUse("dead_time", {"extra_delay_s": 0.004}))
     words, text = separating_plan(lag, delay, NOISE, 30.0, NAMES)
-    assert "noise levels" in words
+    found = re.search(r"differ by ([\d.e+-]+) (\S.*) rms in (\w+), (.+) times its noise in a sample", words)
+    assert found is not None
+    column = OUTPUTS.index(found[3])
+    assert found[2] == unit_of(found[3])
+    assert float(found[1]) == pytest.approx(float(found[4]) * NOISE[column], rel=0.02)
     (tmp_path / "plan.yaml").write_text(text)
     assert load_plan(tmp_path / "plan.yaml").name == "separate_actuator_lag_dead_time"
 
