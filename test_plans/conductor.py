@@ -33,7 +33,6 @@ class PlannedSegment:
     reference_after: float
     quantity: Quantity = "driving_torque"
     end_s: float = math.inf
-    load: Literal["vehicle", "speed"] = "vehicle"
 
 
 #: What an analysis step does: from the run's recording so far (its segments in the attachment `run.json`) and

@@ -50,9 +50,6 @@ class DeviceChecks(Strict):
         le=1,
         description="largest share of time at the torque limit or against the request",
     )
-    orders: tuple[float, ...] = Field(
-        default=(), strict=False, description="orders of the wheel that the axle is known to have"
-    )
 
     def criteria(self, segments: tuple[PlannedSegment, ...]) -> tuple[Criterion, ...]:
         """The criteria of all steps of torque among the segments, in order."""
@@ -73,9 +70,8 @@ class DeviceChecks(Strict):
             found.append(_criterion(segment, "arrival", metric, lower=-bound, upper=bound))
         if segment.quantity != "driving_torque":
             return found  # no loop: the motor's torque is what was asked for
-        # At a speed that is held nothing tells an order of the wheel from a cycle, but that it is declared.
-        if self.oscillation_percent is not None and (segment.load == "vehicle" or self.orders):
-            metric = StabilityOscillation(channel="shaft_torque_nm", orders=self.orders)
+        if self.oscillation_percent is not None:
+            metric = StabilityOscillation(channel="shaft_torque_nm")
             largest = self.oscillation_percent / 100 * size
             found.append(_criterion(segment, "stability_oscillation", metric, upper=largest))
         if self.at_limit_share is not None:

@@ -9,7 +9,6 @@ resampling: Fyfe and Munck, Analysis of computed order tracking, MSSP 11(2), 199
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +23,8 @@ _LEAST_SHARE = 0.02  # of the largest value: smaller lines are not looked at
 _TAIL = 10  # the part at the end that counts
 _FINER = 4  # lines of the spectra between those of the window
 _LEAST_TURNING = 0.05  # periods, rms, by which an order must leave a constant frequency, to be told from it
+_ENDS, _GROWS = 5, 1.3  # parts of the window, and what grows from the first to the last
+HIGHEST_ORDER = 6.5  # of a tripod joint (3, 6), an imbalance (1) and the first of a tyre
 _SHARPER = 1.05  # what lives for a moment only is as sharp over time as over angle
 _SMOOTHED_S, _SMOOTHED_SHARE = 1.0, 0.2  # over which a line's amplitude is taken
 _LOWEST_PERIODS = 3.0  # of a line within the window
@@ -37,15 +38,12 @@ class Line:
     frequency_hz: float
 
 
-def lasting_oscillation(
-    values: Array, spacing_s: float, turns_hz: Array, declared: Sequence[float] = ()
-) -> Line:
+def lasting_oscillation(values: Array, spacing_s: float, turns_hz: Array) -> Line:
     """What swings at the end of a signal and follows no order of the wheel: a cycle, or what has grown.
 
     Args:
         values: shape (n,), every `spacing_s`.
         turns_hz: the wheel's revolutions a second at the same samples, shape (n,) or nearly.
-        declared: orders of the wheel that do not count where the speed says nothing.
 
     Returns:
         √2 times the rms of the last tenth without orders, which is a sine's amplitude, and its frequency.
@@ -65,7 +63,7 @@ def lasting_oscillation(
         over_angle = _sharpest(left, angle) if np.min(turns) > 0.0 else Line(0.0, 0.0)
         along: Array = over_angle.frequency_hz * angle
         size, line = _followed(left, along, spacing_s)
-        follows = _is_order(over_time, over_angle, _turning(along, size, time), declared)
+        follows = _is_order(over_time, over_angle, _turning(along, size, time), size)
         if not follows:
             _, line = _followed(left, over_time.frequency_hz * time, spacing_s)
         left = left - line
@@ -132,24 +130,25 @@ def _taper(count: int) -> Array:
     return taper
 
 
-def _is_order(over_time: Line, over_angle: Line, turning: Array, declared: Sequence[float]) -> bool:
+def _is_order(over_time: Line, over_angle: Line, turning: Array, size: Array) -> bool:
     """Whether the strongest line follows the wheel.
 
-    Where the wheel's speed hardly changes while the line lasts, only a declaration can say.
+    Where the wheel's speed hardly changes while the line lasts, nothing in it tells an order from a cycle.
+    There it is one if it is as low as those of joints and tyres are, and does not grow.
 
     Args:
         over_time: the strongest line over time.
         over_angle: the strongest line over the wheel's angle.
         turning: how far the phase of `over_angle` leaves a constant frequency at each sample, in periods,
             weighted by its power, shape (n,).
-        declared: orders.
+        size: its amplitude at each sample, shape (n,).
     """
     if over_angle.amplitude == 0.0:
         return False
     if float(np.sqrt(np.mean(turning**2))) < _LEAST_TURNING:
-        order = over_angle.frequency_hz
-        near = (abs(order - one * max(1, round(order / one))) for one in declared)
-        return any(distance < 0.1 for distance in near)
+        part = max(1, len(size) // _ENDS)
+        grows = float(np.mean(size[-part:])) > _GROWS * float(np.mean(size[:part]))
+        return over_angle.frequency_hz <= HIGHEST_ORDER and not grows
     return over_angle.amplitude > _SHARPER * over_time.amplitude
 
 

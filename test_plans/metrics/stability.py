@@ -73,9 +73,6 @@ class StabilityOscillation(WindowMetric):
 
     name: ClassVar[str] = "stability_oscillation"
     channel: ChannelName = "shaft_torque_nm"
-    orders: tuple[float, ...] = Field(
-        default=(), strict=False, description="declared orders of the wheel, for windows of constant speed"
-    )
 
     @property
     def channels(self) -> tuple[str, ...]:
@@ -87,8 +84,9 @@ class StabilityOscillation(WindowMetric):
         """How lines are found, and which count."""
         return (
             f"Amplitude of what {self.subject} swings by at the end of the window (√2 times the rms of the "
-            "last twentieth of the time after the step), without the orders of the wheel: lines that are "
-            "sharper over the wheel's angle than over time, or declared orders where the speed is constant."
+            "last twentieth of the time after the step), without the orders of the wheel: lines that, over "
+            "the second half, are sharper over the wheel's angle than over time; where the wheel's speed "
+            f"hardly changes, lines up to order {_lines.HIGHEST_ORDER:g} that do not grow."
         )
 
     def objection(self, segment: PlannedSegment) -> str:
@@ -112,7 +110,7 @@ class StabilityOscillation(WindowMetric):
         time, values = cut(recording, segment, self.channel, middle_s, end_s, with_end=False)
         spacing_s, even = evenly(time, values)
         _, speed = cut(recording, segment, _WHEEL, middle_s, end_s, with_end=False)
-        return _lines.lasting_oscillation(even, spacing_s, speed / (2 * np.pi), self.orders)
+        return _lines.lasting_oscillation(even, spacing_s, speed / (2 * np.pi))
 
 
 def instability(recording: Recording, segment: Segment) -> str:

@@ -67,7 +67,7 @@ class Excitation(Step):
         names = [self.segment] if self.plays == 1 else [f"{self.segment}_{n + 1}" for n in range(self.plays)]
         before, after = self.references_nm
         return tuple(
-            PlannedSegment(name, self.kind, self.step_s, before, after, self.quantity, self.play_s, self.load)
+            PlannedSegment(name, self.kind, self.step_s, before, after, self.quantity, self.play_s)
             for name in names
         )
 
