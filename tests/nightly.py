@@ -55,9 +55,6 @@ PARTS: dict[str, Part] = {
     "diagnosis": Part(
         "every kind of hidden effect, on the wire and from bad data", ("tests/hil/analysis/diagnosis",)
     ),
-    "degenerate": Part(
-        "degenerate recordings through every analysis", ("tests/hil/analysis/test_degenerate.py",)
-    ),
     "commands": Part(
         "every command as a person uses it, what the documentation shows, the plugin, the notebook",
         (
@@ -145,7 +142,7 @@ def _run(name: str) -> int:
         done = subprocess.run([sys.executable, "-m", *PARTS[name].arguments(junit)], cwd=ROOT, check=False)
         said = counted(junit) if junit.exists() else f"exit code {done.returncode}"
     minutes = (time.monotonic() - started_s) / 60
-    text = with_row(PAGE.read_text("utf-8"), name, [_today(), commit, f"{minutes:.0f}", said])
+    text = with_row(PAGE.read_text("utf-8"), name, [_today(), commit, f"{minutes:.1f}", said])
     PAGE.write_text(text, "utf-8")
     return 0 if done.returncode in (0, NOTHING_RAN) else 1
 
