@@ -35,7 +35,7 @@ _LEAST_S = 1.0  # after a step: in less nothing comes to rest
 
 
 class DeviceChecks(Strict):
-    """Bounds of what any device must do; null takes a check out, and the report says so."""
+    """Bounds of what any device must do; null takes a check out."""
 
     arrival_percent: float | None = Field(
         default=10.0, gt=0, le=1000, description="largest distance from what was asked, % of the step"

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from test_plans.conductor import Array
+from test_plans.metrics._periodogram import without_trend
 
 DECAYS = 0.7  # a line that has this share left at the end decays
 _PERIODS = 3  # that make an oscillation
@@ -53,7 +54,7 @@ def lasting_oscillation(values: Array, spacing_s: float, turns_hz: Array) -> Lin
     turns = np.interp(np.linspace(0, 1, count), np.linspace(0, 1, len(turns_hz)), turns_hz)
     angle: Array = np.zeros(count)
     angle[1:] = spacing_s * np.cumsum(0.5 * (turns[1:] + turns[:-1]))
-    left = _without_trend(values)
+    left = without_trend(values)
     unexplained: Array = left.copy()
     least = _LEAST_SHARE * float(np.max(np.abs(left)))
     for _ in range(_PEELED):
@@ -98,12 +99,6 @@ def swings(values: Array, spacing_s: float) -> Swings | None:
     first = 0.5 * (extremes[firm[0]] + extremes[firm[1]])
     last = 0.5 * (extremes[firm[-2]] + extremes[firm[-1]])
     return Swings(0.5 * len(firm) / float(length_s), first, last)
-
-
-def _without_trend(values: Array) -> Array:
-    position = np.arange(len(values)) - 0.5 * (len(values) - 1)
-    around = values - np.mean(values)
-    return np.asarray(around - float(position @ around) / max(float(position @ position), 1e-300) * position)
 
 
 def _sharpest(values: Array, over: Array) -> Line:

@@ -14,11 +14,8 @@ def periodogram(values: Array, spacing_s: float, *, tapered: bool = True) -> tup
     applied, as by `scipy.signal.periodogram` ("hann" or "boxcar") behind `scipy.signal.detrend`.
     """
     count = len(values)
-    position = np.arange(count) - 0.5 * (count - 1)
-    middle = np.mean(values)
-    slope = position @ (values - middle) / np.maximum(position @ position, 1e-300)
     window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(count) / count) if tapered else np.ones(count)
-    lines = np.fft.rfft((values - middle - slope * position) * window)
+    lines = np.fft.rfft(without_trend(values) * window)
     density = (lines.real**2 + lines.imag**2) * spacing_s / (window @ window)
     density[1 : (count + 1) // 2] *= 2.0  # every line but zero and half the rate stands for two
     return np.asarray(np.fft.rfftfreq(count, spacing_s)), density
@@ -34,3 +31,11 @@ def energy_within(frequency: Array, density: Array, from_hz: float, to_hz: float
     half_hz = 0.5 * (frequency[1] - frequency[0])
     upper, lower = np.minimum(frequency + half_hz, to_hz), np.maximum(frequency - half_hz, from_hz)
     return float(density @ np.maximum(upper - lower, 0.0))
+
+
+def without_trend(values: Array) -> Array:
+    """`values` less their linear trend (least squares), of their shape (n,)."""
+    position = np.arange(len(values)) - 0.5 * (len(values) - 1)
+    around = values - np.mean(values)
+    slope = position @ around / np.maximum(position @ position, 1e-300)
+    return np.asarray(around - slope * position)
