@@ -227,13 +227,13 @@ class Service:
 
     def with_progress(self, run: RunData) -> RunData:
         """A run with what only this process knows: how far it is, which files it has left."""
+        if run.state in OVER:  # first: a run that has just ended may still stand among the running ones
+            return run.model_copy(update={"files": self.files_of(run.id)})
         running = self.running_run(run.id)
         if running is not None:
             away = f"; {self.database.away}" if self.database.away else ""
             doing = {"share": running.share, "doing": running.doing + away, "told": running.told}
             return run.model_copy(update=doing)
-        if run.state in OVER:
-            return run.model_copy(update={"files": self.files_of(run.id)})
         return run
 
     def files_of(self, run: int) -> list[str]:

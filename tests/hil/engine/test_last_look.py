@@ -30,7 +30,7 @@ def test_a_bus_that_cannot_be_opened_is_a_complaint_of_its_own() -> None:
 
 def test_a_bus_that_fails_while_it_is_heard_is_named() -> None:
     with plugged_in() as rmcu, plugged_in() as dyno:
-        bench = with_slcan(rmcu, dyno)
+        bench = with_slcan(rmcu.path, dyno.path)
         threading.Timer(0.3, rmcu.unplug).start()
         found = complaints_of(bench)
     assert [text.partition(":")[0] for text in found] == ["bus 'rmcu'", "RMCU", "dynos"]
