@@ -140,7 +140,10 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         limits=limit_facts(result),
         holds=hold_facts(result),
         files=files,
-        warnings=_warnings(calibration, (*identification, *zeros), files),
+        warnings=(
+            *_warnings(calibration, (*identification, *zeros), files),
+            *(f"Not checked: {text}." for text in (result.not_checked if result else ())),
+        ),
         damage=tuple(recording.damage),
         source=recording.source.name,
         sha256=sha256,
@@ -181,7 +184,10 @@ def _counts(result: RunResult) -> list[str]:
     for source, name in (("plan", "criteria"), ("device", "checks of what any device must do")):
         demanding = [one for one in result.criteria if one.has_limit and one.source == source]
         passed = sum(one.verdict == "pass" for one in demanding)
-        sentences += [f"{passed} of {len(demanding)} {name} passed."] if demanding else []
+        if source == "device" and passed < len(demanding):
+            sentences.append(f"But {len(demanding) - passed} of {len(demanding)} {name} did not pass.")
+        elif demanding:
+            sentences.append(f"{passed} of {len(demanding)} {name} passed.")
     sentences = sentences or ["The plan has no criterion with a limit, so nothing is judged."]
     counts = count_by_verdict(result.criteria)
     failed = sum(criterion.verdict == "fail" for criterion in result.criteria)

@@ -13,6 +13,9 @@ from reports.step_figures import controller_name
 _USUAL_DECIMALS, _MOST_DECIMALS = 4, 9
 
 
+_AS_ABOVE = "for the same reason"
+
+
 @dataclass(frozen=True)
 class CriterionRow:
     """One criterion, formatted; `definition` is the number of its definition, 0 without one."""
@@ -26,6 +29,7 @@ class CriterionRow:
     verdict: str
     unmet: bool
     reason: str
+    unmet_because: str
     definition: int
 
 
@@ -50,10 +54,12 @@ def criteria_table(result: RunResult) -> CriteriaTable:
     definitions = list(dict.fromkeys(c.definition for c in result.criteria if c.definition))
     segments = {segment.id: segment for segment in result.segments}
     grouped: dict[str, list[CriterionRow]] = {}
+    told: set[str] = set()  # a sensor that fails five criteria is told once
     for criterion in result.criteria:
         title = _group_title(criterion, segments)
         number = definitions.index(criterion.definition) + 1 if criterion.definition else 0
-        grouped.setdefault(title, []).append(_row(criterion, number))
+        grouped.setdefault(title, []).append(_row(criterion, number, told))
+        told.update({criterion.reason} - {""})
     groups = tuple(CriterionGroup(title, tuple(rows)) for title, rows in grouped.items())
     return CriteriaTable(groups, tuple(definitions))
 
@@ -68,11 +74,12 @@ def count_by_verdict(criteria: Iterable[CriterionResult]) -> dict[str, int]:
 
 def in_words(criterion: CriterionResult) -> str:
     """One line: what was found against what was allowed; for messages."""
-    if criterion.reason:
+    if criterion.value is None and criterion.reason:
         return criterion.reason
     value = quantities.quantity(criterion.value, criterion.unit, _decimals(criterion))
     limit = _limit(criterion)
-    return f"{value}, allowed is {limit}{quantities.THIN}{quantities.unit(criterion.unit)}".rstrip()
+    text = f"{value}, allowed is {limit}{quantities.THIN}{quantities.unit(criterion.unit)}".rstrip()
+    return f"{text}; {criterion.reason}" if criterion.reason else text
 
 
 def _group_title(criterion: CriterionResult, segments: dict[str, Segment]) -> str:
@@ -85,7 +92,7 @@ def _group_title(criterion: CriterionResult, segments: dict[str, Segment]) -> st
     return f"{name}, {speed} ({segment.id})"
 
 
-def _row(criterion: CriterionResult, definition: int) -> CriterionRow:
+def _row(criterion: CriterionResult, definition: int, told: set[str]) -> CriterionRow:
     decimals = _decimals(criterion)
     return CriterionRow(
         id=criterion.id,
@@ -96,7 +103,8 @@ def _row(criterion: CriterionResult, definition: int) -> CriterionRow:
         margin=quantities.share(criterion.margin),
         verdict=criterion.verdict,
         unmet=criterion.failed or criterion.verdict in ("error", "not_judged"),
-        reason=criterion.reason,
+        reason=criterion.reason if criterion.reason not in told else _AS_ABOVE,
+        unmet_because=in_words(criterion) if criterion.reason not in told else _AS_ABOVE,
         definition=definition,
     )
 

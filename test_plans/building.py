@@ -91,7 +91,7 @@ def _in_words(
     model: type[BaseModel], mistake: ErrorDetails, document: Document, path: KeyPath
 ) -> BadInputError:
     where = document.place((*path, *mistake["loc"]))
-    key = str(mistake["loc"][0]) if mistake["loc"] else ""
+    model, key = _innermost(model, mistake["loc"])
     meaning = _meaning(model, key)
     match mistake["type"]:
         case "extra_forbidden":
@@ -103,6 +103,17 @@ def _in_words(
         case _:
             what, fix = f"{brief(mistake['input'])} {needed(mistake)}", f"{key}: {meaning}" if meaning else ""
     return BadInputError(what, where=where, fix=fix)
+
+
+def _innermost(model: type[BaseModel], loc: tuple[int | str, ...]) -> tuple[type[BaseModel], str]:
+    """The table in which a mistake lies, and its key there."""
+    for place, part in enumerate(loc[:-1]):
+        field = model.model_fields.get(str(part))
+        inner = field.annotation if field else None
+        if not (isinstance(inner, type) and issubclass(inner, BaseModel)):
+            return model, str(loc[place])
+        model = inner
+    return model, str(loc[-1]) if loc else ""
 
 
 def _meaning(model: type[BaseModel], key: str) -> str:

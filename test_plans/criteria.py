@@ -143,6 +143,13 @@ def _check_limits(keys: CriterionKeys, metric: Metric, document: Document, path:
         raise BadInputError(
             f"lower = {keys.lower:g} is above upper = {keys.upper:g}", where=document.place((*path, "lower"))
         )
+    toothless = keys.upper is None and keys.below is None and keys.lower is not None and keys.lower <= 0
+    if toothless and metric.never_negative:
+        raise BadInputError(
+            f"nothing could break lower = {keys.lower:g}: '{keys.metric}' is never negative",
+            where=document.place((*path, "lower")),
+            fix="give an upper limit, or a lower one above 0",
+        )
     if keys.unit is not None and _plain(keys.unit) != _plain(metric.unit):
         raise BadInputError(
             f"the unit of '{keys.metric}' is '{metric.unit}', not {keys.unit!r}",

@@ -6,6 +6,8 @@ what was asked for is in the plan. A plan changes the bounds under the key `devi
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from pydantic import Field
 
 from test_plans.building import Strict
@@ -20,29 +22,34 @@ from test_plans.metrics import (
 )
 
 _TITLES = {
-    "response_time": "90 % of the step is reached",
+    "response_time": "The response reaches what was asked, to within the bound of arrival",
     "arrival": "What was asked for arrives",
-    "stability_oscillation": "Oscillation at the end, without the orders of the wheel",
+    "stability_oscillation": "Oscillation that lasts, without the declared orders of the wheel",
     "stability_torque_request": "Share of time at the torque limit, or against the request",
 }
 #: Names of the checks, as they end the ids of their criteria.
 CHECKS = tuple(_TITLES)
 #: What follows a step of each quantity.
 _FOLLOWS = {"driving_torque": "shaft_torque_nm", "motor_torque": "motor_torque_nm"}
+#: Steps between smaller torques are judged as if they were between such: below lie friction and sensors.
+_LEAST_NM = {"driving_torque": 25.0, "motor_torque": 3.0}
 #: Of the time after the step: the mean at its end, and what is left for the response.
 _LONGEST_MEAN_S, _MEAN_SHARE, _RESPONSE_SHARE = 2.0, 0.25, 0.5
+_LARGEST_MISS_PERCENT = 50.0  # of the step: a response that may miss more has no time
 _LEAST_S = 1.0  # after a step: in less nothing comes to rest
 
 
 class DeviceChecks(Strict):
-    """Bounds of what any device must do; null takes a check out."""
+    """Bounds of what any device must do, in % of the largest torque asked for; null takes a check out."""
 
     arrival_percent: float | None = Field(
-        default=10.0, gt=0, le=1000, description="largest distance from what was asked, % of the step"
+        default=10.0, gt=0, le=1000, description="largest distance from what was asked"
     )
-    response_s: float | None = Field(default=2.0, gt=0, description="longest time to 90 % of a step, s")
+    response_s: float | None = Field(
+        default=2.0, gt=0, description="longest time until the response is as near as that, s"
+    )
     oscillation_percent: float | None = Field(
-        default=10.0, gt=0, le=1000, description="largest line that does not decay, % of the step"
+        default=10.0, gt=0, le=1000, description="largest amplitude of a line that lasts"
     )
     at_limit_share: float | None = Field(
         default=0.05,
@@ -53,37 +60,48 @@ class DeviceChecks(Strict):
 
     def criteria(self, segments: tuple[PlannedSegment, ...]) -> tuple[Criterion, ...]:
         """The criteria of all steps of torque among the segments, in order."""
-        return tuple(one for segment in segments if is_step(segment) for one in self._of(segment))
+        return tuple(one for segment in segments if _is_step(segment) for one in self._of(segment))
 
-    def _of(self, segment: PlannedSegment) -> list[Criterion]:
-        found = []
-        after_s = segment.end_s - segment.step_s
+    def gaps(self, segments: tuple[PlannedSegment, ...]) -> tuple[str, ...]:
+        """What is not checked of the steps of torque, one sentence each."""
+        steps = [one for one in segments if _is_step(one, least_s=0.0)]
+        named = [f"device.{name}" for name in type(self).model_fields if getattr(self, name) is None]
+        left_out = [f"the plan takes out {', '.join(named)}"] if named and steps else []
+        short = [
+            f"segment '{one.id}': {one.end_s - one.step_s:.3g} s after the step are too short to judge what "
+            f"any device must do, {_LEAST_S:g} s would do"
+            for one in steps
+            if not _is_step(one)
+        ]
+        return (*left_out, *short)
+
+    def _of(self, segment: PlannedSegment) -> Iterator[Criterion]:
         channel = _FOLLOWS[segment.quantity]
-        size = abs(segment.reference_after - segment.reference_before)
-        if self.response_s is not None:
-            metric: Metric = ResponseTime(channel=channel)
+        before, after = segment.reference_before, segment.reference_after
+        scale_nm = max(abs(before), abs(after), _LEAST_NM[segment.quantity])
+        of_step = scale_nm / abs(after - before)  # the metrics count in percent of the step
+        after_s = segment.end_s - segment.step_s
+        miss = of_step * (self.arrival_percent or 10.0)
+        if self.response_s is not None and miss <= _LARGEST_MISS_PERCENT:
+            metric: Metric = ResponseTime(channel=channel, share_percent=100.0 - miss)
             longest_s = min(self.response_s, _RESPONSE_SHARE * after_s)
-            found.append(_criterion(segment, "response_time", metric, upper=longest_s))
+            yield _criterion(segment, "response_time", metric, upper=longest_s)
         if self.arrival_percent is not None:
             metric = Arrival(channel=channel, mean_s=min(_LONGEST_MEAN_S, _MEAN_SHARE * after_s))
-            bound = self.arrival_percent
-            found.append(_criterion(segment, "arrival", metric, lower=-bound, upper=bound))
-        if segment.quantity != "driving_torque":
-            return found  # no loop: the motor's torque is what was asked for
+            yield _criterion(segment, "arrival", metric, lower=-miss, upper=miss)
         if self.oscillation_percent is not None:
-            metric = StabilityOscillation(channel="shaft_torque_nm")
-            largest = self.oscillation_percent / 100 * size
-            found.append(_criterion(segment, "stability_oscillation", metric, upper=largest))
-        if self.at_limit_share is not None:
+            metric = StabilityOscillation(channel=channel)
+            largest = self.oscillation_percent / 100 * scale_nm
+            yield _criterion(segment, "stability_oscillation", metric, upper=largest)
+        if self.at_limit_share is not None and segment.quantity == "driving_torque":
             metric = StabilityTorqueRequest()
-            found.append(_criterion(segment, "stability_torque_request", metric, upper=self.at_limit_share))
-        return found
+            yield _criterion(segment, "stability_torque_request", metric, upper=self.at_limit_share)
 
 
-def is_step(segment: PlannedSegment) -> bool:
+def _is_step(segment: PlannedSegment, least_s: float = _LEAST_S) -> bool:
     """Whether a segment is a step of torque with time enough to judge what comes of it."""
     moved = segment.reference_before != segment.reference_after
-    return segment.kind == "step" and moved and segment.end_s - segment.step_s >= _LEAST_S
+    return segment.kind == "step" and moved and segment.end_s - segment.step_s >= least_s - 1e-9
 
 
 def _criterion(

@@ -72,6 +72,8 @@ class _Judgement:
         scatter = self._scatter(criterion, own, rival)
         verdict = _verdict(criterion, own, rival, scatter)
         reason = own.reason or (rival.reason if rival else "")
+        if verdict == "fail" and not reason:
+            reason = self._remark(criterion)
         if verdict == "undecided":
             reason = (
                 f"segments '{criterion.segment}' and '{criterion.below}' differ by less than noise alone "
@@ -122,6 +124,14 @@ class _Judgement:
         if not math.isfinite(value):
             return _Found(reason=f"segment '{id_}': the value is {value}")
         return _Found(value)
+
+    def _remark(self, criterion: Criterion) -> str:
+        """What a reader should know of a value beyond its limit."""
+        try:
+            remark = criterion.metric.remark(self._recording, self._recorded[criterion.segment])
+        except (NoValueError, HilError):
+            return ""
+        return f"segment '{criterion.segment}': {remark}" if remark else ""
 
     def _doubt(self, metric: Metric, segment: Segment) -> str:
         """Why the metric's channels were not measured; '' if they were."""

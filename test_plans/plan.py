@@ -67,6 +67,11 @@ class Plan(PlanKeys):
         """What any device must do in the plan's steps, whatever its author asks."""
         return self.device.criteria(self.segments)
 
+    @property
+    def device_gaps(self) -> tuple[str, ...]:
+        """What of that is not checked, one sentence each."""
+        return self.device.gaps(self.segments)
+
 
 def estimate_duration_s(plan: Plan, pace: Pace | None = None) -> float:
     """Bench time of a whole run in seconds, begun at standstill, operator prompts not counted.

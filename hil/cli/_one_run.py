@@ -47,7 +47,7 @@ class Finished:
             return BenchError.exit_code
         if self.outcome.error is not None:
             return self.outcome.error.exit_code
-        return 0 if self.result.verdict in ("pass", "done") else 1
+        return {"pass": 0, "done": 0, "fail": 1, "error": BenchError.exit_code}[self.result.verdict]
 
 
 @dataclass(frozen=True)

@@ -149,7 +149,8 @@ def print_criteria(page: Console, criteria: tuple[CriterionResult, ...]) -> None
     Of the checks that any device must pass only those that it did not are shown.
     """
     shown = tuple(c for c in criteria if c.source == "plan" or c.verdict != "pass")
-    page.print(_table(shown))
+    if shown:
+        page.print(_table(shown))
     for reason in _reasons(shown):
         page.print(f"  {reason}", highlight=False, markup=False, soft_wrap=True)
 
@@ -160,7 +161,10 @@ def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
     for source, name in (("plan", "criteria"), ("device", "device checks")):
         judged = [c for c in criteria if c.has_limit and c.source == source]
         passed = sum(c.verdict == "pass" for c in judged)
-        parts += [f"{passed} of {len(judged)} {name} passed"] if judged else []
+        if source == "device" and passed < len(judged):
+            parts.append(f"but {len(judged) - passed} of {len(judged)} {name} did not pass")
+        elif judged:
+            parts.append(f"{passed} of {len(judged)} {name} passed")
     parts = parts or ["nothing was judged"]
     informational = sum(c.verdict == "informational" for c in criteria)
     return ", ".join([*parts, f"{informational} informational"] if informational else parts)

@@ -48,7 +48,8 @@ def carry_out(
         print_json(_json(checked, file.name, duration_s, predicted) | {"loops": margins_json(loops)})
     else:
         _tell(checked, file.name, duration_s, predicted, loops)
-    for text in warnings_of(loops):
+    unjudged = (f"not checked: {text}" for text in checked.device_gaps)
+    for text in (*warnings_of(loops), *unjudged):
         warn(text)
     return 0 if predicted.fits else 1
 
@@ -79,6 +80,7 @@ def _json(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> dic
         "segments": [segment.id for segment in plan.segments],
         "predicted": peaks,
         "bus_loads": {name: round(load, 4) for name, load in predicted.bus_loads.items()},
+        "not_checked": list(plan.device_gaps),
         "criteria": [
             {**criterion.model_dump(exclude={"definition"}), "margin": criterion.margin}
             for criterion in predicted.criteria
@@ -102,10 +104,11 @@ def _tell(plan: Plan, bench: str, duration_s: float, predicted: Forecast, loops:
     if predicted.criteria:
         page.print("\n[italic]criteria, predicted[/]")
         print_criteria(page, predicted.criteria)
-    page.print(f"\n{_verdict(predicted)}", highlight=False)
+    unstable = [name for name, one in loops.items() if not one.stable]
+    page.print(f"\n{_verdict(predicted, unstable)}", highlight=False)
 
 
-def _verdict(predicted: Forecast) -> str:
+def _verdict(predicted: Forecast, unstable: list[str]) -> str:
     """What the exit code says, and what it does not."""
     verdict = "fits the bench" if predicted.fits else "[bold red]beyond the bench's limits[/]"
     if predicted.overloaded:
@@ -116,6 +119,8 @@ def _verdict(predicted: Forecast) -> str:
         failed = sum(criterion.failed for criterion in asked)
         if failed:
             verdict += f"; [bold red]{failed} of {len(asked)} {name} are predicted to fail[/]"
+    if unstable:
+        verdict += f"; [bold red]the loop of {' and '.join(unstable)} is not stable on the bench's model[/]"
     return verdict
 
 

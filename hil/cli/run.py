@@ -130,8 +130,9 @@ def _print(result: RunResult, folder: Path) -> None:
         page.print(line, highlight=False)
     for limit in result.limits:
         if limit.reached:
-            warn(f"limit {limit.name} was reached {limit.reached} times; response: {limit.response}")
-    for text in result.missing:
+            times = "once" if limit.reached == 1 else f"{limit.reached} times"
+            warn(f"limit {limit.name} was reached {times}; response: {limit.response}")
+    for text in (*result.missing, *(f"not checked: {text}" for text in result.not_checked)):
         warn(text)
     if result.accepted_expired:
         warn(expiry_in_words(result.accepted_expired))

@@ -111,11 +111,15 @@ class Segment(_Frozen):
     )
     torque_limit_nm: float | None = Field(None, description="of the controller; null: none drove the segment")
     gear_ratio: float | None = Field(
-        None, description="motor speed over wheel speed, of the last controller; null: none was loaded"
+        None,
+        description="motor speed over wheel speed, of the bench file, else of the last controller",
     )
     rolling_radius_m: float | None = Field(
         None,
         description="vehicle speed over wheel speed: the bench's wheel radius, less the slip it was set to",
+    )
+    wheel_orders: tuple[float, ...] = Field(
+        (), description="multiples of the wheel's revolutions that its bench file declares as excited"
     )
 
 
@@ -319,6 +323,9 @@ class RunResult(_Frozen):
     end_steps: str = Field("", description="what became of the plan's end steps, as read back")
     missing: tuple[str, ...] = Field(
         (), description="devices and parts that were not there and not needed; frames that came damaged"
+    )
+    not_checked: tuple[str, ...] = Field(
+        (), description="what any device must do that was not checked, and why, one sentence each"
     )
     accepted_expired: AcceptedExpiry | None = Field(
         None, description="who answered for sensors whose calibration had run out"

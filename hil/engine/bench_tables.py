@@ -100,6 +100,15 @@ class Vehicle(Table):
 
     wheel_radius_m: float = Field(0.33, ge=0.01, le=10.0)
     slip: float = Field(0.0, ge=0, lt=1)
+    gear_ratio: float | None = Field(
+        None, gt=0, le=100, description="motor speed / wheel speed; else the controller's is taken"
+    )
+    wheel_orders: list[Annotated[float, Field(gt=0, le=1000)]] = Field(
+        [],
+        max_length=12,
+        description="multiples of the wheel's revolutions that joints, tyres or an imbalance excite: "
+        "no oscillation of the control loop",
+    )
     inertia_kg_m2: float | None = Field(None, gt=0, le=1e6)
     rolling_nm: float | None = Field(None, ge=0, le=1e6)
     aero_nms2_rad2: float | None = Field(None, ge=0, le=1e6)

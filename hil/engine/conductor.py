@@ -285,12 +285,22 @@ class BenchConductor:
                 reference_after=planned.reference_after,
                 quantity=planned.quantity,
                 torque_limit_nm=driven.torque_limit_nm if driven else None,
-                gear_ratio=controller.dfo.gear_ratio if controller else None,
+                gear_ratio=self._gear_ratio(),
+                wheel_orders=tuple(vehicle.wheel_orders),
                 rolling_radius_m=vehicle.wheel_radius_m * (1.0 - self._slip),
             )
         )
         self._store_segment()
         self._event("segment", f"{planned.id} begins")
+
+    def _gear_ratio(self) -> float | None:
+        """Of the bench file, else of the controller, else of the channel that the bench computes with it."""
+        known = self._bench.file
+        if known.vehicle.gear_ratio is not None:
+            return known.vehicle.gear_ratio
+        if self._controller is not None:
+            return self._controller.dfo.gear_ratio
+        return known.limits.twist.gear_ratio if known.limits.twist else None
 
     def _end(self, clock_s: float, *, complete: bool) -> None:
         """A segment ends where it was stopped, and only one that was carried out whole can be judged."""

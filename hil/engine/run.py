@@ -271,6 +271,7 @@ class _Run:
             emergency_stop=self._stopped,
             end_steps=self._end_steps,
             missing=(*self._arming.missing, *damage),
+            not_checked=request.plan.device_gaps,
             accepted_expired=self._expired,
             reason=str(failures.error) if failures.error else "",
             limit_tripped=tripped,

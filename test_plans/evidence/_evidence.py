@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from test_plans.evidence._relations import RELATIONS, means_of
+from test_plans.evidence._lag import LAG_IN_WORDS, lag_in_words
+from test_plans.evidence._relations import RELATIONS, contradictions
 from test_plans.evidence._repetition import SENSORS, WITNESSES, frozen_channels
 
 #: Channels that are computed from both sides, and what they are computed from.
@@ -23,6 +24,8 @@ def _proofs() -> dict[str, tuple[str, ...]]:
         bounds = f"within {one.within[0]:g} to {one.within[1]:g} times"
         for name in (one.channel, *one.against):
             found.setdefault(name, []).append(f"{one.law}, {bounds}")
+    for name in ("shaft_torque_nm", "motor_torque_nm"):
+        found[name].append(LAG_IN_WORDS)
     for whole, sides in _SIDES.items():
         found[whole] += [f"both sides: {text}" for text in dict.fromkeys(t for s in sides for t in found[s])]
     return {name: tuple(dict.fromkeys(texts)) for name, texts in found.items()}
@@ -39,12 +42,7 @@ def objections(recording: Recording, segment: Segment) -> dict[str, str]:
     is wrong.
     """
     found = {name: str(frozen) for name, frozen in frozen_channels(recording, segment).items()}
-    means = means_of(recording, segment)
-    for relation in RELATIONS:
-        objection = relation.objection(means, segment)
-        if objection:
-            for name in (relation.channel, *relation.against):
-                found.setdefault(name, objection)
+    found = {**contradictions(recording, segment), **lag_in_words(recording, segment), **found}
     for whole, sides in _SIDES.items():
         for side in sides:
             if side in found:

@@ -1,9 +1,10 @@
 """What the drive train demands of its channels, with no model but the gear.
 
 Each relation compares a channel with what its neighbours say that it must be, by the slope of the straight
-line through zero over tapered means of half a second: vibration, noise and dead time have no part in it. The
-bounds tell a dead, half, mirrored or swapped sensor from drag, efficiency, slip and the rotor's inertia, and
-nothing finer.
+line through zero over tapered means of half a second: vibration, noise and dead time have no part in it.
+Where such means show too little, as under a multisine, means of a tenth of a second show whether a channel
+is dead. Without a known gear ratio, that of the measured speeds is taken. The bounds tell a dead, half,
+mirrored or swapped sensor from drag, efficiency, slip and the rotor's inertia, and nothing finer.
 """
 
 from __future__ import annotations
@@ -17,17 +18,22 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array
 
-_MEAN_S = 0.5
+_MEAN_S, _SHORT_MEAN_S = 0.5, 0.1
+_NOTHING = 0.02  # slope of a dead channel
+_ALIVE, _SHORT_LEAST = 0.2, 0.2  # slope over short means below which a channel is dead; of `least`, there
 _LEAST_SHARE = 0.05  # of the largest value: what is left of a vibration in a mean says nothing
 _LEAST_MEANS = 4
+_LEAST_S = _LEAST_MEANS * _MEAN_S  # looked at, before a shorter segment too
 
 
 @dataclass(frozen=True)
 class Means:
-    """Tapered means over half a second of each channel, and its largest magnitude."""
+    """Tapered means of each channel and its largest magnitude, gear ratio and radius as far as known."""
 
     values: Mapping[str, Array]
     largest: Mapping[str, float]
+    gear_ratio: float | None
+    rolling_radius_m: float | None
 
     def __getitem__(self, channel: str) -> Array:
         return self.values[channel]
@@ -49,7 +55,7 @@ class Relation:
         channel: what is proven.
         against: channels that it is compared with; they are as doubtful as it is where they disagree.
         law: in words, for docs and messages.
-        expected: what the neighbours say that it must be, from means of channels and the segment; None
+        expected: what the neighbours say that it must be, from means of channels; None
             where something that it needs is not known.
         within: smallest and largest slope.
         least: root mean square of what is expected, in the channel's unit, below which nothing is proven.
@@ -58,52 +64,72 @@ class Relation:
     channel: str
     against: tuple[str, ...]
     law: str
-    expected: Callable[[Means, Segment], Array | None]
+    expected: Callable[[Means], Array | None]
     within: tuple[float, float]
     least: float
 
-    def objection(self, means: Means, segment: Segment) -> str:
-        """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be said."""
+    def objection(self, means: Means, short: Means) -> str:
+        """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be said.
+
+        Args:
+            means: over half a second each.
+            short: over a tenth of a second each.
+        """
+        slope = self._slope(means, self.least)
+        if slope is not None:
+            return "" if self.within[0] <= slope <= self.within[1] else self._in_words(slope)
+        slope = self._slope(short, _SHORT_LEAST * self.least)
+        return "" if slope is None or slope > _ALIVE else self._in_words(slope)
+
+    def _slope(self, means: Means, least: float) -> float | None:
+        """What is found over what is expected, least squares; None where less than `least` is expected."""
         if self.channel not in means or any(name not in means for name in self.against):
-            return ""
+            return None
         if any(means.largest[name] * _LEAST_SHARE > means.steady(name) for name in self.against):
-            return ""
-        expected, found = self.expected(means, segment), means[self.channel]
+            return None
+        expected, found = self.expected(means), means[self.channel]
         if expected is None:
-            return ""
+            return None
         known = np.isfinite(expected) & np.isfinite(found)
         expected, found = expected[known], found[known]
-        if len(expected) < _LEAST_MEANS or np.sqrt(np.mean(expected**2)) < self.least:
-            return ""
-        slope = float(expected @ found / (expected @ expected))
-        if self.within[0] <= slope <= self.within[1]:
-            return ""
+        if len(expected) < _LEAST_MEANS or np.sqrt(np.mean(expected**2)) < least:
+            return None
+        return float(expected @ found / (expected @ expected))
+
+    def _in_words(self, slope: float) -> str:
+        neighbours = " and ".join(self.against)
+        if abs(slope) < _NOTHING:
+            return (
+                f"{self.channel} reads nothing where {neighbours} demands something ({self.law}): it is dead"
+            )
         return (
-            f"{self.channel} is {slope:.3g} times what {' and '.join(self.against)} demands ({self.law}), "
-            f"{self.within[0]:g} to {self.within[1]:g} would agree: a sensor is dead, scaled or swapped, or "
-            "the gear ratio or radius is wrong"
+            f"{self.channel} is {slope:.3g} times what {neighbours} demands ({self.law}), "
+            f"{self.within[0]:g} to {self.within[1]:g} would agree: a sensor is scaled, mirrored or swapped, "
+            "drag takes the rest, or the gear ratio or radius is wrong"
         )
 
 
-def _by_gear(motor: str, *, up: bool) -> Callable[[Means, Segment], Array | None]:
-    def expected(means: Means, segment: Segment) -> Array | None:
-        ratio = segment.gear_ratio
+def _by_gear(motor: str, *, up: bool) -> Callable[[Means], Array | None]:
+    def expected(means: Means) -> Array | None:
+        ratio = means.gear_ratio
         return None if ratio is None else means[motor] * (ratio if up else 1 / ratio)
 
     return expected
 
 
-def _own(channel: str) -> Callable[[Means, Segment], Array | None]:
-    return lambda means, segment: means[channel]
+def _own(channel: str) -> Callable[[Means], Array | None]:
+    return lambda means: means[channel]
 
 
-def _rolling(means: Means, segment: Segment) -> Array | None:
-    radius_m = segment.rolling_radius_m
+def _rolling(means: Means) -> Array | None:
+    radius_m = means.rolling_radius_m
     return None if radius_m is None else means["wheel_speed_rad_s"] * radius_m
 
 
-_SPEED, _SIDES, _TORQUE, _SLIP = (0.95, 1.05), (0.6, 1.67), (0.75, 1.25), (0.8, 1.2)
+_SPEED, _SIDES, _TORQUE, _SLIP = (0.95, 1.05), (0.8, 1.25), (0.8, 1.2), (0.8, 1.2)
 _LEAST_SPEED_RAD_S, _LEAST_SPEED_M_S, _LEAST_TORQUE_NM = 0.5, 0.2, 20.0
+
+_REQUEST = "motor_torque_ref_nm"
 
 RELATIONS = (
     Relation(
@@ -139,6 +165,14 @@ RELATIONS = (
         _LEAST_SPEED_M_S,
     ),
     Relation(
+        "motor_torque_nm",
+        (_REQUEST,),
+        "T_m = T_m*",
+        _own(_REQUEST),
+        _TORQUE,
+        _LEAST_TORQUE_NM / 8,
+    ),
+    Relation(
         "shaft_torque_nm",
         ("motor_torque_nm",),
         "T_s = N T_m",
@@ -165,22 +199,48 @@ RELATIONS = (
 )
 
 
-def means_of(recording: Recording, segment: Segment) -> Means:
-    """Means of every channel that a relation needs, within a segment."""
+def contradictions(recording: Recording, segment: Segment) -> dict[str, str]:
+    """Channels of a segment that contradict each other, each with how."""
     wanted = dict.fromkeys(name for one in RELATIONS for name in (one.channel, *one.against))
     names = [name for name in wanted if name in recording]
     if not names or recording.samples < 2:
-        return Means({}, {})
-    first, last = (recording.rows_before(time_s) for time_s in (segment.start_s, segment.end_s))
+        return {}
+    start_s = min(segment.start_s, segment.end_s - _LEAST_S)  # the same sensors measured before it
+    first, last = (recording.rows_before(time_s) for time_s in (start_s, segment.end_s))
     rows = recording.rows(first, last, names)
-    length = max(1, round(_MEAN_S / recording.sample_time_s))
-    whole = (last - first) // length * length
-    blocks = {name: rows[name][:whole] for name in names}
+    means, short = (
+        _means_of(rows, max(1, round(length_s / recording.sample_time_s)), segment)
+        for length_s in (_MEAN_S, _SHORT_MEAN_S)
+    )
+    found: dict[str, str] = {}
+    for relation in RELATIONS:
+        objection = relation.objection(means, short)
+        for name in (relation.channel, *relation.against) if objection else ():
+            found.setdefault(name, objection)
+    return found
+
+
+def _means_of(rows: Mapping[str, Array], length: int, segment: Segment) -> Means:
+    """Means over `length` samples; without a known gear ratio, that of the speeds."""
+    blocks = {name: values[len(values) % length :] for name, values in rows.items()}
     largest = {
         name: float(np.max(np.abs(values), where=np.isfinite(values), initial=0.0))
         for name, values in blocks.items()
     }
-    return Means({name: _means(values, length) for name, values in blocks.items()}, largest)
+    means = {name: _means(values, length) for name, values in blocks.items()}
+    return Means(means, largest, segment.gear_ratio or _ratio_of_speeds(means), segment.rolling_radius_m)
+
+
+def _ratio_of_speeds(means: Mapping[str, Array]) -> float | None:
+    """Motor speed over wheel speed; None where they do not turn."""
+    if "motor_speed_rad_s" not in means or "wheel_speed_rad_s" not in means:
+        return None
+    motor, wheel = means["motor_speed_rad_s"], means["wheel_speed_rad_s"]
+    known = np.isfinite(motor) & np.isfinite(wheel)
+    motor, wheel = motor[known], wheel[known]
+    if not len(wheel) or np.sqrt(np.mean(wheel**2)) < _LEAST_SPEED_RAD_S:
+        return None
+    return abs(float(wheel @ motor / (wheel @ wheel))) or None
 
 
 def _means(values: Array, length: int) -> Array:

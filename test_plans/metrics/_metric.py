@@ -53,6 +53,7 @@ class Metric(Strict, ABC):
     """One number of one segment; the fields are its parameters, keys of a criterion in YAML."""
 
     name: ClassVar[str]
+    never_negative: ClassVar[bool] = False  # then no lower limit of zero or less can be broken
 
     @property
     @abstractmethod
@@ -73,6 +74,10 @@ class Metric(Strict, ABC):
             DidNotSettleError: what is looked for had not come to rest.
             BadInputError: the recording has no such channel.
         """
+
+    def remark(self, recording: Recording, segment: Segment) -> str:  # noqa: ARG002 - most have none
+        """What a reader should know of a value that failed; '' if nothing."""
+        return ""
 
     @property
     def channels(self) -> tuple[str, ...]:

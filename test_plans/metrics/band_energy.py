@@ -19,6 +19,7 @@ class BandEnergy(WindowMetric):
     """Integral of the one-sided power spectral density over a band: a sine of amplitude A gives A²/2."""
 
     name: ClassVar[str] = "band_energy"
+    never_negative: ClassVar[bool] = True
     from_hz: float = Field(ge=0, description="lower edge of the band, Hz")
     to_hz: float = Field(gt=0, description="upper edge of the band, Hz")
 

@@ -18,6 +18,7 @@ class Overshoot(Extreme):
     """How far the peak lies beyond the reference in the step's direction, not below zero."""
 
     name: ClassVar[str] = "overshoot"
+    never_negative: ClassVar[bool] = True
     reference: float | None = Field(
         default=None,
         description="value that the channel should reach, in its unit; else the step's value after",

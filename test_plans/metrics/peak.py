@@ -96,6 +96,7 @@ class Magnitude(Extreme):
     """Largest absolute value of a channel."""
 
     name: ClassVar[str] = "magnitude"
+    never_negative: ClassVar[bool] = True
 
     @property
     def definition(self) -> str:

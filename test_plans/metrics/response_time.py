@@ -9,10 +9,12 @@ from pydantic import Field
 
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from test_plans.conductor import PlannedSegment
+from test_plans.conductor import Array, PlannedSegment
 from test_plans.metrics import _reference
 from test_plans.metrics._metric import ChannelName, NotReachedError, NoValueError
-from test_plans.metrics._window import WindowMetric
+from test_plans.metrics._window import WindowMetric, cut
+
+_WHEEL, _MOTOR = "wheel_speed_rad_s", "motor_torque_nm"
 
 
 class _Following(WindowMetric):
@@ -31,6 +33,7 @@ class ResponseTime(_Following):
     """Time from the step until a channel first reaches a share of the step's size."""
 
     name: ClassVar[str] = "response_time"
+    never_negative: ClassVar[bool] = True
     share_percent: float = Field(default=90.0, gt=0, lt=100, description="of the step's size, %")
 
     @property
@@ -89,8 +92,9 @@ class Arrival(_Following):
     def definition(self) -> str:
         """Mean at the end minus the reference."""
         return (
-            f"Mean of {self.subject} over the last {self.mean_s:g} s of the window, {self.window}, minus the "
-            "value after the step, in percent of the step's size: positive beyond it, negative short of it."
+            f"Mean of {self.subject} over the last {self.mean_s:g} s of the window, {self.window} (whole "
+            "periods of the lowest declared order of the wheel), minus the value after the step, in percent "
+            "of the step's size: positive beyond it, negative short of it."
         )
 
     def compute(self, recording: Recording, segment: Segment) -> float:
@@ -98,9 +102,44 @@ class Arrival(_Following):
         size = segment.reference_after - segment.reference_before
         if size == 0:
             raise NoValueError("the segment has no step: before and after are the same")
-        time, values = self.samples(recording, segment)
-        last = values[time > time[-1] - self.mean_s]
-        return 100 * (float(np.mean(last)) - segment.reference_after) / size
+        return 100 * (self._mean(recording, segment, self.channel) - segment.reference_after) / size
+
+    def remark(self, recording: Recording, segment: Segment) -> str:
+        """Whether the torque is lost behind the motor, or was never made."""
+        if self.channel != "shaft_torque_nm" or segment.gear_ratio is None or _MOTOR not in recording:
+            return ""
+        at_motor = segment.gear_ratio * self._mean(recording, segment, _MOTOR)
+        at_shafts = self._mean(recording, segment, self.channel)
+        asked = segment.reference_after
+        behind, ahead = abs(at_shafts - at_motor), abs(at_motor - asked)
+        where = (
+            "between motor and shafts: drag, losses of the gear, or the sensor's scale"
+            if behind > ahead
+            else ("before the motor: the controller does not ask for more, or the RMCU does not give it")
+        )
+        return (
+            f"asked {asked:.4g} N m, N T_m {at_motor:.4g} N m, T_s {at_shafts:.4g} N m: most is lost {where}"
+        )
+
+    def _mean(self, recording: Recording, segment: Segment, channel: str) -> float:
+        """Of the end of the window."""
+        start_s, end_s = self.bounds_s(segment)
+        time, values = cut(recording, segment, channel, start_s, end_s)
+        first = int(np.searchsorted(time, time[-1] - self.mean_s, "right"))
+        if segment.wheel_orders and _WHEEL in recording:
+            _, speed = cut(recording, segment, _WHEEL, start_s, end_s)
+            periods = min(segment.wheel_orders) / (2 * np.pi) * _integral(time[first:], speed[first:])
+            whole = np.floor(abs(periods[-1]))
+            if whole >= 1:
+                first += int(np.searchsorted(np.abs(periods), abs(periods[-1]) - whole))
+        return float(np.mean(values[first:]))
+
+
+def _integral(time: Array, values: Array) -> Array:
+    """From the first sample to each, shape (n,)."""
+    found: Array = np.zeros(len(time))
+    found[1:] = np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))
+    return found
 
 
 class ArrivalShaftTorque(Arrival):

@@ -25,6 +25,7 @@ class RideComfort(WindowMetric):
     """Weighted r.m.s. acceleration of the vehicle along its way, W_d of ISO 2631-1: less is better."""
 
     name: ClassVar[str] = "ride_comfort"
+    never_negative: ClassVar[bool] = True
     channel: ChannelName = "vehicle_speed_m_s"
 
     @property

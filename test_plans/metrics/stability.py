@@ -10,7 +10,7 @@ from pydantic import Field
 from hil.core.errors import HilError
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from test_plans.conductor import PlannedSegment
+from test_plans.conductor import Array, PlannedSegment
 from test_plans.metrics import _lines
 from test_plans.metrics._metric import ChannelName, Metric, NoValueError
 from test_plans.metrics._reference import no_step
@@ -20,8 +20,9 @@ _WHEEL = "wheel_speed_rad_s"
 _REQUEST = "motor_torque_ref_nm"
 #: A request this close to its limit lies at it; one against what was asked for counts from this share of it.
 _AT_LIMIT, _AGAINST = 0.999, 0.05
-_ASKED = 0.1  # of the step: a smaller torque has no direction that noise could not turn around
+_ASKED, _LEAST_NM = 0.1, 20.0  # of the step, and at all: noise and orders turn a smaller torque around
 _LEAST_S = 0.4  # of the second half: less shows no line
+_LEAST_TURNS_HZ, _HIGHEST_ORDER, _SAME = 0.5, 12.0, 0.1  # for a line that may be an order
 _LATEST_S = 0.1
 _LOOKED_AT_S = 1.0  # at the end of a segment that was cut short
 _MOST_OF_IT = 0.2  # of the second half: a stable loop has left its limit by then
@@ -31,6 +32,7 @@ class StabilityTorqueRequest(Metric):
     """Share of a window's second half in which T_m* lies at its limit, or against what was asked for."""
 
     name: ClassVar[str] = "stability_torque_request"
+    never_negative: ClassVar[bool] = True
     limit_nm: float | None = Field(
         default=None, gt=0, description="torque limit of the controller, N m; else that of the segment's"
     )
@@ -62,16 +64,17 @@ class StabilityTorqueRequest(Metric):
         if limit_nm is not None:
             counted |= np.abs(request) >= _AT_LIMIT * limit_nm
         size = abs(segment.reference_after - segment.reference_before)
-        if abs(segment.reference_after) >= _ASKED * size:
+        if abs(segment.reference_after) >= max(_ASKED * size, _LEAST_NM):
             asked = np.sign(segment.reference_after)
             counted |= asked * request < -_AGAINST * float(np.max(np.abs(request)))
         return float(np.mean(counted))
 
 
 class StabilityOscillation(WindowMetric):
-    """Amplitude of what a channel still swings by at the end, and that follows no order of the wheel."""
+    """Amplitude of the strongest line that lasts, and is no declared order of the wheel."""
 
     name: ClassVar[str] = "stability_oscillation"
+    never_negative: ClassVar[bool] = True
     channel: ChannelName = "shaft_torque_nm"
 
     @property
@@ -83,10 +86,10 @@ class StabilityOscillation(WindowMetric):
     def definition(self) -> str:
         """How lines are found, and which count."""
         return (
-            f"Amplitude of what {self.subject} swings by at the end of the window (√2 times the rms of the "
-            "last twentieth of the time after the step), without the orders of the wheel: lines that, over "
-            "the second half, are sharper over the wheel's angle than over time; where the wheel's speed "
-            f"hardly changes, lines up to order {_lines.HIGHEST_ORDER:g} that do not grow."
+            f"Amplitude of the strongest line of {self.subject} in the second half of the window, without "
+            "the orders of the wheel that the bench file declares: of the line over all of it (linear trend "
+            "removed, Hann window), of the line in its last half second, and of the line that half of its "
+            "half-second blocks exceed, the largest. What decays in time does not count."
         )
 
     def objection(self, segment: PlannedSegment) -> str:
@@ -103,14 +106,32 @@ class StabilityOscillation(WindowMetric):
         Raises:
             NoValueError: the window is too short, or samples are missing.
         """
+        spacing_s, even, turns_hz = self._second_half(recording, segment)
+        left = _lines.without_orders(even, spacing_s, turns_hz, segment.wheel_orders)
+        return _lines.lasting_line(left, spacing_s)
+
+    def remark(self, recording: Recording, segment: Segment) -> str:
+        """The line's frequency, and which order of the wheel it would be."""
+        line = self.line(recording, segment)
+        _, _, turns_hz = self._second_half(recording, segment)
+        text = f"the line lies at {line.frequency_hz:.3g} Hz"
+        order = line.frequency_hz / max(float(np.mean(turns_hz)), _LEAST_TURNS_HZ)
+        if order > _HIGHEST_ORDER or any(abs(order - one) < _SAME * one for one in segment.wheel_orders):
+            return text
+        return (
+            f"{text}, {order:.3g} times the wheel's revolutions: if a joint or tyre "
+            "excites it, declare it in the bench file as one of vehicle.wheel_orders"
+        )
+
+    def _second_half(self, recording: Recording, segment: Segment) -> tuple[float, Array, Array]:
+        """Sample time, values, and revolutions a second of the wheel."""
         start_s, end_s = self.bounds_s(segment)
         middle_s = 0.5 * (start_s + end_s)
         if end_s - middle_s < _LEAST_S:
             raise NoValueError(f"{end_s - middle_s:.3g} s are too short for a line")
         time, values = cut(recording, segment, self.channel, middle_s, end_s, with_end=False)
-        spacing_s, even = evenly(time, values)
         _, speed = cut(recording, segment, _WHEEL, middle_s, end_s, with_end=False)
-        return _lines.lasting_oscillation(even, spacing_s, speed / (2 * np.pi))
+        return *evenly(time, values), speed / (2 * np.pi)
 
 
 def instability(recording: Recording, segment: Segment) -> str:
@@ -119,6 +140,8 @@ def instability(recording: Recording, segment: Segment) -> str:
     Either the request lay at its limit, or against what was asked, for a fifth of the second half; or T_s
     swung by more than a tenth of the step over three periods and more, without decay, up to the end.
     """
+    if segment.quantity == "motor_torque":
+        return ""  # no loop: what rings is the axle
     # The last samples of slower or later devices may be missing.
     segment = segment.model_copy(update={"end_s": segment.end_s - _LATEST_S})
     try:

@@ -164,6 +164,7 @@ def _judged(
         variables=plan.values,
         criteria=criteria,
         segments=inside,
+        not_checked=plan.device_gaps,
         reason=reason,
     )
 

@@ -45,7 +45,7 @@ def test_with_sound_sensors_it_passes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("faults", "doubted"),
     [
-        ({LEFT: SensorFault(gain=0.0), RIGHT: SensorFault(gain=0.0)}, "shaft_torque_nm is"),
+        ({LEFT: SensorFault(gain=0.0), RIGHT: SensorFault(gain=0.0)}, "shaft_torque_nm reads nothing"),
         ({LEFT: SensorFault(gain=0.5), RIGHT: SensorFault(gain=0.5)}, "shaft_torque_nm is 0.49"),
         ({LEFT: SensorFault(gain=0.0)}, "shaft_torque"),
         ({RIGHT: SensorFault(gain=-1.0)}, "shaft_torque"),
