@@ -58,6 +58,7 @@ class Relation:
         expected: what the neighbours say that it must be, from means of channels; None
             where something that it needs is not known.
         within: smallest and largest slope.
+        drag: what friction may take at every torque, in the channel's unit.
         least: root mean square of what is expected, in the channel's unit, below which nothing is proven.
     """
 
@@ -67,6 +68,7 @@ class Relation:
     expected: Callable[[Means], Array | None]
     within: tuple[float, float]
     least: float
+    drag: float = 0.0
 
     def objection(self, means: Means, short: Means) -> str:
         """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be said.
@@ -75,14 +77,28 @@ class Relation:
             means: over half a second each.
             short: over a tenth of a second each.
         """
-        slope = self._slope(means, self.least)
-        if slope is not None:
-            return "" if self.within[0] <= slope <= self.within[1] else self._in_words(slope)
-        slope = self._slope(short, _SHORT_LEAST * self.least)
-        return "" if slope is None or slope > _ALIVE else self._in_words(slope)
+        pairs = self._pairs(means, self.least)
+        if pairs is not None:
+            slope = _slope(*pairs)
+            agrees = self._within(slope) or self._differs_by_drag(*pairs)
+            return "" if agrees else self._in_words(slope)
+        pairs = self._pairs(short, _SHORT_LEAST * self.least)
+        slope = 1.0 if pairs is None else _slope(*pairs)
+        return "" if slope > _ALIVE else self._in_words(slope)
 
-    def _slope(self, means: Means, least: float) -> float | None:
-        """What is found over what is expected, least squares; None where less than `least` is expected."""
+    def _within(self, slope: float) -> bool:
+        return self.within[0] <= slope <= self.within[1]
+
+    def _differs_by_drag(self, expected: Array, found: Array) -> bool:
+        """Whether what is missing is as large at every torque: friction, which a scale is not."""
+        around = expected - np.mean(expected)
+        if np.sqrt(np.mean(around**2)) < 0.5 * self.least:
+            return False
+        slope = _slope(around, found - np.mean(found))
+        return self._within(slope) and float(abs(np.mean(found) - slope * np.mean(expected))) <= self.drag
+
+    def _pairs(self, means: Means, least: float) -> tuple[Array, Array] | None:
+        """What is expected and what is found; None where less than `least`, rms, is expected."""
         if self.channel not in means or any(name not in means for name in self.against):
             return None
         if any(means.largest[name] * _LEAST_SHARE > means.steady(name) for name in self.against):
@@ -94,7 +110,7 @@ class Relation:
         expected, found = expected[known], found[known]
         if len(expected) < _LEAST_MEANS or np.sqrt(np.mean(expected**2)) < least:
             return None
-        return float(expected @ found / (expected @ expected))
+        return expected, found
 
     def _in_words(self, slope: float) -> str:
         neighbours = " and ".join(self.against)
@@ -107,6 +123,11 @@ class Relation:
             f"{self.within[0]:g} to {self.within[1]:g} would agree: a sensor is scaled, mirrored or swapped, "
             "drag takes the rest, or the gear ratio or radius is wrong"
         )
+
+
+def _slope(expected: Array, found: Array) -> float:
+    """What is found over what is expected, least squares."""
+    return float(expected @ found / (expected @ expected))
 
 
 def _by_gear(motor: str, *, up: bool) -> Callable[[Means], Array | None]:
@@ -175,10 +196,11 @@ RELATIONS = (
     Relation(
         "shaft_torque_nm",
         ("motor_torque_nm",),
-        "T_s = N T_m",
+        "T_s = N T_m, less friction",
         _by_gear("motor_torque_nm", up=True),
         _TORQUE,
         _LEAST_TORQUE_NM,
+        drag=2 * _LEAST_TORQUE_NM,
     ),
     Relation(
         "shaft_torque_left_nm",

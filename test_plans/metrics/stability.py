@@ -22,7 +22,8 @@ _REQUEST = "motor_torque_ref_nm"
 _AT_LIMIT, _AGAINST = 0.999, 0.05
 _ASKED, _LEAST_NM = 0.1, 20.0  # of the step, and at all: noise and orders turn a smaller torque around
 _LEAST_S = 0.4  # of the second half: less shows no line
-_LEAST_TURNS_HZ, _HIGHEST_ORDER, _SAME = 0.5, 12.0, 0.1  # for a line that may be an order
+_LEAST_TURNS_HZ, _SAME = 0.5, 0.1  # for a line that may be an order
+_LOWEST_ORDER, _HIGHEST_ORDER = 0.9, 12.0
 _LATEST_S = 0.1
 _LOOKED_AT_S = 1.0  # at the end of a segment that was cut short
 _MOST_OF_IT = 0.2  # of the second half: a stable loop has left its limit by then
@@ -116,7 +117,8 @@ class StabilityOscillation(WindowMetric):
         _, _, turns_hz = self._second_half(recording, segment)
         text = f"the line lies at {line.frequency_hz:.3g} Hz"
         order = line.frequency_hz / max(float(np.mean(turns_hz)), _LEAST_TURNS_HZ)
-        if order > _HIGHEST_ORDER or any(abs(order - one) < _SAME * one for one in segment.wheel_orders):
+        declared = any(abs(order - one) < _SAME * one for one in segment.wheel_orders)
+        if declared or not _LOWEST_ORDER <= order <= _HIGHEST_ORDER:
             return text
         return (
             f"{text}, {order:.3g} times the wheel's revolutions: if a joint or tyre "

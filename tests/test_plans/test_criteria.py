@@ -70,6 +70,7 @@ def test_a_generic_metric_takes_its_parameters() -> None:
         ),
         ({"metric": "peak_shaft_torque", "segment": "up", "unit": "bar"}, "unit", "is 'N m', not 'bar'"),
         ({"metric": "peak_shaft_torque", "segment": "up", "upper": 1, "lower": 2}, "lower", "above upper"),
+        ({"metric": "overshoot_shaft_torque", "segment": "up", "lower": 0}, "lower", "is never negative"),
         ({"metric": "peak_shaft_torque", "segment": "up", "upper": "1 kN m"}, "upper", "must be a number"),
         ({"metric": "peak_shaft_torque", "segment": "up", "from_hz": 1}, "from_hz", "unknown key"),
         ({"metric": "peak", "segment": "up", "channel": "shaft_torque"}, "channel", "'shaft_torque_nm'?"),

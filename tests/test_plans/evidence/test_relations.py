@@ -94,3 +94,43 @@ def test_every_channel_of_the_axle_has_a_proof() -> None:
     channels = set(SOUND.channels) - {"time_s", "motor_torque_ref_nm"}
     assert channels <= set(PROOFS)
     assert all(PROOFS[name] for name in channels)
+
+
+def test_friction_that_is_as_large_at_every_torque_is_no_scale() -> None:
+    small = {"motor_torque_ref_nm": 8.0 * DRIVEN, "motor_torque_nm": 8.0 * DRIVEN}
+    torque = 0.5 * (8.0 * GEAR * DRIVEN - 25.0) + NOISE
+    sides = {"shaft_torque_left_nm": torque, "shaft_torque_right_nm": torque - NOISE + NOISE[::-1]}
+    assert objections(axle(**small, **sides), SEGMENT) == {}
+    scaled = {name: 0.5 * values for name, values in sides.items()}
+    assert "shaft_torque_nm" in objections(axle(**small, **scaled), SEGMENT)
+
+
+DEAD = {"shaft_torque_left_nm": NOISE, "shaft_torque_right_nm": NOISE[::-1]}
+
+
+def test_without_a_controller_the_speeds_tell_the_gear_ratio() -> None:
+    unknown = SEGMENT.model_copy(update={"gear_ratio": None})
+    assert objections(axle(), unknown) == {}
+    assert "reads nothing" in objections(axle(**DEAD), unknown)["shaft_torque_nm"]
+
+
+def test_a_short_segment_is_looked_at_with_what_came_before_it() -> None:
+    short = SEGMENT.model_copy(update={"start_s": 9.7, "step_s": 9.8, "end_s": 10.3})
+    assert objections(axle(), short) == {}
+    assert "shaft_torque_nm" in objections(axle(**DEAD), short)
+
+
+def test_under_a_multisine_a_dead_sensor_is_found() -> None:
+    tones = sum(2.0 * np.sin(2 * np.pi * f * TIME + f) for f in (1.0, 3.0, 7.0, 13.0, 21.0))
+    excited = SEGMENT.model_copy(update={"kind": "multisine"})
+    motor = {"motor_torque_ref_nm": tones, "motor_torque_nm": tones}
+    torque = 0.5 * GEAR * tones + NOISE
+    alive = {"shaft_torque_left_nm": torque, "shaft_torque_right_nm": torque + NOISE[::-1]}
+    assert objections(axle(**motor, **alive), excited) == {}
+    assert "reads nothing" in objections(axle(**motor, **DEAD), excited)["shaft_torque_nm"]
+    mirrored = {name: -values for name, values in alive.items()}
+    assert "shaft_torque_nm" in objections(axle(**motor, **mirrored), excited)
+
+
+def test_a_motor_torque_that_is_not_what_was_requested_is_doubted() -> None:
+    assert "T_m = T_m*" in objections(axle(motor_torque_nm=0.0 * DRIVEN), SEGMENT)["motor_torque_nm"]
