@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from test_plans.evidence._lag import LAG_IN_WORDS, lag_in_words
+from test_plans.evidence._dynamics import (
+    INERTIA_IN_WORDS,
+    LAG_IN_WORDS,
+    inertia_in_words,
+    lag_in_words,
+)
 from test_plans.evidence._relations import RELATIONS, contradictions
 from test_plans.evidence._repetition import SENSORS, WITNESSES, frozen_channels
 
@@ -26,6 +31,8 @@ def _proofs() -> dict[str, tuple[str, ...]]:
             found.setdefault(name, []).append(f"{one.law}, {bounds}")
     for name in ("shaft_torque_nm", "motor_torque_nm"):
         found[name].append(LAG_IN_WORDS)
+    for name in ("shaft_torque_nm", "wheel_speed_rad_s"):
+        found[name].append(INERTIA_IN_WORDS)
     for whole, sides in _SIDES.items():
         found[whole] += [f"both sides: {text}" for text in dict.fromkeys(t for s in sides for t in found[s])]
     return {name: tuple(dict.fromkeys(texts)) for name, texts in found.items()}
@@ -42,7 +49,12 @@ def objections(recording: Recording, segment: Segment) -> dict[str, str]:
     is wrong.
     """
     found = {name: str(frozen) for name, frozen in frozen_channels(recording, segment).items()}
-    found = {**contradictions(recording, segment), **lag_in_words(recording, segment), **found}
+    found = {
+        **contradictions(recording, segment),
+        **lag_in_words(recording, segment),
+        **inertia_in_words(recording, segment),
+        **found,
+    }
     for whole, sides in _SIDES.items():
         for side in sides:
             if side in found:

@@ -121,7 +121,7 @@ def test_a_short_segment_is_looked_at_with_what_came_before_it() -> None:
 
 
 def test_under_a_multisine_a_dead_sensor_is_found() -> None:
-    tones = sum(2.0 * np.sin(2 * np.pi * f * TIME + f) for f in (1.0, 3.0, 7.0, 13.0, 21.0))
+    tones = np.sum([2.0 * np.sin(2 * np.pi * f * TIME + f) for f in (1.0, 3.0, 7.0, 13.0, 21.0)], axis=0)
     excited = SEGMENT.model_copy(update={"kind": "multisine"})
     motor = {"motor_torque_ref_nm": tones, "motor_torque_nm": tones}
     torque = 0.5 * GEAR * tones + NOISE

@@ -1,4 +1,4 @@
-"""Whether T_s comes when N T_m does, whatever the course of the torque."""
+"""Whether T_s comes when N T_m does, whatever the course of the torque, and moves a car."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from scipy.signal import lfilter, lsim
 
 from test_plans import Array
-from test_plans.evidence._lag import lag_in_words
+from test_plans.evidence._dynamics import inertia_in_words, lag_in_words
 from tests.test_plans.signals import STEP, recording_of, time_axis
 
 TIME = time_axis()
@@ -69,3 +69,23 @@ def test_a_sensor_that_is_late_or_drifts_is(change: str, course: str) -> None:
         change = "after"
     assert "shaft_torque_nm comes" in told
     assert change.strip() in told or change == "after"
+
+
+def inertia_told(acceleration: Array, torque: Array) -> str:
+    speed = 5.0 + np.cumsum(acceleration) * 0.001
+    recording = recording_of(TIME, wheel_speed_rad_s=speed, shaft_torque_nm=torque)
+    return inertia_in_words(recording, SHORT).get("wheel_speed_rad_s", "")
+
+
+@pytest.mark.parametrize("inertia", [12.0, 65.0, 303.0, 2500.0])
+@pytest.mark.parametrize("before", [0.0, -150.0, 400.0])
+def test_a_car_accelerates_with_the_torque(inertia: float, before: float) -> None:
+    torque = np.where(AFTER > 0, 200.0, before)
+    assert inertia_told((torque - 40.0) / inertia, torque + NOISE) == ""
+
+
+def test_what_no_car_does_is_told() -> None:
+    torque = np.where(AFTER > 0, 200.0, 0.0)
+    assert "makes -303 kg m²" in inertia_told(-torque / 303.0, torque)
+    assert "makes inf kg m²" in inertia_told(0.0 * torque, torque)
+    assert "makes 4 kg m²" in inertia_told(torque / 4.0, torque)
