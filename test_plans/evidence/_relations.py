@@ -9,6 +9,7 @@ mirrored or swapped sensor from drag, efficiency, slip and the rotor's inertia, 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -18,7 +19,7 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array
 
-_MEAN_S, _SHORT_MEAN_S = 0.5, 0.1
+_MEAN_S, _SHORTEST_MEAN_S, _SHORT_MEAN_S = 0.5, 0.25, 0.1
 _NOTHING = 0.02  # slope of a dead channel
 _ALIVE, _SHORT_LEAST = 0.2, 0.2  # slope over short means below which a channel is dead; of `least`, there
 _LEAST_SHARE = 0.05  # of the largest value: what is left of a vibration in a mean says nothing
@@ -230,9 +231,11 @@ def contradictions(recording: Recording, segment: Segment) -> dict[str, str]:
     start_s = min(segment.start_s, segment.end_s - _LEAST_S)  # the same sensors measured before it
     first, last = (recording.rows_before(time_s) for time_s in (start_s, segment.end_s))
     rows = recording.rows(first, last, names)
+    quarter_s = (last - first) * recording.sample_time_s / _LEAST_MEANS
+    mean_s = min(_MEAN_S, quarter_s) if quarter_s >= _SHORTEST_MEAN_S else _MEAN_S
     means, short = (
-        _means_of(rows, max(1, round(length_s / recording.sample_time_s)), segment)
-        for length_s in (_MEAN_S, _SHORT_MEAN_S)
+        _means_of(rows, max(1, math.floor(length_s / recording.sample_time_s)), segment)
+        for length_s in (mean_s, _SHORT_MEAN_S)
     )
     found: dict[str, str] = {}
     for relation in RELATIONS:

@@ -56,6 +56,23 @@ class Does(Injection):
 
 
 @dataclass
+class Drifts(Injection):
+    """Sensors read more and more, in their unit per second."""
+
+    channels: tuple[str, ...]
+    per_s: float
+
+    def to_hosts(self, stage: Stage, bus: str, block: FrameBlock) -> FrameBlock:
+        del bus
+        assert stage.injected_s is not None
+        fault = SensorFault(offset=self.per_s * (stage.now_s - stage.injected_s))
+        for channel in self.channels:
+            stage.world.spoil(channel, fault)
+        stage.count()
+        return block
+
+
+@dataclass
 class Received(Injection):
     """What hosts receive of one bus is changed, for a time."""
 

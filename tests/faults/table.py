@@ -29,7 +29,6 @@ from tests.faults.third_party import Oil
 
 SILENT, NO_ANSWER = "stopped coming", "no answer|no heartbeat|sends no|heartbeat lost|did not bring"
 RMCU_FAULT = "the RMCU went to fault"
-CRITERION = 1  # exit code of a run with a criterion that is not met
 KEPT_S = 0.3  # a disk is heard of when it is written to
 
 
@@ -283,7 +282,13 @@ _OF_SENSORS = (
         "the wheels turn at|repeats bit for bit",
         within_s=None,  # until its speed should have changed nobody can know
     ),
-    tolerated("no-torque", "torque does not follow", lambda: I.Received(I.no_torque), phases=("stepping",)),
+    row(
+        "no-torque",
+        "torque does not follow",
+        lambda: I.Received(I.no_torque),
+        within_s=None,  # found when the run is judged
+        phases=("stepping",),
+    ),
 )
 _OF_THE_COMPUTER = (
     row(
@@ -343,7 +348,6 @@ _OF_CODE = (
         "criterion",
         "mistake in a criterion",
         lambda: I.Code(I.in_metric, I.raises),
-        code=CRITERION,  # verdict and reason stand in the result, the bench is well
         within_s=None,
         phases=ALL,
     ),

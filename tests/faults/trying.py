@@ -41,6 +41,8 @@ _STEPS = {
 _END = "finally:\n  - mark: {phase: ramping down}\n  - ramp_down: {duration_s: 0.5}\n"
 _CRITERIA = (
     "criteria:\n  - {segment: s, metric: peak, channel: motor_torque_ref_nm, upper: 30, unit: N m}\n"
+    "  - {segment: s, metric: magnitude, channel: shaft_torque_nm, id: s.torque, upper: 400, unit: N m}\n"
+    "  - {segment: s, metric: magnitude, channel: wheel_speed_rad_s, id: s.speed, upper: 60, unit: rad/s}\n"
     "  - {segment: s, metric: rows}\n"
 )
 # Asked twice a second, the panel is missed after 0.6 s
