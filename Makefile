@@ -164,7 +164,7 @@ figures: setup
 # Pins every dependency with hashes and without addresses of package indexes.
 lock: $(BIN)/uv
 	printf 'uv==%s\n' "$$($(BIN)/uv --version | cut -d' ' -f2)" | $(BIN)/uv pip compile --quiet --no-header --universal --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/tool.txt -
-	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra service --extra postgresql --extra s3 --extra fmu --extra campaign --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
+	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra all --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
 
 clean:
 	rm -rf $(VENV) out

@@ -11,6 +11,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
+from hil.core.extras import need
 from hil.core.recording import Recording
 from test_plans import Conductor, Outlook, Pace, Step
 from test_plans.steps import Name, designed_file
@@ -29,6 +30,7 @@ class IdentifyStep(Step):
 
     def carry_out(self, conductor: Conductor) -> None:
         """Fit, and keep model.toml, physical.toml, frf.csv and figures."""
+        need("scipy")
         conductor.analyse(self.kind, self._work, (MODEL, CHAIN, RESPONSES))
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:
@@ -60,6 +62,7 @@ class DesignStep(Step):
 
     def carry_out(self, conductor: Conductor) -> None:
         """Design, and keep the controller and its figures."""
+        need("scipy")
         conductor.analyse(f"{self.kind} {self.name}", self._work, (str(designed_file(self.name)),))
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:

@@ -104,7 +104,10 @@ def _json_in_script(value: object) -> str:
 
 def _plotly_js() -> str:
     """The library, without control characters: HTML forbids them, JavaScript reads them spelled out too."""
-    text = resources.files("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8")
+    script = resources.files("reports").joinpath("templates/plotly.min.js")  # a wheel has it
+    if not script.is_file():
+        script = resources.files("plotly").joinpath("package_data/plotly.min.js")
+    text = script.read_text(encoding="utf-8")
     return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 

@@ -23,6 +23,7 @@ from hil.cli._log import LOG
 from hil.cli._several import each_with_its_option
 from hil.cli._streams import complain, tolerate_outputs
 from hil.core.errors import BadInputError, BenchError, HilError
+from hil.core.extras import not_installed
 from hil.core.files import of_the_system
 
 logger = logging.getLogger(__name__)
@@ -213,6 +214,8 @@ def _carried_out(arguments: list[str]) -> int:
         return _told(error)
     except OSError as error:
         return _told(of_the_system(error))
+    except ModuleNotFoundError as error:
+        return _told(not_installed(error) or _fault_of_ours(error))
     except MemoryError:
         return _told(BenchError("there is not enough memory", fix="give a shorter recording"))
     except Exception as error:

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from hil.analysis.control_design import Margins
-from hil.analysis.tuning import SpeedLoops
 from hil.cli._output import plain_table
 from hil.core.controller import load_controller
 from hil.core.model import load_model
@@ -18,12 +17,17 @@ from hil.engine.bench_file import DEFAULT_BENCH
 from hil.engine.trial_runs import controller_files
 from test_plans import Plan
 
+if TYPE_CHECKING:
+    from hil.analysis.control_design import Margins
+
 #: A loop this close to -1 shakes with the next degree of temperature: 1 over it is the distance to -1.
 _WARN_SENSITIVITY = 3.0
 
 
 def loop_margins(plan: Plan, bench: BenchFile) -> dict[str, Margins]:
     """Of each controller file of a plan, by its name, on the bench's model or the shipped bench's."""
+    from hil.analysis.tuning import SpeedLoops  # slow to load
+
     simulation = bench.simulation or load_bench(DEFAULT_BENCH).simulation
     assert simulation is not None, "the default bench is simulated"
     model = load_model(simulation.model)

@@ -5,22 +5,26 @@ from __future__ import annotations
 import datetime
 import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from hil.analysis.control_design import Margins
 from hil.cli._choices import choices_of
 from hil.cli._loop_margins import loop_margins, margins_json, margins_table, warnings_of
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
 from hil.core.channels import CHANNELS
 from hil.core.digits import share
 from hil.core.errors import BadInputError
+from hil.core.extras import not_installed
 from hil.core.mistakes import all_of
 from hil.engine import BenchFile, load_bench
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.forecast import Forecast, forecast
 from hil.engine.preflight import preflight
 from test_plans import Choices, Pace, Plan, estimate_duration_s, load_plan
+
+if TYPE_CHECKING:
+    from hil.analysis.control_design import Margins
 
 
 def carry_out(
@@ -43,7 +47,14 @@ def carry_out(
     with progress(checked.name) as show:
         show("predicting")
         predicted = forecast(checked, file)
-    loops = loop_margins(checked, file)
+    try:
+        loops = loop_margins(checked, file)
+    except ModuleNotFoundError as error:
+        missing = not_installed(error)
+        if missing is None:
+            raise
+        warn(f"no margins of the loops: {missing}")
+        loops = {}
     if as_json:
         print_json(_json(checked, file.name, duration_s, predicted) | {"loops": margins_json(loops)})
     else:

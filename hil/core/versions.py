@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.metadata
 import platform
 import subprocess
@@ -13,7 +14,9 @@ _LIBRARIES = ("numpy", "scipy", "numba", "python-can", "canopen", "cantools", "m
 def versions() -> dict[str, str]:
     """This software, the interpreter, the libraries that matter, and the git revision if there is one."""
     found = {"eaxle-hil": importlib.metadata.version("eaxle-hil"), "python": platform.python_version()}
-    found |= {name: importlib.metadata.version(name) for name in _LIBRARIES}
+    for name in _LIBRARIES:
+        with contextlib.suppress(importlib.metadata.PackageNotFoundError):  # an extra brings it
+            found[name] = importlib.metadata.version(name)
     found["git_revision"] = _git_revision()
     return found
 

@@ -1,0 +1,57 @@
+"""What a base install leaves out: a missing library is told with the extra that brings it."""
+
+from __future__ import annotations
+
+import importlib.util
+
+from hil.core.errors import BadInputError
+
+#: What an extra is for, by its name in pyproject.toml.
+PURPOSES = {
+    "analysis": "identification, control design, tuning, diagnosis and MAT files",
+    "mdf": "MDF files",
+    "parquet": "Parquet and CSV files",
+    "sign": "signatures",
+    "service": "the service",
+    "campaign": "campaigns on several machines",
+}
+#: Which extra brings a module.
+MODULES = {
+    "scipy": "analysis",
+    "skrf": "analysis",
+    "pandas": "analysis",
+    "asammdf": "mdf",
+    "pyarrow": "parquet",
+    "cryptography": "sign",
+    "fastapi": "service",
+    "uvicorn": "service",
+    "sqlalchemy": "service",
+    "alembic": "service",
+    "fsspec": "service",
+    "distributed": "campaign",
+}
+
+
+def not_installed(error: ModuleNotFoundError) -> BadInputError | None:
+    """The message for a library that an extra brings; None where the module belongs to none."""
+    module = (error.name or "").partition(".")[0]
+    return _message(module) if module in MODULES else None
+
+
+def need(module: str) -> None:
+    """Refuse what cannot work without a library, before anything is begun.
+
+    Raises:
+        BadInputError: it is not installed; names its extra.
+    """
+    if importlib.util.find_spec(module) is None:
+        raise _message(module)
+
+
+def _message(module: str) -> BadInputError:
+    extra = MODULES[module]
+    return BadInputError(
+        f"this needs the library '{module}', which a base install leaves out: the extra '{extra}' "
+        f"({PURPOSES[extra]})",
+        fix=f"pip install 'eaxle-hil[{extra}]', or 'eaxle-hil[all]'",
+    )
