@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: run autotune browser serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow nightly wrong-controllers test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers
+.PHONY: run autotune browser serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow nightly wrong-controllers test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers release docs
 
 run: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
@@ -165,6 +165,10 @@ figures: setup
 lock: $(BIN)/uv
 	printf 'uv==%s\n' "$$($(BIN)/uv --version | cut -d' ' -f2)" | $(BIN)/uv pip compile --quiet --no-header --universal --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/tool.txt -
 	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra all --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
+
+# Wheel, sdist and SBOM in dist/, tried in an empty environment.
+release: setup
+	$(BIN)/python requirements/release.py
 
 clean:
 	rm -rf $(VENV) out

@@ -184,8 +184,9 @@ def _counts(result: RunResult) -> list[str]:
     for source, name in (("plan", "criteria"), ("device", "checks of what any device must do")):
         demanding = [one for one in result.criteria if one.has_limit and one.source == source]
         passed = sum(one.verdict == "pass" for one in demanding)
-        if source == "device" and passed < len(demanding):
-            sentences.append(f"But {len(demanding) - passed} of {len(demanding)} {name} did not pass.")
+        failed = sum(one.failed for one in demanding)
+        if source == "device" and failed:
+            sentences.append(f"{failed} of {len(demanding)} {name} failed.")
         elif demanding:
             sentences.append(f"{passed} of {len(demanding)} {name} passed.")
     sentences = sentences or ["The plan has no criterion with a limit, so nothing is judged."]

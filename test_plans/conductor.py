@@ -23,7 +23,7 @@ class PlannedSegment:
     """A named stretch of samples, before it has a place in a recording.
 
     `step_s` and `end_s` are seconds from the first sample of the stretch; `reference_before` and
-    `reference_after` are values of `quantity` in N m, before and after the step.
+    `reference_after` are values of `quantity` in N m, before and after the step, which takes `rise_s`.
     """
 
     id: str
@@ -33,6 +33,7 @@ class PlannedSegment:
     reference_after: float
     quantity: Quantity = "driving_torque"
     end_s: float = math.inf
+    rise_s: float = 0.0
 
 
 #: What an analysis step does: from the run's recording so far (its segments in the attachment `run.json`) and

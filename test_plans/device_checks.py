@@ -15,6 +15,7 @@ from test_plans.conductor import PlannedSegment
 from test_plans.criteria import Criterion
 from test_plans.metrics import (
     Arrival,
+    Holding,
     Metric,
     ResponseTime,
     StabilityOscillation,
@@ -24,6 +25,7 @@ from test_plans.metrics import (
 _TITLES = {
     "response_time": "The response reaches what was asked, to within the bound of arrival",
     "arrival": "What was asked for arrives",
+    "holding": "It stays there",
     "stability_oscillation": "Oscillation that lasts, without the declared orders of the wheel",
     "stability_torque_request": "Share of time at the torque limit, or against the request",
 }
@@ -35,7 +37,8 @@ _FOLLOWS = {"driving_torque": "shaft_torque_nm", "motor_torque": "motor_torque_n
 _LEAST_NM = {"driving_torque": 25.0, "motor_torque": 3.0}
 #: Of the time after the step: the mean at its end, and what is left for the response.
 _LONGEST_MEAN_S, _MEAN_SHARE, _RESPONSE_SHARE = 2.0, 0.25, 0.5
-_LARGEST_MISS_PERCENT = 50.0  # of the step: a response that may miss more has no time
+_LARGEST_MISS_PERCENT = 50.0  # of the step: a response that may miss more is none
+_STEPS = ("step", "stairs", "ramp")  # what ends at a level
 _LEAST_S = 1.0  # after a step: in less nothing comes to rest
 
 
@@ -47,6 +50,12 @@ class DeviceChecks(Strict):
     )
     response_s: float | None = Field(
         default=2.0, gt=0, description="longest time until the response is as near as that, s"
+    )
+    holding_percent: float | None = Field(
+        default=20.0,
+        gt=0,
+        le=1000,
+        description="largest distance of quarter-second means from what was asked, in the second half",
     )
     oscillation_percent: float | None = Field(
         default=10.0, gt=0, le=1000, description="largest amplitude of a line that lasts"
@@ -64,16 +73,21 @@ class DeviceChecks(Strict):
 
     def gaps(self, segments: tuple[PlannedSegment, ...]) -> tuple[str, ...]:
         """What is not checked of the steps of torque, one sentence each."""
-        steps = [one for one in segments if _is_step(one, least_s=0.0)]
+        steps = [one for one in segments if _moves(one)]
         named = [f"device.{name}" for name in type(self).model_fields if getattr(self, name) is None]
         left_out = [f"the plan takes out {', '.join(named)}"] if named and steps else []
         short = [
-            f"segment '{one.id}': {one.end_s - one.step_s:.3g} s after the step are too short to judge what "
-            f"any device must do, {_LEAST_S:g} s would do"
+            f"segment '{one.id}': {_held_s(one):.3g} s at its last level are too short to judge what "
+            f"any device must do, {max(_LEAST_S, one.rise_s):.3g} s would do"
             for one in steps
             if not _is_step(one)
         ]
-        return (*left_out, *short)
+        others = [
+            f"segment '{one.id}': a {one.kind} of driving torque ends at no level that it could be judged by"
+            for one in segments
+            if one.quantity == "driving_torque" and not _moves(one)
+        ]
+        return (*left_out, *short, *others)
 
     def _of(self, segment: PlannedSegment) -> Iterator[Criterion]:
         channel = _FOLLOWS[segment.quantity]
@@ -81,14 +95,18 @@ class DeviceChecks(Strict):
         scale_nm = max(abs(before), abs(after), _LEAST_NM[segment.quantity])
         of_step = scale_nm / abs(after - before)  # the metrics count in percent of the step
         after_s = segment.end_s - segment.step_s
-        miss = of_step * (self.arrival_percent or 10.0)
-        if self.response_s is not None and miss <= _LARGEST_MISS_PERCENT:
+        miss = min(of_step * (self.arrival_percent or 10.0), _LARGEST_MISS_PERCENT)
+        if self.response_s is not None:
             metric: Metric = ResponseTime(channel=channel, share_percent=100.0 - miss)
-            longest_s = min(self.response_s, _RESPONSE_SHARE * after_s)
+            longest_s = min(self.response_s + segment.rise_s, max(_RESPONSE_SHARE * after_s, segment.rise_s))
             yield _criterion(segment, "response_time", metric, upper=longest_s)
         if self.arrival_percent is not None:
             metric = Arrival(channel=channel, mean_s=min(_LONGEST_MEAN_S, _MEAN_SHARE * after_s))
             yield _criterion(segment, "arrival", metric, lower=-miss, upper=miss)
+        if self.holding_percent is not None:
+            metric = Holding(channel=channel)
+            largest = min(of_step * self.holding_percent, 2 * _LARGEST_MISS_PERCENT)
+            yield _criterion(segment, "holding", metric, upper=largest)
         if self.oscillation_percent is not None:
             metric = StabilityOscillation(channel=channel)
             largest = self.oscillation_percent / 100 * scale_nm
@@ -98,10 +116,19 @@ class DeviceChecks(Strict):
             yield _criterion(segment, "stability_torque_request", metric, upper=self.at_limit_share)
 
 
-def _is_step(segment: PlannedSegment, least_s: float = _LEAST_S) -> bool:
-    """Whether a segment is a step of torque with time enough to judge what comes of it."""
-    moved = segment.reference_before != segment.reference_after
-    return segment.kind == "step" and moved and segment.end_s - segment.step_s >= least_s - 1e-9
+def _moves(segment: PlannedSegment) -> bool:
+    """Whether a segment asks for another torque at its end than before."""
+    return segment.kind in _STEPS and segment.reference_before != segment.reference_after
+
+
+def _held_s(segment: PlannedSegment) -> float:
+    """Time at the last level."""
+    return segment.end_s - segment.step_s - segment.rise_s
+
+
+def _is_step(segment: PlannedSegment) -> bool:
+    """Whether there is time enough to judge what comes of it: the second half lies at the last level."""
+    return _moves(segment) and _held_s(segment) >= max(_LEAST_S, segment.rise_s) - 1e-9
 
 
 def _criterion(

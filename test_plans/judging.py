@@ -10,7 +10,7 @@ from hil.core.errors import HilError
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, CriterionVerdict, Segment
 from test_plans.criteria import Criterion
-from test_plans.evidence import objections
+from test_plans.evidence import objections, unproven
 from test_plans.metrics import (
     DidNotSettleError,
     Metric,
@@ -46,6 +46,26 @@ def judge(
     judgement = _Judgement(recording, {segment.id: segment for segment in segments}, measured)
     criteria = (*plan.criteria, *(plan.device_criteria if device else ()))
     return tuple(judgement.of(criterion) for criterion in criteria)
+
+
+def not_checked(plan: Plan, recording: Recording, segments: Iterable[Segment]) -> tuple[str, ...]:
+    """What any device must do that is not checked, and what criteria use that nothing proves; sentences.
+
+    Never raises.
+    """
+    asked: dict[str, dict[str, None]] = {}
+    for one in (*plan.criteria, *plan.device_criteria):
+        asked.setdefault(one.segment, {}).update(dict.fromkeys(one.metric.channels))
+    found = list(plan.device_gaps)
+    for segment in segments:
+        try:
+            names = unproven(recording, segment, asked.get(segment.id, {})) if segment.complete else ()
+        except HilError:  # a damaged file
+            continue
+        if names:
+            little = f"segment '{segment.id}': too little torque or speed"
+            found.append(f"{little} to hold {', '.join(names)} against others")
+    return tuple(found)
 
 
 @dataclass(frozen=True)

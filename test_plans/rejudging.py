@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hil.core.recording import Recording, run_of
 from hil.core.result import RunResult, verdict_of
-from test_plans.judging import judge
+from test_plans.judging import judge, not_checked
 from test_plans.loading import plan_from_text
 
 
@@ -23,5 +23,7 @@ def rejudged(recording: Recording) -> RunResult | None:
             [*([reason] if reason else []), f"the recording is damaged: {recording.damage[0]}"]
         )
     tripped = "" if recording.damage else stored.limit_tripped
+    unchecked = not_checked(plan, recording, stored.segments)
     verdict = verdict_of(criteria, stopped=reason != "", limit_tripped=tripped)
-    return stored.model_copy(update={"criteria": criteria, "verdict": verdict, "reason": reason})
+    changes = {"criteria": criteria, "verdict": verdict, "reason": reason, "not_checked": unchecked}
+    return stored.model_copy(update=changes)

@@ -37,6 +37,7 @@ GATE = {
     "hil/service/test_client.py::exit_code": "a run over the API is one at the terminal",
     "hil/service/test_client.py::travel": "files that a plan names go with it",
     "hil/service/test_stop_post.py": "who may stop, and what repeated stops leave",
+    "hil/test_base_install.py": "a base install runs plans, and names the extra of what it leaves out",
     "hil/test_pytest_plugin.py": "plans as tests",
     "hil/test_notebook.py": "a run from a notebook",
     "faults/test_faults.py": "each fault of the matrix, in one phase of a run",

@@ -160,14 +160,22 @@ def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
     parts = []
     for source, name in (("plan", "criteria"), ("device", "device checks")):
         judged = [c for c in criteria if c.has_limit and c.source == source]
-        passed = sum(c.verdict == "pass" for c in judged)
-        if source == "device" and passed < len(judged):
-            parts.append(f"but {len(judged) - passed} of {len(judged)} {name} did not pass")
-        elif judged:
-            parts.append(f"{passed} of {len(judged)} {name} passed")
+        passed, failed = (sum(test(c) for c in judged) for test in (_passed, _failed))
+        parts += [f"{passed} of {len(judged)} {name} passed"] if judged and not failed else []
+        parts += [f"{failed} of {len(judged)} {name} failed"] if failed else []
+        unjudged = len(judged) - passed - failed
+        parts += [f"{unjudged} could not be judged"] if unjudged else []
     parts = parts or ["nothing was judged"]
     informational = sum(c.verdict == "informational" for c in criteria)
     return ", ".join([*parts, f"{informational} informational"] if informational else parts)
+
+
+def _passed(criterion: CriterionResult) -> bool:
+    return criterion.verdict == "pass"
+
+
+def _failed(criterion: CriterionResult) -> bool:
+    return criterion.failed
 
 
 def expiry_in_words(accepted: AcceptedExpiry) -> str:

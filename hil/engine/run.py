@@ -41,7 +41,7 @@ from hil.engine.request_timing import COLLECT_S, RequestTiming
 from hil.engine.run_files import store_expiry, store_inputs, store_result
 from hil.engine.safety import reach_safe_state
 from hil.engine.watchkeeping import Watchkeeping
-from test_plans import estimate_duration_s, judge
+from test_plans import estimate_duration_s, judge, not_checked
 
 _PROGRESS_S = 0.5
 
@@ -271,7 +271,7 @@ class _Run:
             emergency_stop=self._stopped,
             end_steps=self._end_steps,
             missing=(*self._arming.missing, *damage),
-            not_checked=request.plan.device_gaps,
+            not_checked=not_checked(request.plan, recording, self._conductor.segments) if recording else (),
             accepted_expired=self._expired,
             reason=str(failures.error) if failures.error else "",
             limit_tripped=tripped,

@@ -1,6 +1,6 @@
 """What proves that a channel was measured: it is alive, and it agrees with its neighbours in the axle."""
 
-from test_plans.evidence._evidence import PROOFS, objections
+from test_plans.evidence._evidence import PROOFS, objections, unproven
 from test_plans.evidence._repetition import (
     FROZEN_BESIDE_WITNESS_S,
     FROZEN_S,
@@ -23,4 +23,5 @@ __all__ = [
     "frozen_channels",
     "least_motion",
     "objections",
+    "unproven",
 ]

@@ -87,9 +87,18 @@ def _inertia_kg_m2(recording: Recording, segment: Segment) -> float | None:
 
 
 def _lag_s(recording: Recording, segment: Segment) -> float | None:
-    """The lag of T_s behind T_m; None where the step is too short or too small to tell."""
+    """The lag of T_s behind T_m that two lengths of time agree on: a slow ripple gives each another."""
+    lags = [_lag_within_s(recording, segment, share * _AFTER_S) for share in (0.5, 0.75, 1.0)]
+    known = sorted((lag for lag in lags if lag is not None), key=abs, reverse=True)
+    if len(known) < 2 or known[0] * known[1] < 0.0:
+        return None
+    return known[1]
+
+
+def _lag_within_s(recording: Recording, segment: Segment, after_s: float) -> float | None:
+    """The lag within a time after the step; None where the step is too short or too small to tell."""
     before_s = min(_ENDS_S, segment.step_s - segment.start_s)
-    end_s = min(segment.end_s, segment.step_s + _AFTER_S)
+    end_s = min(segment.end_s, segment.step_s + after_s)
     if before_s < 0.2 * _ENDS_S or end_s - segment.step_s < 2 * _ENDS_S:
         return None
     first, last = (recording.rows_before(time_s) for time_s in (segment.step_s - before_s, end_s))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.evidence._dynamics import (
@@ -10,7 +12,7 @@ from test_plans.evidence._dynamics import (
     inertia_in_words,
     lag_in_words,
 )
-from test_plans.evidence._relations import RELATIONS, contradictions
+from test_plans.evidence._relations import RELATIONS, contradictions, proven_channels
 from test_plans.evidence._repetition import SENSORS, WITNESSES, frozen_channels
 
 #: Channels that are computed from both sides, and what they are computed from.
@@ -50,13 +52,19 @@ def objections(recording: Recording, segment: Segment) -> dict[str, str]:
     """
     found = {name: str(frozen) for name, frozen in frozen_channels(recording, segment).items()}
     found = {
-        **contradictions(recording, segment),
-        **lag_in_words(recording, segment),
         **inertia_in_words(recording, segment),
+        **lag_in_words(recording, segment),
+        **contradictions(recording, segment),
         **found,
     }
     for whole, sides in _SIDES.items():
         for side in sides:
             if side in found:
-                found.setdefault(whole, found[side])
+                found[whole] = found[side]
     return found
+
+
+def unproven(recording: Recording, segment: Segment, channels: Iterable[str]) -> tuple[str, ...]:
+    """Those of some channels that sensors give, and that nothing in a segment was held against."""
+    proven = proven_channels(recording, segment)
+    return tuple(name for name in channels if name in SENSORS and name in recording and name not in proven)

@@ -9,6 +9,7 @@ mirrored or swapped sensor from drag, efficiency, slip and the rotor's inertia, 
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,10 +22,11 @@ from test_plans.conductor import Array
 
 _MEAN_S, _SHORTEST_MEAN_S, _SHORT_MEAN_S = 0.5, 0.25, 0.1
 _NOTHING = 0.02  # slope of a dead channel
-_ALIVE, _SHORT_LEAST = 0.2, 0.2  # slope over short means below which a channel is dead; of `least`, there
+_AT_REST = 0.6  # of the friction that may be missing
+_SHORT_LEAST = 0.2  # of `least`, of short means
 _LEAST_SHARE = 0.05  # of the largest value: what is left of a vibration in a mean says nothing
 _LEAST_MEANS = 4
-_LEAST_S = _LEAST_MEANS * _MEAN_S  # looked at, before a shorter segment too
+_LEAST_S = _LEAST_MEANS * _MEAN_S  # looked at: the end, and what came before a shorter segment
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,8 @@ class Relation:
         expected: what the neighbours say that it must be, from means of channels; None
             where something that it needs is not known.
         within: smallest and largest slope.
+        why: what may be wrong where they disagree.
+        shaken: smallest and largest slope over short means, in which vibration has a part; else `within`.
         drag: what friction may take at every torque, in the channel's unit.
         least: root mean square of what is expected, in the channel's unit, below which nothing is proven.
     """
@@ -69,6 +73,8 @@ class Relation:
     expected: Callable[[Means], Array | None]
     within: tuple[float, float]
     least: float
+    why: str
+    shaken: tuple[float, float] | None = None
     drag: float = 0.0
 
     def objection(self, means: Means, short: Means) -> str:
@@ -82,18 +88,33 @@ class Relation:
         if pairs is not None:
             slope = _slope(*pairs)
             agrees = self._within(slope) or self._differs_by_drag(*pairs)
-            return "" if agrees else self._in_words(slope)
+            return "" if agrees else self._in_words(slope, self.within)
         pairs = self._pairs(short, _SHORT_LEAST * self.least)
-        slope = 1.0 if pairs is None else _slope(*pairs)
-        return "" if slope > _ALIVE else self._in_words(slope)
+        if pairs is None:
+            return ""
+        slope, within = _slope(*pairs), self.shaken or self.within
+        return "" if within[0] <= slope <= within[1] else self._in_words(slope, within)
+
+    def proves(self, means: Means, short: Means) -> bool:
+        """Whether anything can be said."""
+        return any(
+            self._pairs(*one) is not None for one in ((means, self.least), (short, _SHORT_LEAST * self.least))
+        )
 
     def _within(self, slope: float) -> bool:
         return self.within[0] <= slope <= self.within[1]
 
     def _differs_by_drag(self, expected: Array, found: Array) -> bool:
-        """Whether what is missing is as large at every torque: friction, which a scale is not."""
+        """Whether what is missing is as large at every torque: friction, which a scale is not.
+
+        Where all torques are alike nothing tells the two apart, and no more than friction may be missing.
+        Little friction may be missing at some torques only: at rest it takes nothing of none.
+        """
         around = expected - np.mean(expected)
-        if np.sqrt(np.mean(around**2)) < 0.5 * self.least:
+        alike = bool(np.sqrt(np.mean(around**2)) < 0.5 * self.least)
+        if np.max(np.abs(expected - found)) <= (1.0 if alike else _AT_REST) * self.drag:
+            return True
+        if alike:
             return False
         slope = _slope(around, found - np.mean(found))
         return self._within(slope) and float(abs(np.mean(found) - slope * np.mean(expected))) <= self.drag
@@ -113,7 +134,7 @@ class Relation:
             return None
         return expected, found
 
-    def _in_words(self, slope: float) -> str:
+    def _in_words(self, slope: float, within: tuple[float, float]) -> str:
         neighbours = " and ".join(self.against)
         if abs(slope) < _NOTHING:
             return (
@@ -121,8 +142,7 @@ class Relation:
             )
         return (
             f"{self.channel} is {slope:.3g} times what {neighbours} demands ({self.law}), "
-            f"{self.within[0]:g} to {self.within[1]:g} would agree: a sensor is scaled, mirrored or swapped, "
-            "drag takes the rest, or the gear ratio or radius is wrong"
+            f"{within[0]:g} to {within[1]:g} would agree: {self.why}"
         )
 
 
@@ -148,12 +168,35 @@ def _rolling(means: Means) -> Array | None:
     return None if radius_m is None else means["wheel_speed_rad_s"] * radius_m
 
 
-_SPEED, _SIDES, _TORQUE, _SLIP = (0.95, 1.05), (0.8, 1.25), (0.8, 1.2), (0.8, 1.2)
-_LEAST_SPEED_RAD_S, _LEAST_SPEED_M_S, _LEAST_TORQUE_NM = 0.5, 0.2, 20.0
-
 _REQUEST = "motor_torque_ref_nm"
+_SPEED, _SIDES, _TORQUE, _SLIP = (0.95, 1.05), (0.8, 1.25), (0.8, 1.2), (0.8, 1.2)
+_LEAST_SPEED_RAD_S, _LEAST_SPEED_M_S, _LEAST_TORQUE_NM = 0.1, 0.05, 20.0
 
+_SENSOR = "a sensor is dead, scaled or mirrored"
+
+#: Sides first: what they tell explains what is told of both.
 RELATIONS = (
+    Relation(
+        "wheel_speed_left_rad_s",
+        ("wheel_speed_right_rad_s",),
+        "left = right",
+        _own("wheel_speed_right_rad_s"),
+        (0.9, 1.1),
+        _LEAST_SPEED_RAD_S,
+        why=_SENSOR,
+    ),
+    *(
+        Relation(
+            one,
+            (other,),
+            "left = right, as a differential demands",
+            _own(other),
+            _SIDES,
+            0.5 * _LEAST_TORQUE_NM,
+            why=_SENSOR,
+        )
+        for one, other in itertools.permutations(("shaft_torque_left_nm", "shaft_torque_right_nm"))
+    ),
     Relation(
         "wheel_speed_rad_s",
         ("motor_speed_rad_s",),
@@ -161,6 +204,8 @@ RELATIONS = (
         _by_gear("motor_speed_rad_s", up=False),
         _SPEED,
         _LEAST_SPEED_RAD_S,
+        why=f"{_SENSOR}, or the gear ratio is wrong",
+        shaken=(0.7, 1.4),
     ),
     Relation(
         "motor_speed_rad_s",
@@ -169,14 +214,8 @@ RELATIONS = (
         _by_gear("wheel_speed_rad_s", up=True),
         _SPEED,
         8 * _LEAST_SPEED_RAD_S,
-    ),
-    Relation(
-        "wheel_speed_left_rad_s",
-        ("wheel_speed_right_rad_s",),
-        "left = right",
-        _own("wheel_speed_right_rad_s"),
-        (0.9, 1.1),
-        _LEAST_SPEED_RAD_S,
+        why=f"{_SENSOR}, or the gear ratio is wrong",
+        shaken=(0.7, 1.4),
     ),
     Relation(
         "vehicle_speed_m_s",
@@ -185,6 +224,8 @@ RELATIONS = (
         _rolling,
         _SLIP,
         _LEAST_SPEED_M_S,
+        why="it is computed wrongly, the wheels slip more, or the wheel radius is wrong",
+        shaken=(0.2, 5.0),
     ),
     Relation(
         "motor_torque_nm",
@@ -193,6 +234,7 @@ RELATIONS = (
         _own(_REQUEST),
         _TORQUE,
         _LEAST_TORQUE_NM / 8,
+        why="the RMCU does not give what it is asked for, or does not measure it",
     ),
     Relation(
         "shaft_torque_nm",
@@ -201,23 +243,9 @@ RELATIONS = (
         _by_gear("motor_torque_nm", up=True),
         _TORQUE,
         _LEAST_TORQUE_NM,
+        why=f"{_SENSOR}, friction takes more than it may, or the gear ratio is wrong",
+        shaken=(0.6, 1.8),
         drag=2 * _LEAST_TORQUE_NM,
-    ),
-    Relation(
-        "shaft_torque_left_nm",
-        ("shaft_torque_right_nm",),
-        "left = right, as a differential demands",
-        _own("shaft_torque_right_nm"),
-        _SIDES,
-        0.5 * _LEAST_TORQUE_NM,
-    ),
-    Relation(
-        "shaft_torque_right_nm",
-        ("shaft_torque_left_nm",),
-        "left = right, as a differential demands",
-        _own("shaft_torque_left_nm"),
-        _SIDES,
-        0.5 * _LEAST_TORQUE_NM,
     ),
 )
 
@@ -228,7 +256,32 @@ def contradictions(recording: Recording, segment: Segment) -> dict[str, str]:
     names = [name for name in wanted if name in recording]
     if not names or recording.samples < 2:
         return {}
-    start_s = min(segment.start_s, segment.end_s - _LEAST_S)  # the same sensors measured before it
+    found: dict[str, str] = {}
+    for start_s in (min(segment.start_s, segment.end_s - _LEAST_S), segment.end_s - _LEAST_S):
+        means, short = _both_means(recording, segment, names, start_s)
+        for relation in RELATIONS:
+            objection = relation.objection(means, short)
+            for name in (relation.channel, *relation.against) if objection else ():
+                found.setdefault(name, objection)
+    return found
+
+
+def proven_channels(recording: Recording, segment: Segment) -> set[str]:
+    """Channels of a segment that were held against another."""
+    wanted = dict.fromkeys(name for one in RELATIONS for name in (one.channel, *one.against))
+    names = [name for name in wanted if name in recording]
+    if not names or recording.samples < 2:
+        return set()
+    start_s = min(segment.start_s, segment.end_s - _LEAST_S)
+    means, short = _both_means(recording, segment, names, start_s)
+    proving = [one for one in RELATIONS if one.proves(means, short)]
+    return {name for one in proving for name in (one.channel, *one.against)}
+
+
+def _both_means(
+    recording: Recording, segment: Segment, names: list[str], start_s: float
+) -> tuple[Means, Means]:
+    """Means over half a second and over a tenth of one, from `start_s` to the end of a segment."""
     first, last = (recording.rows_before(time_s) for time_s in (start_s, segment.end_s))
     rows = recording.rows(first, last, names)
     quarter_s = (last - first) * recording.sample_time_s / _LEAST_MEANS
@@ -237,12 +290,7 @@ def contradictions(recording: Recording, segment: Segment) -> dict[str, str]:
         _means_of(rows, max(1, math.floor(length_s / recording.sample_time_s)), segment)
         for length_s in (mean_s, _SHORT_MEAN_S)
     )
-    found: dict[str, str] = {}
-    for relation in RELATIONS:
-        objection = relation.objection(means, short)
-        for name in (relation.channel, *relation.against) if objection else ():
-            found.setdefault(name, objection)
-    return found
+    return means, short
 
 
 def _means_of(rows: Mapping[str, Array], length: int, segment: Segment) -> Means:

@@ -21,6 +21,7 @@ from test_plans.metrics.peak import Magnitude, Peak, PeakShaftTorque, Trough
 from test_plans.metrics.response_time import (
     Arrival,
     ArrivalShaftTorque,
+    Holding,
     ResponseTime,
     ResponseTimeShaftTorque,
 )
@@ -50,6 +51,7 @@ _OWN: tuple[type[Metric], ...] = (
     OvershootPercent,
     ResponseTime,
     Arrival,
+    Holding,
     StabilityOscillation,
     SettlingTime,
     BandEnergy,
@@ -70,6 +72,7 @@ __all__ = [
     "BandEnergyMotorSpeed",
     "ChannelName",
     "DidNotSettleError",
+    "Holding",
     "Limits",
     "Magnitude",
     "Metric",

@@ -1,18 +1,11 @@
-"""What a signal still swings by once the declared orders of the wheel are taken away.
-
-A limit cycle of a control loop has the frequency of the loop. What a joint, a tyre or an imbalance
-excites has a declared multiple of the wheel's revolutions, and is followed along the wheel's angle (order
-tracking: Fyfe and Munck, Analysis of computed order tracking, MSSP 11(2), 1997).
-"""
+"""Lines of a signal that last: a limit cycle of a control loop has the loop's frequency, and stays."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from test_plans.conductor import Array
 from test_plans.metrics._periodogram import without_trend
@@ -21,12 +14,9 @@ DECAYS = 0.7  # a line that has this share left at the end decays
 _PERIODS = 3  # that make an oscillation
 _BLOCK_S, _LEAST_BLOCKS = 0.5, 4  # in which lines are looked for
 _FINER = 16  # lines of the spectra between those of the window
-_LOWEST_PERIODS, _IN_BLOCK = (
-    1.25,
-    2.0,
-)  # of a line, in all of the signal and in a block: slower is the trend's
-_FOLLOWED_S = 2.0  # over which an order's amplitude is taken, where the signal is as long
-_LEAST_TURNS = 2.0  # of an order in that time: slower ones are no ripple that could be followed
+_LOWEST_PERIODS = 2.0  # of a line within its block: slower motion is seen by means
+_FLOOR = 5.0  # times the median of a spectrum: less is noise
+_MONOTONE = 1.1  # a line that decays has no block in which it is so much larger than before
 
 
 @dataclass(frozen=True)
@@ -38,41 +28,21 @@ class Line:
 
 
 def lasting_line(values: Array, spacing_s: float) -> Line:
-    """The strongest line that lasts, or is there at the end.
+    """The strongest line that lasts, comes, or comes again, looked for in blocks of half a second.
 
-    Lines are looked for in the whole signal, which shows slow ones, and in blocks of half a second, which
-    show how they come and go. What decays has gone in half of the blocks; what lasts is there in half of
-    them, whatever happens then; what grows is there in the last.
+    A line that only decays counts as it is in the middle block: one that lasts until shortly before the end
+    is still there, one that decays has gone.
 
     Args:
         values: shape (n,), every `spacing_s`.
     """
     length = min(round(_BLOCK_S / spacing_s), len(values) // _LEAST_BLOCKS)
-    starts = range(len(values) - length, -1, -max(1, length // 2))
-    blocks = [_strongest(values[start : start + length], spacing_s, _IN_BLOCK) for start in starts]
-    median = sorted(blocks, key=lambda line: line.amplitude)[len(blocks) // 2]
-    found = [_strongest(values, spacing_s, _LOWEST_PERIODS), blocks[0], median]
-    return max(found, key=lambda line: line.amplitude)
-
-
-def without_orders(values: Array, spacing_s: float, turns_hz: Array, orders: Iterable[float]) -> Array:
-    """A signal without its linear trend and without declared orders, of shape (n,).
-
-    Args:
-        values: shape (n,), every `spacing_s`.
-        turns_hz: the wheel's revolutions a second at the same samples, shape (n,) or nearly.
-        orders: multiples of the wheel's revolutions.
-    """
-    count = len(values)
-    turns = np.interp(np.linspace(0, 1, count), np.linspace(0, 1, len(turns_hz)), turns_hz)
-    angle: Array = np.zeros(count)
-    angle[1:] = spacing_s * np.cumsum(0.5 * (turns[1:] + turns[:-1]))
-    left = without_trend(values)
-    followed_s = min(_FOLLOWED_S, count * spacing_s)
-    for order in orders:
-        turning = np.abs(order * turns) * followed_s >= _LEAST_TURNS
-        left = left - np.where(turning, _followed(left, order * angle, round(followed_s / spacing_s)), 0.0)
-    return left
+    last = len(values) - length
+    starts = np.unique(np.linspace(0, last, 1 + int(np.ceil(2 * last / length))).astype(int))
+    blocks = [_strongest(values[start : start + length], spacing_s) for start in starts]
+    sizes = np.array([line.amplitude for line in blocks])
+    decays = bool(np.all(sizes[1:] <= _MONOTONE * np.minimum.accumulate(sizes)[:-1]))
+    return blocks[len(blocks) // 2] if decays else max(blocks, key=lambda line: line.amplitude)
 
 
 @dataclass(frozen=True)
@@ -102,28 +72,14 @@ def swings(values: Array, spacing_s: float) -> Swings | None:
     return Swings(0.5 * len(firm) / float(length_s), first, last)
 
 
-def _strongest(values: Array, spacing_s: float, lowest_periods: float) -> Line:
-    """The strongest line of a signal, linear trend removed, Hann window."""
+def _strongest(values: Array, spacing_s: float) -> Line:
+    """The strongest line of a signal, linear trend removed, Hann window; none where all is noise."""
     count = len(values)
     taper = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(count) + 0.5) / count)
     lines = np.abs(np.fft.rfft(without_trend(values) * taper, _FINER * count))
     frequency = np.fft.rfftfreq(_FINER * count, spacing_s)
-    lines[frequency * count * spacing_s < lowest_periods] = 0.0
+    lines[frequency * count * spacing_s < _LOWEST_PERIODS] = 0.0
     place = int(np.argmax(lines))
+    if lines[place] < _FLOOR * float(np.median(lines)):
+        return Line(0.0, float(frequency[place]))
     return Line(float(2.0 * lines[place] / np.sum(taper)), float(frequency[place]))
-
-
-def _followed(values: Array, periods: Array, length: int) -> Array:
-    """The line whose phase is `periods` (1: a whole turn), its amplitude smoothed over `length` samples."""
-    turning: npt.NDArray[np.complex128] = np.exp(-2j * np.pi * periods)
-    kernel = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
-    size = 1 << int(len(values) + length - 1).bit_length()
-
-    def smoothed(signal: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
-        product = np.fft.fft(signal, size) * np.fft.fft(kernel, size)
-        whole = np.fft.ifft(product)[: len(signal) + length - 1]
-        return np.asarray(whole[(length - 1) // 2 :][: len(signal)])
-
-    weight = smoothed(np.ones(len(values), complex)).real
-    envelope = 2.0 * smoothed(values * turning) / np.maximum(weight, 1e-12)
-    return np.asarray((envelope * np.conj(turning)).real)

@@ -1,4 +1,4 @@
-"""Response time and arrival: how soon, and how exactly, a channel follows a step."""
+"""Response time, arrival and holding: how soon, how exactly and how steadily a channel follows a step."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ from hil.core.result import Segment
 from test_plans.conductor import Array, PlannedSegment
 from test_plans.metrics import _reference
 from test_plans.metrics._metric import ChannelName, NotReachedError, NoValueError
+from test_plans.metrics._orders import orders_removed
 from test_plans.metrics._window import WindowMetric, cut
 
 _WHEEL, _MOTOR = "wheel_speed_rad_s", "motor_torque_nm"
+_SHORT_MEAN_S = 0.25  # vibration from 8 Hz on has no part in it
 
 
 class _Following(WindowMetric):
@@ -111,14 +113,13 @@ class Arrival(_Following):
         at_motor = segment.gear_ratio * self._mean(recording, segment, _MOTOR)
         at_shafts = self._mean(recording, segment, self.channel)
         asked = segment.reference_after
-        behind, ahead = abs(at_shafts - at_motor), abs(at_motor - asked)
-        where = (
-            "between motor and shafts: drag, losses of the gear, or the sensor's scale"
-            if behind > ahead
-            else ("before the motor: the controller does not ask for more, or the RMCU does not give it")
-        )
+        if abs(at_shafts - at_motor) > abs(at_motor - asked):
+            where = "between motor and shafts: friction, losses of the gear, or the sensor's scale"
+        else:
+            where = "before the motor: in what the controller asks for, or in what the RMCU gives"
         return (
-            f"asked {asked:.4g} N m, N T_m {at_motor:.4g} N m, T_s {at_shafts:.4g} N m: most is lost {where}"
+            f"asked {asked:.4g} N m, N T_m {at_motor:.4g} N m, T_s {at_shafts:.4g} N m: most of the "
+            f"difference arises {where}"
         )
 
     def _mean(self, recording: Recording, segment: Segment, channel: str) -> float:
@@ -140,6 +141,61 @@ def _integral(time: Array, values: Array) -> Array:
     found: Array = np.zeros(len(time))
     found[1:] = np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))
     return found
+
+
+class Holding(_Following):
+    """How far a response leaves what was asked once it should have arrived, whatever it does then."""
+
+    name: ClassVar[str] = "holding"
+    never_negative: ClassVar[bool] = True
+
+    @property
+    def unit(self) -> str:
+        """Percent."""
+        return "%"
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """The channel and the wheel's speed."""
+        return (self.channel, _WHEEL)
+
+    @property
+    def definition(self) -> str:
+        """The worst of short means."""
+        return (
+            f"Largest distance of the means of {self.subject} over {_SHORT_MEAN_S:g} s (Hann window) from "
+            "the value after the step, in the second half of the window, without the orders of the wheel "
+            "that the bench file declares, in percent of the step's size."
+        )
+
+    def compute(self, recording: Recording, segment: Segment) -> float:
+        """Percent of the step."""
+        _, away = self._worst(recording, segment)
+        return 100 * abs(away) / abs(segment.reference_after - segment.reference_before)
+
+    def remark(self, recording: Recording, segment: Segment) -> str:
+        """When, and where it was."""
+        late_s, away = self._worst(recording, segment)
+        asked = segment.reference_after
+        return (
+            f"{self.channel} was at {asked + away:.4g} N m {late_s:.3g} s after the step, asked {asked:.4g}"
+        )
+
+    def _worst(self, recording: Recording, segment: Segment) -> tuple[float, float]:
+        """Time after the step, and distance from the reference in the channel's unit."""
+        if segment.reference_after == segment.reference_before:
+            raise NoValueError("the segment has no step: before and after are the same")
+        start_s, end_s = self.bounds_s(segment)
+        middle_s = 0.5 * (start_s + end_s)
+        spacing_s, values = orders_removed(recording, segment, self.channel, middle_s, end_s)
+        length = round(_SHORT_MEAN_S / spacing_s)
+        if len(values) < length:
+            raise NoValueError(f"{end_s - middle_s:.3g} s are too short for a mean")
+        kernel = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
+        away = np.convolve(values - segment.reference_after, kernel / np.sum(kernel), "valid")
+        worst = int(np.argmax(np.abs(away)))
+        late_s = middle_s - segment.step_s + (worst + 0.5 * length) * spacing_s
+        return late_s, float(away[worst])
 
 
 class ArrivalShaftTorque(Arrival):

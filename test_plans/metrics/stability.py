@@ -10,9 +10,10 @@ from pydantic import Field
 from hil.core.errors import HilError
 from hil.core.recording import Recording
 from hil.core.result import Segment
-from test_plans.conductor import Array, PlannedSegment
+from test_plans.conductor import PlannedSegment
 from test_plans.metrics import _lines
 from test_plans.metrics._metric import ChannelName, Metric, NoValueError
+from test_plans.metrics._orders import orders_removed
 from test_plans.metrics._reference import no_step
 from test_plans.metrics._window import WindowMetric, cut, evenly
 
@@ -22,10 +23,10 @@ _REQUEST = "motor_torque_ref_nm"
 _AT_LIMIT, _AGAINST = 0.999, 0.05
 _ASKED, _LEAST_NM = 0.1, 20.0  # of the step, and at all: noise and orders turn a smaller torque around
 _LEAST_S = 0.4  # of the second half: less shows no line
-_LEAST_TURNS_HZ, _SAME = 0.5, 0.1  # for a line that may be an order
-_LOWEST_ORDER, _HIGHEST_ORDER = 0.9, 12.0
+_LEAST_TURNS_HZ, _SAME, _HIGHEST_ORDER = 0.5, 0.1, 12  # of a line that may be an order
 _LATEST_S = 0.1
-_LOOKED_AT_S = 1.0  # at the end of a segment that was cut short
+_NOISE_NM = 0.5  # of a request around zero
+_LOOKED_AT_S = 3.0  # at the end of a segment that was cut short
 _MOST_OF_IT = 0.2  # of the second half: a stable loop has left its limit by then
 
 
@@ -67,7 +68,8 @@ class StabilityTorqueRequest(Metric):
         size = abs(segment.reference_after - segment.reference_before)
         if abs(segment.reference_after) >= max(_ASKED * size, _LEAST_NM):
             asked = np.sign(segment.reference_after)
-            counted |= asked * request < -_AGAINST * float(np.max(np.abs(request)))
+            against_nm = max(_AGAINST * float(np.max(np.abs(request))), _NOISE_NM)
+            counted |= asked * request < -against_nm
         return float(np.mean(counted))
 
 
@@ -87,10 +89,10 @@ class StabilityOscillation(WindowMetric):
     def definition(self) -> str:
         """How lines are found, and which count."""
         return (
-            f"Amplitude of the strongest line of {self.subject} in the second half of the window, without "
-            "the orders of the wheel that the bench file declares: of the line over all of it (linear trend "
-            "removed, Hann window), of the line in its last half second, and of the line that half of its "
-            "half-second blocks exceed, the largest. What decays in time does not count."
+            f"Amplitude of the strongest line of {self.subject} in blocks of half a second within the second "
+            "half of the window (linear trend removed, Hann window, two periods at least, five times the "
+            "median of the spectrum), without the orders of the wheel that the bench file declares, unless "
+            "the motor makes them. A line that only decays counts as it is in the middle block."
         )
 
     def objection(self, segment: PlannedSegment) -> str:
@@ -107,33 +109,32 @@ class StabilityOscillation(WindowMetric):
         Raises:
             NoValueError: the window is too short, or samples are missing.
         """
-        spacing_s, even, turns_hz = self._second_half(recording, segment)
-        left = _lines.without_orders(even, spacing_s, turns_hz, segment.wheel_orders)
+        start_s, end_s = self._second_half(segment)
+        spacing_s, left = orders_removed(recording, segment, self.channel, start_s, end_s)
         return _lines.lasting_line(left, spacing_s)
 
     def remark(self, recording: Recording, segment: Segment) -> str:
         """The line's frequency, and which order of the wheel it would be."""
         line = self.line(recording, segment)
-        _, _, turns_hz = self._second_half(recording, segment)
         text = f"the line lies at {line.frequency_hz:.3g} Hz"
-        order = line.frequency_hz / max(float(np.mean(turns_hz)), _LEAST_TURNS_HZ)
+        _, speed = cut(recording, segment, _WHEEL, *self._second_half(segment))
+        order = line.frequency_hz / max(float(np.mean(speed)) / (2 * np.pi), _LEAST_TURNS_HZ)
+        whole = round(order)
         declared = any(abs(order - one) < _SAME * one for one in segment.wheel_orders)
-        if declared or not _LOWEST_ORDER <= order <= _HIGHEST_ORDER:
+        if declared or not 1 <= whole <= _HIGHEST_ORDER or abs(order - whole) > _SAME:
             return text
         return (
-            f"{text}, {order:.3g} times the wheel's revolutions: if a joint or tyre "
-            "excites it, declare it in the bench file as one of vehicle.wheel_orders"
+            f"{text}, which is order {whole} of the wheel: if a joint or tyre excites it, and not the "
+            "control loop, declare it in the bench file as one of vehicle.wheel_orders"
         )
 
-    def _second_half(self, recording: Recording, segment: Segment) -> tuple[float, Array, Array]:
-        """Sample time, values, and revolutions a second of the wheel."""
+    def _second_half(self, segment: Segment) -> tuple[float, float]:
+        """Begin and end; NoValueError if it is too short."""
         start_s, end_s = self.bounds_s(segment)
         middle_s = 0.5 * (start_s + end_s)
         if end_s - middle_s < _LEAST_S:
             raise NoValueError(f"{end_s - middle_s:.3g} s are too short for a line")
-        time, values = cut(recording, segment, self.channel, middle_s, end_s, with_end=False)
-        _, speed = cut(recording, segment, _WHEEL, middle_s, end_s, with_end=False)
-        return *evenly(time, values), speed / (2 * np.pi)
+        return middle_s, end_s
 
 
 def instability(recording: Recording, segment: Segment) -> str:

@@ -56,6 +56,11 @@ class Excitation(Step):
         return 0.0
 
     @property
+    def rise_s(self) -> float:
+        """How long the step takes."""
+        return 0.0
+
+    @property
     def references_nm(self) -> tuple[float, float]:
         """Torque before and after the step."""
         return self.mean_nm, self.mean_nm
@@ -67,7 +72,9 @@ class Excitation(Step):
         names = [self.segment] if self.plays == 1 else [f"{self.segment}_{n + 1}" for n in range(self.plays)]
         before, after = self.references_nm
         return tuple(
-            PlannedSegment(name, self.kind, self.step_s, before, after, self.quantity, self.play_s)
+            PlannedSegment(
+                name, self.kind, self.step_s, before, after, self.quantity, self.play_s, self.rise_s
+            )
             for name in names
         )
 

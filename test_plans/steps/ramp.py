@@ -43,6 +43,11 @@ class Ramp(Excitation):
         return self.before_s
 
     @property
+    def rise_s(self) -> float:
+        """The line's duration."""
+        return self.line_s
+
+    @property
     def references_nm(self) -> tuple[float, float]:
         """The torques at both ends."""
         return self.from_nm, self.to_nm

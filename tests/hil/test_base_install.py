@@ -56,15 +56,20 @@ def test_a_module_of_no_extra_is_a_fault_of_the_program() -> None:
     assert not_installed(ModuleNotFoundError("No module named 'hil.nowhere'", name="hil.nowhere")) is None
 
 
-@pytest.mark.slow
-def test_a_base_install_runs_a_plan_and_writes_its_reports(tmp_path: Path) -> None:
-    (tmp_path / "short.yaml").write_text(PLAN)
-    ran = hil("run", "short.yaml", "--out", "out", cwd=tmp_path)
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where a base install has run a short plan."""
+    place = tmp_path_factory.mktemp("base")
+    (place / "short.yaml").write_text(PLAN)
+    ran = hil("run", "short.yaml", "--out", "out", cwd=place)
     assert ran.returncode == 0, ran.stderr
-    assert {"report.html", "report.pdf", "result.json"} <= {
-        file.name for file in (tmp_path / "out").iterdir()
-    }
-    checked = hil("check", "short.yaml", cwd=tmp_path)
+    return place
+
+
+@pytest.mark.slow
+def test_a_base_install_runs_a_plan_and_writes_its_reports(folder: Path) -> None:
+    assert {"report.html", "report.pdf", "result.json"} <= {file.name for file in (folder / "out").iterdir()}
+    checked = hil("check", "short.yaml", cwd=folder)
     assert checked.returncode == 0, checked.stderr
     assert "no margins of the loops" in checked.stderr
 
@@ -80,10 +85,8 @@ def test_a_base_install_runs_a_plan_and_writes_its_reports(tmp_path: Path) -> No
         (["serve", "--data", "data"], "service"),
     ],
 )
-def test_what_is_left_out_names_its_extra(arguments: list[str], extra: str, tmp_path: Path) -> None:
-    (tmp_path / "short.yaml").write_text(PLAN)
-    assert hil("run", "short.yaml", "--out", "out", cwd=tmp_path).returncode == 0
-    told = hil(*arguments, cwd=tmp_path)
+def test_what_is_left_out_names_its_extra(arguments: list[str], extra: str, folder: Path) -> None:
+    told = hil(*arguments, cwd=folder)
     assert (told.returncode, f"pip install 'eaxle-hil[{extra}]'" in told.stderr) == (2, True), told.stderr
     assert "Traceback" not in told.stderr
-    assert not (tmp_path / "elsewhere").exists()
+    assert not (folder / "elsewhere").exists()

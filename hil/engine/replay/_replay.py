@@ -22,7 +22,7 @@ from hil.engine.replay._bench import BenchDecoder
 from hil.engine.replay._channels import Frames, chosen_buses, merged
 from hil.engine.replay._dbc import DbcDecoder
 from hil.engine.replay._segments import Segments, segments_from
-from test_plans import Plan, judge
+from test_plans import Plan, judge, not_checked
 
 _NO_SEGMENTS = "nothing says where the plan's segments lie in the log, so none of its criteria is judged"
 _NO_PLAN = "nothing is judged: metrics are computed in the segments of a plan, and none was given"
@@ -164,7 +164,7 @@ def _judged(
         variables=plan.values,
         criteria=criteria,
         segments=inside,
-        not_checked=plan.device_gaps,
+        not_checked=not_checked(plan, recording, inside),
         reason=reason,
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import json
 
 import pytest
@@ -56,7 +57,7 @@ def test_a_word_nearly_right_is_answered_with_the_right_one(capsys):
 
 def test_the_version(capsys):
     assert guarded(["--version"]) == 0
-    assert capsys.readouterr().out == "hil 0.1.0\n"
+    assert capsys.readouterr().out == f"hil {importlib.metadata.version('eaxle-hil')}\n"
 
 
 def test_names_of_tables_are_no_markup(capsys):

@@ -56,7 +56,7 @@ def low_passed(seconds: float) -> Callable[[Array], Array]:
 CHANGES = {
     "s after": late(0.3),
     "s after ": low_passed(0.15),
-    "before": lambda torque: torque - 25.0 * AFTER,
+    "before": lambda torque: torque - 50.0 * AFTER,
     "after": lambda torque: np.repeat(torque[::400], 400)[: len(torque)],
 }
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
-
 import numpy as np
 import pytest
 
 from test_plans import Array
-from test_plans.metrics import StabilityOscillation, StabilityTorqueRequest, instability
+from test_plans.metrics import Holding, StabilityOscillation, StabilityTorqueRequest, instability
 from tests.test_plans.signals import STEP, recording_of, time_axis
 
 TIME = time_axis()
@@ -24,7 +22,7 @@ def line_of(torque: Array, speed: Array = SPEED, orders: tuple[float, ...] = ())
     return METRIC.line(recording_of(TIME, shaft_torque_nm=torque, wheel_speed_rad_s=speed), segment)
 
 
-@pytest.mark.parametrize("frequency", [3.4, 10.6, 44.7, 120.0])
+@pytest.mark.parametrize("frequency", [4.4, 10.6, 44.7, 120.0])
 @pytest.mark.parametrize("amplitude", [5.0, 60.0])
 def test_a_cycle_is_found_with_its_amplitude(frequency: float, amplitude: float) -> None:
     found = line_of(326.0 + amplitude * np.sin(2 * np.pi * frequency * TIME))
@@ -35,7 +33,7 @@ def test_a_cycle_is_found_with_its_amplitude(frequency: float, amplitude: float)
 @pytest.mark.parametrize("order", [1.0, 3.0, 3.68, 24.0])
 def test_a_declared_order_of_the_wheel_is_none(order: float) -> None:
     assert line_of(326.0 + 105.0 * np.sin(order * ANGLE), orders=(order,)).amplitude < 3.0
-    assert line_of(326.0 + 105.0 * np.sin(order * ANGLE)).amplitude == pytest.approx(105.0, rel=0.02)
+    assert line_of(326.0 + 105.0 * np.sin(order * ANGLE)).amplitude == pytest.approx(105.0, rel=0.05)
 
 
 def test_a_cycle_under_a_stronger_order_is_found() -> None:
@@ -57,12 +55,27 @@ def test_shaking_that_ends_just_before_the_end_lasts() -> None:
     assert line_of(torque).amplitude == pytest.approx(60.0, rel=0.03)
 
 
-@pytest.mark.parametrize(("after_s", "frequency"), [(4.0, 0.8), (4.0, 1.6), (8.0, 0.5), (1.0, 13.0)])
-def test_slow_shaking_in_short_segments_is_found(after_s: float, frequency: float) -> None:
+@pytest.mark.parametrize(("after_s", "frequency"), [(4.0, 0.8), (4.0, 1.6), (8.0, 0.5), (2.0, 2.5)])
+def test_slow_shaking_is_no_holding(after_s: float, frequency: float) -> None:
     short = STEP.model_copy(update={"end_s": STEP.step_s + after_s, "wheel_orders": (3.0,)})
     torque = 326.0 + 120.0 * np.sin(2 * np.pi * frequency * TIME)
     recording = recording_of(TIME, shaft_torque_nm=torque, wheel_speed_rad_s=SPEED)
-    assert METRIC.line(recording, short).amplitude == pytest.approx(120.0, rel=0.3)
+    assert Holding(channel="shaft_torque_nm").compute(recording, short) > 25.0
+
+
+def test_bursts_count_whole() -> None:
+    bursts = ((AFTER > 13.0) & (AFTER < 14.0)) | ((AFTER > 17.0) & (AFTER < 18.0))
+    found = line_of(326.0 + 60.0 * bursts * np.sin(2 * np.pi * 6.0 * TIME))
+    assert found.amplitude == pytest.approx(60.0, rel=0.05)
+
+
+def test_an_order_that_the_motor_makes_counts() -> None:
+    ripple = 60.0 * np.sin(3 * ANGLE)
+    segment = STEP.model_copy(update={"wheel_orders": (3.0,), "gear_ratio": 8.148})
+    for of_motor, found in ((ripple, 60.0), (-0.5 * ripple, 0.0), (0.0 * ripple, 0.0)):
+        channels = {"shaft_torque_nm": 326.0 + ripple, "motor_torque_nm": (326.0 + of_motor) / 8.148}
+        recording = recording_of(TIME, **channels, wheel_speed_rad_s=SPEED)
+        assert METRIC.line(recording, segment).amplitude == pytest.approx(found, rel=0.05, abs=2.0)
 
 
 def test_noise_is_no_line() -> None:
@@ -72,12 +85,12 @@ def test_noise_is_no_line() -> None:
 
 def test_an_order_that_is_not_declared_is_named() -> None:
     recording = recording_of(
-        TIME, shaft_torque_nm=326.0 + 60.0 * np.sin(3 * ANGLE), wheel_speed_rad_s=np.full(len(TIME), 17.0)
+        TIME,
+        shaft_torque_nm=326.0 + 60.0 * np.sin(3 * 17.0 * TIME),
+        wheel_speed_rad_s=np.full(len(TIME), 17.0),
     )
-    short = STEP.model_copy(update={"end_s": STEP.step_s + 1.0})
-    said = re.search(r"Hz, (\S+) times the wheel's revolutions", METRIC.remark(recording, short))
-    assert said
-    assert float(said[1]) == pytest.approx(3.0, rel=0.06)
+    short = STEP.model_copy(update={"end_s": STEP.step_s + 4.0})
+    assert "which is order 3 of the wheel" in METRIC.remark(recording, short)
 
 
 @pytest.mark.parametrize("after_s", [1.0, 2.0, 4.0, 8.0])
