@@ -165,6 +165,12 @@ figures: setup
 lock: $(BIN)/uv
 	printf 'uv==%s\n' "$$($(BIN)/uv --version | cut -d' ' -f2)" | $(BIN)/uv pip compile --quiet --no-header --universal --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/tool.txt -
 	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra dev --extra all --generate-hashes --no-emit-index-url --no-emit-find-links -o requirements/all.txt pyproject.toml
+	$(BIN)/uv pip compile --quiet --no-header --universal --python-version 3.11 --extra docs --generate-hashes --no-emit-index-url --no-emit-find-links -c requirements/all.txt -o requirements/docs.txt pyproject.toml
+
+# The documentation as a site in out/site/index.html, which needs no network.
+docs: setup
+	VIRTUAL_ENV=$(VENV) $(BIN)/uv pip install --quiet --require-hashes -r requirements/docs.txt
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict -f requirements/mkdocs.yml
 
 # Wheel, sdist and SBOM in dist/, tried in an empty environment.
 release: setup

@@ -78,8 +78,8 @@ def test_of_a_bench_device_tables_too(tmp_path: Path) -> None:
         "  line 18: rmcu.dcb: unknown key; did you mean 'dbc'?",
         "  line 22: dyno.eds = 'rcs_dyno.eds': No such file or directory; check [dyno] eds",
         "  line 27: vehicles: unknown key; did you mean 'vehicle'?",
-        "  line 38: limits.persistance_s: unknown key; did you mean 'persistence_s'?",
-        "  line 45: simulation.model = 'three_inertia.toml': there is no such file",
+        "  line 39: limits.persistance_s: unknown key; did you mean 'persistence_s'?",
+        "  line 46: simulation.model = 'three_inertia.toml': there is no such file",
     ]
 
 
