@@ -81,4 +81,4 @@ def _told(result: RunResult | None, files: dict[str, str], path: Path, folder: P
         console().print(f"\n{verdict}\nreport: {page}", highlight=False)
         if result.reason:
             complain("error" if result.verdict == "error" else "note", result.reason)
-    return {"pass": 0, "done": 0, "fail": 1, "error": 3}[result.verdict]
+    return {"pass": 0, "done": 0, "fail": 1, "error": 1}[result.verdict]

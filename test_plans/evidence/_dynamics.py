@@ -64,11 +64,11 @@ def _inertia_kg_m2(recording: Recording, segment: Segment) -> float | None:
     """Change of T_s over change of acceleration; None where the step is too short or too small to tell."""
     before_s = min(_AFTER_S, segment.step_s - segment.start_s)
     after_s = min(_AFTER_S, segment.end_s - segment.step_s)
-    if min(before_s, after_s) < _ENDS_S:
+    if min(before_s, after_s) < 2 * _ENDS_S:
         return None
     changes: list[tuple[float, float]] = []
     for start_s, end_s in (
-        (segment.step_s - before_s, segment.step_s),
+        (segment.step_s - 0.5 * before_s, segment.step_s),  # what came before a segment has settled
         (segment.step_s + 0.5 * after_s, segment.step_s + after_s),
     ):
         first, last = (recording.rows_before(time_s) for time_s in (start_s, end_s))

@@ -51,7 +51,7 @@ def test_the_same_out_twice_needs_overwrite_and_leaves_nothing_of_the_first(tmp_
     assert result["verdict"] == "error"
     assert {c["verdict"] for c in result["criteria"]} == {"not_judged"}
     assert ">Error</h2>" in (out / "report.html").read_text()
-    assert 'skipped="5"' in (out / "junit.xml").read_text()
+    assert 'skipped="6"' in (out / "junit.xml").read_text()
 
 
 @pytest.mark.slow
@@ -79,7 +79,7 @@ def test_a_bench_without_devices_is_exit_code_3_and_points_to_what_exists(tmp_pa
 def test_a_plan_without_criteria_is_not_green(tmp_path: Path) -> None:
     text = QUICK[: QUICK.index("criteria:")]
     done = hil("run", plan_in(tmp_path, text), "--out", tmp_path / "out")
-    assert "DONE, 1 segment recorded, 4 of 4 device checks passed" in done.stdout
+    assert "DONE, 1 segment recorded, 5 of 5 device checks passed" in done.stdout
     page = (tmp_path / "out" / "report.html").read_text()
     assert "Carried out, nothing judged" in page
     assert 'class="banner pass"' not in page
