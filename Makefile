@@ -159,7 +159,8 @@ bench: setup
 # Makes the README's pictures from an acceptance run.
 figures: setup
 	$(BIN)/hil run acceptance --out out/acceptance --overwrite
-	$(BIN)/python docs/images/make.py out/acceptance/recording.mcap
+	$(BIN)/python -m benchmarks.autotune out/autotune-hidden
+	$(BIN)/python docs/images/make.py out/acceptance/recording.mcap out/autotune-hidden/round-1/diagnosis/diagnosis.json
 
 # Pins every dependency with hashes and without addresses of package indexes.
 lock: $(BIN)/uv

@@ -147,8 +147,9 @@ class AutotuneLoop:
         if kept:
             closing.best, closing.best_round, closing.agrees = best, number, first.agrees
             self.shown[1:] = [wire.carried[best.number].shown("autotuned"), wire.predicted(best.controller)]
+        count = len(came.found.runs)
         what = (
-            f"{len(came.found.runs)} runs, the prediction of the first is {_off(first)}; "
+            f"{count} run{'s' if count > 1 else ''}, the prediction of the first is {_off(first)}; "
             f"best measured worst margin {share(best.worst)}"
         )
         if first.agrees:
