@@ -35,6 +35,7 @@ def main() -> int:
         place = Path(folder)
         _same_from_sdist(wheel, sdist, place / "from-sdist")
         python = _installed(wheel, place / "environment")
+        count, size_mb = _size(place / "environment")
         (place / "empty").mkdir()
         _run(python.parent / "hil", "run", "acceptance", "--out", "out", cwd=place / "empty")
         _run(
@@ -45,7 +46,6 @@ def main() -> int:
             DIST / f"eaxle-hil-{version}.cdx.json",
             python,
         )
-        count, size_mb = _size(place / "environment")
     for made in sorted(DIST.iterdir()):
         if made.name != ".gitignore":
             print(f"{hashlib.sha256(made.read_bytes()).hexdigest()}  dist/{made.name}")

@@ -13,15 +13,18 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.channels import TIME
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array
+from test_plans.metrics._metric import NoValueError
 from test_plans.metrics._periodogram import without_trend
 from test_plans.metrics._window import cut, evenly
 
 _FOLLOWED_S = 2.0  # over which an order's amplitude is taken, where the signal is as long
 _LEAST_TURNS = 2.0  # of an order in that time: slower ones are no ripple that could be followed
 _OF_THE_MOTOR = 0.5  # of an order: what N T_m has of it within this share was made by the motor
+_LEAST_KNOWN = 0.5  # of the samples of a channel beside
 _WHEEL, _MOTOR = "wheel_speed_rad_s", "motor_torque_nm"
 
 
@@ -37,11 +40,21 @@ def orders_removed(
     spacing_s, even = evenly(time, values)
     if not segment.wheel_orders or channel == _MOTOR:
         return spacing_s, even
-    _, speed = cut(recording, segment, _WHEEL, start_s, end_s, with_end=False)
+    speed = _beside(recording, _WHEEL, time)
     made = None
     if segment.gear_ratio is not None and _MOTOR in recording:
-        made = segment.gear_ratio * cut(recording, segment, _MOTOR, start_s, end_s, with_end=False)[1]
+        made = segment.gear_ratio * _beside(recording, _MOTOR, time)
     return spacing_s, without_orders(even, spacing_s, speed / (2 * np.pi), segment.wheel_orders, made)
+
+
+def _beside(recording: Recording, channel: str, time: Array) -> Array:
+    """Another channel at some times; what a lost frame has left out lies between its neighbours."""
+    first, last = recording.rows_before(float(time[0])), recording.rows_before(float(time[-1]), or_at=True)
+    rows = recording.rows(first, last, (TIME, channel))
+    known = np.isfinite(rows[channel])
+    if np.count_nonzero(known) < _LEAST_KNOWN * len(time):
+        raise NoValueError(f"most samples of {channel} are missing in the window")
+    return np.interp(time, rows[TIME][known], rows[channel][known])
 
 
 def without_orders(
