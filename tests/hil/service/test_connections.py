@@ -28,6 +28,7 @@ def test_a_head_that_never_ends_is_not_waited_for_and_one_that_comes_in_pieces_i
         assert slow.recv(12) == b"HTTP/1.1 422"
 
 
+@pytest.mark.slow
 def test_of_too_many_the_longest_silent_gives_way_and_who_asks_is_answered(tmp_path: Path) -> None:
     limited = ("sh", "-c", 'ulimit -n 128; exec "$@"', "sh")
     with served(tmp_path / "data", state=tmp_path / "state", through=limited) as service:
