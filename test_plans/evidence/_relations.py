@@ -62,8 +62,10 @@ class Relation:
             where something that it needs is not known.
         within: smallest and largest slope.
         why: what may be wrong where they disagree.
-        shaken: smallest and largest slope over short means, in which vibration has a part; else `within`.
-        drag: what friction may take at every torque, in the channel's unit.
+        shaken: smallest and largest slope over short means, in which vibration has a part; None: they say
+            nothing.
+        beside: what may differ at every value, in the channel's unit: friction, or what the twist of a shaft
+            or a tyre makes of a speed.
         least: root mean square of what is expected, in the channel's unit, below which nothing is proven.
     """
 
@@ -75,7 +77,7 @@ class Relation:
     least: float
     why: str
     shaken: tuple[float, float] | None = None
-    drag: float = 0.0
+    beside: float = 0.0
 
     def objection(self, means: Means, short: Means) -> str:
         """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be said.
@@ -87,37 +89,37 @@ class Relation:
         pairs = self._pairs(means, self.least)
         if pairs is not None:
             slope = _slope(*pairs)
-            agrees = self._within(slope) or self._differs_by_drag(*pairs)
+            agrees = self._within(slope) or self._differs_by_no_more(*pairs)
             return "" if agrees else self._in_words(slope, self.within)
         pairs = self._pairs(short, _SHORT_LEAST * self.least)
-        if pairs is None:
+        if pairs is None or self.shaken is None:
             return ""
-        slope, within = _slope(*pairs), self.shaken or self.within
-        return "" if within[0] <= slope <= within[1] else self._in_words(slope, within)
+        slope = _slope(*pairs)
+        return "" if self.shaken[0] <= slope <= self.shaken[1] else self._in_words(slope, self.shaken)
 
     def proves(self, means: Means, short: Means) -> bool:
         """Whether anything can be said."""
-        return any(
-            self._pairs(*one) is not None for one in ((means, self.least), (short, _SHORT_LEAST * self.least))
-        )
+        if self._pairs(means, self.least) is not None:
+            return True
+        return self.shaken is not None and self._pairs(short, _SHORT_LEAST * self.least) is not None
 
     def _within(self, slope: float) -> bool:
         return self.within[0] <= slope <= self.within[1]
 
-    def _differs_by_drag(self, expected: Array, found: Array) -> bool:
-        """Whether what is missing is as large at every torque: friction, which a scale is not.
+    def _differs_by_no_more(self, expected: Array, found: Array) -> bool:
+        """Whether what is missing is as large at every value: friction, which a scale is not.
 
-        Where all torques are alike nothing tells the two apart, and no more than friction may be missing.
-        Little friction may be missing at some torques only: at rest it takes nothing of none.
+        Where all values are alike nothing tells the two apart, and no more than friction may be missing.
+        Little friction may be missing at some values only: at rest it takes nothing of none.
         """
         around = expected - np.mean(expected)
         alike = bool(np.sqrt(np.mean(around**2)) < 0.5 * self.least)
-        if np.max(np.abs(expected - found)) <= (1.0 if alike else _AT_REST) * self.drag:
+        if np.max(np.abs(expected - found)) <= (1.0 if alike else _AT_REST) * self.beside:
             return True
         if alike:
             return False
         slope = _slope(around, found - np.mean(found))
-        return self._within(slope) and float(abs(np.mean(found) - slope * np.mean(expected))) <= self.drag
+        return self._within(slope) and float(abs(np.mean(found) - slope * np.mean(expected))) <= self.beside
 
     def _pairs(self, means: Means, least: float) -> tuple[Array, Array] | None:
         """What is expected and what is found; None where less than `least`, rms, is expected."""
@@ -171,6 +173,7 @@ def _rolling(means: Means) -> Array | None:
 _REQUEST = "motor_torque_ref_nm"
 _SPEED, _SIDES, _TORQUE, _SLIP = (0.95, 1.05), (0.8, 1.25), (0.8, 1.2), (0.8, 1.2)
 _LEAST_SPEED_RAD_S, _LEAST_SPEED_M_S, _LEAST_TORQUE_NM = 0.1, 0.05, 20.0
+_TWISTS_RAD_S = 0.3  # a shaft that twists by 0.1 rad within a mean, and comes back in the next
 
 _SENSOR = "a sensor is dead, scaled or mirrored"
 
@@ -184,6 +187,7 @@ RELATIONS = (
         (0.9, 1.1),
         _LEAST_SPEED_RAD_S,
         why=_SENSOR,
+        shaken=(0.8, 1.25),
     ),
     *(
         Relation(
@@ -194,6 +198,7 @@ RELATIONS = (
             _SIDES,
             0.5 * _LEAST_TORQUE_NM,
             why=_SENSOR,
+            shaken=_SIDES,
         )
         for one, other in itertools.permutations(("shaft_torque_left_nm", "shaft_torque_right_nm"))
     ),
@@ -204,8 +209,8 @@ RELATIONS = (
         _by_gear("motor_speed_rad_s", up=False),
         _SPEED,
         _LEAST_SPEED_RAD_S,
+        beside=_TWISTS_RAD_S,
         why=f"{_SENSOR}, or the gear ratio is wrong",
-        shaken=(0.7, 1.4),
     ),
     Relation(
         "motor_speed_rad_s",
@@ -214,8 +219,8 @@ RELATIONS = (
         _by_gear("wheel_speed_rad_s", up=True),
         _SPEED,
         8 * _LEAST_SPEED_RAD_S,
+        beside=8 * _TWISTS_RAD_S,
         why=f"{_SENSOR}, or the gear ratio is wrong",
-        shaken=(0.7, 1.4),
     ),
     Relation(
         "vehicle_speed_m_s",
@@ -224,8 +229,8 @@ RELATIONS = (
         _rolling,
         _SLIP,
         _LEAST_SPEED_M_S,
+        beside=0.3 * _TWISTS_RAD_S,
         why="it is computed wrongly, the wheels slip more, or the wheel radius is wrong",
-        shaken=(0.2, 5.0),
     ),
     Relation(
         "motor_torque_nm",
@@ -235,6 +240,7 @@ RELATIONS = (
         _TORQUE,
         _LEAST_TORQUE_NM / 8,
         why="the RMCU does not give what it is asked for, or does not measure it",
+        shaken=(0.6, 1.8),
     ),
     Relation(
         "shaft_torque_nm",
@@ -245,7 +251,7 @@ RELATIONS = (
         _LEAST_TORQUE_NM,
         why=f"{_SENSOR}, friction takes more than it may, or the gear ratio is wrong",
         shaken=(0.6, 1.8),
-        drag=2 * _LEAST_TORQUE_NM,
+        beside=2 * _LEAST_TORQUE_NM,
     ),
 )
 

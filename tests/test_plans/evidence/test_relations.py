@@ -134,3 +134,17 @@ def test_under_a_multisine_a_dead_sensor_is_found() -> None:
 
 def test_a_motor_torque_that_is_not_what_was_requested_is_doubted() -> None:
     assert "T_m = T_m*" in objections(axle(motor_torque_nm=0.0 * DRIVEN), SEGMENT)["motor_torque_nm"]
+
+
+def test_a_shaft_that_twists_near_standstill_is_no_contradiction() -> None:
+    wheel = 0.4 * DRIVEN
+    twisting = 0.2 * ((TIME > STEP.step_s) & (TIME < STEP.step_s + 0.5))
+    noise = NOISE / 100
+    slow = {
+        "motor_speed_rad_s": GEAR * (wheel + twisting) + noise,
+        "wheel_speed_left_rad_s": wheel + noise,
+        "wheel_speed_right_rad_s": wheel + noise[::-1],
+        "vehicle_speed_m_s": RADIUS_M * wheel,
+    }
+    short = SEGMENT.model_copy(update={"end_s": STEP.step_s + 1.0, "load": "speed"})
+    assert objections(axle(**slow), short) == {}
