@@ -173,7 +173,7 @@ def _rolling(means: Means) -> Array | None:
 _REQUEST = "motor_torque_ref_nm"
 _SPEED, _SIDES, _TORQUE, _SLIP = (0.95, 1.05), (0.8, 1.25), (0.8, 1.2), (0.8, 1.2)
 _LEAST_SPEED_RAD_S, _LEAST_SPEED_M_S, _LEAST_TORQUE_NM = 0.1, 0.05, 20.0
-_TWISTS_RAD_S = 0.3  # a shaft that twists by 0.1 rad within a mean, and comes back in the next
+_TWISTS_RAD_S = 0.4  # a shaft that twists by 0.1 rad within a mean, and comes back in the next
 
 _SENSOR = "a sensor is dead, scaled or mirrored"
 

@@ -138,7 +138,7 @@ def test_a_motor_torque_that_is_not_what_was_requested_is_doubted() -> None:
 
 def test_a_shaft_that_twists_near_standstill_is_no_contradiction() -> None:
     wheel = 0.4 * DRIVEN
-    twisting = 0.2 * ((TIME > STEP.step_s) & (TIME < STEP.step_s + 0.5))
+    twisting = 0.2 * ((STEP.step_s < TIME) & (STEP.step_s + 0.5 > TIME))
     noise = NOISE / 100
     slow = {
         "motor_speed_rad_s": GEAR * (wheel + twisting) + noise,
