@@ -160,7 +160,7 @@ def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
     parts = []
     for source, name in (("plan", "criteria"), ("device", "device checks")):
         judged = [c for c in criteria if c.has_limit and c.source == source]
-        passed, failed = (sum(test(c) for c in judged) for test in (_passed, _failed))
+        passed, failed = sum(c.verdict == "pass" for c in judged), sum(c.failed for c in judged)
         parts += [f"{passed} of {len(judged)} {name} passed"] if judged and not failed else []
         parts += [f"{failed} of {len(judged)} {name} failed"] if failed else []
         unjudged = len(judged) - passed - failed
@@ -168,14 +168,6 @@ def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
     parts = parts or ["nothing was judged"]
     informational = sum(c.verdict == "informational" for c in criteria)
     return ", ".join([*parts, f"{informational} informational"] if informational else parts)
-
-
-def _passed(criterion: CriterionResult) -> bool:
-    return criterion.verdict == "pass"
-
-
-def _failed(criterion: CriterionResult) -> bool:
-    return criterion.failed
 
 
 def expiry_in_words(accepted: AcceptedExpiry) -> str:

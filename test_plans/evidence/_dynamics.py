@@ -14,6 +14,7 @@ import numpy as np
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array
+from test_plans.metrics import hann
 
 _LARGEST_S = 0.08
 _AFTER_S = 2.0  # looked at after a step: drag and wind hardly change in that time
@@ -117,5 +118,5 @@ def _lag_within_s(recording: Recording, segment: Segment, after_s: float) -> flo
 
 def _mean(values: Array) -> float:
     """Weighted by a Hann window: vibration has little part in it."""
-    weight = 1.0 - np.cos(2 * np.pi * (np.arange(len(values)) + 0.5) / len(values))
+    weight = hann(len(values))
     return float(weight @ values / np.sum(weight))

@@ -29,7 +29,7 @@ def _proofs() -> dict[str, tuple[str, ...]]:
         found.setdefault(name, []).append(f"does not repeat bit for bit beyond its noise{witness}")
     for one in RELATIONS:
         bounds = f"within {one.within[0]:g} to {one.within[1]:g} times"
-        for name in (one.channel, *one.against):
+        for name in one.channels:
             found.setdefault(name, []).append(f"{one.law}, {bounds}")
     for name in ("shaft_torque_nm", "motor_torque_nm"):
         found[name].append(LAG_IN_WORDS)

@@ -19,6 +19,7 @@ import numpy as np
 from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array
+from test_plans.metrics import hann
 
 _MEAN_S, _SHORTEST_MEAN_S, _SHORT_MEAN_S = 0.5, 0.25, 0.1
 _NOTHING = 0.02  # slope of a dead channel
@@ -78,6 +79,11 @@ class Relation:
     why: str
     shaken: tuple[float, float] | None = None
     beside: float = 0.0
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """All that it compares."""
+        return (self.channel, *self.against)
 
     def objection(self, means: Means, short: Means) -> str:
         """How the channel contradicts its neighbours; '' where it agrees, or where nothing can be said.
@@ -256,38 +262,35 @@ RELATIONS = (
 )
 
 
+_CHANNELS = tuple(dict.fromkeys(name for one in RELATIONS for name in one.channels))
+_NOTHING_KNOWN = Means({}, {}, None, None)
+
+
 def contradictions(recording: Recording, segment: Segment) -> dict[str, str]:
     """Channels of a segment that contradict each other, each with how."""
-    wanted = dict.fromkeys(name for one in RELATIONS for name in (one.channel, *one.against))
-    names = [name for name in wanted if name in recording]
-    if not names or recording.samples < 2:
-        return {}
     found: dict[str, str] = {}
-    for start_s in (min(segment.start_s, segment.end_s - _LEAST_S), segment.end_s - _LEAST_S):
-        means, short = _both_means(recording, segment, names, start_s)
+    late_s = segment.end_s - _LEAST_S
+    for start_s in dict.fromkeys((min(segment.start_s, late_s), late_s)):
+        means, short = _both_means(recording, segment, start_s)
         for relation in RELATIONS:
             objection = relation.objection(means, short)
-            for name in (relation.channel, *relation.against) if objection else ():
+            for name in relation.channels if objection else ():
                 found.setdefault(name, objection)
     return found
 
 
 def proven_channels(recording: Recording, segment: Segment) -> set[str]:
     """Channels of a segment that were held against another."""
-    wanted = dict.fromkeys(name for one in RELATIONS for name in (one.channel, *one.against))
-    names = [name for name in wanted if name in recording]
-    if not names or recording.samples < 2:
-        return set()
     start_s = min(segment.start_s, segment.end_s - _LEAST_S)
-    means, short = _both_means(recording, segment, names, start_s)
-    proving = [one for one in RELATIONS if one.proves(means, short)]
-    return {name for one in proving for name in (one.channel, *one.against)}
+    means, short = _both_means(recording, segment, start_s)
+    return {name for one in RELATIONS if one.proves(means, short) for name in one.channels}
 
 
-def _both_means(
-    recording: Recording, segment: Segment, names: list[str], start_s: float
-) -> tuple[Means, Means]:
+def _both_means(recording: Recording, segment: Segment, start_s: float) -> tuple[Means, Means]:
     """Means over half a second and over a tenth of one, from `start_s` to the end of a segment."""
+    names = [name for name in _CHANNELS if name in recording]
+    if not names or recording.samples < 2:
+        return _NOTHING_KNOWN, _NOTHING_KNOWN
     first, last = (recording.rows_before(time_s) for time_s in (start_s, segment.end_s))
     rows = recording.rows(first, last, names)
     quarter_s = (last - first) * recording.sample_time_s / _LEAST_MEANS
@@ -325,7 +328,7 @@ def _ratio_of_speeds(means: Mapping[str, Array]) -> float | None:
 def _means(values: Array, length: int) -> Array:
     """Of each block, weighted by a Hann window; NaN where half of its weight or more is missing."""
     blocks = values.reshape(-1, length)
-    taper = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
+    taper = hann(length)
     weights = np.where(np.isfinite(blocks), taper, 0.0)
     total = np.sum(weights, axis=1)
     sums = np.sum(np.where(weights > 0, blocks, 0.0) * weights, axis=1)

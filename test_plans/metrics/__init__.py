@@ -8,7 +8,7 @@ from test_plans.metrics._metric import (
     NotReachedError,
     NoValueError,
 )
-from test_plans.metrics._periodogram import energy_within, periodogram
+from test_plans.metrics._periodogram import energy_within, hann, periodogram
 from test_plans.metrics._window import WindowMetric
 from test_plans.metrics.band_energy import BandEnergy, BandEnergyMotorSpeed
 from test_plans.metrics.overshoot import (
@@ -94,6 +94,7 @@ __all__ = [
     "Trough",
     "WindowMetric",
     "energy_within",
+    "hann",
     "instability",
     "periodogram",
 ]

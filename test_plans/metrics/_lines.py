@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from test_plans.conductor import Array
-from test_plans.metrics._periodogram import without_trend
+from test_plans.metrics._periodogram import hann, without_trend
 
 DECAYS = 0.7  # a line that has this share left at the end decays
 _PERIODS = 3  # that make an oscillation
@@ -75,7 +75,7 @@ def swings(values: Array, spacing_s: float) -> Swings | None:
 def _strongest(values: Array, spacing_s: float) -> Line:
     """The strongest line of a signal, linear trend removed, Hann window; none where all is noise."""
     count = len(values)
-    taper = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(count) + 0.5) / count)
+    taper = hann(count)
     lines = np.abs(np.fft.rfft(without_trend(values) * taper, _FINER * count))
     frequency = np.fft.rfftfreq(_FINER * count, spacing_s)
     lines[frequency * count * spacing_s < _LOWEST_PERIODS] = 0.0

@@ -18,7 +18,7 @@ from hil.core.recording import Recording
 from hil.core.result import Segment
 from test_plans.conductor import Array
 from test_plans.metrics._metric import NoValueError
-from test_plans.metrics._periodogram import without_trend
+from test_plans.metrics._periodogram import hann, without_trend
 from test_plans.metrics._window import cut, evenly
 
 _FOLLOWED_S = 2.0  # over which an order's amplitude is taken, where the signal is as long
@@ -64,23 +64,17 @@ def without_orders(
 
     Args:
         values: shape (n,), every `spacing_s`.
-        turns_hz: the wheel's revolutions a second at the same samples, shape (n,) or nearly.
+        turns_hz: the wheel's revolutions a second at the same samples, shape (n,).
         orders: multiples of the wheel's revolutions.
-        of_motor: what the motor makes in the signal's unit (N T_m), if it is known: an order that the motor
-            itself makes is a cycle of the loop, and stays.
+        of_motor: what the motor makes there in the signal's unit (N T_m), if it is known: an order that it
+            makes itself is a cycle of the loop, and stays.
     """
     count = len(values)
-    even = np.linspace(0, 1, count)
-    turns = np.interp(even, np.linspace(0, 1, len(turns_hz)), turns_hz)
     angle: Array = np.zeros(count)
-    angle[1:] = spacing_s * np.cumsum(0.5 * (turns[1:] + turns[:-1]))
+    angle[1:] = spacing_s * np.cumsum(0.5 * (turns_hz[1:] + turns_hz[:-1]))
     trend = values - without_trend(values)
     left = values - trend
-    made = (
-        None
-        if of_motor is None
-        else without_trend(np.interp(even, np.linspace(0, 1, len(of_motor)), of_motor))
-    )
+    made = None if of_motor is None else without_trend(of_motor)
     followed_s = min(_FOLLOWED_S, count * spacing_s)
     length = round(followed_s / spacing_s)
     for order in orders:
@@ -90,14 +84,14 @@ def without_orders(
             apart = np.linalg.norm(envelope - _envelope(made, turning, length))
             if apart < _OF_THE_MOTOR * np.linalg.norm(envelope):
                 continue
-        fast = np.abs(order * turns) * followed_s >= _LEAST_TURNS
+        fast = np.abs(order * turns_hz) * followed_s >= _LEAST_TURNS
         left = left - np.where(fast, (envelope * np.conj(turning)).real, 0.0)
     return np.asarray(left + trend)
 
 
 def _envelope(values: Array, turning: npt.NDArray[np.complex128], length: int) -> npt.NDArray[np.complex128]:
     """Complex amplitude of the line whose phase `turning` takes back, smoothed over `length` samples."""
-    kernel = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
+    kernel = hann(length)
     size = 1 << int(len(values) + length - 1).bit_length()
 
     def smoothed(signal: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:

@@ -33,6 +33,11 @@ def energy_within(frequency: Array, density: Array, from_hz: float, to_hz: float
     return float(density @ np.maximum(upper - lower, 0.0))
 
 
+def hann(count: int) -> Array:
+    """A Hann window, symmetric and nowhere zero: as good a weight for means as for lines; shape (count,)."""
+    return np.asarray(0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(count) + 0.5) / count))
+
+
 def without_trend(values: Array) -> Array:
     """`values` less their linear trend (least squares), of their shape (n,)."""
     position = np.arange(len(values)) - 0.5 * (len(values) - 1)

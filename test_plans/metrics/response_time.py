@@ -13,6 +13,7 @@ from test_plans.conductor import Array, PlannedSegment
 from test_plans.metrics import _reference
 from test_plans.metrics._metric import ChannelName, NotReachedError, NoValueError
 from test_plans.metrics._orders import orders_removed
+from test_plans.metrics._periodogram import hann
 from test_plans.metrics._window import WindowMetric, cut
 
 _WHEEL, _MOTOR = "wheel_speed_rad_s", "motor_torque_nm"
@@ -191,7 +192,7 @@ class Holding(_Following):
         length = round(_SHORT_MEAN_S / spacing_s)
         if len(values) < length:
             raise NoValueError(f"{end_s - middle_s:.3g} s are too short for a mean")
-        kernel = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(length) + 0.5) / length)
+        kernel = hann(length)
         away = np.convolve(values - segment.reference_after, kernel / np.sum(kernel), "valid")
         worst = int(np.argmax(np.abs(away)))
         late_s = middle_s - segment.step_s + (worst + 0.5 * length) * spacing_s
