@@ -123,15 +123,15 @@ def _stop_one(
     observer = Observer(channel)
     try:
         run = service.queue("attacked", "bench")
-        _until(lambda: observer.torque() >= ON_NM)
+        _until(lambda: observer.torque() >= ON_NM, service, run)
         with attack(service), _sleeper(found):
             time.sleep(after_s)
             asked_s, began_s = time.time(), time.monotonic()
             client.stop_in_emergency("bench")
             found.answered_s.append(time.monotonic() - began_s)
-            _until(lambda: observer.torque() == 0.0)
+            _until(lambda: observer.torque() == 0.0, service, run)
         found.zero_s.append(_zero_s(observer) - asked_s)
-        _until(lambda: _is_reset(service, run))
+        _until(lambda: _is_reset(service, run), service, run)
     finally:
         observer.close()
 
@@ -172,11 +172,11 @@ def _is_reset(service: Served, run: int) -> bool:
     return False
 
 
-def _until(condition: Callable[[], bool]) -> None:
+def _until(condition: Callable[[], bool], service: Served, run: int) -> None:
     until_s = time.monotonic() + _WITHIN_S
     while not condition():
         if time.monotonic() > until_s:
-            raise TimeoutError("did not come so far")
+            raise TimeoutError(f"did not come so far: {service.get(f'/runs/{run}')}")
         time.sleep(0.01)
 
 

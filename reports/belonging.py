@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote, unquote
 
+from hil.core.files import read_text, refuse_unless_regular
+
 _HEAD_CHARACTERS = 8192
 _NAMES = ("recording", "recording-sha256", "samples-sha256")
 
@@ -32,6 +34,7 @@ def keywords(claim: Claim) -> list[str]:
 def claim_of(report: Path) -> Claim | None:
     """What a report (.html, .pdf) or result.json says; None if it says nothing, or cannot be read."""
     try:
+        refuse_unless_regular(report)
         match report.suffix.lower():
             case ".html":
                 found = _of_html(report)
@@ -65,7 +68,7 @@ def _of_pdf(report: Path) -> dict[str, str]:
 
 
 def _of_result(report: Path) -> dict[str, str]:
-    result = json.loads(report.read_text(encoding="utf-8"))
+    result = json.loads(read_text(report))
     name = str(result["files"]["recording"])
     values = (name, str(result["sha256"][name]), str(result["samples_sha256"]))
     return dict(zip(_NAMES, values, strict=True))

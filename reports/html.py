@@ -8,7 +8,8 @@ import re
 from importlib import resources
 from pathlib import Path
 
-from hil.core.files import write_atomically
+from hil.core.errors import BadInputError
+from hil.core.files import open_regular, write_atomically
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from reports import style
@@ -60,9 +61,9 @@ def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
 def recording_named_in(page: Path) -> str:
     """File name of the recording that an existing report was made from; '' if it does not say."""
     try:
-        with page.open(encoding="utf-8", errors="replace") as file:
-            head = file.read(4096)
-    except OSError:
+        with open_regular(page) as file:
+            head = file.read(4096).decode("utf-8", "replace")
+    except (BadInputError, OSError):
         return ""
     found = re.search(r'<meta name="recording" content="([^"]*)">', head)
     return html.unescape(found[1]) if found else ""

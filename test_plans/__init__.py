@@ -4,7 +4,7 @@ from test_plans.choices import Choices, controller_choices, named_controllers
 from test_plans.conductor import PROMPT_TIMEOUT_S, Array, Conductor, PlannedSegment, Quantity, Work
 from test_plans.criteria import Criterion
 from test_plans.device_checks import CHECKS
-from test_plans.judging import judge, not_checked
+from test_plans.judging import Judgement, judge, not_checked
 from test_plans.loading import library_controllers, library_plans, load_plan, plan_from_text
 from test_plans.metrics import METRICS, Metric, NoValueError
 from test_plans.pace import Outlook, Pace
@@ -23,6 +23,7 @@ __all__ = [
     "Choices",
     "Conductor",
     "Criterion",
+    "Judgement",
     "Metric",
     "NoValueError",
     "Outlook",

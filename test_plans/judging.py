@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hil.core.errors import HilError
 from hil.core.recording import Recording
@@ -43,9 +43,10 @@ def judge(
         measured: whether the channels come from sensors: then each must be proven to have been measured.
         device: whether the checks of what any device must do are made too.
     """
-    judgement = _Judgement(recording, {segment.id: segment for segment in segments}, measured)
-    criteria = (*plan.criteria, *(plan.device_criteria if device else ()))
-    return tuple(judgement.of(criterion) for criterion in criteria)
+    judgement = Judgement(plan, measured=measured, device=device)
+    for segment in segments:
+        judgement.take(recording, segment)
+    return judgement.results()
 
 
 def not_checked(plan: Plan, recording: Recording, segments: Iterable[Segment]) -> tuple[str, ...]:
@@ -75,25 +76,54 @@ class _Found:
     value: float | None = None
     trouble: CriterionVerdict = "error"
     reason: str = ""
+    standard_error: float = 0.0
+    remark: str = ""
 
 
-class _Judgement:
-    """Values and evidence of one recording, each computed once."""
+class Judgement:
+    """A plan's criteria judged segment by segment: of a recording no more is needed than the segment's rows.
 
-    def __init__(self, recording: Recording, recorded: dict[str, Segment], measured: bool) -> None:
-        self._recording, self._recorded, self._measured = recording, recorded, measured
-        self._known: list[tuple[Metric, str, _Found]] = []
-        self._objections: dict[str, dict[str, str]] = {}
+    Args:
+        measured: whether the channels come from sensors: then each must be proven to have been measured.
+        device: whether the checks of what any device must do are made too.
+    """
 
-    def of(self, criterion: Criterion) -> CriterionResult:
-        """The result of one criterion."""
-        own = self._found(criterion.metric, criterion.segment)
-        rival = self._found(criterion.metric, criterion.below) if criterion.below else None
-        scatter = self._scatter(criterion, own, rival)
+    def __init__(self, plan: Plan, *, measured: bool = True, device: bool = True) -> None:
+        self._criteria = (*plan.criteria, *(plan.device_criteria if device else ()))
+        self._measured = measured
+        self._asked: dict[str, list[Criterion]] = {}
+        for one in self._criteria:
+            for segment in {one.segment, one.below or one.segment}:
+                self._asked.setdefault(segment, []).append(one)
+        self._found: dict[str, list[tuple[Metric, _Found]]] = {}
+
+    def take(self, recording: Recording, segment: Segment) -> None:
+        """Compute what the criteria ask of one segment.
+
+        Args:
+            recording: with the segment's rows, and those of a second around it.
+        """
+        known = self._found[segment.id] = []
+        asked = self._asked.get(segment.id, ())
+        doubts = self._doubts(recording, segment) if asked else {}
+        for number, criterion in enumerate(asked):
+            metric = criterion.metric
+            if not any(one == metric for one, _ in known):
+                same = [one for one in asked[number:] if one.metric == metric]
+                known.append((metric, self._computed(same, recording, segment, doubts)))
+
+    def results(self) -> tuple[CriterionResult, ...]:
+        """The result of each criterion, in the plan's order, from the segments that were taken."""
+        return tuple(self._result(criterion) for criterion in self._criteria)
+
+    def _result(self, criterion: Criterion) -> CriterionResult:
+        own = self._of(criterion.metric, criterion.segment)
+        rival = self._of(criterion.metric, criterion.below) if criterion.below else None
+        scatter = _STANDARD_ERRORS * math.hypot(own.standard_error, rival.standard_error) if rival else 0.0
         verdict = _verdict(criterion, own, rival, scatter)
         reason = own.reason or (rival.reason if rival else "")
-        if verdict == "fail" and not reason:
-            reason = self._remark(criterion)
+        if verdict == "fail" and not reason and own.remark:
+            reason = f"segment '{criterion.segment}': {own.remark}"
         if verdict == "undecided":
             reason = (
                 f"segments '{criterion.segment}' and '{criterion.below}' differ by less than noise alone "
@@ -113,67 +143,66 @@ class _Judgement:
             source=criterion.source,
         )
 
-    def _found(self, metric: Metric, segment: str) -> _Found:
-        """The metric's value; one that several criteria compare is computed once."""
-        for one, place, value in self._known:
-            if place == segment and one == metric:
-                return value
-        self._known.append((metric, segment, self._computed(metric, segment)))
-        return self._known[-1][2]
+    def _of(self, metric: Metric, segment: str) -> _Found:
+        for one, found in self._found.get(segment, ()):
+            if one == metric:
+                return found
+        return _Found(trouble="not_judged", reason=f"segment '{segment}' was not carried out")
 
-    def _computed(self, metric: Metric, id_: str) -> _Found:
-        if id_ not in self._recorded:
-            return _Found(trouble="not_judged", reason=f"segment '{id_}' was not carried out")
-        segment = self._recorded[id_]
+    def _computed(
+        self, criteria: list[Criterion], recording: Recording, segment: Segment, doubts: dict[str, str]
+    ) -> _Found:
+        """What criteria of the same metric need of one segment."""
+        metric = criteria[0].metric
         if not segment.complete:
-            return _cut_short(metric, self._recording, segment)
-        doubt = self._doubt(metric, segment)
+            return _cut_short(metric, recording, segment)
+        doubt = next((doubts[name] for name in metric.channels if name in doubts), "")
         if doubt:
-            return _Found(reason=f"segment '{id_}': {doubt}")
+            return _Found(reason=f"segment '{segment.id}': {doubt}")
+        found = _value(metric, recording, segment)
+        if found.value is None:
+            return found
+        compared = any(one.below for one in criteria)
+        if compared and self._measured:
+            found = replace(found, standard_error=standard_error(metric, recording, segment))
+        if compared or any(_verdict(one, found, None, 0.0) == "fail" for one in criteria):
+            found = replace(found, remark=_remark(metric, recording, segment))
+        return found
+
+    def _doubts(self, recording: Recording, segment: Segment) -> dict[str, str]:
+        """Why channels were not measured, by name."""
+        if not self._measured or not segment.complete:
+            return {}
         try:
-            value = float(metric.compute(self._recording, segment))
-        except DidNotSettleError as error:
-            return _Found(trouble="did_not_settle", reason=f"segment '{id_}': {error}")
-        except NotReachedError as error:
-            return _Found(trouble="fail", reason=f"segment '{id_}': {error}")
-        except (NoValueError, HilError) as error:
-            return _Found(reason=f"segment '{id_}': {error}")
-        except Exception as error:  # a metric of another package must not cost the run its report
-            reason = f"segment '{id_}': the metric failed: {type(error).__name__}: {error}"
-            return _Found(reason=reason)
-        if not math.isfinite(value):
-            return _Found(reason=f"segment '{id_}': the value is {value}")
-        return _Found(value)
+            return objections(recording, segment)
+        except HilError as error:  # a damaged file
+            names = (name for one in self._asked[segment.id] for name in one.metric.channels)
+            return dict.fromkeys(names, str(error))
 
-    def _remark(self, criterion: Criterion) -> str:
-        """What a reader should know of a value beyond its limit."""
-        try:
-            remark = criterion.metric.remark(self._recording, self._recorded[criterion.segment])
-        except (NoValueError, HilError):
-            return ""
-        return f"segment '{criterion.segment}': {remark}" if remark else ""
 
-    def _doubt(self, metric: Metric, segment: Segment) -> str:
-        """Why the metric's channels were not measured; '' if they were."""
-        if not self._measured:
-            return ""
-        if segment.id not in self._objections:
-            try:
-                self._objections[segment.id] = objections(self._recording, segment)
-            except HilError as error:  # a damaged file
-                self._objections[segment.id] = dict.fromkeys(metric.channels, str(error))
-        known = self._objections[segment.id]
-        return next((known[name] for name in metric.channels if name in known), "")
+def _value(metric: Metric, recording: Recording, segment: Segment) -> _Found:
+    place = f"segment '{segment.id}'"
+    try:
+        value = float(metric.compute(recording, segment))
+    except DidNotSettleError as error:
+        return _Found(trouble="did_not_settle", reason=f"{place}: {error}")
+    except NotReachedError as error:
+        return _Found(trouble="fail", reason=f"{place}: {error}")
+    except (NoValueError, HilError) as error:
+        return _Found(reason=f"{place}: {error}")
+    except Exception as error:  # a metric of another package must not cost the run its report
+        return _Found(reason=f"{place}: the metric failed: {type(error).__name__}: {error}")
+    if not math.isfinite(value):
+        return _Found(reason=f"{place}: the value is {value}")
+    return _Found(value)
 
-    def _scatter(self, criterion: Criterion, own: _Found, rival: _Found | None) -> float:
-        """Two standard errors of the difference of the two values that a criterion compares."""
-        if rival is None or own.value is None or rival.value is None or not self._measured:
-            return 0.0
-        places = (criterion.segment, criterion.below or "")
-        errors = (
-            standard_error(criterion.metric, self._recording, self._recorded[place]) for place in places
-        )
-        return _STANDARD_ERRORS * math.hypot(*errors)
+
+def _remark(metric: Metric, recording: Recording, segment: Segment) -> str:
+    """What a reader should know of a value that fails."""
+    try:
+        return metric.remark(recording, segment)
+    except (NoValueError, HilError):
+        return ""
 
 
 def _cut_short(metric: Metric, recording: Recording, segment: Segment) -> _Found:

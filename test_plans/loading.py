@@ -9,7 +9,6 @@ from typing import Any
 
 from hil.core.errors import BadInputError
 from hil.core.file_kind import refuse_other_kind
-from hil.core.files import read_text
 from hil.core.suggestion import closest, did_you_mean
 from hil.core.toml_file import parse_toml
 from test_plans.building import build, list_at, mapping_at
@@ -20,10 +19,10 @@ from test_plans.criteria import Criterion, criterion_at
 from test_plans.mistakes import PlanMistakes
 from test_plans.named_files import named_file, names_in
 from test_plans.plan import Plan, PlanKeys, estimate_duration_s
-from test_plans.steps import STEPS, FileSearch, Step
+from test_plans.steps import LARGEST_COUNT, STEPS, FileSearch, Step
 from test_plans.variables import KEY as VARIABLES
 from test_plans.variables import variables_at, with_values
-from test_plans.yaml_document import Document, KeyPath, read_yaml
+from test_plans.yaml_document import Document, KeyPath, read_yaml, yaml_text
 
 logger = logging.getLogger(__name__)
 
@@ -53,7 +52,7 @@ def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
         BadInputError: no such plan, or all that is wrong with it: file, line, key, and what to do.
     """
     path = named_file(name_or_path, LIBRARY, "plan", "plan")
-    text = read_text(path)
+    text = yaml_text(path)
     if path.suffix == ".toml":
         _refuse_other_file(text, str(path))
     if choices is not None:
@@ -139,6 +138,13 @@ class _Reader:
                 fix=f"write under steps: {_STEP_EXAMPLE}",
             )
         steps = self._steps(content["steps"], ("steps",))
+        count = sum(step.count for step in steps)
+        if count > LARGEST_COUNT:
+            raise BadInputError(
+                f"{count} steps altogether, at most {LARGEST_COUNT} are carried out",
+                where=self._document.place(("steps",)),
+                fix="make several plans of it",
+            )
         self._refuse_same_segments(steps)
         return steps
 

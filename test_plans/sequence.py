@@ -6,10 +6,10 @@ from pathlib import Path
 
 from pydantic import Field
 
-from hil.core.files import is_file, read_text
+from hil.core.files import is_file
 from test_plans.building import Strict, build, mapping_at
 from test_plans.named_files import named_file, names_in
-from test_plans.yaml_document import read_yaml
+from test_plans.yaml_document import read_yaml, yaml_text
 
 SEQUENCES = Path(__file__).parent / "sequences"
 _EXAMPLE = "name: mine, then identify: and accept:"
@@ -79,7 +79,7 @@ def load_sequence(name_or_path: str | Path) -> Sequence:
         BadInputError: no such file, or all that is wrong with it: line, key, and what to do.
     """
     path = named_file(name_or_path, SEQUENCES, "sequence")
-    document = read_yaml(read_text(path), str(path))
+    document = read_yaml(yaml_text(path), str(path))
     content = mapping_at(document.value, document, (), _EXAMPLE)
     keys = build(SequenceKeys, content, document, ())
     return Sequence(**keys.model_dump(), source=path)

@@ -9,12 +9,16 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import yaml
 
 from hil.core.errors import BadInputError
+from hil.core.files import read_text
 
 KeyPath = tuple[str | int, ...]
+#: Some thousand steps; the reader needs 10 s for a megabyte.
+LARGEST_BYTES = 500_000
 
 _WORDS = {"": None, "~": None, "null": None, "Null": None, "NULL": None} | {
     "true": True,
@@ -50,12 +54,25 @@ class Document:
         return f"{line}, key '{_spelled(path)}'" if path else line
 
 
+def yaml_text(path: Path) -> str:
+    """Text of a YAML file as people write them.
+
+    Raises:
+        BadInputError: not readable, no regular file, or far too large.
+    """
+    return read_text(path, LARGEST_BYTES, "give the YAML file of a plan, a sequence or a campaign")
+
+
 def read_yaml(text: str, where: str) -> Document:
     """Read one YAML document.
 
     Raises:
-        BadInputError: not YAML, a duplicate key, a tag, an alias, or nested too deeply.
+        BadInputError: not YAML, a duplicate key, a tag, an alias, nested too deeply, or far too large.
     """
+    if len(text) > LARGEST_BYTES:  # of bytes there are more still
+        raise BadInputError(
+            f"has more than {LARGEST_BYTES / 1e6:g} MB", where=where, fix="make several of it"
+        )
     try:
         node = yaml.compose(text, Loader=_PlainLoader)
         lines: dict[KeyPath, int] = {(): 1}

@@ -17,7 +17,7 @@ from hil.campaign._batches import Batch, Row
 from hil.campaign._setting import Setting
 from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT
-from hil.core.files import replacing, write_atomically
+from hil.core.files import read_text, replacing, write_atomically
 
 BEGUN, FOLDER = "begun.json", "simulations"
 _NOT_THIS = "name another place with --out, or begin it anew with --overwrite"
@@ -103,7 +103,7 @@ def begun_batch(folder: Path, setting: Setting) -> int:
     if not path.exists():
         return 0
     try:
-        content = json.loads(path.read_text("utf-8"))
+        content = json.loads(read_text(path))
         batch, identity = int(content["batch"]), dict(content["identity"])
         if batch < 1:
             raise ValueError("no batch")

@@ -8,6 +8,7 @@ import importlib
 import importlib.metadata
 import inspect
 import logging
+import resource
 import sys
 import traceback
 from collections.abc import Callable
@@ -217,7 +218,7 @@ def _carried_out(arguments: list[str]) -> int:
     except ModuleNotFoundError as error:
         return _told(not_installed(error) or _fault_of_ours(error))
     except MemoryError:
-        return _told(BenchError("there is not enough memory", fix="give a shorter recording"))
+        return _told(_too_little_memory())
     except Exception as error:
         return _interrupted() if INTERRUPTS.arrived else _told(_fault_of_ours(error))
 
@@ -232,6 +233,14 @@ def _told(error: HilError) -> int:
     logger.debug("ended by", exc_info=error)
     complain("error", str(error))
     return error.exit_code
+
+
+def _too_little_memory() -> BenchError:
+    limit, _ = resource.getrlimit(resource.RLIMIT_DATA)  # a service sets one for what it begins
+    limited = f", which may use {limit / 1e9:.3g} GB" if limit != resource.RLIM_INFINITY else ""
+    return BenchError(
+        f"there is not enough memory for this command{limited}", fix="give a shorter recording or plan"
+    )
 
 
 def _fault_of_ours(error: Exception) -> BenchError:

@@ -12,6 +12,8 @@ from hil.core.printable import printable
 from test_plans import Choices, controller_choices
 
 _OPTION = "--set"
+#: Runs of one series: some days at a bench.
+LARGEST_SERIES = 1000
 
 
 def choices_of(values: list[str] | None, controller: list[str] | None) -> Choices:
@@ -35,6 +37,13 @@ def all_choices(values: list[str] | None, controller: list[str] | None) -> Itera
     controllers = controller_choices(controller or [], "--controller")
     named = named_values(values or (), _OPTION, form="NAME=VALUE")
     several = {name: [_number(name, one) for one in text.split(",")] for name, text in named.items()}
+    runs = math.prod(len(numbers) for numbers in several.values())
+    if runs > LARGEST_SERIES:
+        raise BadInputError(
+            f"the values make {runs} combinations, at most {LARGEST_SERIES} runs are carried out",
+            where=_OPTION,
+            fix="give fewer values, or simulate them with `hil campaign`",
+        )
     for combination in itertools.product(*several.values()):
         yield Choices(controllers, dict(zip(several, combination, strict=True)))
 

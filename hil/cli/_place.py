@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hil.core.errors import BadInputError
-from hil.core.files import make_directory, refuse_special, replacing
+from hil.core.files import make_directory, read_text, refuse_special, replacing
 from hil.core.locks import HeldError, lock_on
 
 logger = logging.getLogger(__name__)
@@ -214,10 +214,10 @@ def alone_in(folder: Path) -> Iterator[int]:
 def _listed(summary: Path) -> list[str]:
     """File names that an earlier summary lists, in its own folder only."""
     try:
-        files = json.loads(summary.read_text(encoding="utf-8"))["files"]
+        files = json.loads(read_text(summary))["files"]
         names = files.values() if isinstance(files, dict) else files
         return [name for name in names if isinstance(name, str) and Path(name).name == name]
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (BadInputError, ValueError, KeyError, TypeError, AttributeError):
         return []
 
 

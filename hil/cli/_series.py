@@ -7,16 +7,39 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from hil.cli._choices import LARGEST_SERIES
 from hil.cli._one_run import Finished, Runs
-from hil.cli._output import console, count_in_words, plain_table, print_json, to_json
+from hil.cli._output import console, count_in_words, note, plain_table, print_json, to_json
 from hil.cli._place import Place, results_in
+from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.result import RunResult
 from hil.engine import BenchFile
 from hil.engine.bench_file import with_seed
-from test_plans import Plan
+from hil.engine.disk_room import needed_bytes, refuse_too_little_room
+from test_plans import Plan, estimate_duration_s
 
 SUMMARY = "series.json"
+
+
+def announce_series(plans: Sequence[Plan], repeat: int, out: Path | None) -> None:
+    """Say on stderr how many runs there will be, how long they take at a bench, and what they need.
+
+    Raises:
+        BadInputError: they are too many, or the disk has no room for them.
+    """
+    runs = len(plans) * repeat
+    if runs > LARGEST_SERIES:
+        raise BadInputError(
+            f"{len(plans)} combinations, {repeat} times each, are {runs} runs: at most {LARGEST_SERIES} are "
+            "carried out",
+            where="--repeat",
+            fix="repeat fewer times, or simulate them with `hil campaign`",
+        )
+    refuse_too_little_room(plans, out or Path(), times=repeat)
+    bench_time_s = repeat * sum(estimate_duration_s(plan) for plan in plans)
+    size = repeat * sum(needed_bytes(plan) for plan in plans)
+    note(f"{runs} runs, {bench_time_s / 60:.3g} min of bench time, at most {size / 1e9:.2g} GB on the disk")
 
 
 def repeated(bench: BenchFile, times: int) -> list[BenchFile]:

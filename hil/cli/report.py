@@ -16,6 +16,8 @@ from hil.cli._output import (
 from hil.cli._place import refuse_missing, results_in
 from hil.cli._result_file import RESULT, write_result
 from hil.cli._streams import complain
+from hil.core.errors import BadInputError
+from hil.core.files import read_text
 from hil.core.recording import read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING
@@ -57,11 +59,11 @@ def _belongs(folder: Path, recording: str) -> bool:
     if (folder / HTML).is_file() and recording_named_in(folder / HTML) != recording:
         return False
     try:
-        stored = json.loads((folder / RESULT).read_text(encoding="utf-8"))
+        stored = json.loads(read_text(folder / RESULT))
         return bool(stored["files"]["recording"] == recording)
-    except FileNotFoundError:
-        return True
-    except (OSError, ValueError, KeyError, TypeError):
+    except BadInputError:
+        return not (folder / RESULT).exists()
+    except (ValueError, KeyError, TypeError):
         return False
 
 

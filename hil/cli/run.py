@@ -17,7 +17,7 @@ from hil.cli._output import (
     told_identities,
     warn,
 )
-from hil.cli._series import carry_out_series, repeated
+from hil.cli._series import announce_series, carry_out_series, repeated
 from hil.cli._timing import times_in_words, timing_in_words
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
@@ -65,6 +65,7 @@ def carry_out(
         overwrite=overwrite,
     )
     if len(plans) * repeat > 1:
+        announce_series(plans, repeat, out)
         return carry_out_series(runs, plans, repeated(bench_file, repeat), out, as_json=as_json)
     with runs.finished(plans[0], bench_file, out) as run:
         _tell(run.result, run.folder, show=show, as_json=as_json)

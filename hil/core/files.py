@@ -8,12 +8,26 @@ import hashlib
 import os
 import secrets
 import shutil
+import stat
 from collections.abc import Iterator
+from io import BufferedReader
 from pathlib import Path
 
 from hil.core.errors import BadInputError, BenchError, HilError
 
+_CHECK_PATH = "check the path and its permissions"
 _DISK_FAILURES = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+
+
+#: Of a file that is read at once, unless its reader knows better: results, manifests, lists.
+LARGEST_BYTES = 64_000_000
+_KINDS = {
+    stat.S_IFDIR: "a directory",
+    stat.S_IFIFO: "a pipe",
+    stat.S_IFCHR: "a device",
+    stat.S_IFBLK: "a device",
+    stat.S_IFSOCK: "a socket",
+}
 
 
 def is_file(path: Path) -> bool:
@@ -24,26 +38,70 @@ def is_file(path: Path) -> bool:
         return False
 
 
-def read_text(path: Path) -> str:
-    """Text of a UTF-8 file; BadInputError tells why it cannot be read."""
+def refuse_unless_regular(path: Path, fix: str = "") -> None:
+    """Refuse what is no regular file; nothing is opened, so that a pipe cannot block.
+
+    Raises:
+        BadInputError: there is no such file, or it is a directory, a pipe, a device or a socket.
+    """
     try:
-        return path.read_text(encoding="utf-8")
+        mode = path.stat().st_mode
+    except ValueError as error:
+        raise BadInputError(f"not a path: {error}", where=repr(str(path)), fix=fix) from error
+    except OSError as error:
+        reason = _reason(error)
+        if path.is_symlink() and not path.exists():
+            reason = f"{reason}: it is a link to {os.fspath(path.readlink())!r}"
+        raise BadInputError(reason, where=str(path), fix=fix or _CHECK_PATH) from error
+    if not stat.S_ISREG(mode):
+        kind = _KINDS.get(stat.S_IFMT(mode), "a special file")
+        raise BadInputError(f"is {kind}, not a file", where=str(path), fix=fix or "give a regular file")
+
+
+def open_regular(path: Path) -> BufferedReader:
+    """The file, opened for reading.
+
+    Raises:
+        BadInputError: there is none, it may not be read, or it is not a regular file.
+    """
+    refuse_unless_regular(path)
+    try:
+        return path.open("rb")
+    except OSError as error:
+        raise BadInputError(_reason(error), where=str(path), fix=_CHECK_PATH) from error
+
+
+def read_bytes(path: Path, at_most: int = LARGEST_BYTES, fix: str = "") -> bytes:
+    """Content of a regular file of `at_most` bytes; no more than these are ever held.
+
+    Raises:
+        BadInputError: it cannot be read, is no regular file, or is larger; with `fix`.
+    """
+    refuse_unless_regular(path, fix)
+    try:
+        with path.open("rb") as file:
+            content = file.read(at_most + 1)
+    except OSError as error:
+        raise BadInputError(_reason(error), where=str(path), fix=fix or _CHECK_PATH) from error
+    if len(content) > at_most:
+        raise BadInputError(
+            f"has more than {at_most / 1e6:g} MB, which no such file has",
+            where=str(path),
+            fix=fix or "is it the file that you meant?",
+        )
+    return content
+
+
+def read_text(path: Path, at_most: int = LARGEST_BYTES, fix: str = "") -> str:
+    """Text of a regular UTF-8 file of `at_most` bytes.
+
+    Raises:
+        BadInputError: it cannot be read, is no regular file, is larger, or not UTF-8.
+    """
+    try:
+        return read_bytes(path, at_most, fix).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as error:
-        raise BadInputError("not a UTF-8 text file", where=str(path)) from error
-    except OSError as error:
-        raise BadInputError(
-            _reason(error), where=str(path), fix="check the path and its permissions"
-        ) from error
-
-
-def read_bytes(path: Path) -> bytes:
-    """Content of a file; BadInputError tells why it cannot be read."""
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise BadInputError(
-            _reason(error), where=str(path), fix="check the path and its permissions"
-        ) from error
+        raise BadInputError("not a UTF-8 text file", where=str(path), fix=fix) from error
 
 
 def sha256_of(path: Path) -> str:
@@ -53,12 +111,10 @@ def sha256_of(path: Path) -> str:
         BadInputError: it cannot be read.
     """
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
-        raise BadInputError(
-            _reason(error), where=str(path), fix="check the path and its permissions"
-        ) from error
+        raise BadInputError(_reason(error), where=str(path), fix=_CHECK_PATH) from error
 
 
 def write_atomically(path: Path, content: str | bytes) -> None:

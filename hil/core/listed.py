@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterable, Sequence
 
 #: Some two screens; the first line is told whatever its length.
 MOST_CHARACTERS = 4000
@@ -20,3 +21,8 @@ def listed(findings: Sequence[str]) -> str:
             break
         lines.append(line)
     return "".join(lines)
+
+
+def repeated(names: Iterable[str]) -> list[str]:
+    """Names that stand more than once, sorted."""
+    return sorted(name for name, count in Counter(names).items() if count > 1)

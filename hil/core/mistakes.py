@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from hil.core.errors import BadInputError
 from hil.core.listed import listed
-from hil.core.toml_lines import line_of
+from hil.core.toml_lines import line_of, lines_of, nearest
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,8 @@ def refuse(where: str, mistakes: Iterable[Mistake], text: str = "", fix: str = "
         place = f"{where}, line {line}" if line else where
         raise MistakesError(found[0].what, where=place, fix=found[0].fix or fix, found=found)
     if found:
-        placed = [(line_of(text, mistake.key) or 0, mistake) for mistake in found]
+        lines_by_key = lines_of(text)
+        placed = [(nearest(lines_by_key, mistake.key) or 0, mistake) for mistake in found]
         placed.sort(key=lambda one: one[0])
         lines = listed([_on_a_line(mistake, line) for line, mistake in placed])
         raise MistakesError(f"{len(found)} mistakes{lines}", where=where, fix=fix, found=found)

@@ -99,12 +99,13 @@ def read_signature(manifest: Path) -> Signature:
     from cryptography.exceptions import InvalidSignature
 
     try:
-        text = manifest.read_bytes()
-        signature = manifest.with_suffix(_SIGNATURE).read_bytes()
+        text = read_bytes(manifest)
+        signature = read_bytes(manifest.with_suffix(_SIGNATURE))
         told = _Manifest.model_validate_json(text)
         key = _public(told.public_key.encode())
-    except OSError as error:
-        raise BrokenSignatureError(f"{Path(error.filename or manifest).name} is missing") from error
+    except BadInputError as error:
+        what = error.what if Path(error.where).exists() else "is missing"
+        raise BrokenSignatureError(f"{Path(error.where).name} {what}") from error
     except ValueError as error:  # pydantic's too
         raise BrokenSignatureError("is no manifest of a signature, or was changed") from error
     try:

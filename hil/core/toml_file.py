@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import re
 import tomllib
 from pathlib import Path
@@ -31,17 +30,9 @@ def toml_text(path: Path) -> str:
     """Text of a TOML file.
 
     Raises:
-        BadInputError: not readable, or far too large.
+        BadInputError: not readable, no regular file, or far too large.
     """
-    with contextlib.suppress(OSError):  # what cannot be asked cannot be read: said below
-        size = path.stat().st_size
-        if size > LARGEST_BYTES:
-            raise BadInputError(
-                f"has {size / 1e6:.3g} MB, at most {LARGEST_BYTES / 1e6:g} MB are read",
-                where=str(path),
-                fix="is it a recording? Give the TOML file",
-            )
-    return read_text(path)
+    return read_text(path, LARGEST_BYTES, "give the TOML file of a model, a controller or a bench")
 
 
 def parse_toml(text: str, where: str, fix: str = "") -> dict[str, Any]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Mapping
 
 _HEADER = re.compile(r"^\s*\[\s*([^\[\]]+?)\s*\]\s*(?:#.*)?$")
 _ENTRY = re.compile(r"^\s*\[\[\s*([^\[\]]+?)\s*\]\]\s*(?:#.*)?$")
@@ -12,12 +13,21 @@ _PART = re.compile(r"""[\w-]+|"[^"]*"|'[^']*'""")
 
 
 def line_of(text: str, key: str) -> int | None:
-    """Line of a dotted key (`effects[2].id` in the second of several tables), or of the nearest around it.
+    """Line of a dotted key, or of the nearest around it; None if none has a line."""
+    return nearest(lines_of(text), key)
 
-    None if none has a line.
 
-    What stands inside of an inline table or of a text over several lines may be missed: then the line of what
-    is around it is given.
+def nearest(lines: Mapping[str, int], key: str) -> int | None:
+    """Line of a dotted key of `lines_of`, or of the nearest around it; None if none has one."""
+    while key and key not in lines:
+        key = key.rpartition(".")[0]
+    return lines.get(key)
+
+
+def lines_of(text: str) -> dict[str, int]:
+    """Line of each dotted key (`effects[2].id` in the second of several tables).
+
+    What stands inside of an inline table or of a text over several lines may be missed.
     """
     lines: dict[str, int] = {}
     table = ""
@@ -35,9 +45,7 @@ def line_of(text: str, key: str) -> int | None:
         elif found := _KEY.match(line):
             name = _dotted(found[1])
             lines.setdefault(f"{table}.{name}" if table else name, number)
-    while key and key not in lines:
-        key = key.rpartition(".")[0]
-    return lines.get(key)
+    return lines
 
 
 def _dotted(name: str) -> str:

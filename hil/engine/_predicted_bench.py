@@ -27,6 +27,7 @@ from hil.plant.controller import memory as M
 from test_plans import Array, Quantity
 
 LEFT, RIGHT = SIDES
+_BLOCK_TICKS = 60_000
 _DRAIN_EVERY = 10  # ticks between the looks of a loop that waits for nothing
 _SDO_TICKS = 2  # an object is written and read back
 _WATCH_OBJECTS = 2  # heartbeat and watch on the host's, each side
@@ -44,6 +45,8 @@ class PredictedLoop:
     def __init__(self, closed: ClosedLoop) -> None:
         self.closed = closed
         self.clock = self
+        #: Called after each block of a wait.
+        self.after_block: Callable[[], None] = lambda: None
         self._seen = 0  # samples that have been looked at
 
     def now_s(self) -> float:
@@ -53,7 +56,8 @@ class PredictedLoop:
     @property
     def newest(self) -> Array:
         """The newest sample that the drivers know, as one row."""
-        return self.closed.rows[max(self._seen - 1, 0) : max(self._seen, 1)]
+        last = max(self._seen, 1) - self.closed.first
+        return self.closed.rows[last - 1 : last]
 
     def run_for(self, duration_s: float, until: Callable[[], bool] = lambda: False) -> bool:  # noqa: ARG002
         """Let time pass; nobody holds a prediction."""
@@ -61,9 +65,11 @@ class PredictedLoop:
         return True
 
     def run(self, ticks: int) -> None:
-        """Let ticks pass."""
-        self.closed.run(ticks)
-        self.look_on_time()
+        """Let ticks pass, in blocks: of a long wait nothing need be kept."""
+        for first in range(0, ticks, _BLOCK_TICKS):
+            self.closed.run(min(_BLOCK_TICKS, ticks - first))
+            self.look_on_time()
+            self.after_block()
 
     def transact(self, ticks: int) -> None:
         """Let ticks pass while an answer is awaited: every one is looked at."""
@@ -243,11 +249,24 @@ class PredictedBench:
         self.loop.run_for(_LISTEN_S)
         self.dyno.come_up()
         self.began = closed.samples
+        self._peaks = dict.fromkeys(self.wire.rounding.channels, 0.0)
         self.loop.run_for(_LISTEN_S)
         self.rmcu.make_safe()
         self.dyno.enable(file.dyno.speed_ramp_m_s2 / file.vehicle.wheel_radius_m)
 
-    def peak(self, channel: str) -> float:
-        """Largest magnitude of a measured channel since the bench was switched on, in its unit."""
+    def peaks(self) -> dict[str, float]:
+        """Largest magnitude of each measured channel since the bench was switched on, in its unit."""
+        return self._with_peaks_of(self.loop.closed.rows)
+
+    def forget(self, before: int) -> None:
+        """Drop the samples before this one; what their peaks are is kept."""
         closed = self.loop.closed
-        return float(np.max(np.abs(closed.wire.channel(channel, closed.rows))))
+        self._peaks = self._with_peaks_of(closed.rows[: max(0, before - closed.first)])
+        closed.forget(before)
+
+    def _with_peaks_of(self, rows: Array) -> dict[str, float]:
+        channel = self.loop.closed.wire.channel
+        return {
+            name: max(peak, float(np.max(np.abs(channel(name, rows)), initial=0.0)))
+            for name, peak in self._peaks.items()
+        }

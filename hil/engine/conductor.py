@@ -16,6 +16,7 @@ from hil.core.errors import BenchError
 from hil.core.files import write_atomically
 from hil.core.recording import SEGMENT, VEHICLE
 from hil.core.result import RunResult, Segment
+from hil.core.toml_file import toml_text
 from hil.core.vehicle import VehicleAndRoad
 from hil.engine.bench import Bench
 from hil.engine.border import Analyse, Analysis, analysed_here
@@ -73,8 +74,9 @@ class BenchConductor:
         self._bench.rmcu.write_controller(controller)
         self._controller = controller
         if file.stem not in self.controllers:
-            self.controllers[file.stem] = file.read_text("utf-8")
-            self._recorder.writer.attach(f"controller/{file.stem}.toml", file.read_bytes())
+            text = toml_text(file)
+            self.controllers[file.stem] = text
+            self._recorder.writer.attach(f"controller/{file.stem}.toml", text.encode())
         self._event(
             "controller", f"{controller.name} ({controller.stabilization} stabilization) written, read back"
         )

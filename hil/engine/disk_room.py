@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 
 from hil.core.errors import BadInputError
@@ -19,12 +20,20 @@ def needed_bytes(plan: Plan) -> int:
     return int(estimate_duration_s(plan) * _BYTES_PER_SECOND) + _REPORT_BYTES
 
 
-def refuse_too_little_room(plan: Plan, out: Path) -> None:
-    """BadInputError tells what is free and what may be needed, and names the disk."""
-    needed, free = needed_bytes(plan), shutil.disk_usage(out).free
+def refuse_too_little_room(plans: Sequence[Plan], out: Path, times: int = 1) -> None:
+    """Refuse runs of `plans`, each so many times, for which the disk of folder `out` has no room.
+
+    Raises:
+        BadInputError: tells what is free and what may be needed, and names the disk.
+    """
+    place = out.resolve()
+    while not place.exists():
+        place = place.parent
+    needed, free = times * sum(needed_bytes(plan) for plan in plans), shutil.disk_usage(place).free
     if free < needed:
+        what = "the recording" if times * len(plans) == 1 else f"{times * len(plans)} runs"
         raise BadInputError(
-            f"{free / 1e6:.0f} MB are free, the recording may need {needed / 1e6:.0f} MB: {disk_of(out)}",
+            f"{free / 1e6:.0f} MB are free, {what} may need {needed / 1e6:.0f} MB: {disk_of(out)}",
             where=str(out),
             fix="make room, or choose another place with --out",
         )

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import tempfile
 from dataclasses import dataclass
+from pathlib import Path
 
+from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.result import CriterionResult
+from hil.engine._predicted_bench import PredictedBench
 from hil.engine.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench_tables import BenchFile
-from hil.engine.prediction import predict
+from hil.engine.prediction import PredictedRun
+from hil.engine.preflight import Rehearsal
 from hil.engine.ranges import limits_of_channels
-from test_plans import Plan, judge
+from test_plans import Judgement, Plan, estimate_duration_s
+
+#: An analysis step may ask for all that was recorded before it: 225 bytes a sample.
+LONGEST_WITH_ANALYSIS_S = 2 * 3600.0
 
 
 @dataclass(frozen=True)
@@ -40,15 +48,45 @@ def forecast(plan: Plan, bench: BenchFile) -> Forecast:
     """Carry the plan out on a predicted bench and judge it.
 
     No limit on measured values trips meanwhile, and sensors have no noise. A bench without a [simulation]
-    is predicted with the shipped simulated bench's model.
+    is predicted with the shipped simulated bench's model. Each segment is judged as it ends and then
+    forgotten, so that memory hangs on the longest segment and not on the plan.
 
     Raises:
-        BadInputError: the plan asks for more than the bench allows.
+        BadInputError: the plan asks for more than the bench allows, or analyses itself and is too long.
         HilError: the run would fail.
     """
     simulation = bench.simulation or load_bench(DEFAULT_BENCH).simulation
     assert simulation is not None, "the default bench is simulated"
-    found = predict(plan, bench, load_model(simulation.model))
+    judgement = Judgement(plan, measured=False)
+    with tempfile.TemporaryDirectory() as folder:
+        predicted = PredictedBench(bench, load_model(simulation.model))
+        take = None if _analyses(plan, bench) else judgement.take
+        run = PredictedRun(predicted, Path(folder), each_segment=take)
+        run.carry_out((*plan.steps, *plan.finally_))
+        found = run.ended()
+    if take is None:
+        for segment in found.segments:
+            judgement.take(found.recording, segment)
     limits = limits_of_channels(bench.limits)
     peaks = {channel: (found.peaks[channel], limit) for channel, limit in limits.items()}
-    return Forecast(peaks, judge(plan, found.recording, found.segments, measured=False), found.bus_loads)
+    return Forecast(peaks, judgement.results(), found.bus_loads)
+
+
+def _analyses(plan: Plan, bench: BenchFile) -> bool:
+    """Whether a step analyses what was recorded before it.
+
+    Raises:
+        BadInputError: it does, and the plan is so long that this cannot be predicted in little memory.
+    """
+    rehearsal = Rehearsal(bench)
+    for step in (*plan.steps, *plan.finally_):
+        step.carry_out(rehearsal)
+    duration_s = estimate_duration_s(plan)
+    if rehearsal.made and duration_s > LONGEST_WITH_ANALYSIS_S:
+        raise BadInputError(
+            f"takes {duration_s / 3600:.1f} h and analyses its own recording: at most "
+            f"{LONGEST_WITH_ANALYSIS_S / 3600:g} h of such a plan are predicted",
+            where=str(plan.source),
+            fix="make two plans of it: one that identifies, and one for the rest",
+        )
+    return bool(rehearsal.made)

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import copy
 import tempfile
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, MutableMapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
 import numpy as np
 
+from hil.core.channels import TIME
 from hil.core.controller import Controller
 from hil.core.model import Model
 from hil.core.recording import Event, Recording
@@ -31,6 +32,9 @@ from hil.plant.closed_loop import TICK_S, Noise
 from test_plans import Array, Plan, PlannedSegment, Quantity, Step
 
 _UNSETTLED_S = 0.003  # what came later than this before the newest sample is not in a recording so far
+_AROUND_S = 2.0  # of the rows around a segment: what metrics and filters look at
+#: Is given a segment that has ended, and a recording of its rows.
+TakesSegment = Callable[[Recording, Segment], None]
 
 
 @dataclass(frozen=True)
@@ -91,6 +95,7 @@ class PredictedRun:
         out: folder in which analysis steps find what earlier ones made.
         channels: those of the recording that are wanted; all without it.
         controllers: what is loaded in place of files that the plan loads.
+        each_segment: is given each segment as it ends; the recording then holds the last rows alone.
     """
 
     def __init__(
@@ -99,10 +104,11 @@ class PredictedRun:
         out: Path,
         channels: Collection[str] | None = None,
         controllers: Mapping[Path, Controller] | None = None,
+        each_segment: TakesSegment | None = None,
     ) -> None:
         self._bench, self._channels = bench, channels
         self._recorder = _PredictedRecorder(bench, channels)
-        self._conductor = PredictionConductor(bench, self._recorder, out, controllers)
+        self._conductor = PredictionConductor(bench, self._recorder, out, controllers, each_segment)
 
     def carry_out(self, steps: Iterable[Step]) -> None:
         """Carry steps out, from where the run stands.
@@ -131,8 +137,7 @@ class PredictedRun:
         bench, conductor = self._bench, self._conductor
         bench.rmcu.make_safe()
         bench.dyno.make_safe()
-        names = bench.wire.rounding.channels if self._channels is None else ()
-        peaks = {name: bench.peak(name) for name in names}
+        peaks = bench.peaks() if self._channels is None else {}
         return Prediction(
             self._recorder.everything(), tuple(conductor.segments), peaks, conductor.made, bench.wire.loads
         )
@@ -147,12 +152,17 @@ class PredictionConductor(BenchConductor):
         recorder: _PredictedRecorder,
         out: Path,
         controllers: Mapping[Path, Controller] | None = None,
+        each_segment: TakesSegment | None = None,
     ) -> None:
         super().__init__(
             cast(Bench, bench), cast(Recorder, recorder), out, lambda text, timeout_s: "not asked"
         )
         self._rmcu, self._loop, self._dyno = bench.rmcu, bench.loop, bench.dyno
+        self._rows_of, self._forget = recorder, bench.forget
         self._in_place_of = controllers or {}
+        self._each_segment = each_segment
+        if each_segment:
+            self._loop.after_block = self._forget_what_is_over
 
     def go_on(self, out: Path, controllers: Mapping[Path, Controller]) -> None:
         """From now on work in folder `out`, and load `controllers` in place of files."""
@@ -182,6 +192,46 @@ class PredictionConductor(BenchConductor):
         if segment:
             self._end(self._loop.now_s(), complete=True)
         self._switch_off()
+        if self._each_segment:
+            if segment:
+                ended = self.segments[-1]
+                around = self._rows_of.between(ended.start_s - _AROUND_S, ended.end_s + _AROUND_S)
+                self._each_segment(around, ended)
+            self._forget_what_is_over()
+
+    def _forget_what_is_over(self) -> None:
+        self._forget(self._loop.closed.samples - round(_AROUND_S / TICK_S))
+
+
+class _ReadChannels(MutableMapping[str, Array]):
+    """Channels that are computed when somebody asks for them: a criterion needs few, an hour is long."""
+
+    def __init__(self, names: Iterable[str], known: dict[str, Array], read: Callable[[str], Array]) -> None:
+        self._names, self._known, self._read = dict.fromkeys(names), known, read
+
+    def __getitem__(self, name: str) -> Array:
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._known:
+            self._known[name] = self._read(name)
+        return self._known[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def __setitem__(self, name: str, values: Array) -> None:
+        self._names[name] = None
+        self._known[name] = values
+
+    def __delitem__(self, name: str) -> None:
+        del self._names[name]
+        self._known.pop(name, None)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
 
 
 class _PredictedRecorder:
@@ -217,11 +267,24 @@ class _PredictedRecorder:
         return self._recording(self._bench.loop.closed.samples - unsettled)
 
     def everything(self) -> Recording:
-        """All channels, to the last sample."""
+        """All channels that are kept, to the last sample."""
         return self._recording(self._bench.loop.closed.samples)
 
+    def between(self, start_s: float, end_s: float) -> Recording:
+        """The channels from one time in the recording to another, as far as they are kept."""
+        bench, closed = self._bench, self._bench.loop.closed
+        first, last = (round((time_s + self._start_s) / TICK_S) for time_s in (start_s, end_s))
+        first, last = max(first, closed.first, bench.began), min(last, closed.samples)
+        time_s = np.round(np.arange(first - bench.began, last - bench.began) * TICK_S, 9)
+        names = closed.recorded(first, first + 1, self._channels)
+        return self._recording_of(
+            _ReadChannels(names, {TIME: time_s}, lambda name: closed.recorded(first, last, {name})[name])
+        )
+
     def _recording(self, end: int) -> Recording:
-        channels = self._bench.loop.closed.recorded(self._bench.began, end, self._channels)
+        return self._recording_of(self._bench.loop.closed.recorded(self._bench.began, end, self._channels))
+
+    def _recording_of(self, channels: MutableMapping[str, Array]) -> Recording:
         return Recording(
             channels,
             Path("prediction"),

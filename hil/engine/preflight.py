@@ -34,7 +34,7 @@ def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool
             where=f"plan '{plan.name}'",
             fix="run it from a terminal, or confirm beforehand with --yes 'your name'; the report prints it",
         )
-    refuse_too_little_room(plan, out)
+    refuse_too_little_room([plan], out)
 
 
 def refuse_unconfirmed(plan: Plan, confirmed_by: str) -> None:
@@ -64,12 +64,13 @@ class Rehearsal:
     def __init__(self, bench: BenchFile) -> None:
         self._bench = bench
         self._has_controller = False
-        self._made: set[str] = set()
+        #: Files that analysis steps make.
+        self.made: set[str] = set()
         self.prompts: list[str] = []
 
     def set_controller(self, file: Path) -> None:
         """The file must be readable and within the torque limit, or be made by an earlier step."""
-        if not file.is_absolute() and file.name in self._made:
+        if not file.is_absolute() and file.name in self.made:
             self._has_controller = True
             return
         if not file.is_absolute() and not file.is_file():
@@ -154,4 +155,4 @@ class Rehearsal:
     def analyse(self, name: str, work: Work, makes: tuple[str, ...]) -> None:
         """Remember what will be there."""
         del name, work
-        self._made.update(makes)
+        self.made.update(makes)

@@ -7,6 +7,7 @@ import time
 from hil.core.channels import CHANNELS
 from hil.core.clock import utc
 from hil.core.file_format import FORMAT
+from hil.core.files import read_bytes
 from hil.core.model import model_to_toml
 from hil.core.recording import ACCEPTED_EXPIRY, DEVICE
 from hil.core.result import AcceptedExpiry, RunResult
@@ -93,7 +94,7 @@ def _inputs(request: RunRequest, bench: Bench) -> dict[str, bytes]:
 def _descriptions(bench: Bench) -> dict[str, bytes]:
     """DBC, EDS and whatever else says what the devices' frames mean, by device: raw frames need them."""
     return {
-        f"{DEVICE}{key}/{path.name}": path.read_bytes()
+        f"{DEVICE}{key}/{path.name}": read_bytes(path)
         for key, table in bench.file.device_tables.items()
         for path in table.files()
         if path.is_file()

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hil.core.files import write_atomically
-from hil.service.background import begun
+from hil.service.background import STUDY_BYTES, begun
 
 _NICENESS = 10
 _NUMBER = "process"
@@ -35,6 +35,7 @@ class CommandProcess:
             str(results.resolve()),
             "--json",
             niceness=_NICENESS,
+            most_bytes=STUDY_BYTES,
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,

@@ -13,7 +13,7 @@ from pathlib import Path
 from hil.core.errors import BadInputError, BenchError
 from hil.core.files import read_bytes
 from hil.engine import BenchFile
-from hil.service.background import begun
+from hil.service.background import FORECAST_BYTES, begun
 from hil.service.data import ForecastData
 from hil.service.plan_files import files_of
 from test_plans import Plan
@@ -69,6 +69,7 @@ class Forecasts:
             *self._command,
             *arguments,
             niceness=_NICENESS,
+            most_bytes=FORECAST_BYTES,
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.PIPE,

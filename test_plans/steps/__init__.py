@@ -10,7 +10,7 @@ from test_plans.steps.multisine import Multisine
 from test_plans.steps.operator_prompt import OperatorPrompt
 from test_plans.steps.ramp import Ramp
 from test_plans.steps.ramp_down import RampDown
-from test_plans.steps.repeat import Repeat
+from test_plans.steps.repeat import LARGEST_COUNT, Repeat
 from test_plans.steps.set_controller import FileSearch, SetController, designed_file
 from test_plans.steps.set_slip import SetSlip
 from test_plans.steps.set_vehicle import SetVehicle
@@ -38,6 +38,7 @@ _OWN: tuple[type[Step], ...] = (
 STEPS: Registry[Step] = Registry("step", "hil.steps", Step, [(step.kind, step) for step in _OWN])  # type: ignore[type-abstract]
 
 __all__ = [
+    "LARGEST_COUNT",
     "SAMPLE_TIME_S",
     "STEPS",
     "Chirp",

@@ -11,7 +11,7 @@ from pathlib import Path
 from tests.bad_inputs.all_cases import all_cases
 from tests.bad_inputs.case import Case
 from tests.bad_inputs.inputs import make_inputs
-from tests.bad_inputs.page import PAGE, Tried, failures_of, page_of
+from tests.bad_inputs.page import BOUNDS_PAGE, PAGE, Tried, bounds_page_of, failures_of, page_of
 from tests.bad_inputs.trying import carry_out
 
 AT_ONCE = 2
@@ -45,6 +45,7 @@ def main() -> int:
     print(f"{len(tried)} tried, {len(failures)} faults")
     if options.write and not options.only:
         PAGE.write_text(page_of(tried), "utf-8")
+        BOUNDS_PAGE.write_text(bounds_page_of(tried), "utf-8")
     return 1 if failures else 0
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import chain
 
+from tests.bad_inputs.bound_cases import bound_cases
 from tests.bad_inputs.case import Case
 from tests.bad_inputs.file_cases import file_cases
 from tests.bad_inputs.option_cases import option_cases
@@ -19,7 +20,15 @@ _QUICK = 10
 def all_cases() -> list[Case]:
     """All cases, in the order of the page."""
     return list(
-        chain(file_cases(), value_cases(), option_cases(), place_cases(), signal_cases(), stream_cases())
+        chain(
+            file_cases(),
+            bound_cases(),
+            value_cases(),
+            option_cases(),
+            place_cases(),
+            signal_cases(),
+            stream_cases(),
+        )
     )
 
 

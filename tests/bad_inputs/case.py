@@ -10,8 +10,9 @@ DONE, FAILED, REFUSED, BENCH, INTERRUPTED = 0, 1, 2, 3, 130  # exit codes of the
 FINISHED = (DONE, FAILED)
 
 #: Kinds of what is tried, in the order of the page.
-FILES, VALUES, OPTIONS, PLACES, SIGNALS, STREAMS = (
+FILES, BOUNDS, VALUES, OPTIONS, PLACES, SIGNALS, STREAMS = (
     "files",
+    "bounds",
     "values",
     "options",
     "places",
@@ -65,3 +66,5 @@ class Outcome:
     new: tuple[str, ...]  # paths, relative to the case's folder
     changed: tuple[str, ...]  # inputs that are not as they were
     broken: tuple[str, ...]  # new files that are not whole
+    seconds: float = 0.0
+    megabytes: float = 0.0  # resident, at most

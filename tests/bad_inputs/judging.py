@@ -5,16 +5,19 @@ from __future__ import annotations
 import json
 import re
 
-from tests.bad_inputs.case import BENCH, DONE, FAILED, INTERRUPTED, REFUSED, Case, Outcome
+from tests.bad_inputs.case import BENCH, BOUNDS, DONE, FAILED, INTERRUPTED, REFUSED, Case, Outcome
 
-TRACEBACK, HANG, HALF_WRITTEN, WRONG_CODE, UNCLEAR = (
+TRACEBACK, HANG, HALF_WRITTEN, WRONG_CODE, UNCLEAR, MEMORY = (
     "traceback",
     "hang",
     "half-written",
     "wrong exit code",
     "unclear",
+    "memory",
 )
-FAULTS = (TRACEBACK, HANG, HALF_WRITTEN, WRONG_CODE, UNCLEAR)
+FAULTS = (TRACEBACK, HANG, HALF_WRITTEN, WRONG_CODE, UNCLEAR, MEMORY)
+#: Of a command that refuses its input, MB.
+MOST_MEGABYTES = 700.0
 _SPILLED = ("Traceback (most recent call last)", "internal error", "Exception ignored", "Fatal Python error")
 _ALL_OR_NONE = ("identify", "design", "diagnose")  # the fewest files that each of them writes
 _LEAST_FILES = 4
@@ -25,6 +28,8 @@ def faults_of(case: Case, outcome: Outcome) -> dict[str, str]:
     found: dict[str, str] = {}
     if any(text in outcome.err + outcome.out for text in _SPILLED):
         found[TRACEBACK] = _telling_line(outcome.err)
+    if case.kind == BOUNDS and outcome.megabytes > MOST_MEGABYTES:
+        found[MEMORY] = f"{outcome.megabytes:.0f} MB, at most {MOST_MEGABYTES:.0f} are allowed"
     if outcome.code is None:
         found[HANG] = "ended after the time limit"
         return found

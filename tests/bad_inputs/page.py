@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.bad_inputs.case import FILES, OPTIONS, PLACES, SIGNALS, STREAMS, VALUES, Case, Outcome
+from tests.bad_inputs.case import BOUNDS, FILES, OPTIONS, PLACES, SIGNALS, STREAMS, VALUES, Case, Outcome
 from tests.bad_inputs.commands import COMMANDS
 from tests.bad_inputs.judging import FAULTS, faults_of, message_of
 
@@ -13,6 +13,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "reference" / "bad-inputs.md"
 _ORDER = ("hil", *COMMANDS)
 _KINDS = {
     FILES: "files that are missing, of another kind or broken",
+    BOUNDS: "files without end, too large, too deep or with too many mistakes",
     VALUES: "values out of range",
     OPTIONS: "options unknown, missing or contradictory",
     PLACES: "places that cannot be written",
@@ -28,7 +29,36 @@ inputs; afterwards the folder is compared with what it was. Exit codes are those
 paths are shortened to names.
 """
 
+BOUNDS_PAGE = PAGE.with_name("bounds.md")
+_BOUNDS_INTRODUCTION = """\
+# Bounds of inputs
+
+Made by `python -m tests.bad_inputs --write`: every argument that names a file, given one that must not be
+read whole. Each command has 4 GB of addresses (`ulimit -v`), 60 s, and 700 MB of memory that it may use;
+`hil --version` alone needs some 160 MB. Each refuses the file in a message with its name; seconds are of a
+machine with two busy processors.
+
+What is read at most: 500 kB of a plan, a campaign or a sequence (YAML), 5 MB of a bench, model or
+controller file (TOML, keys of up to 32 parts), 20 MB of a DBC or EDS, 200 MB of an A2L, 64 MB of a result
+or list (JSON); of a table (CSV, Parquet, MDF4, MAT) 10,000 columns and 250 million values, 2 GB as numbers.
+MCAP is read piece by piece.
+
+| command | file | exit code | s | MB |
+|---|---|---|---|---|
+"""
+
 Tried = tuple[Case, Outcome]
+
+
+def bounds_page_of(tried: Sequence[Tried]) -> str:
+    """The page of what each bounded input costs."""
+    rows = [
+        f"| `{case.command}` | {case.tried} | {outcome.code} "
+        f"| {outcome.seconds:.1f} | {outcome.megabytes:.0f} |"
+        for case, outcome in tried
+        if case.kind == BOUNDS
+    ]
+    return _BOUNDS_INTRODUCTION + "\n".join(rows) + "\n"
 
 
 def page_of(tried: Sequence[Tried]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import resource
 import shutil
 import signal
 import subprocess
@@ -20,6 +21,7 @@ from tests.bad_inputs.inputs import HIL, copy_inputs
 LIMIT_S = 60.0
 _POLL_S = 0.005
 _SIGNALS = "INT,TERM,HUP"
+_LARGEST_HASHED = 1 << 28
 _LONGEST_OUTPUT = 2_000_000
 
 
@@ -31,17 +33,18 @@ def carry_out(case: Case, inputs: Path, folder: Path) -> Outcome:
         case.prepare(work)
     before = _contents(work)
     try:
-        code, out, err = _process(case, work, folder)
+        code, out, err, seconds, megabytes = _process(case, work, folder)
         after = _contents(work)
         new = tuple(sorted(after.keys() - before.keys()))
         changed = tuple(sorted(name for name in before if after.get(name) != before[name]))
         broken = tuple(name for name in new if (work / name).is_file() and not _is_whole(work / name))
-        return Outcome(code, out, err, new, changed, broken)
+        return Outcome(code, out, err, new, changed, broken, seconds, megabytes)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _process(case: Case, work: Path, folder: Path) -> tuple[int | None, str, str]:
+def _process(case: Case, work: Path, folder: Path) -> tuple[int | None, str, str, float, float]:
+    """Exit code, what was printed, seconds, and the largest resident memory in MB."""
     line = [HIL, *([case.command] if case.command != "hil" else []), *case.arguments]
     if case.interruption:  # whoever tries this may ignore signals (nohup); a user's terminal does not
         line = ["env", f"--default-signal={_SIGNALS}", *line]
@@ -58,15 +61,29 @@ def _process(case: Case, work: Path, folder: Path) -> tuple[int | None, str, str
             env=environment | case.environment,
             start_new_session=True,
         )
-        try:
-            if case.interruption:
-                _interrupt(process, case.interruption, work)
-            code: int | None = process.wait(LIMIT_S)
-        except subprocess.TimeoutExpired:
-            code = None
+        began_s = time.monotonic()
+        if case.interruption:
+            _interrupt(process, case.interruption, work)
+        code, usage = _waited(process)
+        seconds = time.monotonic() - began_s
+    return code, _text(folder / "out"), _text(folder / "err"), seconds, usage.ru_maxrss / 1e3
+
+
+def _waited(process: subprocess.Popen[bytes]) -> tuple[int | None, resource.struct_rusage]:
+    """Exit code and what the process used; no code of one that had to be ended after the time limit."""
+    if process.returncode is not None:  # a signal found it ended
+        return process.returncode, resource.getrusage(resource.RUSAGE_CHILDREN)
+    until_s = time.monotonic() + LIMIT_S
+    hung = False
+    while True:
+        ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if ended:
+            process.returncode = os.waitstatus_to_exitcode(status)
+            return None if hung else process.returncode, usage
+        if not hung and time.monotonic() > until_s:
+            hung = True
             os.killpg(process.pid, signal.SIGKILL)  # its own session: started here
-            process.wait()
-    return code, _text(folder / "out"), _text(folder / "err")
+        time.sleep(_POLL_S)
 
 
 def _interrupt(process: subprocess.Popen[bytes], what: Interruption, work: Path) -> None:
@@ -93,9 +110,15 @@ def _contents(folder: Path) -> dict[str, str]:
         if path.is_symlink():
             what = f"link to {path.readlink()}"
         else:
-            what = hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "directory"
+            what = _content(path) if path.is_file() else "directory"
         found[str(path.relative_to(folder))] = what
     return found
+
+
+def _content(path: Path) -> str:
+    if path.stat().st_size > _LARGEST_HASHED:
+        return f"{path.stat().st_size} bytes"
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _is_whole(path: Path) -> bool:

@@ -251,3 +251,18 @@ def test_driving_torque_before_any_controller_is_refused_where_it_stands(
 )
 def test_a_controller_that_comes_before_is_enough(steps: str) -> None:
     assert plan_from_text(f"name: x\nsteps: {steps}\n", "p.yaml", Path(), to_carry_out=True).steps
+
+
+def test_a_plan_has_no_more_steps_than_repeat_allows() -> None:
+    step = "\n  - wait: {duration_s: 0.1}"
+    with pytest.raises(BadInputError, match="line 2, key 'steps': 10001 steps altogether, at most 10000"):
+        plan_from_text(f"name: p\nsteps:{step * 10_001}", "p.yaml", Path())
+
+
+def test_a_file_that_is_no_plan_but_long_is_refused_before_it_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "log.yaml"
+    path.write_text("# 12:00:01 motor speed 33.1 rad/s\n" * 20_000)
+    with pytest.raises(BadInputError, match=r"log\.yaml: has more than 0\.5 MB"):
+        load_plan(path)
+    with pytest.raises(BadInputError, match=r"x\.yaml: has more than 0\.5 MB"):
+        plan_from_text(path.read_text(), "x.yaml", tmp_path)  # as a service is given it

@@ -13,13 +13,13 @@ from pydantic import Field
 from hil.analysis.tuning import Tolerance
 from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT, FormatNumber
-from hil.core.files import is_file, read_text
+from hil.core.files import is_file
 from hil.core.suggestion import did_you_mean
 from test_plans.building import Strict, brief, build, list_at, mapping_at
 from test_plans.loading import LIBRARY
 from test_plans.mistakes import PlanMistakes
 from test_plans.named_files import named_file, names_in
-from test_plans.yaml_document import Document, KeyPath, read_yaml
+from test_plans.yaml_document import Document, KeyPath, read_yaml, yaml_text
 
 CAMPAIGNS = Path(__file__).parent / "library"
 #: Beyond it the table of results no longer fits the memory of a small machine.
@@ -108,7 +108,7 @@ def load_campaign_file(name_or_path: str | Path) -> CampaignFile:
         BadInputError: no such file, or all that is wrong with it: line, key, and what to do.
     """
     path = named_file(name_or_path, CAMPAIGNS, "campaign")
-    return campaign_from_text(read_text(path), path)
+    return campaign_from_text(yaml_text(path), path)
 
 
 def campaign_from_text(text: str, path: Path) -> CampaignFile:

@@ -118,7 +118,7 @@ class _BLFReader(can.BLFReader):
         yield from super()._parse_data(data)
 
 
-def _whole_lines(path: Path, remarks: list[str]) -> TextIO:
+def _whole_lines(path: Path, remarks: list[str]) -> Any:
     """The text of a log without a last line that is cut off: half a frame would be another one."""
     with path.open("rb") as file:
         file.seek(max(0, path.stat().st_size - _LONGEST_LINE))
@@ -126,8 +126,30 @@ def _whole_lines(path: Path, remarks: list[str]) -> TextIO:
     if tail.endswith(b"\n") or path.suffix.lower() != ".log":  # other tools need not end their last line
         return path.open(encoding="cp1252", errors="replace")
     remarks.append("its last line is cut off, and was left out")
-    text = path.read_text(encoding="cp1252", errors="replace")
-    return io.StringIO(text[: text.rfind("\n") + 1])
+    return _WithoutLastLine(path.open(encoding="cp1252", errors="replace"))
+
+
+class _WithoutLastLine(io.TextIOBase):
+    """A text whose last line, which has no end, is left out; no line is longer than any of a log.
+
+    Raises:
+        ValueError: a line is.
+    """
+
+    def __init__(self, file: TextIO) -> None:
+        self._file = file
+
+    def __iter__(self) -> Iterator[str]:  # type: ignore[override]
+        while line := self._file.readline(_LONGEST_LINE):
+            if line.endswith("\n"):
+                yield line
+            elif len(line) >= _LONGEST_LINE:
+                raise ValueError(f"a line of more than {_LONGEST_LINE} characters")
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._file.close()
+        super().close()
 
 
 def _of_asc(path: Path, remarks: list[str]) -> Iterator[can.Message]:

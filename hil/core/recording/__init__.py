@@ -6,6 +6,7 @@ import logging
 from pathlib import Path
 
 from hil.core.errors import BadInputError
+from hil.core.files import refuse_unless_regular
 from hil.core.recording._checked import checked
 from hil.core.recording._evidence import sidecar
 from hil.core.recording._formats import FRAME_LOGS, READ, WRITTEN, reader_of, writer_of
@@ -14,7 +15,6 @@ from hil.core.recording._mcap_reader import read_frames
 from hil.core.recording._mcap_reader import read_mcap as read_as_written
 from hil.core.recording._mcap_writer import CHUNK_BYTES, RecordingWriter
 from hil.core.recording._recovery import Missing, missing_of, recover_recording
-from hil.core.recording._regular_file import refuse_unless_regular
 from hil.core.recording._run import ACCEPTED_EXPIRY, DEVICE, REPLAY, RUN, SEGMENT, VEHICLE, run_of
 from hil.core.recording._table import BLOCK, Event, Recording
 from hil.core.recording._wheel_angle import with_wheel_angle

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from hil.core.channels import CHANNELS, TIME
+from hil.core.listed import repeated
 
 #: Spellings of time's unit, and how many of it are a second.
 _PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
@@ -147,7 +148,7 @@ def layout_of(header: str) -> Layout:
 
 
 def _settle_header(found: Layout, cells: list[str], beside: list[str]) -> None:
-    duplicate = sorted({name for name in found.names if name and found.names.count(name) > 1})
+    duplicate = repeated(name for name in found.names if name)
     if duplicate:
         raise LayoutError(f"column '{duplicate[0]}' stands twice", "leave one of them out")
     time = found.names.index(TIME)

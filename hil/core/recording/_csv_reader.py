@@ -13,12 +13,12 @@ import pyarrow.csv as arrow_csv
 
 from hil.core.channels import CHANNELS, TIME
 from hil.core.errors import BadInputError
+from hil.core.files import open_regular
 from hil.core.recording._csv_encoding import as_utf8
 from hil.core.recording._csv_layout import Layout, LayoutError, layout_of, names_separator
 from hil.core.recording._csv_writer import sha256_of
 from hil.core.recording._evidence import LARGEST_BYTES, sidecar, take_evidence
-from hil.core.recording._regular_file import open_regular
-from hil.core.recording._table import Array, Recording
+from hil.core.recording._table import Array, Recording, refuse_too_large
 
 T = TypeVar("T")
 
@@ -129,6 +129,7 @@ class _Table:
         for column, values in read.items():
             self._columns[column].append(values)
         self._samples += len(next(iter(read.values())))
+        refuse_too_large(self._samples, len(self._columns), str(self._path))
         self._line += lines
 
     def _in_utf8(self, block: bytes) -> bytes:
@@ -146,6 +147,7 @@ class _Table:
     def _take_header(self, line: bytes) -> None:
         self._layout = self._unless_in_doubt(lambda: layout_of(line.decode()), self._line)
         header = self._header = self._layout.names
+        refuse_too_large(0, len(header), str(self._path))
         self._columns = {column: [] for column, name in enumerate(header) if name}
         self._notes += [f"column {c + 1} has no name and was left out" for c, n in enumerate(header) if not n]
         self._line += 1

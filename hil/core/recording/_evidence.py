@@ -11,7 +11,9 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from hil.core.channels import unit_of
+from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT
+from hil.core.files import open_regular
 from hil.core.recording._table import Event, Recording
 
 #: Name of the text where a format has named places: an attachment of MDF4, a key of Parquet's metadata.
@@ -65,8 +67,10 @@ def sidecar(path: Path) -> Path:
 def remove_sidecar(path: Path) -> None:
     """Remove the file beside a CSV that an earlier export wrote: it would speak of other samples."""
     beside = sidecar(path)
-    with contextlib.suppress(OSError, UnicodeDecodeError):
-        if _FORMAT in beside.read_text("utf-8")[:200]:
+    with contextlib.suppress(OSError, BadInputError):
+        with open_regular(beside) as file:
+            is_ours = _FORMAT.encode() in file.read(200)
+        if is_ours:
             beside.unlink()
 
 

@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
+import os
 import re
 import warnings
+import zlib
 from collections.abc import Mapping
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO, Literal
 
 import numpy as np
 from scipy.io import loadmat, savemat
 
 from hil.core.channels import CHANNELS, TIME, unit_of
 from hil.core.errors import BadInputError
-from hil.core.files import replacing
+from hil.core.files import refuse_unless_regular, replacing
 from hil.core.recording._evidence import evidence_of, has_evidence, take_evidence
-from hil.core.recording._regular_file import refuse_unless_regular
-from hil.core.recording._table import Array, Recording
+from hil.core.recording._table import LARGEST_VALUES, Array, Recording, refuse_too_large
 
 _EVIDENCE, _UNITS = "hil_recording", "units"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
+_HEAD_BYTES, _COMPRESSED, _BLOCK_BYTES = 128, 15, 1 << 20
 _LONGEST_NAME = 63  # of a variable in MATLAB
 _LEVEL_7_3 = 512  # bytes of its own that MATLAB puts before HDF5
 
@@ -34,6 +36,7 @@ def read_mat(path: Path) -> Recording:
     """
     refuse_unless_regular(path)
     _refuse_hdf5(path)
+    _refuse_inflating(path)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # objects that only MATLAB knows, names that stand twice
@@ -45,7 +48,9 @@ def read_mat(path: Path) -> Recording:
     values.pop(_UNITS, None)
     channels: dict[str, Array] = {}
     notes = []
-    for name, value in _vectors_of(values).items():
+    vectors = _vectors_of(values)
+    refuse_too_large(max((value.size for value in vectors.values()), default=0), len(vectors), str(path))
+    for name, value in vectors.items():
         column = _column(value)
         if column is not None:
             channels[name] = column
@@ -117,6 +122,46 @@ def _refuse_hdf5(path: Path) -> None:
             where=str(path),
             fix="save(..., '-v7') in MATLAB",
         )
+
+
+def _refuse_inflating(path: Path) -> None:
+    """Refuse compressed variables of more bytes than are read at once, before they are held.
+
+    Raises:
+        BadInputError: they are that large. What else is wrong with a file its reader says.
+    """
+    most = LARGEST_VALUES * np.float64().nbytes
+    inflated = 0
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+        order: Literal["little", "big"] = "big" if head[-2:] == b"MI" else "little"
+        while len(tag := file.read(8)) == 8:
+            kind, size = int.from_bytes(tag[:4], order), int.from_bytes(tag[4:], order)
+            if kind != _COMPRESSED:
+                file.seek(size, os.SEEK_CUR)
+                continue
+            inflated += _inflated_bytes(file, size, most - inflated)
+            if inflated > most:
+                raise BadInputError(
+                    f"holds more than {most / 1e9:g} GB, packed into {path.stat().st_size / 1e6:.3g} MB",
+                    where=str(path),
+                    fix="save fewer samples, or cut it into pieces",
+                )
+
+
+def _inflated_bytes(file: BinaryIO, size: int, most: int) -> int:
+    """Bytes of a compressed element of `size` bytes, counted until they are more than `most`."""
+    unpacking, count = zlib.decompressobj(), 0
+    while size > 0 and count <= most and (packed := file.read(min(size, _BLOCK_BYTES))):
+        size -= len(packed)
+        try:
+            while packed and count <= most:
+                count += len(unpacking.decompress(packed, _BLOCK_BYTES))
+                packed = unpacking.unconsumed_tail
+        except zlib.error:
+            break
+    file.seek(max(size, 0), os.SEEK_CUR)
+    return count
 
 
 def _vectors_of(values: dict[str, Any]) -> Mapping[str, Any]:

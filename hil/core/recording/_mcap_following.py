@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.errors import BadInputError
+from hil.core.files import open_regular
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording import _schema
 from hil.core.recording._mcap_walk import MAGIC, RECORD_HEAD, raw_record, records_inside
 from hil.core.recording._mcap_writer import CHANNELS_TOPIC, EVENTS_TOPIC
-from hil.core.recording._regular_file import open_regular
 from hil.core.recording._table import Event
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.errors import BadInputError
+from hil.core.files import open_regular
 from hil.core.frames import FrameBlock, empty_block
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording import _schema
@@ -19,7 +20,6 @@ from hil.core.recording._mcap_damage import Findings, damage, lost_earlier
 from hil.core.recording._mcap_rows import Rows
 from hil.core.recording._mcap_walk import MAGIC, placed_records, records_inside
 from hil.core.recording._mcap_writer import CHANNELS_TOPIC, EVENTS_TOPIC, FRAMES_TOPIC
-from hil.core.recording._regular_file import open_regular
 from hil.core.recording._stored import StoredColumns
 from hil.core.recording._table import Array, Event, Recording
 

@@ -11,10 +11,10 @@ from typing import Protocol
 import numpy as np
 
 from hil.core.errors import BadInputError
+from hil.core.files import open_regular
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording import _schema, _stored
 from hil.core.recording._mcap_walk import raw_record, records_inside
-from hil.core.recording._regular_file import open_regular
 from hil.core.recording._stored import Array, Part, StoredColumns
 
 

@@ -12,11 +12,10 @@ import numpy as np
 
 from hil.core.channels import CHANNELS, INPUT, TIME, unit_of
 from hil.core.errors import BadInputError
-from hil.core.files import replacing
+from hil.core.files import refuse_unless_regular, replacing
 from hil.core.mdf_file import open_mdf
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
-from hil.core.recording._regular_file import refuse_unless_regular
-from hil.core.recording._table import BLOCK, Array, Recording
+from hil.core.recording._table import BLOCK, Array, Recording, refuse_too_large
 
 _EVENT_TICKS = 1_000_000  # in a second
 _MASTERS = (2, 3)  # channel types of the standard: time stamps, stored or counted
@@ -57,6 +56,8 @@ class _Groups:
             for index, channel in enumerate(content.channels):
                 if channel.channel_type not in _MASTERS:
                     self._place(str(channel.name), group, index)
+        rows = max((content.channel_group.cycles_nr for content in mdf.groups), default=0)
+        refuse_too_large(rows, len(self._places) + 1, str(path))  # and the time
 
     def _place(self, name: str, group: int, index: int) -> None:
         if name not in self._places:

@@ -11,10 +11,10 @@ import pyarrow.parquet as pq
 
 from hil.core.channels import CHANNELS, unit_of
 from hil.core.errors import BadInputError
-from hil.core.files import replacing
+from hil.core.files import refuse_unless_regular, replacing
+from hil.core.listed import repeated
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
-from hil.core.recording._regular_file import refuse_unless_regular
-from hil.core.recording._table import Array, Recording
+from hil.core.recording._table import Array, Recording, refuse_too_large
 
 
 def read_parquet(path: Path) -> Recording:
@@ -30,6 +30,7 @@ def read_parquet(path: Path) -> Recording:
         with pq.ParquetFile(path, page_checksum_verification=True) as file:
             fields = file.schema_arrow
             _refuse_twice(fields.names, path)
+            refuse_too_large(file.metadata.num_rows, len(fields), str(path))
             evidence = (fields.metadata or {}).get(EVIDENCE.encode())
             for field in fields:
                 if _is_number(field.type):
@@ -70,7 +71,7 @@ def write_parquet(recording: Recording, path: Path) -> None:
 
 
 def _refuse_twice(names: list[str], path: Path) -> None:
-    twice = sorted({name for name in names if names.count(name) > 1})
+    twice = repeated(names)
     if twice:
         raise BadInputError(f"column '{twice[0]}' stands twice", where=str(path))
 

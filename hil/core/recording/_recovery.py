@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from hil.core.channels import TIME
-from hil.core.files import replacing, sha256_of
+from hil.core.files import open_regular, replacing, sha256_of
 from hil.core.recording import _mcap_records as mcap
 from hil.core.recording._growing_file import GrowingFile
 from hil.core.recording._mcap_damage import CHANNELS_TABLE, RECOVERY_TABLE
@@ -19,7 +19,6 @@ from hil.core.recording._mcap_file import McapFile
 from hil.core.recording._mcap_reader import Definitions, definitions_of, read_mcap
 from hil.core.recording._mcap_walk import MAGIC, records, records_inside
 from hil.core.recording._mcap_writer import CHANNELS_TOPIC, CHUNK_BYTES
-from hil.core.recording._regular_file import open_regular
 from hil.core.recording._table import Recording
 
 logger = logging.getLogger(__name__)

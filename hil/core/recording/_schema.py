@@ -13,6 +13,7 @@ from google.protobuf import descriptor_pb2
 from google.protobuf.message import DecodeError
 
 from hil.core.frames import FRAME, FrameBlock
+from hil.core.listed import repeated
 
 # Tags of CanFrames' fields, all of wire type 2 (length, then bytes)
 _FRAME_TAGS = {
@@ -82,7 +83,7 @@ def channel_names(name: str, encoding: str, schema: bytes) -> list[str]:
         if field.type != _Field.TYPE_DOUBLE or field.label == _Field.LABEL_REPEATED:
             raise ValueError(f"field '{field.name}' is not one double")
     names = [field.name for field in fields]
-    twice = sorted({name for name in names if names.count(name) > 1})
+    twice = repeated(names)
     if twice:
         raise ValueError(f"field '{twice[0]}' stands twice")
     return names

@@ -21,6 +21,31 @@ Array = npt.NDArray[np.float64]
 BLOCK = 1 << 18
 
 
+#: Of a table that is read whole: doubles of 2 GB, and more columns than any bench has channels.
+LARGEST_VALUES, MOST_COLUMNS = 250_000_000, 10_000
+
+
+def refuse_too_large(rows: int, columns: int, where: str) -> None:
+    """Refuse a table that would not fit into memory, before it is read.
+
+    Raises:
+        BadInputError: it has too many columns, or too many values.
+    """
+    if columns > MOST_COLUMNS:
+        raise BadInputError(
+            f"has {columns} columns, at most {MOST_COLUMNS} are read",
+            where=where,
+            fix="leave out what is no channel",
+        )
+    if rows * columns > LARGEST_VALUES:
+        raise BadInputError(
+            f"has {rows} rows of {columns} columns, {8e-9 * rows * columns:.3g} GB as numbers: at most "
+            f"{8e-9 * LARGEST_VALUES:g} GB are read at once",
+            where=where,
+            fix="cut it into pieces; MCAP alone is read piece by piece",
+        )
+
+
 @dataclass
 class Event:
     """Something that happened during a run."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from drivers import TICK_S, BusLoop, Device, LogWire, Samples, SampleSource, Stream
 from hil.core.errors import BadInputError, BenchError
+from hil.core.files import read_bytes
 from hil.core.frames import FrameBlock
 from hil.core.recording import DEVICE
 from hil.engine.bench import connections_of
@@ -41,7 +42,7 @@ class BenchDecoder:
             elif bus in frames:
                 self._devices[key] = table.open(key.removeprefix("devices."), connections)
                 for path in table.files():
-                    self.attachments[f"{DEVICE}{key}/{path.name}"] = path.read_bytes()
+                    self.attachments[f"{DEVICE}{key}/{path.name}"] = read_bytes(path)
 
     def write(self, path: Path, began_ns: int) -> Recorder:
         """Decode all of it into a recording that is not closed yet.

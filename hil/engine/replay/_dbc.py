@@ -13,6 +13,7 @@ import numpy.typing as npt
 from hil.core.channels import TIME
 from hil.core.dbc_messages import MessageLayout, MessageSamples, decoded, read_messages_of
 from hil.core.errors import BadInputError
+from hil.core.files import read_bytes
 from hil.core.frames import FrameBlock
 from hil.core.recording import DEVICE, RecordingWriter
 from hil.engine.replay._channels import Frames, listed
@@ -41,7 +42,7 @@ class DbcDecoder:
         for channel, path in dbcs.items():
             layouts[channel], remarks = read_messages_of(path)
             self.remarks += [f"{path.name}: {remark}" for remark in remarks]
-            self.attachments[f"{DEVICE}{channel or 'can'}/{path.name}"] = path.read_bytes()
+            self.attachments[f"{DEVICE}{channel or 'can'}/{path.name}"] = read_bytes(path)
             if channel and frames.of(channel) is None:
                 raise BadInputError(
                     f"--dbc {channel}={path}: no log has a channel '{channel}'",

@@ -24,7 +24,7 @@ from hil.plant.controller.parameters import INCOMPLETE, OUT_OF_RANGE
 
 Array = npt.NDArray[np.float64]
 SIDES = (0, 1)  # left, right
-_FIRST_ROWS = 1 << 14
+_FIRST_ROWS, _MOST_SPARE_ROWS = 1 << 14, 1 << 18
 _REASONS = {OUT_OF_RANGE: "out_of_range", INCOMPLETE: "incomplete"}
 
 
@@ -67,20 +67,30 @@ class ClosedLoop:
         self._status = np.zeros(2)
         self.mode = M.OFF
         self.samples = 0
+        #: Number of the sample that the first of `rows` is of.
+        self.first = 0
 
     @property
     def rows(self) -> Array:
-        """What was measured and commanded so far, one row a sample, columns of `tick`."""
-        return self._rows[: self.samples]
+        """What was measured and commanded, one row a sample from `first` on, columns of `tick`."""
+        return self._rows[: self.samples - self.first]
+
+    def forget(self, before: int) -> None:
+        """Drop the rows of samples before this one; room that a long request took is given back."""
+        kept = self.rows[max(0, before - self.first) :]
+        self.first = self.samples - len(kept)
+        if len(self._rows) > _MOST_SPARE_ROWS:
+            self._rows = np.zeros((max(_FIRST_ROWS, len(kept)), T.COLUMNS))
+        self._rows[: len(kept)] = kept
 
     def continued(self, room: Array) -> ClosedLoop:
         """A bench of its own that goes on from here.
 
         Its rows stand in `room` (samples x COLUMNS) where that is long enough.
         """
-        if len(room) < self.samples:
+        if len(room) < len(self.rows):
             room = np.zeros_like(self._rows)
-        room[: self.samples] = self.rows
+        room[: len(self.rows)] = self.rows
         return copy.deepcopy(self, {id(self._rows): room, id(self.wire): self.wire})
 
     def set_controller(self, parameters: Mapping[str, float]) -> None:
@@ -155,15 +165,17 @@ class ClosedLoop:
     def recorded(self, first: int, last: int, names: Collection[str] | None = None) -> dict[str, Array]:
         """The channels of a recording from sample `first` to before `last`, by name, with `time_s`.
 
-        `names` are those that are wanted; all without it.
+        Args:
+            names: those that are wanted; all without it.
         """
-        return self.wire.recorded(self._rows[first:last], TICK_S, names)
+        return self.wire.recorded(self.rows[first - self.first : last - self.first], TICK_S, names)
 
     def _advance(self, requests: Array) -> None:
-        end = self.samples + len(requests)
+        begin = self.samples - self.first
+        end = begin + len(requests)
         if end > len(self._rows):
-            longer = np.zeros((max(end, 2 * len(self._rows)), T.COLUMNS))
-            longer[: self.samples] = self.rows
+            longer = np.zeros((max(end + _FIRST_ROWS, 5 * len(self._rows) // 4), T.COLUMNS))
+            longer[:begin] = self.rows
             self._rows = longer
         s = self.plant
         # no fault, and whether parameters are valid is not shown: the code is the mode alone
@@ -183,10 +195,10 @@ class ClosedLoop:
             requests,
             modes,
             self._status,
-            self._rows[self.samples : end],
+            self._rows[begin:end],
         )
-        self.samples = end
-        s.refuse_diverged(end * TICK_S)
+        self.samples += len(requests)
+        s.refuse_diverged(self.samples * TICK_S)
 
     def _with_noise(self, samples: int) -> Array:
         """What sensors add to each sample, and the tick's scratch room behind it."""

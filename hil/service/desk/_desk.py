@@ -10,7 +10,7 @@ import sys
 from typing import Any
 
 from hil.core.errors import BadInputError, BenchError
-from hil.service.background import begun
+from hil.service.background import FORECAST_BYTES, begun
 
 _WITHIN_S = 60.0
 #: What an answer begins with; JSON follows.
@@ -99,6 +99,7 @@ class Desk:
             "-m",
             __package__,
             niceness=self._niceness,
+            most_bytes=FORECAST_BYTES,
             stdin=asyncio.subprocess.PIPE,
             stdout=asyncio.subprocess.PIPE,
             limit=_LONGEST_ANSWER_BYTES,

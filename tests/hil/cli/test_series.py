@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import json
+import logging
+import re
 import tomllib
 from pathlib import Path
 
 import pytest
 
 from hil.cli._choices import all_choices
+from hil.cli._series import announce_series
+from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from hil.engine.bench_file import with_seed
+from test_plans import load_plan
 from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import hil
 
@@ -77,3 +82,15 @@ def test_a_bench_of_another_seed_says_so():
     other = with_seed(SIM, 7)
     assert other.simulation.seed == tomllib.loads(other.text)["simulation"]["seed"] == 7
     assert other.model_copy(update={"text": SIM.text, "simulation": SIM.simulation}) == SIM
+
+
+def test_a_series_says_its_size_and_is_bounded(plan, tmp_path, caplog):
+    many = ",".join(str(number) for number in range(2000))
+    with pytest.raises(BadInputError, match="the values make 4000 combinations, at most 1000 runs"):
+        next(all_choices([f"a={many}", "b=1,2"], None))
+    loaded = load_plan(str(plan))
+    with pytest.raises(BadInputError, match="3 combinations, 400 times each, are 1200 runs"):
+        announce_series([loaded] * 3, 400, tmp_path / "new")
+    with caplog.at_level(logging.INFO):
+        announce_series([loaded] * 2, 3, tmp_path / "new")
+    assert re.search(r"6 runs, \S+ min of bench time, at most \S+ GB on the disk", caplog.text)

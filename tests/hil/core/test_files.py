@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import os
 import stat
 from pathlib import Path
 
@@ -13,9 +14,12 @@ from hil.core.errors import BadInputError, BenchError
 from hil.core.files import (
     make_directory,
     of_the_system,
+    open_regular,
+    read_bytes,
     read_text,
     refuse_special,
     replacing,
+    sha256_of,
     write_atomically,
 )
 
@@ -75,3 +79,25 @@ def test_what_is_no_regular_file_is_not_replaced(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(BadInputError, match="cannot be made a directory: "):
         make_directory(tmp_path / "file" / "below")
+
+
+def test_what_is_no_regular_file_is_refused_without_being_opened(tmp_path: Path) -> None:
+    (tmp_path / "zero").symlink_to("/dev/zero")
+    os.mkfifo(tmp_path / "pipe")
+    for name, kind in (("zero", "a device"), ("pipe", "a pipe"), (".", "a directory")):
+        for read in (read_text, read_bytes, open_regular, sha256_of):
+            with pytest.raises(BadInputError) as caught:
+                read(tmp_path / name)  # a pipe that were opened would wait for a writer for ever
+            assert caught.value.what == f"is {kind}, not a file"
+
+
+def test_no_more_is_read_than_a_file_of_the_kind_may_have(tmp_path: Path) -> None:
+    path = tmp_path / "long.toml"
+    path.write_text("0123456789")
+    assert read_text(path, 10) == "0123456789"
+    with pytest.raises(BadInputError, match=r"has more than 9e-06 MB"):
+        read_bytes(path, 9)
+    with path.open("wb") as file:
+        file.truncate(1 << 40)  # holes: no room on the disk
+    with pytest.raises(BadInputError, match=r"long\.toml: has more than 64 MB"):
+        read_text(path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from hil.core.listed import MOST_CHARACTERS, listed
+from hil.core.listed import MOST_CHARACTERS, listed, repeated
 
 
 def test_a_few_are_all_told_with_their_own_lines_indented() -> None:
@@ -23,3 +23,8 @@ def test_of_very_many_the_first_are_told_and_the_rest_counted() -> None:
 def test_the_first_is_told_however_long_it_is() -> None:
     first = "x" * (2 * MOST_CHARACTERS)
     assert listed([first, "y"]) == f"\n  {first}\n  and 1 more, when these are corrected"
+
+
+def test_names_that_stand_twice_are_found_in_one_pass() -> None:
+    assert repeated(["b", "a", "b", "c", "a", "b"]) == ["a", "b"]
+    assert repeated(str(number) for number in range(300_000)) == []  # their square would take an hour

@@ -24,10 +24,12 @@ def lasting(seconds: float) -> Plan:
 def test_a_run_that_cannot_fit_is_refused_and_one_that_just_fits_is_warned_of(tmp_path: Path) -> None:
     free = shutil.disk_usage(tmp_path).free
     just = lasting(0.7 * free / 250_000)
-    refuse_too_little_room(just, tmp_path)
+    refuse_too_little_room([just], tmp_path)
     assert str(disk_of(tmp_path)).partition(",")[0] in remark_on_room(just, tmp_path)
     with pytest.raises(BadInputError, match=r"MB are free, the recording may need .* disk at /"):
-        refuse_too_little_room(lasting(1.5 * free / 250_000), tmp_path)
+        refuse_too_little_room([lasting(1.5 * free / 250_000)], tmp_path)
+    with pytest.raises(BadInputError, match=r"MB are free, 3 runs may need .* disk at /"):
+        refuse_too_little_room([lasting(0.5 * free / 250_000)], tmp_path / "not" / "made", times=3)
     assert remark_on_room(lasting(1.0), tmp_path) == "" or free < 2 * needed_bytes(lasting(1.0))
 
 

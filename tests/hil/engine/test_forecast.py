@@ -14,6 +14,7 @@ from hil.core.errors import BadInputError, BenchError
 from hil.core.model import load_model, model_from_dict
 from hil.core.recording import read_recording, run_of, write_recording
 from hil.engine import RunRequest, load_bench, run_plan
+from hil.engine._predicted_bench import PredictedBench
 from hil.engine._predicted_wire import wire_of
 from hil.engine.bench_tables import NoiseTable
 from hil.engine.forecast import forecast
@@ -300,3 +301,42 @@ def _without_speed_limit():
     return SIM.model_copy(
         update={"limits": limits, "dyno": SIM.dyno.model_copy(update={"speed_ramp_m_s2": 100.0})}
     )
+
+
+def test_a_forecast_judges_each_segment_as_a_whole_prediction_does():
+    criteria = """
+  - {segment: gain, metric: peak_shaft_torque, upper: 100, unit: N m}
+  - {segment: phase, metric: peak_shaft_torque, upper: 1000, unit: N m}
+  - {segment: phase, metric: band_energy, channel: motor_speed_rad_s, from_hz: 8, to_hz: 20, below: gain}
+"""
+    checked = plan(f"{STEPS}  - wait: {{duration_s: 130}}\n", criteria)
+    whole = predict(checked, SIM, load_model(SIM.simulation.model))
+    found = forecast(checked, SIM)
+    assert found.criteria == judge(checked, whole.recording, whole.segments, measured=False)
+    assert {name: peak for name, (peak, _) in found.peaks.items()} == {
+        name: whole.peaks[name] for name in found.peaks
+    }
+
+
+def test_a_forecast_keeps_no_rows_of_what_is_over(monkeypatch):
+    kept = []
+    forget = PredictedBench.forget
+
+    def watched(self, before):
+        kept.append(len(self.loop.closed.rows))
+        forget(self, before)
+
+    monkeypatch.setattr(PredictedBench, "forget", watched)
+    step = "{segment: s, quantity: motor_torque, from_nm: 0, to_nm: 5, before_s: 0.1, after_s: 1}"
+    forecast(
+        plan(f"\n  - repeat: {{times: 3, steps: [{{wait: {{duration_s: 900}}}}, {{step: {step}}}]}}"), SIM
+    )
+    assert len(kept) > 40
+    assert max(kept) < 65_000  # of 2.7 million
+
+
+def test_a_long_plan_that_analyses_itself_is_not_predicted():
+    waits = plan("\n  - repeat: {times: 9, steps: [{wait: {duration_s: 1000}}]}\n")
+    checked = waits.model_copy(update={"steps": (*waits.steps, Look())})
+    with pytest.raises(BadInputError, match=r"takes 2\.5 h and analyses its own recording: at most 2 h"):
+        forecast(checked, SIM)

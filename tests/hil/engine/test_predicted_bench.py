@@ -20,7 +20,7 @@ def test_it_is_armed_at_rest_when_the_recording_begins(predicted: PredictedBench
     assert predicted.rmcu.state == "off"
     assert abs(predicted.dyno.wheel_speed_rad_s) < 1e-3
     assert predicted.loop.now_s() > predicted.began * 1e-3
-    assert predicted.peak("shaft_torque_left_nm") < 1.0
+    assert predicted.peaks()["shaft_torque_left_nm"] < 1.0
 
 
 def test_calls_take_the_ticks_that_they_take_over_can(predicted: PredictedBench) -> None:
@@ -53,7 +53,7 @@ def test_torque_turns_the_axle_and_is_switched_off(predicted: PredictedBench) ->
     predicted.rmcu.play("motor_torque", np.full(400, 10.0))
     assert predicted.rmcu.state == "torque"
     assert not predicted.rmcu.is_safe()
-    assert predicted.peak("shaft_torque_left_nm") > 25.0
+    assert predicted.peaks()["shaft_torque_left_nm"] > 25.0
     predicted.rmcu.make_safe()
     predicted.loop.run_for(0.1)
     assert predicted.rmcu.is_safe()

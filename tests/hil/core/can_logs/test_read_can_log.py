@@ -228,3 +228,13 @@ def test_an_object_of_a_blf_without_length_is_not_read_for_ever(tmp_path: Path) 
     path.write_bytes(content)
     with pytest.raises(BadInputError, match="an object of 0 bytes"):
         read_can_log(path)
+
+
+def test_a_log_without_line_ends_is_not_held_whole(tmp_path):
+    path = tmp_path / "long.log"
+    path.write_text("(0.000000) can0 123#00\n")
+    with path.open("ab") as file:
+        file.truncate(1 << 36)  # holes: no room on the disk
+    log = read_can_log(path)
+    assert log.count == 1
+    assert any("broken after 1 frames" in remark for remark in log.remarks)

@@ -2,6 +2,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 from asammdf import MDF
@@ -165,3 +166,26 @@ def test_a_failed_runs_recording_can_still_be_reported(tmp_path):
 def test_a_channel_that_is_not_in_the_table_has_the_unit_of_its_name() -> None:
     names = ("dyno_torque_left_nm", "wheel_speed_rad_s", "speed_m_s", "angle_rad", "delay_s", "count")
     assert [unit_of(name) for name in names] == ["N m", "rad/s", "m/s", "rad", "s", ""]
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet", "mf4", "mat"])
+def test_a_table_of_more_values_or_columns_than_are_read_at_once_is_refused(ending, tmp_path, monkeypatch):
+    path = tmp_path / f"r.{ending}"
+    write_recording(recording(), path)
+    monkeypatch.setattr("hil.core.recording._table.LARGEST_VALUES", 799)  # it has 800
+    with pytest.raises(BadInputError, match=r"has 200 rows of [34] columns, 6.4e-06 GB as numbers"):
+        read_recording(path)
+    monkeypatch.setattr("hil.core.recording._table.MOST_COLUMNS", 2)
+    with pytest.raises(BadInputError, match=r"has [34] columns, at most 2 are read"):
+        read_recording(path)
+
+
+def test_rows_that_take_no_room_in_a_file_take_none_in_memory(tmp_path):
+    path = tmp_path / "zeros.parquet"
+    zeros = pa.table({name: pa.nulls(1 << 20, pa.int8()) for name in ("time_s", "motor_torque_ref_nm")})
+    with pq.ParquetWriter(path, zeros.schema) as writer:
+        for _ in range(400):
+            writer.write_table(zeros)
+    assert path.stat().st_size < 2e6
+    with pytest.raises(BadInputError, match="has 419430400 rows of 2 columns, 6.71 GB as numbers"):
+        read_recording(path)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.io import loadmat, savemat
 
 from hil.core.errors import BadInputError
-from hil.core.recording import Recording, read_recording, write_recording
+from hil.core.recording import Recording, _mat, read_recording, write_recording
 
 TIME = np.arange(100) / 1000
 CHANNELS = {"time_s": TIME, "motor_torque_ref_nm": np.sin(TIME), "motor_speed_rad_s": np.cos(TIME)}
@@ -99,3 +99,15 @@ def test_damaged_files_are_recordings_or_bad_input(
         read_recording(path)
     except BadInputError as error:
         assert "damaged.mat" in str(error)
+
+
+def test_what_would_not_fit_into_memory_is_refused_before_it_is_unpacked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.mat"
+    vectors = {"time_s": np.arange(300_000.0), "motor_torque_ref_nm": np.zeros(300_000)}
+    savemat(path, vectors, do_compression=True)
+    monkeypatch.setattr(_mat, "LARGEST_VALUES", 599_000)
+    monkeypatch.setattr(_mat, "loadmat", None)  # it is not asked
+    with pytest.raises(BadInputError, match=r"a\.mat: holds more than 0\.004792 GB, packed into 0\.\d+ MB"):
+        read_recording(path)
