@@ -15,7 +15,7 @@ from reports.figure import Band, Figure, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
 from reports.spectrum import DESCRIPTION, amplitude_spectrum
 from reports.step_figures import controller_name
-from reports.stretch import Lines, cut, line
+from reports.stretch import Array, Lines, cut, line
 
 _ROLES = ("gain", "phase", "third", "fourth")
 #: Channels that share axes.
@@ -106,7 +106,7 @@ def channels_section(recording: Recording, thin: Lines) -> Section:
     drawn = unknown[:_MOST_UNKNOWN_CHANNELS]
     panels = [*_PANELS, *((name,) for name in drawn)]
     figures = [_time_figure(where, panel) for panel in panels]
-    figures += [_spectrum_figure(where, name) for name in (INPUT, *OUTPUTS)]
+    figures += _whole_spectra(where)
     left_out = len(unknown) - len(drawn)
     notes = (f"{left_out} further channels are in the table only.",) if left_out > 0 else ()
     return Section("channels", "Channels", "", tuple(f for f in figures if f is not None), notes)
@@ -143,8 +143,25 @@ def _time_figure(where: _Stretch, names: Sequence[str], bands: tuple[Band, ...] 
     )
 
 
+def _whole_spectra(where: _Stretch) -> list[Figure | None]:
+    """Of input and outputs; a long recording is read in one pass, and not in one for each of them."""
+    recording = where.recording
+    names = [name for name in (INPUT, *OUTPUTS) if name in recording]
+    time_s: Array | None = None
+    figures = []
+    for name, values in recording.columns([TIME, *names]):
+        if name == TIME:
+            time_s = values
+        elif time_s is not None and np.isfinite(values).sum() > 1:
+            figures.append(_spectrum(where, name, (time_s, values), hann=True))
+    return figures
+
+
 def _spectrum_figure(where: _Stretch, name: str, *, hann: bool = True) -> Figure | None:
-    found = cut(where.recording, name, where.start_s, where.end_s)
+    return _spectrum(where, name, cut(where.recording, name, where.start_s, where.end_s), hann=hann)
+
+
+def _spectrum(where: _Stretch, name: str, found: tuple[Array, Array] | None, *, hann: bool) -> Figure | None:
     spectrum = amplitude_spectrum(*found, hann=hann) if found else None
     if spectrum is None or not np.any(spectrum.amplitude > 0):
         return None

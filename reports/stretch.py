@@ -14,8 +14,9 @@ from reports.labels import Label
 Array = npt.NDArray[np.float64]
 Lines = dict[str, tuple[Array, Array]]
 
-#: Samples beyond which a figure of the whole recording is drawn from fewer: some seventeen minutes at 1 kHz.
-LONGEST_DRAWN = 1 << 20
+#: Samples beyond which a figure of the whole recording is drawn from fewer, read in one pass: about what is
+#: held in memory, some eight minutes at 1 kHz.
+LONGEST_DRAWN = 1 << 19
 _POINTS = 1 << 15  # many times what paper or screen can show
 
 
