@@ -203,3 +203,12 @@ def test_trade_off_rises_with_the_phase(paper_design: Design) -> None:
     at_forty = int(np.flatnonzero(chart.frequencies_hz == 40)[0])
     assert np.all(np.diff(chart.phase_deg[:, at_forty]) > 0)
     assert chart.sensitivity_peak.shape == chart.phase_deg.shape
+
+
+@pytest.mark.parametrize(("stiffness", "said"), [(1e12, "diverges"), (1e8, "Hz lies above 500 Hz")])
+@pytest.mark.parametrize("stabilisation", ["phase", "gain"])
+def test_a_model_that_no_control_can_act_on_is_refused_with_its_file(stiffness, said, stabilisation):
+    model = Model("three_inertia", {**THREE, "shaft_stiffness": stiffness}, source="mine.toml")
+    with pytest.raises(BadInputError, match=said) as refused:
+        design(model, DesignSpec(stabilisation=stabilisation))
+    assert refused.value.where == "mine.toml"
