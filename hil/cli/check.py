@@ -20,6 +20,7 @@ from hil.core.mistakes import all_of
 from hil.engine import BenchFile, load_bench
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.forecast import Forecast, forecast
+from hil.engine.measured import refuse_unmeasured
 from hil.engine.preflight import preflight
 from test_plans import Choices, Pace, Plan, estimate_duration_s, load_plan
 
@@ -42,6 +43,7 @@ def carry_out(
         today = datetime.datetime.now(datetime.UTC).date()
         accepted_expiry(file, today, "")
         preflight(checked, file, Path(directory))
+    refuse_unmeasured(file)
     pace = Pace(speed_ramp_m_s2=file.dyno.speed_ramp_m_s2, wheel_radius_m=file.vehicle.wheel_radius_m)
     duration_s = estimate_duration_s(checked, pace)
     with progress(checked.name) as show:
