@@ -83,7 +83,9 @@ def carry_out(
             print(text_of(found, str(place.folder)))
         tried, every = len(found.trial.draws), len(asked.trial.draws)
         if tried < every:
-            complain("note", f"stopped: compared on {tried} of {every} cars, those that the search had got to")
+            complain(
+                "note", f"stopped: compared on {tried} of {every} cars, those that the search had got to"
+            )
         if then_run and not stop.times:
             wire = OnTheWire(asked.bench, differ / 100, carried)
             ran = run_tuned(found, plan, place.folder, wire, model)

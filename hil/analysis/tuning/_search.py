@@ -106,7 +106,7 @@ class Search:
         return found
 
     def so_far(self) -> list[Tried]:
-        """The best when somebody has asked to stop, on the cars that it was searched on, the model itself first.
+        """The best when somebody has asked to stop, on the cars that it was searched on, by their order.
 
         Every other car would take as long as a part of the search. What was best on some cars gives way to
         what is known to be better on all of them.

@@ -5,7 +5,7 @@ import itertools
 
 import pytest
 
-from hil.analysis.tuning import Effort, front_of, refuse_model, tune
+from hil.analysis.tuning import Effort, Tuning, front_of, refuse_model, tune
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from tests.hil.analysis.tuning.trials import FREE, MODEL, trial_of
@@ -65,12 +65,16 @@ def test_a_search_on_cars_that_is_stopped_compares_on_those_that_it_had_got_to()
 def test_a_start_that_keeps_the_limits_is_the_best_so_far_where_nothing_else_does():
     asked = itertools.count()
     flat = "[free]\nlead_deg = [0.0, 0.1]\n[limits]\nsensitivity_peak = {}\n"
-    stop = {"processes": 1, "stopped": lambda: next(asked) > 1}
-    found = tune(trial_of(flat.format(2.0)), effort=QUICK, **stop)
+
+    def stopped(largest: float) -> Tuning:
+        trial = trial_of(flat.format(largest))
+        return tune(trial, effort=QUICK, processes=1, stopped=lambda: next(asked) > 1)
+
+    found = stopped(2.0)
     assert found.chosen.controller.wsc == found.trial.start.wsc
     assert found.chosen.worst.feasible
     with pytest.raises(BadInputError, match="stopped before a controller was found"):
-        tune(trial_of(flat.format(1.01)), effort=QUICK, **stop)
+        stopped(1.01)
 
 
 def test_no_candidate_that_was_tried_beats_the_chosen_in_every_criterion():
