@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.identification import stated_errors
 from hil.analysis.tuning._free import Tolerance
-from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 
@@ -48,7 +48,7 @@ def draws_of(model: Model, tolerance: Tolerance, count: int, seed: int) -> tuple
         return tuple(found)
     from scipy.stats import qmc
 
-    errors = _standard_errors(model)
+    errors = stated_errors(model)
     sobol = qmc.Sobol(max(1, len(dimensions)), seed=np.random.default_rng(seed))
     points = sobol.random_base2(max(0, math.ceil(math.log2(max(count, 1)))))[:count]
     for number, point in enumerate(points, 1):
@@ -79,20 +79,11 @@ def _dimensions(model: Model, tolerance: Tolerance) -> list[str]:
             )
     return [
         *(f"even {name}" for name, share in tolerance.relative.items() if share > 0),
-        *(f"normal {name}" for name in _standard_errors(model)),
+        *(f"normal {name}" for name in stated_errors(model)),
         *(["dead_time_s"] if tolerance.dead_time_s > 0 else []),
         *(["backlash_rad"] if tolerance.backlash_rad > 0 else []),
         *(f"phase {n}" for n, use in enumerate(model.effects) if tolerance.order_phase and use.id in _ORDERS),
     ]
-
-
-def _standard_errors(model: Model) -> dict[str, float]:
-    """Of the parameters of an identified model, in their units."""
-    stated = model.meta.get("standard_errors")
-    if not isinstance(stated, dict):
-        return {}
-    numbers = {name: finite_number(stated[name]) for name in model.parameters if name in stated}
-    return {name: value for name, value in numbers.items() if value is not None and value > 0}
 
 
 def _drawn(
