@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 
 from hil.cli._choices import choices_of
-from hil.cli._loop_margins import loop_margins, margins_json, margins_table, warnings_of
+from hil.cli._loop_margins import loop_margins, margins_json, margins_table, remarks_on_load, warnings_of
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
 from hil.core.channels import CHANNELS
 from hil.core.digits import share
@@ -62,7 +62,7 @@ def carry_out(
     else:
         _tell(checked, file.name, duration_s, predicted, loops)
     unjudged = (f"not checked: {text}" for text in checked.device_gaps)
-    for text in (*warnings_of(loops), *unjudged):
+    for text in (*warnings_of(loops), *remarks_on_load(checked), *unjudged):
         warn(text)
     return 0 if predicted.fits else 1
 
