@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hil.analysis.campaigns import (
-    MOST_SIMULATIONS,
     CampaignFile,
     Cases,
     axes_of,
     controller_file,
     load_campaign_file,
+    varied,
 )
-from hil.analysis.tuning import driven_by, refuse_model
+from hil.analysis.tuning import differing, driven_by, refuse_model
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
 from hil.core.files import sha256_of
@@ -99,7 +99,7 @@ def load_setting(name_or_path: str | Path) -> Setting:
         Source(role, path, sha256_of(path)) for role, paths in named.items() for path in dict.fromkeys(paths)
     )
     cases = Cases(axes, len(controllers), file.draws)
-    _refuse_too_many(file, cases)
+    _refuse_same_cars(file, model, cases)
     counted = _criteria(file, plan)
     return Setting(file, plan, bench, model, replaced, controllers, cases, counted, sources)
 
@@ -164,10 +164,23 @@ def _criteria(file: CampaignFile, plan: Plan) -> tuple[Criterion, ...]:
     return found
 
 
-def _refuse_too_many(file: CampaignFile, cases: Cases) -> None:
-    if len(cases) > MOST_SIMULATIONS:
+def _refuse_same_cars(file: CampaignFile, model: Model, cases: Cases) -> None:
+    """Refuse a tolerance of a number that the model has not, and cars that would all be the model itself."""
+    if not file.draws:
+        return
+    first = cases[0].values
+    car = varied(model, first["model"], first["effect"])
+    try:
+        differs = differing(car, file.tolerance)
+    except BadInputError as error:
+        key = error.what.partition(":")[0].removeprefix("tolerance.")
         raise BadInputError(
-            f"{len(cases)} simulations, at most {MOST_SIMULATIONS} are made",
-            where=str(file.source),
-            fix="vary less, or draw fewer cars: draws alone cover many dimensions at once",
+            error.what, where=file.document.place(("tolerance", key)), fix=error.fix
+        ) from None
+    if not differs:
+        raise BadInputError(
+            f"{file.draws} cars are to be drawn, but nothing differs between them",
+            where=file.document.place(("draws",)),
+            fix="under tolerance say what does (vehicle_inertia: 0.1), give a model with standard errors, or "
+            "leave draws out",
         )

@@ -43,7 +43,9 @@ class Simulations:
         file = self.setting.file
         if not file.draws:
             return ()
-        differs = draws_of(self.setting.model, file.tolerance, 1, file.seed)[-1].differs
+        values = self.setting.cases[0].values  # an effect that is varied stands in each car
+        car = varied(self.setting.model, values["model"], values["effect"])
+        differs = draws_of(car, file.tolerance, 1, file.seed)[-1].differs
         return tuple(f"effect.{name}" if "." in name else f"model.{name}" for name in differs)
 
     def rows(self, first: int, last: int) -> list[Row]:

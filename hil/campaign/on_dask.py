@@ -20,16 +20,14 @@ from hil.campaign._batches import Batch, Done, MakeRows, Row
 from hil.campaign._setting import Setting, load_setting
 from hil.campaign._simulations import Simulations
 from hil.core.errors import BadInputError, BenchError, HilError
+from hil.core.extras import not_installed
 from hil.engine.stopping import held_back
 
 try:
     import dask
     import distributed
-except ImportError as missing:
-    raise BadInputError(
-        "the package 'distributed' is not installed",
-        fix="pip install 'eaxle-hil[campaign]', or --workers 0 for this process alone",
-    ) from missing
+except ModuleNotFoundError as missing:
+    raise not_installed(missing, "--workers 0 for this process alone") or missing from missing
 
 _WAIT_S = 0.2
 _CONNECT_S = 10

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Iterator
 
-from hil.cli._named_values import named_values
+from hil.cli._named_values import named_values, number_of
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from test_plans import Choices, controller_choices
@@ -49,11 +48,8 @@ def all_choices(values: list[str] | None, controller: list[str] | None) -> Itera
 
 
 def _number(name: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
+    value = number_of(text.strip())
+    if value is None:
         raise BadInputError(
             f"{printable(name, 60)} = '{printable(text, 60)}' is no number",
             where=_OPTION,

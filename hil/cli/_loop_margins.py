@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from hil.engine import BenchFile, load_bench
 from hil.engine.bench_file import DEFAULT_BENCH
 from hil.engine.trial_runs import controller_files
 from test_plans import Plan
+from test_plans.steps import Step
 
 if TYPE_CHECKING:
     from hil.analysis.control_design import Margins
@@ -70,6 +71,25 @@ def warnings_of(found: dict[str, Margins]) -> Iterable[str]:
                 f"controller '{name}': its speed loop is close to instability, |S| = "
                 f"{one.sensitivity_peak:.3g} at {one.sensitivity_peak_hz:.3g} Hz"
             )
+
+
+def remarks_on_load(plan: Plan) -> Iterable[str]:
+    """What to say of driving torque on wheels that the dynos hold: the table's loops are those of the car."""
+    names = list(dict.fromkeys(_held(plan.steps)))
+    if names:
+        shown = ", ".join(f"'{name}'" for name in names[:5]) + (", …" if len(names) > 5 else "")
+        yield (
+            f"driving torque while the dynos hold the speed (load: speed, segment {shown}): the table "
+            "is of the car and says nothing of it; driving force control acts on wheels that do not "
+            "give way, see the predicted peaks"
+        )
+
+
+def _held(steps: Iterable[Step]) -> Iterator[str]:
+    for step in steps:
+        if getattr(step, "load", "") == "speed" and getattr(step, "quantity", "") == "driving_torque":
+            yield from (segment.id for segment in step.segments())
+        yield from _held(getattr(step, "steps", ()))
 
 
 def margins_json(found: dict[str, Margins]) -> dict[str, dict[str, float | bool]]:

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterable
 
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
+
+#: As in a plan's YAML: Python's `1_00`, `inf` and digits of other scripts are text there.
+_NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 
 
 def named_values(given: Iterable[str], option: str, *, form: str = "NAME=VALUE") -> dict[str, str]:
@@ -39,12 +44,18 @@ def named_numbers(given: Iterable[str], option: str) -> dict[str, float]:
     """
     numbers = {}
     for name, value in named_values(given, option).items():
-        try:
-            numbers[name] = float(value)
-        except ValueError:
+        number = number_of(value)
+        if number is None:
             raise BadInputError(
                 f"'{printable(f'{name}={value}')}' has no number behind '='",
                 where=option,
                 fix=f"write {option} NAME=VALUE",
-            ) from None
+            )
+        numbers[name] = number
     return numbers
+
+
+def number_of(text: str) -> float | None:
+    """A finite number as a plan would write it; None of anything else."""
+    number = float(text) if _NUMBER.fullmatch(text) else math.inf
+    return number if math.isfinite(number) else None

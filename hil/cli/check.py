@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 
 from hil.cli._choices import choices_of
-from hil.cli._loop_margins import loop_margins, margins_json, margins_table, warnings_of
+from hil.cli._loop_margins import loop_margins, margins_json, margins_table, remarks_on_load, warnings_of
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
 from hil.core.channels import CHANNELS
 from hil.core.digits import share
@@ -20,6 +20,7 @@ from hil.core.mistakes import all_of
 from hil.engine import BenchFile, load_bench
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.forecast import Forecast, forecast
+from hil.engine.measured import refuse_unmeasured
 from hil.engine.preflight import preflight
 from test_plans import Choices, Pace, Plan, estimate_duration_s, load_plan
 
@@ -42,6 +43,7 @@ def carry_out(
         today = datetime.datetime.now(datetime.UTC).date()
         accepted_expiry(file, today, "")
         preflight(checked, file, Path(directory))
+    refuse_unmeasured(file)
     pace = Pace(speed_ramp_m_s2=file.dyno.speed_ramp_m_s2, wheel_radius_m=file.vehicle.wheel_radius_m)
     duration_s = estimate_duration_s(checked, pace)
     with progress(checked.name) as show:
@@ -60,7 +62,7 @@ def carry_out(
     else:
         _tell(checked, file.name, duration_s, predicted, loops)
     unjudged = (f"not checked: {text}" for text in checked.device_gaps)
-    for text in (*warnings_of(loops), *unjudged):
+    for text in (*warnings_of(loops), *remarks_on_load(checked), *unjudged):
         warn(text)
     return 0 if predicted.fits else 1
 

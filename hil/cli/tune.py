@@ -14,6 +14,7 @@ from hil.cli._one_run import Runs
 from hil.cli._output import print_json, progress
 from hil.cli._place import results_in
 from hil.cli._refine_on_bench import Refined, refined
+from hil.cli._streams import complain
 from hil.cli._then_run import OnTheWire, Ran, refuse_unasked, tell
 from hil.cli._then_run import then_run as run_tuned
 from hil.cli._tuning import NAMES, SUMMARY, asked_of, write_results
@@ -61,18 +62,30 @@ def carry_out(
         out, NAMES, inputs=asked.inputs, overwrite=overwrite, default="tune", summary=SUMMARY
     ) as place:
         with progress(f"tune {asked.plan.name}") as show, stop.by_signals(), stop.telling(at_once(stop)):
-            found = tune(
-                asked.trial,
-                seed=seed,
-                effort=Effort(starts=starts),
-                processes=processes,
-                show=lambda text, share: show(text, share),
-                stopped=_stopped(stop, at_most),
-            )
+            try:
+                found = tune(
+                    asked.trial,
+                    seed=seed,
+                    effort=Effort(starts=starts),
+                    processes=processes,
+                    show=lambda text, share: show(text, share),
+                    stopped=_stopped(stop, at_most),
+                )
+            except BadInputError as error:  # nothing that was tried is worth keeping
+                if not stop.times:
+                    raise
+                complain("note", str(error))
+                INTERRUPTS.tell()
+                return EXIT_CODE
             show("figures and report")
             summary = write_results(asked, found, place.write)
         if not json_:
             print(text_of(found, str(place.folder)))
+        tried, every = len(found.trial.draws), len(asked.trial.draws)
+        if tried < every:
+            complain(
+                "note", f"stopped: compared on {tried} of {every} cars, those that the search had got to"
+            )
         if then_run and not stop.times:
             wire = OnTheWire(asked.bench, differ / 100, carried)
             ran = run_tuned(found, plan, place.folder, wire, model)

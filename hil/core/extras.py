@@ -13,7 +13,8 @@ PURPOSES = {
     "parquet": "Parquet and CSV files",
     "sign": "signatures",
     "service": "the service",
-    "campaign": "campaigns on several machines",
+    "campaign": "campaigns in several processes or on several machines",
+    "fmu": "functional mock-up units",
 }
 #: Which extra brings a module.
 MODULES = {
@@ -28,30 +29,40 @@ MODULES = {
     "sqlalchemy": "service",
     "alembic": "service",
     "fsspec": "service",
+    "dask": "campaign",
     "distributed": "campaign",
+    "pythonfmu": "fmu",
 }
 
 
-def not_installed(error: ModuleNotFoundError) -> BadInputError | None:
-    """The message for a library that an extra brings; None where the module belongs to none."""
+def not_installed(error: ModuleNotFoundError, instead: str = "") -> BadInputError | None:
+    """The message for a library that an extra brings; None where the module belongs to none.
+
+    Args:
+        instead: what can be done without the library.
+    """
     module = (error.name or "").partition(".")[0]
-    return _message(module) if module in MODULES else None
+    return _message(module, instead) if module in MODULES else None
 
 
-def need(module: str) -> None:
+def need(module: str, instead: str = "") -> None:
     """Refuse what cannot work without a library, before anything is begun.
+
+    Args:
+        instead: what can be done without it.
 
     Raises:
         BadInputError: it is not installed; names its extra.
     """
     if importlib.util.find_spec(module) is None:
-        raise _message(module)
+        raise _message(module, instead)
 
 
-def _message(module: str) -> BadInputError:
+def _message(module: str, instead: str) -> BadInputError:
     extra = MODULES[module]
+    install = f"pip install 'eaxle-hil[{extra}]', or 'eaxle-hil[all]'"
     return BadInputError(
         f"this needs the library '{module}', which a base install leaves out: the extra '{extra}' "
         f"({PURPOSES[extra]})",
-        fix=f"pip install 'eaxle-hil[{extra}]', or 'eaxle-hil[all]'",
+        fix=f"{install}; or {instead}" if instead else install,
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.core.controller import Controller
-from hil.core.errors import BadInputError
+from hil.core.extras import need
 from hil.core.files import replacing
 from hil.core.model import Model, model_to_toml
 from hil.fmu.axle import Axle
@@ -27,12 +27,8 @@ def export_fmu(model: Model, out: Path, controller: tuple[Controller, str] | Non
         BadInputError: pythonfmu is not installed, or the model cannot be a unit.
         BenchError: the RMCU would refuse the controller, or the disk is full.
     """
-    try:
-        builder: Any = importlib.import_module("pythonfmu")
-    except ImportError as error:
-        raise BadInputError(
-            "the package 'pythonfmu' is not installed", fix="pip install 'eaxle-hil[fmu]'"
-        ) from error
+    need("pythonfmu")
+    builder: Any = importlib.import_module("pythonfmu")
     Axle(model, controller[0] if controller else None)  # what cannot be is told now, not in another tool
     with tempfile.TemporaryDirectory() as directory, replacing(out) as temporary:
         folder = Path(directory)

@@ -14,7 +14,7 @@ from hil.core.extras import MODULES, PURPOSES, not_installed
 ROOT = Path(__file__).parents[2]
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
 #: Distributions whose module has another name.
-NAMES = {"skrf": "scikit-rf"}
+NAMES = {"skrf": "scikit-rf", "dask": "distributed"}
 #: Runs the command line as if the libraries of extras were not there.
 WITHOUT = f"""
 import importlib.abc, sys
@@ -83,6 +83,7 @@ def test_a_base_install_runs_a_plan_and_writes_its_reports(folder: Path) -> None
         (["export", "out/recording.mcap", "--out", "out.csv"], "parquet"),
         (["export", "out/recording.mcap", "--out", "out.mf4"], "mdf"),
         (["serve", "--data", "data"], "service"),
+        (["export-fmu", str(ROOT / "benches" / "three_inertia.toml"), "--out", "a.fmu"], "fmu"),
     ],
 )
 def test_what_is_left_out_names_its_extra(arguments: list[str], extra: str, folder: Path) -> None:

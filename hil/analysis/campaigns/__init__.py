@@ -1,8 +1,8 @@
 """Campaigns: which simulations there are, and what their table says."""
 
+from hil.analysis.campaigns._axes import MOST_SIMULATIONS, MOST_VALUES
 from hil.analysis.campaigns._cases import Axis, Case, Cases
 from hil.analysis.campaigns._file import (
-    MOST_SIMULATIONS,
     CampaignFile,
     campaign_from_text,
     campaign_schema,
@@ -25,6 +25,7 @@ from hil.analysis.campaigns._varied import axes_of, column_units, inputs_of, var
 __all__ = [
     "CONFIDENCE",
     "MOST_SIMULATIONS",
+    "MOST_VALUES",
     "Axis",
     "CampaignFile",
     "Case",

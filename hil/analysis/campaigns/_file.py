@@ -2,40 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-import numpy as np
 from pydantic import Field
 
+from hil.analysis.campaigns._axes import MOST_SIMULATIONS, Span, refuse_too_many, spans_at
 from hil.analysis.tuning import Tolerance
 from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT, FormatNumber
 from hil.core.files import is_file
 from hil.core.suggestion import did_you_mean
-from test_plans.building import Strict, brief, build, list_at, mapping_at
+from test_plans.building import Strict, brief, build, mapping_at
 from test_plans.loading import LIBRARY
 from test_plans.mistakes import PlanMistakes
 from test_plans.named_files import named_file, names_in
 from test_plans.yaml_document import Document, KeyPath, read_yaml, yaml_text
 
 CAMPAIGNS = Path(__file__).parent / "library"
-#: Beyond it the table of results no longer fits the memory of a small machine.
-MOST_SIMULATIONS = 1_000_000
 _EXAMPLE = "name: my_campaign, then plan: acceptance"
-_AXIS_EXAMPLE = "[20, 30, 40], or {from: 20, to: 40, count: 5}"
-_MOST_VALUES = 100_000
-
-
-class Span(Strict):
-    """Evenly spaced values, ends included; `scale: log` spaces their logarithms."""
-
-    from_: float = Field(alias="from", description="first value")
-    to: float = Field(description="last value")
-    count: int = Field(ge=2, le=_MOST_VALUES, description="how many values, both ends included")
-    scale: Literal["linear", "log"] = Field(default="linear", description="what is spaced evenly")
 
 
 class CampaignKeys(Strict):
@@ -120,7 +106,7 @@ def campaign_from_text(text: str, path: Path) -> CampaignFile:
     document, mistakes = read_yaml(text, str(path)), PlanMistakes()
     content = mapping_at(document.value, document, (), _EXAMPLE)
     keys: CampaignKeys | None = None
-    vary: dict[str, tuple[float, ...]] = {}
+    spans: dict[str, Span | tuple[float, ...]] = {}
     tolerance = Tolerance()
     known = (*CampaignKeys.model_fields, "vary", "tolerance")
     for key in content:
@@ -132,68 +118,37 @@ def campaign_from_text(text: str, path: Path) -> CampaignFile:
         named = {key: value for key, value in content.items() if key in CampaignKeys.model_fields}
         keys = build(CampaignKeys, named, document, ())
     with mistakes.collected():
-        vary = _vary_at(content.get("vary"), document)
+        spans = spans_at(content.get("vary"), document)
     with mistakes.collected():
         tolerance = _tolerance_at(content.get("tolerance"), document)
     mistakes.refuse()
     assert keys is not None
+    refuse_too_many(spans, len(keys.controllers), keys.draws, document)
+    vary = {
+        name: span.values(document, name) if isinstance(span, Span) else span for name, span in spans.items()
+    }
     return CampaignFile(**keys.model_dump(), vary=vary, tolerance=tolerance, source=path, text=text)
-
-
-def _vary_at(value: object, document: Document) -> dict[str, tuple[float, ...]]:
-    example = "model.vehicle_inertia: {from: 200, to: 400, count: 5}"
-    table = {} if value is None else mapping_at(value, document, ("vary",), example)
-    mistakes, found = PlanMistakes(), {}
-    for name, entry in table.items():
-        with mistakes.collected():
-            found[name] = _values_at(entry, document, ("vary", name))
-    mistakes.refuse()
-    return found
-
-
-def _values_at(entry: object, document: Document, path: KeyPath) -> tuple[float, ...]:
-    """The values of one axis: a list, or a range."""
-    if isinstance(entry, dict):
-        span = build(Span, entry, document, path)
-        if span.scale == "log" and min(span.from_, span.to) <= 0:
-            raise BadInputError(
-                "a logarithm needs values above 0",
-                where=document.place(path),
-                fix="from and to above 0, or scale: linear",
-            )
-        space = np.geomspace if span.scale == "log" else np.linspace
-        return tuple(float(f"{value:.12g}") for value in space(span.from_, span.to, span.count))
-    numbers = list_at(entry, document, path, _AXIS_EXAMPLE)
-    for index, number in enumerate(numbers):
-        plain = isinstance(number, int | float) and not isinstance(number, bool) and math.isfinite(number)
-        if not plain:
-            where = document.place((*path, index))
-            raise BadInputError(f"{brief(number)} is no number", where=where, fix=f"write: {_AXIS_EXAMPLE}")
-    if not 0 < len(set(numbers)) == len(numbers) <= _MOST_VALUES:
-        what = "a value stands twice" if numbers else "there are no values"
-        raise BadInputError(what, where=document.place(path), fix=f"write: {_AXIS_EXAMPLE}")
-    return tuple(float(number) for number in numbers)
 
 
 def _tolerance_at(value: object, document: Document) -> Tolerance:
     path: KeyPath = ("tolerance",)
     table = {} if value is None else mapping_at(value, document, path, "vehicle_inertia: 0.1")
-    mistakes = PlanMistakes()
-    for name in table:
+    mistakes, shares = PlanMistakes(), Tolerance.apart(table)["relative"]
+    for name, value in table.items():
         with mistakes.collected():
+            where = document.place((*path, name))
             if name not in Tolerance.names():
-                where, fix = document.place((*path, name)), did_you_mean(name, Tolerance.names())
+                fix = did_you_mean(name, Tolerance.names())
                 raise BadInputError(f"unknown key {name!r}", where=where, fix=fix)
+            if name in shares and not _is_share(value):
+                fix = "it is a share of the number: from 0 to below 1, 0.1 for 10 %"
+                raise BadInputError(f"{brief(value)} is no half width", where=where, fix=fix)
     mistakes.refuse()
-    found = build(Tolerance, Tolerance.apart(table), document, path)
-    for name, width in found.relative.items():
-        if not 0 <= width < 1:
-            raise BadInputError(
-                f"{width:g} is no half width",
-                where=document.place((*path, name)),
-                fix="it is a share of the number: from 0 to below 1, 0.1 for 10 %",
-            )
-    return found
+    return build(Tolerance, Tolerance.apart(table), document, path)
+
+
+def _is_share(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < 1
 
 
 def campaign_schema() -> dict[str, Any]:

@@ -9,8 +9,9 @@ import numpy as np
 from hil.analysis.control_design._closed_loop import closed_loop_poles
 from hil.analysis.control_design._loop import Margins
 from hil.analysis.control_design._spec import DesignSpec, Robustness
+from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
-from hil.core.model import TransferFunction
+from hil.core.model import Model, TransferFunction
 
 #: A loop beyond these is stable but poor. 2 (6 dB) of |S| is the usual bound for a robust loop; it
 #: implies about 29 degrees and 6 dB.
@@ -101,3 +102,29 @@ def _poor(where: str, sensitivity: float, phase_deg: float, gain_db: float) -> l
     if not gain_db >= LEAST_GAIN_MARGIN_DB:
         found.append(f"the gain margin is {gain_db:.3g} dB {where}; {LEAST_GAIN_MARGIN_DB:g} dB are usual")
     return found
+
+
+def beyond_the_data(model: Model, found: Margins) -> list[str]:
+    """What lies outside of the frequencies that the model was identified from, in a sentence for people."""
+    band = model.meta.get("band_hz")
+    if not (isinstance(band, list | tuple) and len(band) == 2):
+        return []
+    low_hz, high_hz = (finite_number(end) for end in band)
+    if low_hz is None or high_hz is None:
+        return []
+    places_hz = {
+        "|S|max": found.sensitivity_peak_hz,
+        "the gain margin": found.gain_margin_hz,
+        "the phase margin": found.phase_margin_hz,
+    }
+    beyond = [
+        f"{name} at {hz:.3g} Hz"
+        for name, hz in places_hz.items()
+        if np.isfinite(hz) and not low_hz <= hz <= high_hz
+    ]
+    if not beyond:
+        return []
+    return [
+        f"outside of the data ({low_hz:.3g}-{high_hz:.3g} Hz) that the model was identified from: "
+        f"{', '.join(beyond)}: no measurement says that it is so there"
+    ]

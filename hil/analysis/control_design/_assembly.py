@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
+
 import numpy as np
 from pydantic import ValidationError
 
@@ -12,24 +15,61 @@ from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification import fit_chain
 from hil.core.channels import OUTPUTS
 from hil.core.controller import Controller, Dfc, Dfo, Lead, Notch, Wsc
+from hil.core.controller_bounds import SLOWEST_HZ
 from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
+from hil.core.field_words import needed
 from hil.core.model import Model
 
 
-def refuse_notch(spec: DesignSpec, resonance_hz: float) -> None:
-    """Refuse a notch at a resonance that the RMCU cannot reach."""
+def refuse_resonance(spec: DesignSpec, resonance_hz: float, where: str) -> None:
+    """Refuse a model whose resonance the RMCU cannot act on: neither a lead nor a notch damps it.
+
+    Raises:
+        BadInputError: names the resonance and half the sampling rate.
+    """
     half_rate = 0.5 / spec.sample_time_s
-    if spec.stabilisation == "gain" and spec.notch_hz is None and not resonance_hz < half_rate:
+    if resonance_hz < SLOWEST_HZ:
+        raise BadInputError(
+            f"the model's resonance at {resonance_hz:.4g} Hz lies below {SLOWEST_HZ:g} Hz: no axle swings so",
+            where=where,
+            fix="check the model's units: a stiffness, an inertia, or coefficients of its functions",
+        )
+    if not resonance_hz < half_rate:
         raise BadInputError(
             f"the model's resonance at {resonance_hz:.4g} Hz lies above {half_rate:g} Hz, half the RMCU's "
-            "sampling rate: no notch can be made there",
-            fix="check the model's units, or give --notch-hz",
+            "sampling rate: no control can act on it",
+            where=where,
+            fix="check the model's units: a stiffness, an inertia, or coefficients of its functions",
         )
 
 
+@contextlib.contextmanager
+def usable() -> Iterator[None]:
+    """Say in words that numbers which follow from a model are none that a controller may have.
+
+    Raises:
+        BadInputError: names the number and its bounds.
+    """
+    try:
+        yield
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise BadInputError(
+            f"this model gives no controller that the RMCU can use: {key} = {first['input']!r}: "
+            f"{needed(first)}",
+            fix="check the units of the model's numbers",
+        ) from error
+
+
+@usable()
 def speed_controls(spec: DesignSpec, gains: tuple[float, float], resonance_hz: float) -> dict[str, Wsc]:
-    """PI alone, with the lead and with the notch, by the names of their loops."""
+    """PI alone, with the lead and with the notch, by the names of their loops.
+
+    Raises:
+        BadInputError: the gains are none that a controller may have.
+    """
     pi = Wsc(
         proportional_gain=gains[0], integral_gain=gains[1], filter_time_constant_s=spec.speed_filter_time_s
     )
@@ -42,6 +82,7 @@ def speed_controls(spec: DesignSpec, gains: tuple[float, float], resonance_hz: f
     }
 
 
+@usable()
 def controller_of(
     model: Model,
     spec: DesignSpec,
@@ -55,25 +96,6 @@ def controller_of(
     Raises:
         BadInputError: the model does not tell the wheels' inertia, or gives numbers that no controller has.
     """
-    try:
-        return _assembled(model, spec, plant, wsc, notes, warnings)
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise BadInputError(
-            f"this model gives no controller that the RMCU can use: {key}: {first['msg']}",
-            fix="check the units of the model's numbers",
-        ) from error
-
-
-def _assembled(
-    model: Model,
-    spec: DesignSpec,
-    plant: DesignPlant,
-    wsc: Wsc,
-    notes: list[str],
-    warnings: tuple[str, ...],
-) -> Controller:
     return Controller(
         name=spec.name or spec.stabilisation,
         sample_time_s=spec.sample_time_s,

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.control_design._acceptance import refuse_unstable, warnings_of
-from hil.analysis.control_design._assembly import controller_of, refuse_notch, speed_controls
+from hil.analysis.control_design._acceptance import beyond_the_data, refuse_unstable, warnings_of
+from hil.analysis.control_design._assembly import controller_of, refuse_resonance, speed_controls
 from hil.analysis.control_design._discretise import DiscreteFilter, tustin
 from hil.analysis.control_design._laws import (
     feed_forward,
@@ -68,7 +68,7 @@ def design(
 def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], unstable_too: bool) -> Design:
     plant = design_plant(model)
     motor = plant.functions[OUTPUTS[0]]
-    refuse_notch(spec, plant.resonance_hz)
+    refuse_resonance(spec, plant.resonance_hz, model.source)
     notes = list(plant.notes)
     inertia = spec.inertia_kg_m2 or plant.inertia_kg_m2
     origin_poles = 2 if motor.denominator[-1] == 0 else 1
@@ -97,6 +97,7 @@ def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], u
     chart = trade_off(frequency, pi, at, spec.normalisation, step, origin_poles=origin_poles)
     robust = _robustness(coarse, held, blocks, step, origin_poles, plants.source)
     warnings = (*_doubts(model), *warnings_of(chosen.margins, robust))
+    notes += beyond_the_data(model, chosen.margins)
     controller = controller_of(model, spec, plant, wsc, notes, warnings)
     return Design(
         controller,

@@ -11,7 +11,7 @@ from hil.analysis.control_design._acceptance import refuse_unstable
 from hil.analysis.control_design._assembly import (
     chain_of,
     controller_of,
-    refuse_notch,
+    refuse_resonance,
     speed_controls,
     wheel_inertia_of,
 )
@@ -78,6 +78,7 @@ class Drafts:
             self._origin_poles = 2 if self._motor.denominator[-1] == 0 else 1
             self.frequency_hz = loop_grid(sample_time_s, _POINTS)
             self._held = sampled_response(self._motor, self.frequency_hz, sample_time_s)
+            self._source = model.source
             self.is_fitted = model.kind == "transfer_function"
             self.chain = chain_of(self.plant) if self.is_fitted else model
             self._notes: list[str] = list(self.plant.notes)
@@ -90,7 +91,7 @@ class Drafts:
             BadInputError: values out of range, or no controller that the RMCU can use.
         """
         spec.check()
-        refuse_notch(spec, self.plant.resonance_hz)
+        refuse_resonance(spec, self.plant.resonance_hz, self._source)
         if spec.sample_time_s != self._step:
             raise BadInputError("another sample time than the drafts were prepared for")
         given = replace(spec, wheel_inertia_kg_m2=spec.wheel_inertia_kg_m2 or self._wheel_inertia)

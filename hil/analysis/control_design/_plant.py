@@ -12,6 +12,7 @@ from hil.core.channels import OUTPUTS
 from hil.core.controller import LARGEST_ORDER, Plant
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction, refuse_without_vehicle
+from hil.plant import refuse_too_stiff
 
 Array = npt.NDArray[np.float64]
 
@@ -47,9 +48,10 @@ def design_plant(model: Model) -> DesignPlant:
 
     Raises:
         BadInputError: an output is missing, the functions do not share one denominator, the order is
-            beyond the RMCU's, the plant is unstable or has no oscillating pole pair.
+            beyond the RMCU's, the plant is unstable, too stiff or has no oscillating pole pair.
     """
     refuse_without_vehicle(model, "", "design")
+    refuse_too_stiff(model)
     functions, notes = transfer_functions_of(model)
     missing = [name for name in OUTPUTS if name not in functions]
     if missing:

@@ -16,6 +16,7 @@ from hil.analysis.control_design._plant import DesignPlant
 from hil.analysis.control_design._trade_off import TradeOff
 from hil.analysis.control_design._uncertainty import PlantSet
 from hil.core.controller import Controller
+from hil.core.controller_bounds import LARGEST_TORQUE_NM, SAMPLE_TIMES_S, SLOWEST_HZ
 from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 
@@ -26,7 +27,6 @@ Stabilisation = Literal["phase", "gain"]
 LARGEST_LEAD_DEG = 85.0  # (6) gives α = 0 at 90 degrees
 LARGEST_NOTCH_WIDTH = 100.0
 LARGEST_SIZE = 1e6  # of inertias, torques, times, ratios in SI units: beyond, a unit is wrong
-SAMPLE_TIMES_S = (1e-6, 1.0)
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,14 @@ class DesignSpec:
         Raises:
             BadInputError: names the option of `hil design`, the value and the range that is allowed.
         """
-        _within("sample_time_s", self.sample_time_s, SAMPLE_TIMES_S, "s")
+        if not SAMPLE_TIMES_S[0] <= self.sample_time_s <= SAMPLE_TIMES_S[1]:
+            raise BadInputError(
+                f"sample_time_s is {self.sample_time_s:g}",
+                fix=f"it lies from {SAMPLE_TIMES_S[0]:g} to {SAMPLE_TIMES_S[1]:g} s: the RMCU takes no other",
+            )
+        _within(
+            "--torque-limit", self.torque_limit_nm, (0.0, LARGEST_TORQUE_NM), "N m: the RMCU takes no more"
+        )
         half_rate = 0.5 / self.sample_time_s
         _within("--pole", self.pole_rad_s, (0.0, 2 * np.pi * half_rate), "rad/s")
         _within("--lead-deg", self.lead_deg, (0.0, LARGEST_LEAD_DEG), "degrees")
@@ -87,7 +94,6 @@ class DesignSpec:
 
     def _sizes(self) -> tuple[tuple[str, float | None, str], ...]:
         return (
-            ("--torque-limit", self.torque_limit_nm, "N m"),
             ("--inertia", self.inertia_kg_m2, "kg m²"),
             ("--gear-ratio", self.gear_ratio, "(motor speed / wheel speed)"),
             ("--wheel-inertia", self.wheel_inertia_kg_m2, "kg m²"),
@@ -120,9 +126,10 @@ def _within(option: str, value: float, bounds: tuple[float, float], unit: str) -
 
 
 def _below(option: str, value_hz: float, half_rate_hz: float, why: str) -> None:
-    if not 0.0 < value_hz < half_rate_hz:
+    if not SLOWEST_HZ <= value_hz < half_rate_hz:
         raise BadInputError(
-            f"{option} is {value_hz:g}", fix=f"give a positive number below {half_rate_hz:g} Hz: {why}"
+            f"{option} is {value_hz:g}",
+            fix=f"it lies from {SLOWEST_HZ:g} to below {half_rate_hz:g} Hz: {why}",
         )
 
 

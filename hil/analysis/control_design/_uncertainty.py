@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.identification import fit_of
+from hil.analysis.identification import fit_of, stated_errors, transfer_functions_of
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model, TransferFunction
 
@@ -37,12 +38,13 @@ class PlantSet:
 def possible_plants(
     model: Model, motor: TransferFunction, frequency_hz: Array, *, draws: int = DRAWS, seed: int = 1
 ) -> PlantSet:
-    """Draw plants from the fit's covariance, or from assumed tolerances where the model has none.
+    """Draw plants from the fit's covariance, a chain's standard errors, or assumed tolerances.
 
     Assumed are 3 % of gain, 2 % of every pole and zero frequency (together) and 0.3 ms of dead time.
 
     Args:
-        model: the model; its `meta.fit` holds the covariance when it was identified.
+        model: the model; when it was identified its `meta.fit` holds the covariance, or a chain's
+            `meta.standard_errors` those of its parameters.
         motor: its motor speed function, dead time included.
         frequency_hz: F frequencies.
         draws: number of plants beside the model itself.
@@ -55,6 +57,11 @@ def possible_plants(
         row = fit.outputs.index(OUTPUTS[0])
         drawn = [fit.sample(generator).response(frequency_hz)[row] for _ in range(draws)]
         return PlantSet(np.array([nominal, *drawn]), f"{draws} draws from the fit's covariance")
+    errors = stated_errors(model)
+    if errors:
+        drawn = [_of_chain(model, errors, generator, frequency_hz) for _ in range(draws)]
+        source = f"{draws} draws from the chain's standard errors, each taken by itself"
+        return PlantSet(np.array([nominal, *drawn]), source)
     drawn = []
     for _ in range(draws):
         gain, stretch, late = generator.standard_normal(3)
@@ -69,3 +76,16 @@ def possible_plants(
         f"{draws} draws from assumed tolerances: {ASSUMED_GAIN:.0%} gain, {ASSUMED_FREQUENCY:.0%} frequency, "
         f"{ASSUMED_DELAY_S * 1e3:g} ms dead time (the model carries no uncertainty)",
     )
+
+
+def _of_chain(
+    model: Model, errors: Mapping[str, float], generator: np.random.Generator, frequency_hz: Array
+) -> ComplexArray:
+    """Motor speed response of a chain drawn from standard errors; no parameter changes its sign."""
+    moved = {
+        name: max(value + error * generator.standard_normal(), 0.05 * value)
+        for name, error in errors.items()
+        for value in (model.parameters[name],)
+    }
+    functions, _ = transfer_functions_of(model.with_parameters(**moved))
+    return functions[OUTPUTS[0]].response(frequency_hz)

@@ -4,7 +4,7 @@ from hil.analysis.frequency_response._estimate import DEFAULT_BAND_HZ, Method, e
 from hil.analysis.frequency_response._experiment import Experiment, experiments_of, segments_of
 from hil.analysis.frequency_response._local_polynomial import local_polynomial
 from hil.analysis.frequency_response._periodic import best_linear_approximation, period_samples
-from hil.analysis.frequency_response._quality import Reason, UnfitDataError
+from hil.analysis.frequency_response._quality import Reason, UnfitDataError, check_coherence
 from hil.analysis.frequency_response._result import Distortion, FrequencyResponse, frf_from_csv, frf_to_csv
 from hil.analysis.frequency_response._spectra import Lines, fourier_lines
 from hil.analysis.frequency_response._welch import averaged_spectra
@@ -20,6 +20,7 @@ __all__ = [
     "UnfitDataError",
     "averaged_spectra",
     "best_linear_approximation",
+    "check_coherence",
     "estimate",
     "experiments_of",
     "fourier_lines",

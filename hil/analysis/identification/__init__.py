@@ -19,7 +19,7 @@ from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.analysis.identification._identify import Identification, identify
 from hil.analysis.identification._modal import Modes, Structure
 from hil.analysis.identification._order import ORDERS, Candidate, OrderChoice, choose_order
-from hil.analysis.identification._table import fit_of, model_of
+from hil.analysis.identification._table import fit_of, model_of, stated_errors
 from hil.analysis.identification._trust import Judgement, Trust, judge
 
 __all__ = [
@@ -49,5 +49,6 @@ __all__ = [
     "identify",
     "judge",
     "model_of",
+    "stated_errors",
     "transfer_functions_of",
 ]

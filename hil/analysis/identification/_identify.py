@@ -95,6 +95,7 @@ def _identified(
     """Judgement, chain and models of an order that was taken."""
     fit = orders.best.fit
     judgement = judge(frf, orders.best)
+    doubts = (*doubts, *judgement.unseen)
     notes = [*frf.notes, *doubts]
     chain = None
     if OUTPUTS[0] in frf.outputs and len(frf.outputs) > 1:
@@ -105,7 +106,7 @@ def _identified(
         notes.append(f"no chain was fitted: that needs '{OUTPUTS[0]}' and another output")
     sources = [experiment.name for experiment in experiments]
     model = model_of(fit, _meta(frf, fit, chain, judgement, sources))
-    physical = None if chain is None else _physical(chain, judgement, sources)
+    physical = None if chain is None else _physical(chain, judgement, sources, model.meta["band_hz"])
     return Identification(frf, orders, chain, model, physical, tuple(notes), judgement, doubts)
 
 
@@ -139,10 +140,11 @@ def _standard_errors(fit: Fit) -> dict[str, list[float]]:
     return errors
 
 
-def _physical(chain: ChainChoice, judgement: Judgement, sources: list[str]) -> Model:
+def _physical(chain: ChainChoice, judgement: Judgement, sources: list[str], band_hz: object) -> Model:
     best = chain.best
     meta: dict[str, object] = {
         "sources": sources,
+        "band_hz": band_hz,
         "reason": chain.reason,
         "explains_the_data": best.explains,
         "verdict": judgement.verdict,

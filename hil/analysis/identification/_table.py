@@ -9,6 +9,7 @@ import numpy as np
 
 from hil.analysis.identification._fit import Fit
 from hil.analysis.identification._modal import Modes, Structure
+from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
 from hil.core.model import Model, TransferFunction
 
@@ -24,6 +25,15 @@ def model_of(fit: Fit, meta: Mapping[str, Any]) -> Model:
             tuple(float(c) for c in numerator[start:]), poles, fit.modes.delay_s
         )
     return Model("transfer_function", transfer_functions=functions, meta=dict(meta) | {"fit": _table(fit)})
+
+
+def stated_errors(model: Model) -> dict[str, float]:
+    """Standard errors of a chain's parameters, in their units, as far as its file states them."""
+    stated = model.meta.get("standard_errors")
+    if not isinstance(stated, dict):
+        return {}
+    numbers = {name: finite_number(stated[name]) for name in model.parameters if name in stated}
+    return {name: value for name, value in numbers.items() if value is not None and value > 0}
 
 
 def fit_of(model: Model) -> Fit | None:

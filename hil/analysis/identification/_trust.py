@@ -12,9 +12,10 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.frequency_response import FrequencyResponse
+from hil.analysis.frequency_response import FrequencyResponse, check_coherence
 from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.analysis.identification._order import Candidate
+from hil.core.conventions import COMFORT_BAND_HZ
 from hil.core.digits import share
 from hil.core.errors import BadInputError
 
@@ -29,6 +30,8 @@ LARGEST_EXCESS = 0.25
 LARGEST_DISTORTION = 0.05
 #: Median coherence of a record that does not repeat: below, noise and distortion cannot be told apart.
 LEAST_COHERENCE = 0.97
+#: Below it, inside the comfort band, less than half of an output's power there comes from the input.
+UNSEEN_COHERENCE = 0.5
 #: Misfit (of response) that leaves less than half of the power explained: nothing usable is there.
 HOPELESS_MISFIT = 0.7
 #: Distortion as large as the linear response itself.
@@ -43,11 +46,13 @@ class Judgement:
     """What the fit leaves, output by output, and what follows from it.
 
     Attributes:
-        verdict: 'linear' (standard errors hold) or 'doubtful'.
+        verdict: 'linear' (standard errors hold, but for what is `unseen`) or 'doubtful'.
         warnings: why it is doubtful, for people; empty when linear.
         misfit: by output, rms relative to the response beyond noise (median over frequency), 0 to 1.
         distortion: by output, relative to the linear response; None where the input shows none.
         coherence: by output, median over frequency.
+        unseen: where in the comfort band the outputs hardly answer the input, for people: nobody knows there
+            whether standard errors hold.
     """
 
     verdict: Trust
@@ -55,6 +60,7 @@ class Judgement:
     misfit: dict[str, float]
     distortion: dict[str, float] | None
     coherence: dict[str, float]
+    unseen: tuple[str, ...] = ()
 
 
 def judge(frf: FrequencyResponse, taken: Candidate) -> Judgement:
@@ -98,7 +104,30 @@ def judge(frf: FrequencyResponse, taken: Candidate) -> Judgement:
             f"the outputs answer {early_s * 1e3:.3g} ms before the input acts: "
             "are channels swapped or not in step?"
         )
-    return Judgement("doubtful" if warnings else "linear", tuple(warnings), misfit, distortion, coherence)
+    verdict: Trust = "doubtful" if warnings else "linear"
+    return Judgement(verdict, tuple(warnings), misfit, distortion, coherence, _unseen(frf))
+
+
+def _unseen(frf: FrequencyResponse) -> tuple[str, ...]:
+    """Sentences on coherence below `UNSEEN_COHERENCE` inside the band in which comfort is judged."""
+    low_hz, high_hz = COMFORT_BAND_HZ
+    inside = (frf.frequency_hz >= low_hz) & (frf.frequency_hz <= high_hz)
+    if not inside.any():
+        return ()
+    low = check_coherence(
+        frf.frequency_hz[inside],
+        frf.coherence[:, inside],
+        frf.outputs,
+        least=UNSEEN_COHERENCE,
+        allowed_share=1.0,
+        where="",
+    )
+    if not low:
+        return ()
+    return (
+        f"inside {low_hz:g}-{high_hz:g} Hz, where comfort is judged, more than the input moves the axle: "
+        f"{'; '.join(low)}. Whether standard errors hold there is not known",
+    )
 
 
 def _refuse_hopeless(misfit: dict[str, float], distortion: dict[str, float] | None) -> None:

@@ -2,7 +2,7 @@
 
 from hil.analysis.tuning._ascent import Ascent, scatter, score
 from hil.analysis.tuning._confirmed import Agreement, Confirmation, confirmation
-from hil.analysis.tuning._draws import Draw, draws_of
+from hil.analysis.tuning._draws import Draw, differing, draws_of
 from hil.analysis.tuning._driven import Driven, driven_by
 from hil.analysis.tuning._free import (
     Free,
@@ -49,6 +49,7 @@ __all__ = [
     "Tuning",
     "channels_needed",
     "confirmation",
+    "differing",
     "draws_of",
     "driven_by",
     "free_from_toml",

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.identification import stated_errors
 from hil.analysis.tuning._free import Tolerance
-from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 
@@ -42,24 +42,13 @@ def draws_of(model: Model, tolerance: Tolerance, count: int, seed: int) -> tuple
     Raises:
         BadInputError: a tolerance of a parameter that the model has not.
     """
-    for name in tolerance.relative:
-        if name not in model.parameters:
-            raise BadInputError(
-                f"tolerance.{name}: a '{model.kind}' model has no such parameter", fix="leave it out"
-            )
-    from scipy.stats import qmc
-
-    errors = _standard_errors(model)
-    dimensions = [
-        *(f"even {name}" for name, share in tolerance.relative.items() if share > 0),
-        *(f"normal {name}" for name in errors),
-        *(["dead_time_s"] if tolerance.dead_time_s > 0 else []),
-        *(["backlash_rad"] if tolerance.backlash_rad > 0 else []),
-        *(f"phase {n}" for n, use in enumerate(model.effects) if tolerance.order_phase and use.id in _ORDERS),
-    ]
+    dimensions = _dimensions(model, tolerance)
     found = [Draw(0, model)]
     if count and not dimensions and not tolerance.sensor_noise:
         return tuple(found)
+    from scipy.stats import qmc
+
+    errors = stated_errors(model)
     sobol = qmc.Sobol(max(1, len(dimensions)), seed=np.random.default_rng(seed))
     points = sobol.random_base2(max(0, math.ceil(math.log2(max(count, 1)))))[:count]
     for number, point in enumerate(points, 1):
@@ -68,13 +57,33 @@ def draws_of(model: Model, tolerance: Tolerance, count: int, seed: int) -> tuple
     return tuple(found)
 
 
-def _standard_errors(model: Model) -> dict[str, float]:
-    """Of the parameters of an identified model, in their units."""
-    stated = model.meta.get("standard_errors")
-    if not isinstance(stated, dict):
-        return {}
-    numbers = {name: finite_number(stated[name]) for name in model.parameters if name in stated}
-    return {name: value for name, value in numbers.items() if value is not None and value > 0}
+def differing(model: Model, tolerance: Tolerance) -> bool:
+    """Whether cars that are drawn around a model differ from it.
+
+    Raises:
+        BadInputError: a tolerance of a parameter that the model has not.
+    """
+    return bool(_dimensions(model, tolerance)) or tolerance.sensor_noise > 0
+
+
+def _dimensions(model: Model, tolerance: Tolerance) -> list[str]:
+    """What is drawn of a car.
+
+    Raises:
+        BadInputError: a tolerance of a parameter that the model has not.
+    """
+    for name in tolerance.relative:
+        if name not in model.parameters:
+            raise BadInputError(
+                f"tolerance.{name}: a '{model.kind}' model has no such parameter", fix="leave it out"
+            )
+    return [
+        *(f"even {name}" for name, share in tolerance.relative.items() if share > 0),
+        *(f"normal {name}" for name in stated_errors(model)),
+        *(["dead_time_s"] if tolerance.dead_time_s > 0 else []),
+        *(["backlash_rad"] if tolerance.backlash_rad > 0 else []),
+        *(f"phase {n}" for n, use in enumerate(model.effects) if tolerance.order_phase and use.id in _ORDERS),
+    ]
 
 
 def _drawn(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
@@ -17,12 +17,12 @@ from hil.core.table_mistakes import told
 from hil.core.toml_file import parse_toml, toml_text
 from test_plans import Plan
 
-Bounds = tuple[float, float]
+Bounds = Annotated[tuple[float, float], Field(strict=False)]  # a list of TOML; its numbers are numbers
 _CHAIN = tuple(dict.fromkeys(name for names in MODEL_KINDS.values() for name in names))
 
 
 class _Table(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
 class HardLimits(_Table):
@@ -108,7 +108,8 @@ def free_from_toml(text: str, where: str) -> Free:
     try:
         found = Free.model_validate({**data, "where": where})
     except ValidationError as error:
-        refuse(where, map(keyed, told(error, Free)), text)
+        mistakes = [one.replace("tolerance.relative.", "tolerance.", 1) for one in told(error, Free)]
+        refuse(where, map(keyed, mistakes), text)
         raise
     refuse(where, [*_bounds_mistakes(found), *_weight_mistakes(found), *_tolerance_mistakes(found)], text)
     return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 
 import numpy as np
@@ -38,6 +39,13 @@ class SpeedLoops:
         # Aliasing is small: that of the first model is that of its neighbours.
         self._plants = [self._held(system) * seen for system in systems]
         self._origin_poles = [1 if _has_drag(model) else 2 for model in models]
+
+    def of(self, numbers: Sequence[int]) -> SpeedLoops:
+        """Those around some of the models alone, in this order."""
+        some = copy.copy(self)
+        some._plants = [self._plants[number] for number in numbers]
+        some._origin_poles = [self._origin_poles[number] for number in numbers]
+        return some
 
     def margins(self, controller: Controller, number: int) -> Margins:
         """Of the loop that `controller` closes around model `number`."""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from types import TracebackType
 
@@ -48,12 +49,23 @@ class Pool:
         if self._executor is not None:
             self._executor.shutdown(wait=True, cancel_futures=True)
 
-    def tried(self, work: Sequence[Work]) -> list[Tried]:
-        """Each candidate on its car, in order."""
-        self.runs += len(work)
+    def tried(self, work: Sequence[Work], ask: Callable[[], None] = lambda: None) -> list[Tried]:
+        """Each candidate on its car, in order; `ask` is called before each, and may raise to end it soon."""
+        ask()
+        found: list[Tried] = []
+        with contextlib.closing(self._begun(work)) as results:
+            for one in results:  # those that are not begun are taken back where `ask` raises
+                self.runs += 1
+                found.append(one)
+                if len(found) < len(work):
+                    ask()
+        return found
+
+    def _begun(self, work: Sequence[Work]) -> Generator[Tried]:
         if self._executor is None:
-            return [self.trial.tried(values, number) for values, number in work]
-        return list(self._executor.map(_tried, work))
+            yield from (self.trial.tried(values, number) for values, number in work)
+        else:
+            yield from self._executor.map(_tried, work)
 
 
 def _begin(trial: Trial, parent: int) -> None:

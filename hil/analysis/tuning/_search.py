@@ -25,7 +25,7 @@ Array = npt.NDArray[np.float64]
 _FAR, _NEAR = 0.2, 0.08  # radius that an ascent begins with, as a share of the parameters' ranges
 _SHORTEST = 1e-3  # step that ends it
 _SCATTERED = 10  # points for each that is gone uphill from
-_AT_ONCE = 32  # predictions between looks whether somebody asks to stop
+_AT_ONCE = 32  # points all over the space between two words about how far it is
 _SAME = 1e-4  # of scores: less than this is no difference
 
 
@@ -79,9 +79,10 @@ class Search:
         self.archive: list[Tried] = []
         self.best = np.clip(start, 0.0, 1.0)
         self._best_score = self._best_worst = -np.inf
+        self._best_cars: list[Tried] = []  # the best on the cars that it was searched on
         self._doing = ""
         self._active: tuple[int, ...] = (0,)
-        self._joined: tuple[float, Array] | None = None  # best of those that were tried on every car
+        self._joined: tuple[Array, list[Tried]] | None = None  # best of those that were tried on every car
         self.ended = "converged"
 
     def carry_out(self) -> None:
@@ -100,10 +101,22 @@ class Search:
         What was best on some cars gives way to what is known to be better on all of them.
         """
         found = self._on_all(self.best)
-        if self._joined is not None and self._joined[0] > score(found):
-            self.best = self._joined[1]
-            found = self._on_all(self.best)
+        if self._joined is not None and score(self._joined[1]) > score(found):
+            self.best, found = self._joined
         return found
+
+    def so_far(self) -> list[Tried]:
+        """The best when somebody has asked to stop, on the cars that it was searched on, by their order.
+
+        Every other car would take as long as a part of the search. What was best on some cars gives way to
+        what is known to be better on all of them.
+        """
+        if not self._best_cars:
+            self._best_cars = self._pool.tried([(self._space.values(self.best), 0)])
+        if self._joined is not None and score(self._joined[1]) > score(self._best_cars):
+            self.best, every = self._joined
+            return [every[tried.draw] for tried in self._best_cars]
+        return self._best_cars
 
     def _far(self) -> list[Array]:
         """Uphill on the model itself from several points; where that ended, best first."""
@@ -154,8 +167,8 @@ class Search:
         self._show(f"all {len(self._pool.trial.draws)} cars", None)
         found = self._on_all(self.best, self._refuse_if_stopped)
         whole = score(found)
-        if self._joined is None or whole > self._joined[0]:
-            self._joined = whole, self.best
+        if self._joined is None or whole > score(self._joined[1]):
+            self._joined = self.best, found
         active = list(self._active)
         while len(active) < len(self._active) + self._effort.joining:
             known = [found[number] for number in active]
@@ -165,6 +178,7 @@ class Search:
             active.append(int(np.argmin(lowered)))
         joined = len(active) > len(self._active)
         self._active = tuple(active)
+        self._best_cars = [found[number] for number in active]
         return joined
 
     def _begin(self, doing: str) -> None:
@@ -174,24 +188,20 @@ class Search:
 
     def _on_all(self, point: Array, ask: Callable[[], None] = lambda: None) -> list[Tried]:
         """A candidate on every car; `ask` is called now and then, and may raise."""
-        values, cars = self._space.values(point), range(len(self._pool.trial.draws))
-        found: list[Tried] = []
-        for first in range(0, len(cars), _AT_ONCE):
-            ask()
-            found += self._pool.tried([(values, number) for number in cars[first : first + _AT_ONCE]])
-        return found
+        values = self._space.values(point)
+        return self._pool.tried([(values, number) for number in range(len(self._pool.trial.draws))], ask)
 
     def _tried(self, points: Sequence[Array]) -> list[list[Tried]]:
         """Each candidate on the active cars."""
-        self._refuse_if_stopped()
         cars = len(self._active)
         values = [self._space.values(point) for point in points]
-        found = self._pool.tried([(one, number) for one in values for number in self._active])
+        work = [(one, number) for one in values for number in self._active]
+        found = self._pool.tried(work, self._refuse_if_stopped)
         self.archive += [tried for tried in found if tried.draw == 0]
         each = [found[i * cars : (i + 1) * cars] for i in range(len(points))]
         for point, tried in zip(points, each, strict=True):
             if score(tried) > self._best_score:
-                self.best, self._best_score = np.array(point), score(tried)
+                self.best, self._best_score, self._best_cars = np.array(point), score(tried), tried
                 self._best_worst = min(one.worst for one in tried)
         worst = f"worst margin {share(self._best_worst)}"
         self._show(f"{self._doing}: {self._pool.runs} runs, {worst}", None)

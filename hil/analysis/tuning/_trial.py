@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -121,6 +121,11 @@ class Trial:
     def controller(self, values: Mapping[str, float], name: str = "tuned") -> Controller:
         """The start with `values` in place of its own."""
         return with_values(self.start, values, name)
+
+    def on(self, numbers: Sequence[int]) -> Trial:
+        """The same on some of the cars alone, which are numbered anew in this order."""
+        draws = tuple(replace(self.draws[number], number=new) for new, number in enumerate(numbers))
+        return replace(self, draws=draws, loops=self.loops.of(numbers), _known={})
 
     def tried(self, values: Mapping[str, float], number: int) -> Tried:
         """A candidate on car `number`; nothing is run where the loop alone is beyond the limits."""

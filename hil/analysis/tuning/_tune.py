@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -54,7 +54,7 @@ class Tuning:
     """What a search came to.
 
     Attributes:
-        trial: what was tried, on which cars.
+        trial: what was tried, on which cars: of a search that was stopped, those that it had got to.
         space: what was free.
         chosen, start: the controller that was found, and the plan's own.
         others: the paper's lead and notch in its place, where they are not the start.
@@ -115,20 +115,18 @@ def tune(
         )
         search.carry_out()
         show("comparing", None)
-        everywhere = tuple(search.everywhere())
-        chosen = Standing(
-            "tuned",
-            trial.controller(space.values(search.best)),
-            space.values(search.best),
-            everywhere,
-        )
-        start = _standing(pool, "start", {})
+        if search.ended == "stopped":
+            trial, chosen, start = _stopped(pool, search, space)
+        else:
+            chosen = _chosen(search, space, trial, search.everywhere())
+            start = _standing(pool, "start", {}, range(len(trial.draws)))
         others: tuple[Standing, ...] = ()
         sensitivities: dict[str, dict[str, float]] = {}
         if search.ended != "stopped":
-            others = tuple(_standing(pool, name, values) for name, values in _paper(trial).items())
+            every = range(len(trial.draws))
+            others = tuple(_standing(pool, name, values, every) for name, values in _paper(trial).items())
             sensitivities = _sensitivities(pool, space, search.best)
-    _refuse_infeasible(chosen, start, trial)
+    _refuse_infeasible(chosen, start, trial, search.ended)
     return Tuning(
         trial,
         space,
@@ -140,6 +138,30 @@ def tune(
         search.ended,
         pool.runs,
     )
+
+
+def _chosen(search: Search, space: Space, trial: Trial, tried: Sequence[Tried]) -> Standing:
+    values = space.values(search.best)
+    return Standing("tuned", trial.controller(values), values, tuple(tried))
+
+
+def _stopped(pool: Pool, search: Search, space: Space) -> tuple[Trial, Standing, Standing]:
+    """What was best so far and the start, on the cars that the search had got to, numbered anew.
+
+    Where nothing that was tried keeps the hard limits and the start does, the start is the best so far.
+    """
+    best = search.so_far()
+    numbers = [tried.draw for tried in best]
+    chosen = _chosen(search, space, pool.trial, best)
+    start = _standing(pool, "start", {}, numbers)
+    if not chosen.worst.feasible and start.worst.feasible:
+        own = {name: value for name, value in values_of(pool.trial.start).items() if name in space.names}
+        chosen = Standing("tuned", pool.trial.controller({}), own, start.tried)
+    return pool.trial.on(numbers), _renumbered(chosen), _renumbered(start)
+
+
+def _renumbered(one: Standing) -> Standing:
+    return replace(one, tried=tuple(replace(tried, draw=new) for new, tried in enumerate(one.tried)))
 
 
 def refuse_model(model: Model, where: str) -> None:
@@ -187,9 +209,16 @@ def refuse_start(trial: Trial) -> None:
         )
 
 
-def _refuse_infeasible(chosen: Standing, start: Standing, trial: Trial) -> None:
+def _refuse_infeasible(chosen: Standing, start: Standing, trial: Trial, ended: str) -> None:
     if all(tried.feasible for tried in chosen.tried):
         return
+    if ended == "stopped":
+        raise BadInputError(
+            f"stopped before a controller was found that keeps the hard limits: the best is beyond them "
+            f"{_beyond(chosen, trial)}",
+            where=trial.free.where,
+            fix="give it longer, relax [limits], narrow [tolerance], or widen [free]",
+        )
     own = f"; the start is beyond them {_beyond(start, trial)}" if not start.worst.feasible else ""
     best = _beyond(chosen, trial)
     raise BadInputError(
@@ -207,8 +236,7 @@ def _beyond(one: Standing, trial: Trial) -> str:
     return f"on {car}: {', '.join(shares) or worst.trouble or 'it is unstable'}"
 
 
-def _standing(pool: Pool, name: str, values: Mapping[str, float]) -> Standing:
-    cars = range(len(pool.trial.draws))
+def _standing(pool: Pool, name: str, values: Mapping[str, float], cars: Sequence[int]) -> Standing:
     tried = tuple(pool.tried([(values, number) for number in cars]))
     return Standing(name, pool.trial.controller(values, name), values, tried)
 

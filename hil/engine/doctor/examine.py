@@ -24,6 +24,7 @@ from hil.engine.doctor._dates import findings_of_dates
 from hil.engine.doctor._stops import findings_of_stops
 from hil.engine.doctor.examination import BusFacts, DeviceFacts, Examination
 from hil.engine.identification import identities_of, told, what_to_do
+from hil.engine.measured import findings_of_channels
 from hil.engine.stopping import StopRequest
 from hil.engine.zero import SENSORS, offset_told, turning, zero_of
 from hil.engine.zero import what_to_do as what_to_do_about_zero
@@ -91,6 +92,7 @@ class _Visit:
             self._add(*listener.findings_of_rates(duration_s))
             self._look_for_other_hosts()
             self._ask(devices, readings := listener.means())
+        self._add(*findings_of_channels(self._file, devices, loop))
         self._look_at_zero(readings)
         found.clocks, findings = listener.clocks()
         self._add(*findings, *findings_of_dates(self._file, request.today))

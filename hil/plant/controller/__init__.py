@@ -3,8 +3,9 @@
 One place for the emulated RMCU on the wire, for predictions and for tuning.
 """
 
+from hil.core.controller_bounds import LARGEST_TORQUE_NM
 from hil.plant.controller.control import control
 from hil.plant.controller.memory import Memory
-from hil.plant.controller.parameters import LARGEST_TORQUE_NM, build, in_range
+from hil.plant.controller.parameters import build, in_range
 
 __all__ = ["LARGEST_TORQUE_NM", "Memory", "build", "control", "in_range"]

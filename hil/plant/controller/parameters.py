@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from hil.core.controller_bounds import LARGEST_TORQUE_NM, SAMPLE_TIMES_S
 from hil.plant.controller.driving_force_control import DrivingForceControl
 from hil.plant.controller.driving_force_observer import DrivingForceObserver
 from hil.plant.controller.memory import SAMPLE_TIME, TORQUE_LIMIT, Memory
 from hil.plant.controller.wheel_speed_control import Notch, PhaseLead, SpeedFilter, WheelSpeedControl
 
 OK, UNKNOWN_INDEX, OUT_OF_RANGE, NOT_OFF, INCOMPLETE = range(5)
-LARGEST_TORQUE_NM = 300.0
 COEFFICIENTS = 8
 
 
@@ -22,7 +22,7 @@ def in_range(name: str, value: float) -> bool:
     if name == "torque_limit":
         return 0.0 < value <= LARGEST_TORQUE_NM
     if name == "sample_time":
-        return 1e-4 <= value <= 1e-2
+        return SAMPLE_TIMES_S[0] <= value <= SAMPLE_TIMES_S[1]
     return True
 
 

@@ -7,6 +7,7 @@ import pytest
 from hil.analysis.tuning import draws_of, with_values
 from hil.campaign import Simulations, load_setting
 from hil.core.controller import load_controller
+from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.engine.prediction import predict
 from test_plans import judge
@@ -63,6 +64,15 @@ def test_variables_of_the_plan_and_effects_are_varied(tmp_path):
     assert len(set(peaks)) == 4
 
 
+def test_an_effect_that_is_varied_may_be_what_differs(tmp_path):
+    numbers = "".join(
+        f"  effect.wheel_order_disturbance.{p.name}: [{max(p.lower, min(1.0, p.upper))}]\n"
+        for p in EFFECTS["wheel_order_disturbance"].parameters
+    )
+    text = OWN + f"draws: 2\ntolerance: {{order_phase: true}}\nvary:\n{numbers}"
+    assert len(load_setting(written(tmp_path, text)).cases) == 2
+
+
 def test_a_simulation_that_fails_is_a_row(tmp_path, monkeypatch):
     simulations = Simulations(load_setting(written(tmp_path, OWN)))
 
@@ -91,7 +101,13 @@ def test_the_example_of_the_page_is_a_campaign(tmp_path):
         (OWN + "controller: fase_stabilization", "did you mean 'phase_stabilization'?"),
         (OWN + "criteria: [gain.peak]", "has no criterion 'gain.peak'"),
         (OWN + "criteria: [phase.overshoot_shaft_torque]", "nothing could pass"),
-        (OWN + "draws: 1000000\nvary: {controller.lead_deg: [1, 2]}", "2000000 simulations, at most"),
+        (
+            OWN + "draws: 1000000\nvary: {controller.lead_deg: [1, 2]}",
+            "2000000 simulations (1000000 cars × 2 values",
+        ),
+        (OWN + "draws: 5", "line 3, key 'draws': 5 cars are to be drawn, but nothing differs"),
+        (OWN + "draws: 5\ntolerance: {vehicle_inertia: 0}", "nothing differs"),
+        (OWN + "draws: 5\ntolerance:\n  viscous_drag: 0.1", "line 5, key 'tolerance.viscous_drag'"),
         ("name: own\nplan: identification", "nothing could pass"),
         ("name: own\nplan: nowhere", "there is no plan 'nowhere'"),
         (CAMPAIGN + "bench: nowhere", "nowhere"),

@@ -84,3 +84,10 @@ def test_the_controller_file_is_looked_at_before_anything_is_predicted(tmp_path,
     (tmp_path / "plan.yaml").write_text(PLAN.replace("phase_stabilization", "none"))
     assert guarded(["check", str(tmp_path / "plan.yaml")]) == 2
     assert "no such file" in capsys.readouterr().err
+
+
+def test_driving_torque_on_held_wheels_is_no_loop_of_the_table(tmp_path, capsys):
+    held = PLAN.replace("LIMIT", "400").replace("driving_torque,", "driving_torque, load: speed,")
+    (tmp_path / "quick.yaml").write_text(held)
+    guarded(["check", str(tmp_path / "quick.yaml")])
+    assert "the dynos hold the speed (load: speed, segment 's')" in capsys.readouterr().err

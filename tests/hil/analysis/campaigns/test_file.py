@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.analysis.campaigns import (
+    MOST_VALUES,
     axes_of,
     campaign_from_text,
     campaign_schema,
@@ -62,6 +63,11 @@ def test_the_shipped_ones_can_be_read():
         ("vary: {model.a: {from: 1, to: 2, count: 1}}\n", "key 'vary.model.a.count'"),
         ("tolerance: {tyre_stifness: 0.1}\n", "did you mean 'tyre_stiffness'?"),
         ("tolerance: {tyre_stiffness: 10}\n", "from 0 to below 1, 0.1 for 10 %"),
+        ("tolerance:\n  tyre_stiffness: '0.1'\n", "line 4, key 'tolerance.tyre_stiffness': '0.1' is no"),
+        ("tolerance: {tyre_stiffness: true}\n", "True is no half width"),
+        ("tolerance: {dead_time_s: '0.1'}\n", "'0.1' must be a number"),
+        ("vary: {model.a: {from: -1.0e+308, to: 1.0e+308, count: 3}}\n", "wider than numbers are, 1.8e308"),
+        ("vary: {model.a: {from: 2, to: 2, count: 3}}\n", "3 values from 2 to 2 do not differ"),
         ("drws: 3\nvary: 4\n", "2 mistakes"),
     ],
 )
@@ -115,6 +121,24 @@ def test_controllers_are_found_beside_the_file_and_among_the_built_in(tmp_path):
     assert controller_file(file, "phase_stabilization").is_file()
     with pytest.raises(BadInputError, match="there is no controller file 'ow'"):
         controller_file(file, "ow")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("vary: {model.a: [" + "1, " * MOST_VALUES + "2]}\n", "100001 values, at most 100000 are taken"),
+        ("draws: 1000\ncontrollers: [a, b]\nvary: {model.a: {from: 1, to: 2, count: 501}}\n",
+         "1002000 simulations (1000 cars × 501 values of model.a × 2 controllers), at most 1000000 are made"),
+        ("vary:\n" + "".join(f"  model.a{n}: {{from: 1, to: 2, count: 100000}}\n" for n in range(1000)),
+         "about 1e5000 simulations"),
+    ],
+)  # fmt: skip
+def test_sizes_are_bounded_before_anything_is_made(text, said):
+    with pytest.raises(BadInputError) as error:
+        read(text)
+    assert said in error.value.what
+    assert "line 3" in error.value.where or "line 5" in error.value.where
+    assert error.value.fix
 
 
 @given(st.text(max_size=60))

@@ -18,7 +18,7 @@ from hil.analysis.control_design import (
     lead,
     loop_grid,
 )
-from hil.core.controller import Notch, Wsc
+from hil.core.controller import Lead, Notch, Wsc
 from hil.core.errors import BadInputError
 from hil.core.model import TransferFunction
 from tests.hil.analysis import paper_plant
@@ -30,9 +30,13 @@ PARTS = [None, lead(36, 40), lead(50, 25, "centre"), Notch(frequency_hz=10.6, wi
 
 
 def blocks(gain: float, part: object) -> tuple[TransferFunction, ...]:
-    name = {"Lead": "lead", "Notch": "notch"}.get(type(part).__name__)
-    parts = {name: part} if name else {}
-    wsc = Wsc(proportional_gain=gain, integral_gain=0.15 * gain, filter_time_constant_s=0.05, **parts)
+    wsc = Wsc(
+        proportional_gain=gain,
+        integral_gain=0.15 * gain,
+        filter_time_constant_s=0.05,
+        lead=part if isinstance(part, Lead) else None,
+        notch=part if isinstance(part, Notch) else None,
+    )
     return feedback_functions(wsc)
 
 

@@ -203,3 +203,34 @@ def test_trade_off_rises_with_the_phase(paper_design: Design) -> None:
     at_forty = int(np.flatnonzero(chart.frequencies_hz == 40)[0])
     assert np.all(np.diff(chart.phase_deg[:, at_forty]) > 0)
     assert chart.sensitivity_peak.shape == chart.phase_deg.shape
+
+
+@pytest.mark.parametrize(("stiffness", "said"), [(1e12, "diverges"), (1e8, "Hz lies above 500 Hz")])
+@pytest.mark.parametrize("stabilisation", ["phase", "gain"])
+def test_a_model_that_no_control_can_act_on_is_refused_with_its_file(stiffness, said, stabilisation):
+    model = Model("three_inertia", {**THREE, "shaft_stiffness": stiffness}, source="mine.toml")
+    with pytest.raises(BadInputError, match=said) as refused:
+        design(model, DesignSpec(stabilisation=stabilisation))
+    assert refused.value.where == "mine.toml"
+
+
+def test_what_lies_outside_of_the_data_is_said(paper_model: Model) -> None:
+    peak_hz = design(paper_model, DesignSpec()).loop("phase").margins.sensitivity_peak_hz
+    assert 30 < peak_hz < 100
+    for band, said in (([0.05, 30.0], True), ([1e-3, 400.0], False), (["x", 30.0], False), (None, False)):
+        found = design(replace(paper_model, meta={} if band is None else {"band_hz": band}), DesignSpec())
+        notes = [note for note in found.notes if "outside of the data" in note]
+        assert bool(notes) == said
+        assert all(f"|S|max at {peak_hz:.3g} Hz" in note for note in notes)
+
+
+def test_a_chain_is_drawn_from_its_standard_errors() -> None:
+    assert "carries no uncertainty" in design(Model("three_inertia", THREE), DesignSpec()).robustness.source
+    peaks = []
+    for share in (1e-6, 0.05):
+        stated = {"standard_errors": {name: share * value for name, value in THREE.items()}}
+        found = design(Model("three_inertia", THREE, meta=stated), DesignSpec())
+        assert "the chain's standard errors" in found.robustness.source
+        peaks.append(found.robustness.sensitivity_peak / found.loop("phase").margins.sensitivity_peak)
+    assert peaks[0] == pytest.approx(1.0, rel=1e-2)
+    assert peaks[1] > 1.02

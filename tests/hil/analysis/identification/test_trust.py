@@ -188,3 +188,27 @@ def test_one_output_that_is_explained_is_enough_to_go_on() -> None:
     found = judge(frf, evaluate(frf, 5, integrator=True))
     assert found.verdict == "doubtful"
     assert found.misfit[OUTPUTS[2]] > 0.5
+
+
+def test_frequencies_of_comfort_without_coherence_are_said() -> None:
+    frf = exact(
+        np.array([paper_plant.response(n, exact(np.ones((3, 400), complex)).frequency_hz) for n in OUTPUTS])
+    )
+    taken = evaluate(frf, 5, integrator=True)
+    assert judge(frf, taken).unseen == ()
+    for dip_hz, said in ((10.0, True), (4.0, False), (25.0, False)):
+        coherence = np.where(np.abs(frf.frequency_hz / dip_hz - 1) < 0.05, 0.4, 1.0)
+        found = judge(replace(frf, coherence=np.tile(coherence, (3, 1))), taken)
+        assert bool(found.unseen) == said
+        assert all("below 0.5 at 9.5" in text and "8-20 Hz" in text for text in found.unseen)
+
+
+@pytest.mark.slow
+def test_an_identification_on_the_bench_says_where_wheel_orders_cover_the_input(tmp_path: Path) -> None:
+    noise = 0.2 * np.sin(2 * np.pi * 10.0 * STEP * np.arange(len(CHIRP)))
+    recording = paper_plant.recording(CHIRP)
+    loud = {name: recording[name] + np.std(recording[name]) * 20 * noise for name in OUTPUTS}
+    found = identified(replace(recording, channels={**recording.channels, **loud, INPUT: CHIRP}))
+    assert any("8-20 Hz" in doubt for doubt in found.doubts)
+    assert found.physical is not None
+    assert found.physical.meta["band_hz"] == found.model.meta["band_hz"]

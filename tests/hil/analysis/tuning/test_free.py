@@ -30,6 +30,8 @@ def test_the_shipped_file_frees_lead_pole_and_filters():
         ("[free]\nlead_deg = [0, 1]\n[weights]\nx = 0\n", "above 0"),
         ("[free]\nlead_deg = [0, 1]\n[tolerance]\nvehicle_inertia = 1.5\n", "below 1"),
         ("[free]\nlead_deg = [0, 1]\n[tolerance]\nmass = 0.1\n", "unknown key"),
+        ("[free]\nlead_deg = [0, '1']\n", "line 2"),
+        ("[free]\nlead_deg = [0, 1]\n[tolerance]\nvehicle_inertia = '0.1'\n", "line 4"),
         ("where = 'x'\n[free]\nlead_deg = [0, 1]\n", "unknown key"),
         ("free = 3\n", "free"),
         ("[free\n", "not a TOML file"),

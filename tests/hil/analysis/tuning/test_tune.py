@@ -5,7 +5,7 @@ import itertools
 
 import pytest
 
-from hil.analysis.tuning import Effort, front_of, refuse_model, tune
+from hil.analysis.tuning import Effort, Tuning, front_of, refuse_model, tune
 from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, Model
 from tests.hil.analysis.tuning.trials import FREE, MODEL, trial_of
@@ -39,6 +39,42 @@ def test_a_search_that_is_stopped_keeps_the_best_so_far():
     found = tune(trial_of(), effort=QUICK, processes=1, stopped=lambda: next(asked) > 1)
     assert found.ended == "stopped"
     assert found.chosen.worst.worst >= found.start.worst.worst
+
+
+def test_a_search_on_cars_that_is_stopped_compares_on_those_that_it_had_got_to():
+    seen: list[str] = []
+    trial = trial_of(draws=6)
+    found = tune(
+        trial,
+        effort=Effort(starts=0, far=2, near=1, joins=6, joining=2),
+        processes=1,
+        show=lambda text, share: seen.append(text),
+        stopped=lambda: any("near, 3 cars:" in text for text in seen),
+    )
+    assert found.ended == "stopped"
+    for one in (found.chosen, found.start):
+        assert [tried.draw for tried in one.tried] == [0, 1, 2]
+    assert [draw.number for draw in found.trial.draws] == [0, 1, 2]
+    assert found.trial.draws[0].model == MODEL
+    assert {draw.seed for draw in found.trial.draws} < {draw.seed for draw in trial.draws}
+    again = found.trial.tried(found.chosen.values, 2)
+    assert again.margins == found.chosen.tried[2].margins
+    assert found.chosen.worst.worst >= found.start.worst.worst
+
+
+def test_a_start_that_keeps_the_limits_is_the_best_so_far_where_nothing_else_does():
+    asked = itertools.count()
+    flat = "[free]\nlead_deg = [0.0, 0.1]\n[limits]\nsensitivity_peak = {}\n"
+
+    def stopped(largest: float) -> Tuning:
+        trial = trial_of(flat.format(largest))
+        return tune(trial, effort=QUICK, processes=1, stopped=lambda: next(asked) > 1)
+
+    found = stopped(2.0)
+    assert found.chosen.controller.wsc == found.trial.start.wsc
+    assert found.chosen.worst.feasible
+    with pytest.raises(BadInputError, match="stopped before a controller was found"):
+        stopped(1.01)
 
 
 def test_no_candidate_that_was_tried_beats_the_chosen_in_every_criterion():

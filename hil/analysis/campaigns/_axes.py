@@ -1,0 +1,120 @@
+"""Values that a campaign file gives what it varies, as lists or as ranges, and how many there may be."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Literal
+
+import numpy as np
+from pydantic import Field
+
+from hil.core.errors import BadInputError
+from test_plans.building import Strict, brief, build, list_at, mapping_at
+from test_plans.mistakes import PlanMistakes
+from test_plans.yaml_document import Document, KeyPath
+
+#: Beyond it the table of results no longer fits the memory of a small machine.
+MOST_SIMULATIONS = 1_000_000
+MOST_VALUES = 100_000
+_EXAMPLE = "[20, 30, 40], or {from: 20, to: 40, count: 5}"
+_LONGEST_NUMBER = 15  # digits that are written out
+
+
+class Span(Strict):
+    """Evenly spaced values, ends included; `scale: log` spaces their logarithms."""
+
+    from_: float = Field(alias="from", description="first value")
+    to: float = Field(description="last value")
+    count: int = Field(ge=2, le=MOST_VALUES, description="how many values, both ends included")
+    scale: Literal["linear", "log"] = Field(default="linear", description="what is spaced evenly")
+
+    def __len__(self) -> int:
+        return self.count
+
+    def values(self, document: Document, name: str) -> tuple[float, ...]:
+        """The values of what is varied by `name`.
+
+        Raises:
+            BadInputError: they do not differ, or lie too far from each other for a number; line, key.
+        """
+        space = np.geomspace if self.scale == "log" else np.linspace
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = tuple(float(f"{value:.12g}") for value in space(self.from_, self.to, self.count))
+        what = ""
+        if not all(map(math.isfinite, found)):
+            what = f"{self.from_:g} to {self.to:g} is wider than numbers are, 1.8e308"
+        elif len(set(found)) < len(found):
+            what = f"{self.count} values from {self.from_:g} to {self.to:g} do not differ in 12 digits"
+        if what:
+            where = document.place(("vary", name))
+            raise BadInputError(what, where=where, fix=f"write: {_EXAMPLE}")
+        return found
+
+
+def spans_at(value: object, document: Document) -> dict[str, Span | tuple[float, ...]]:
+    """What a campaign file varies by name: values, or a range whose values are not made yet.
+
+    Raises:
+        BadInputError: all that is wrong with it: line, key, and what to do.
+    """
+    example = "model.vehicle_inertia: {from: 200, to: 400, count: 5}"
+    table = {} if value is None else mapping_at(value, document, ("vary",), example)
+    mistakes, found = PlanMistakes(), {}
+    for name, entry in table.items():
+        with mistakes.collected():
+            path: KeyPath = ("vary", name)
+            found[name] = (
+                _span(entry, document, path) if isinstance(entry, dict) else _listed(entry, document, path)
+            )
+    mistakes.refuse()
+    return found
+
+
+def _span(entry: dict[str, object], document: Document, path: KeyPath) -> Span:
+    span = build(Span, entry, document, path)
+    if span.scale == "log" and min(span.from_, span.to) <= 0:
+        raise BadInputError(
+            "a logarithm needs values above 0",
+            where=document.place(path),
+            fix="from and to above 0, or scale: linear",
+        )
+    return span
+
+
+def _listed(entry: object, document: Document, path: KeyPath) -> tuple[float, ...]:
+    numbers = list_at(entry, document, path, _EXAMPLE)
+    if len(numbers) > MOST_VALUES:
+        what = f"{len(numbers)} values, at most {MOST_VALUES} are taken"
+        raise BadInputError(what, where=document.place(path), fix="give fewer of them")
+    for index, number in enumerate(numbers):
+        plain = isinstance(number, int | float) and not isinstance(number, bool)
+        if not plain or not math.isfinite(number):
+            where = document.place((*path, index))
+            raise BadInputError(f"{brief(number)} is no number", where=where, fix=f"write: {_EXAMPLE}")
+    if not 0 < len(set(numbers)) == len(numbers):
+        what = "a value stands twice" if numbers else "there are no values"
+        raise BadInputError(what, where=document.place(path), fix=f"write: {_EXAMPLE}")
+    return tuple(float(number) for number in numbers)
+
+
+def refuse_too_many(
+    spans: Mapping[str, Span | tuple[float, ...]], controllers: int, draws: int, document: Document
+) -> None:
+    """Refuse a file of too many simulations, before values are made or tried.
+
+    Raises:
+        BadInputError: says how many they are, what of, and what to do.
+    """
+    factors = {f"values of {name}": len(span) for name, span in spans.items()}
+    factors |= {"controllers": max(1, controllers), "cars": max(1, draws)}
+    count = math.prod(factors.values())
+    if count > MOST_SIMULATIONS:
+        shown = str(count) if count < 10**_LONGEST_NUMBER else f"about 1e{math.log10(count):.0f}"
+        largest = sorted(((many, name) for name, many in factors.items() if many > 1), reverse=True)
+        of = " × ".join(f"{many} {name}" for many, name in largest[:4]) + (" × …" if len(largest) > 4 else "")
+        raise BadInputError(
+            f"{shown} simulations ({of}), at most {MOST_SIMULATIONS} are made",
+            where=document.place(()) if not spans else document.place(("vary",)),
+            fix="vary less, or draw fewer cars: draws alone cover many dimensions at once",
+        )
