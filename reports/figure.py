@@ -14,6 +14,8 @@ from reports.labels import Label
 Array = npt.NDArray[np.float64]
 Range = tuple[float, float]
 
+_ROOM = 0.1  # of the height of the axes: a label of a level
+
 
 @dataclass(frozen=True)
 class Trace:
@@ -88,6 +90,26 @@ class Figure:
         """Axis title with unit."""
         tail = f" ({quantities.unit(self.y_unit)})" if self.y_unit else ""
         return Label(self.y_label.text, self.y_label.symbol, self.y_label.tail + tail)
+
+    @property
+    def shown_y(self) -> Range | None:
+        """The range of y; with levels and none given, so wide that lines and labels of levels have room."""
+        if self.y_range is not None or not self.levels or self.logarithmic:
+            return self.y_range
+        shown = [shown for trace in self.traces if (shown := self._visible(trace)).size]
+        values = [level.value for level in self.levels]
+        low = min([*values, *(float(y.min()) for y in shown)])
+        high = max([*values, *(float(y.max()) for y in shown)])
+        room = _ROOM * (high - low or 1.0)
+        return low - 0.5 * room, high + room
+
+    def label_above(self, level: Level) -> bool:
+        """Whether a level's label has room above its line, beside the next level."""
+        shown = self.shown_y
+        if shown is None:
+            return True
+        above = [one.value for one in self.levels if one.value > level.value]
+        return min([*above, shown[1]]) - level.value > 0.7 * _ROOM * (shown[1] - shown[0])
 
     def alternative_text(self) -> str:
         """What a reader who cannot see the figure should know."""

@@ -41,7 +41,9 @@ def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
         trim_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    figures = {f.id: plotly_figure(f) for section in report.sections for f in section.figures}
+    first = [report.summary.figure] if report.summary and report.summary.figure else []
+    drawn = [*first, *(figure for section in report.sections for figure in section.figures)]
+    figures = {figure.id: plotly_figure(figure) for figure in drawn}
     environment.filters["sentence"] = lambda text: Markup(sentence_html(text))
     page = environment.get_template("report.html.j2").render(
         c=report,
@@ -84,10 +86,12 @@ def input_texts(recording: Recording) -> list[tuple[str, str]]:
 def _contents(report: Content, has_texts: bool) -> list[tuple[str, str]]:
     entries = [
         ("verdict", "Summary" if report.banner.tone == "none" else "Verdict", True),
+        ("summary", "Margins", report.summary is not None),
         ("notes", "Notes", bool(report.notes)),
         ("criteria", "Criteria", report.criteria is not None),
         ("statistics", "Statistics", bool(report.channels)),
         *((section.id, section.title, True) for section in report.sections),
+        ("run", "Recording" if report.banner.tone == "none" else "Run and device", True),
         ("provenance", "Provenance", True),
         ("segments", "Segments", bool(report.segments)),
         ("events", "Events", bool(report.events)),

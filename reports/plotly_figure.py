@@ -11,22 +11,30 @@ import numpy as np
 import numpy.typing as npt
 
 from reports import quantities, style
+from reports.covering import Outline, outlines
 from reports.envelope import envelope
 from reports.figure import Figure, Mark, Trace
 
 #: Share of the axes' height over which the labels of bands alternate.
 _BAND_LABEL_Y = 0.985
+#: Share of the time axis below which curves are shown in place of envelopes.
+_ZOOMED = 0.2
 
 
 def plotly_figure(figure: Figure) -> dict[str, Any]:
     """`data` and `layout` for Plotly.newPlot; lines and shapes carry their role in `meta` or `name`."""
     shapes, annotations = _bands(figure)
     level_shapes, level_annotations = _levels(figure)
+    covering = outlines(figure)
+    lines = [{**_trace(t, figure), "visible": n not in covering} for n, t in enumerate(figure.traces)]
+    edges = [edge for n, found in covering.items() for edge in _edges(figure.traces[n], found, figure)]
+    marks = list(map(_mark, figure.marks))
     return {
-        "data": [*(_trace(trace, figure) for trace in figure.traces), *map(_mark, figure.marks)],
+        "data": [*lines, *edges, *marks],
+        "covering": _covering(covering, len(lines), len(edges)),
         "layout": {
             "xaxis": _axis(figure.x_title, figure.x_range, figure.logarithmic),
-            "yaxis": _axis(figure.y_title.as_html(), figure.y_range, figure.logarithmic),
+            "yaxis": _axis(figure.y_title.as_html(), figure.shown_y, figure.logarithmic),
             "shapes": shapes + level_shapes,
             "annotations": annotations + level_annotations,
             "showlegend": len(figure.traces) > 1,
@@ -50,6 +58,29 @@ def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
             "dash": trace.dash,
         },
         "hovertemplate": f"%{{y:.4~g}}{quantities.THIN}{unit} at %{{x:.4~g}}{quantities.THIN}{x_unit}",
+    }
+
+
+def _edges(trace: Trace, outline: Outline, figure: Figure) -> list[dict[str, Any]]:
+    """The envelope of a curve: its lower edge, and its upper one with the shade between them."""
+    whole = _trace(trace, figure) | {"x": _packed(outline.x), "legendgroup": trace.label.as_html()}
+    whole["line"] = {"width": 1.0}
+    unit = html.escape(quantities.unit(figure.y_unit))
+    said = f"%{{y:.4~g}}{quantities.THIN}{unit}"
+    low = {"y": _packed(outline.low), "showlegend": False, "hovertemplate": f"lowest {said}"}
+    high = {"y": _packed(outline.high), "fill": "tonexty", "hovertemplate": f"highest {said}"}
+    return [whole | low, whole | high]
+
+
+def _covering(covering: dict[int, Outline], lines: int, edges: int) -> dict[str, Any] | None:
+    """Numbers of the traces that are shown as envelopes, and as curves once the page is zoomed in."""
+    if not covering:
+        return None
+    span = min(float(found.x[-1] - found.x[0]) for found in covering.values())
+    return {
+        "curves": list(covering),
+        "envelopes": list(range(lines, lines + edges)),
+        "curves_below": span * _ZOOMED,
     }
 
 
@@ -127,10 +158,11 @@ def _levels(figure: Figure) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]
         }
         for level in figure.levels
     ]
+    sides = [(one, "bottom" if figure.label_above(one) else "top") for one in figure.levels]
     annotations = [
         _annotation(level.label, f"series-{level.role}")
-        | {"xref": "paper", "yref": "y", "x": 1, "y": level.value, "xanchor": "right", "yanchor": "bottom"}
-        for level in figure.levels
+        | {"xref": "paper", "yref": "y", "x": 1, "y": level.value, "xanchor": "right", "yanchor": side}
+        for level, side in sides
     ]
     return shapes, annotations
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from reports import style
+from reports.covering import Outline, outlines
 from reports.envelope import envelope
 from reports.figure import Figure
 from reports.labels import Label
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
 _LEGEND_ROW_MM = 3.4
 _MOST_LEGEND_ROWS = 6
+_PLATE = {"facecolor": "white", "alpha": 0.85, "linewidth": 0, "pad": 0.6}  # no line strikes a label through
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
 
@@ -73,7 +75,11 @@ def _axes_width_mm(figure: Figure) -> float:
 
 def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
     lines = []
-    for trace in figure.traces:
+    covering = outlines(figure)
+    for number, trace in enumerate(figure.traces):
+        if number in covering:
+            lines.append(_outlined(axes, covering[number], style.SERIES[trace.role].light))
+            continue
         points = style.POINTS_ON_PAPER * (2 if figure.wide else 1)
         x, y = envelope(trace.x, trace.y, points, logarithmic=figure.logarithmic)
         color = style.SERIES[trace.role].light
@@ -86,13 +92,21 @@ def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
     axes.margins(x=0)
     if figure.x_range:
         axes.set_xlim(figure.x_range)
-    if figure.y_range:
-        axes.set_ylim(figure.y_range)
+    if figure.shown_y:
+        axes.set_ylim(figure.shown_y)
     axes.set_xlabel(Label(figure.x_title).as_mathtext(), labelpad=2)
     axes.set_ylabel(figure.y_title.as_mathtext(), va="top")
     axes.yaxis.set_label_coords(-(_LEFT_MM - 0.5) / _axes_width_mm(figure), 0.5)  # one edge for all figures
     _mark(axes, figure)
     return lines
+
+
+def _outlined(axes: Axes, outline: Outline, color: str) -> Line2D:
+    """The envelope of a curve, both edges and a light shade between them."""
+    axes.fill_between(outline.x, outline.low, outline.high, color=color, alpha=0.25, linewidth=0)
+    axes.plot(outline.x, outline.low, color=color, linewidth=0.6)
+    (upper,) = axes.plot(outline.x, outline.high, color=color, linewidth=0.6)
+    return upper
 
 
 def _mark(axes: Axes, figure: Figure) -> None:
@@ -121,8 +135,10 @@ def _mark(axes: Axes, figure: Figure) -> None:
             Label(level.label).as_mathtext(),
             transform=axes.get_yaxis_transform(),
             ha="right",
-            va="bottom",
+            va="bottom" if figure.label_above(level) else "top",
             color=color,
+            bbox=_PLATE,
+            zorder=6,
         )
     low, high = axes.get_ylim()
     if not (np.isfinite(low) and np.isfinite(high)):
