@@ -23,7 +23,7 @@ _MARKS = {"fail": " ✗", "undecided": " ?", "error": " !", "not_judged": " –"
 
 
 def comparison_html(found: Comparison) -> str:
-    """The page: one file without scripts, figures drawn into it."""
+    """The page: one file with interactive figures."""
     return page_html(_page(found))
 
 

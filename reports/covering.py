@@ -29,7 +29,7 @@ class Outline:
 
 def outlines(figure: Figure) -> dict[int, Outline]:
     """By the number of the trace what is drawn in its place; empty unless two or more cover each other."""
-    if figure.logarithmic or len(figure.traces) < 2:
+    if figure.logarithmic or figure.logarithmic_x or len(figure.traces) < 2:
         return {}
     spans = [(t.y[np.isfinite(t.y)].min(), t.y[np.isfinite(t.y)].max()) for t in figure.traces if _drawn(t)]
     if not spans:
@@ -44,7 +44,7 @@ def outlines(figure: Figure) -> dict[int, Outline]:
 
 
 def _drawn(trace: Trace) -> bool:
-    return int(np.isfinite(trace.y).sum()) > 4 * STRETCHES
+    return not trace.points and int(np.isfinite(trace.y).sum()) > 4 * STRETCHES
 
 
 def _outline(trace: Trace, figure: Figure, height: float) -> Outline | None:

@@ -21,7 +21,7 @@ def diagnosis_documents(found: Diagnosis, title: str, origin: Origin | None = No
 
 
 def diagnosis_html(found: Diagnosis, title: str, origin: Origin | None = None) -> str:
-    """The page: one file without scripts, figures drawn into it."""
+    """The page: one file with interactive figures."""
     return page_html(_page(found, title, origin))
 
 

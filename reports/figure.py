@@ -21,6 +21,7 @@ _ROOM = 0.1  # of the height of the axes: a label of a level
 class Trace:
     """One line: `x`, `y` are 1-D of one length; NaN in `y` is a gap. `role` names a tone of the style.
 
+    `points` draws samples instead of a line; `spread` is the lower and the upper edge of a shade around it.
     `width` is how many times as wide as usual it is: a wide line shows beside a thin one that lies on it.
     """
 
@@ -30,6 +31,8 @@ class Trace:
     role: str
     dash: str = "solid"
     width: float = 1.0
+    points: bool = False
+    spread: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Figure:
-    """One pair of axes. Ranges of None are chosen from the data."""
+    """One pair of axes. Ranges of None are chosen from the data; `logarithmic` are both axes, or x alone."""
 
     id: str
     title: Label
@@ -77,6 +80,7 @@ class Figure:
     x_range: Range | None = None
     y_range: Range | None = None
     logarithmic: bool = False
+    logarithmic_x: bool = False
     caption: str = ""
     wide: bool = False
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import base64
 import html
+import json
 import math
+import re
+from importlib import resources
 from typing import Any
 
 import numpy as np
@@ -13,8 +16,9 @@ import numpy.typing as npt
 from reports import quantities, style
 from reports.covering import Outline, outlines
 from reports.envelope import envelope
-from reports.figure import Figure, Mark, Trace
+from reports.figure import Band, Figure, Mark, Trace
 
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")
 #: Share of the axes' height over which the labels of bands alternate.
 _BAND_LABEL_Y = 0.985
 #: Share of the time axis below which curves are shown in place of envelopes.
@@ -27,13 +31,15 @@ def plotly_figure(figure: Figure) -> dict[str, Any]:
     level_shapes, level_annotations = _levels(figure)
     covering = outlines(figure)
     lines = [{**_trace(t, figure), "visible": n not in covering} for n, t in enumerate(figure.traces)]
+    spreads = [edge for trace in figure.traces for edge in _spread(trace, figure)]
     edges = [edge for n, found in covering.items() for edge in _edges(figure.traces[n], found, figure)]
     marks = list(map(_mark, figure.marks))
     return {
-        "data": [*lines, *edges, *marks],
+        "data": [*lines, *edges, *spreads, *marks],
         "covering": _covering(covering, len(lines), len(edges)),
         "layout": {
-            "xaxis": _axis(figure.x_title, figure.x_range, figure.logarithmic),
+            "xaxis": _axis(figure.x_title, figure.x_range, figure.logarithmic or figure.logarithmic_x)
+            | ({"dtick": "D2", "exponentformat": "none"} if figure.logarithmic_x else {}),
             "yaxis": _axis(figure.y_title.as_html(), figure.shown_y, figure.logarithmic),
             "shapes": shapes + level_shapes,
             "annotations": annotations + level_annotations,
@@ -43,12 +49,15 @@ def plotly_figure(figure: Figure) -> dict[str, Any]:
 
 
 def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
-    x, y = envelope(trace.x, trace.y, style.POINTS_ON_SCREEN, logarithmic=figure.logarithmic)
+    x, y = trace.x, trace.y
+    if not trace.points:
+        x, y = envelope(x, y, style.POINTS_ON_SCREEN, logarithmic=figure.logarithmic)
     unit = html.escape(quantities.unit(figure.y_unit))
     x_unit = html.escape(quantities.unit(figure.x_unit))
     return {
         "type": "scatter",
-        "mode": "lines",
+        "mode": "markers" if trace.points else "lines",
+        **({"marker": {"size": 4}} if trace.points else {}),
         "name": trace.label.as_html(),
         "meta": trace.role,
         "x": _packed(x),
@@ -59,6 +68,16 @@ def _trace(trace: Trace, figure: Figure) -> dict[str, Any]:
         },
         "hovertemplate": f"%{{y:.4~g}}{quantities.THIN}{unit} at %{{x:.4~g}}{quantities.THIN}{x_unit}",
     }
+
+
+def _spread(trace: Trace, figure: Figure) -> list[dict[str, Any]]:
+    """The shade around a line, such as a band of confidence, as two edges without width."""
+    if trace.spread is None:
+        return []
+    edge = _trace(trace, figure) | {"mode": "lines", "line": {"width": 0}, "showlegend": False}
+    edge |= {"x": _packed(trace.x), "hoverinfo": "skip", "hovertemplate": None}
+    low, high = ({"y": _packed(values)} for values in trace.spread)
+    return [edge | low, edge | high | {"fill": "tonexty"}]
 
 
 def _edges(trace: Trace, outline: Outline, figure: Figure) -> list[dict[str, Any]]:
@@ -134,13 +153,20 @@ def _bands(figure: Figure) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
         | {
             "xref": "x",
             "yref": "paper",
-            "x": (band.start + band.end) / 2,
+            "x": _middle(band, figure),
             "y": _BAND_LABEL_Y,
             "yanchor": "top",
         }
         for band in figure.bands
     ]
     return shapes, annotations
+
+
+def _middle(band: Band, figure: Figure) -> float:
+    """Where a label stands; plotly.js counts annotations of a logarithmic axis in powers of ten."""
+    if figure.logarithmic or figure.logarithmic_x:
+        return 0.5 * (math.log10(band.start) + math.log10(band.end))
+    return (band.start + band.end) / 2
 
 
 def _levels(figure: Figure) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
@@ -169,3 +195,18 @@ def _levels(figure: Figure) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]
 
 def _annotation(text: str, tone: str) -> dict[str, Any]:
     return {"text": html.escape(text), "showarrow": False, "font": {"size": 11}, "name": tone}
+
+
+def json_in_script(value: object) -> str:
+    """JSON that cannot end the script element that it stands in."""
+    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+
+
+def plotly_script() -> str:
+    """The library, without control characters: HTML forbids them, JavaScript reads them spelled out too."""
+    script = resources.files("reports").joinpath("templates/plotly.min.js")  # a wheel has it
+    if not script.is_file():
+        script = resources.files("plotly").joinpath("package_data/plotly.min.js")
+    text = script.read_text(encoding="utf-8")
+    return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)

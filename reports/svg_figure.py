@@ -80,6 +80,13 @@ def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
         if number in covering:
             lines.append(_outlined(axes, covering[number], style.SERIES[trace.role].light))
             continue
+        if trace.spread is not None:
+            tone = style.SERIES[trace.role].light
+            axes.fill_between(trace.x, *trace.spread, color=tone, alpha=0.25, linewidth=0)
+        if trace.points:
+            tone = style.SERIES[trace.role].light
+            lines += axes.plot(trace.x, trace.y, "o", color=tone, markersize=1.6, markeredgewidth=0, zorder=4)
+            continue
         points = style.POINTS_ON_PAPER * (2 if figure.wide else 1)
         x, y = envelope(trace.x, trace.y, points, logarithmic=figure.logarithmic)
         color = style.SERIES[trace.role].light
@@ -89,6 +96,8 @@ def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
     if figure.logarithmic:
         axes.set_xscale("log")
         axes.set_yscale("log")
+    elif figure.logarithmic_x:
+        _plain_decades(axes)
     axes.margins(x=0)
     if figure.x_range:
         axes.set_xlim(figure.x_range)
@@ -99,6 +108,16 @@ def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
     axes.yaxis.set_label_coords(-(_LEFT_MM - 0.5) / _axes_width_mm(figure), 0.5)  # one edge for all figures
     _mark(axes, figure)
     return lines
+
+
+def _plain_decades(axes: Axes) -> None:
+    """A logarithmic x axis whose numbers are written out: 0.1, 1, 10."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _outlined(axes: Axes, outline: Outline, color: str) -> Line2D:
@@ -114,7 +133,7 @@ def _mark(axes: Axes, figure: Figure) -> None:
     for band in figure.bands:
         axes.axvspan(band.start, band.end, color=band_colour, linewidth=0, zorder=0)
         axes.text(
-            (band.start + band.end) / 2,
+            (band.start * band.end) ** 0.5 if figure.logarithmic_x else (band.start + band.end) / 2,
             0.985,
             Label(band.label).as_mathtext(),
             transform=axes.get_xaxis_transform(),
@@ -122,6 +141,8 @@ def _mark(axes: Axes, figure: Figure) -> None:
             va="top",
             color=ink,
             clip_on=True,
+            bbox=_PLATE | {"facecolor": band_colour},
+            zorder=6,
         )
     for mark in figure.marks:
         color = style.SERIES[mark.role].light

@@ -19,7 +19,7 @@ _SHAFT_TORQUE = "shaft_torque_nm"
 
 
 def explanation_html(found: Explanation) -> str:
-    """The page: one file without scripts, figures drawn into it."""
+    """The page: one file with interactive figures."""
     return page_html(_page(found))
 
 

@@ -25,7 +25,7 @@
       ? { ...shape, fillcolor: tone("band") }
       : { ...shape, line: { ...shape.line, color: tone(name) } });
     const annotations = figure.layout.annotations.map(({ name, ...note }) =>
-      ({ ...note, font: { ...note.font, color: tone(name) }, ...(name !== "quiet" && { bgcolor: tone("page") + "d9", borderpad: 1 }) }));
+      ({ ...note, font: { ...note.font, color: tone(name) }, bgcolor: tone(name === "quiet" ? "band" : "page") + "d9", borderpad: 1 }));
     const layout = {
       ...figure.layout, ...size, shapes, annotations,
       autosize: !size, xaxis: axis(figure.layout.xaxis), yaxis: axis(figure.layout.yaxis),

@@ -97,8 +97,9 @@ def test_the_page_says_what_was_found_and_links_to_every_section(found: Diagnosi
     links = [a.get("href").removeprefix("#") for a in page.xpath("//nav//a")]
     assert links == [part.id for part in parts(found)]
     assert all(page.get_element_by_id(link).tag == "section" for link in links)
-    assert len(page.xpath("//figure/img[starts-with(@src, 'data:image/svg+xml') and @alt]")) == 7
-    assert not page.xpath("//script")
+    assert len(page.xpath("//figure/img[starts-with(@src, 'data:image/svg+xml') and @alt]")) == 1
+    assert len(page.xpath("//figure/div[@class='plot' and @aria-label]")) == 6
+    assert not page.xpath("//script[@src] | //link")
 
 
 def test_maps_stand_in_pairs_and_shade_what_is_above_the_noise(found: Diagnosis) -> None:
