@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+
 import numpy as np
 
 from hil.analysis.comparison import ComparedRun, Comparison, CriterionRow, difference
@@ -9,7 +12,7 @@ from hil.core.conventions import COMFORT_BAND_HZ
 from hil.core.result import Segment
 from reports import quantities, style
 from reports.figure import Band, Figure, Trace
-from reports.labels import Label, channel_label, channel_unit
+from reports.labels import Label, channel_label, channel_unit, criterion_title
 from reports.parts import Page, Part, Table, page_html, page_pdf
 from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.step_figures import SPECTRUM_WINDOW_S, controller_name
@@ -17,6 +20,7 @@ from reports.stretch import cut, line
 
 _ROLES = ("gain", "phase", "third", "fourth", "fifth", "reference")
 _FIRST_SECONDS = 2.0
+_ROWS = 12  # of the first screen
 _SPECTRUM_TO_HZ = 30.0
 _SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
 _MARKS = {"fail": " ✗", "undecided": " ?", "error": " !", "not_judged": " –"}
@@ -41,7 +45,7 @@ def lead(found: Comparison) -> str:
         if distance is not None
     ]
     if not told:
-        return f"No criterion has a value in every run; everything is told against {first.name}."
+        return f"No criterion has a value in every run; the reference is {first.name}."
     return f"Mean distance of the criteria from {first.name}: {', '.join(told)}."
 
 
@@ -59,12 +63,49 @@ def _page(found: Comparison) -> Page:
     return Page(
         kind="Runs of one plan side by side",
         title=f"{plan}: {len(found.runs)} runs",
-        headline=f"Told against {found.runs[0].name}",
+        headline=f"Reference run: {found.runs[0].name}",
         tone="quiet",
         lead=lead(found),
         notes=found.notes,
         parts=tuple(_parts(found)),
+        first=_first(found),
     )
+
+
+def _first(found: Comparison) -> Part | None:
+    """The criteria that differ most from the first run's, and the response of the first of them."""
+    names = tuple(run.name for run in found.runs)
+    ranked = sorted(found.criteria, key=_difference_rank)
+    if not ranked:
+        return None
+    rows = tuple(
+        (
+            criterion_title(row.id),
+            *(value_text(row, run) for run in range(len(names))),
+            quantities.unit("" if row.unit == "1" else row.unit),
+            _limit(row.limit),
+        )
+        for row in ranked[:_ROWS]
+    )
+    table = Table(("criterion", *names, "unit", "limit"), rows, 1, 1 + len(names))
+    segments = {segment.id: segment for segment in found.runs[0].result.segments}
+    drawn = segments.get(ranked[0].id.partition(".")[0])
+    figures = overlay(found.runs, drawn)[:1] if drawn else ()
+    text = f"Largest difference from {names[0]} first."
+    wide = tuple(replace(figure, wide=True) for figure in figures)
+    return Part("summary", "Criteria by difference", text, (table,), figures=wide)
+
+
+def _difference_rank(row: CriterionRow) -> tuple[bool, float]:
+    """The plan's own criteria first, each by its largest difference."""
+    return not row.absolute, -max((abs(one or 0.0) for one in row.relative), default=0.0)
+
+
+def _limit(text: str) -> str:
+    """'≥ -10 ≤ 10' as '−10 to 10'."""
+    both = re.fullmatch(r"≥ (\S+) ≤ (\S+)", text)
+    joined = f"{both[1]} to {both[2]}" if both else text
+    return re.sub(r"(?<!\S)-(?=\d)", quantities.MINUS, joined)
 
 
 def _parts(found: Comparison) -> list[Part]:
@@ -111,7 +152,12 @@ def _runs(found: Comparison) -> Table:
 
 def _criteria(found: Comparison, names: tuple[str, ...]) -> Table:
     rows = [
-        (row.id, *(value_text(row, run) for run in range(len(names))), quantities.unit(row.unit), row.limit)
+        (
+            criterion_title(row.id),
+            *(value_text(row, run) for run in range(len(names))),
+            quantities.unit("" if row.unit == "1" else row.unit),
+            _limit(row.limit),
+        )
         for row in found.criteria
     ]
     return Table(("criterion", *names, "unit", "limit"), tuple(rows), 1, 1 + len(names))

@@ -186,11 +186,11 @@ def _orders(summary: Mapping[str, Any]) -> Table:
             quantities.quantity(100 * c["relative_excess"], "%", significant=3),
             quantities.number(c["whiteness"], significant=2),
             quantities.quantity(c["dead_time_s"] * 1e3, "ms"),
-            "taken" if c["chosen"] else "",
+            "chosen" if c["chosen"] else "",
         )
         for c in summary["orders"]
     )
-    return Table(("order", "held-out error", "beyond noise", "whiteness", "dead time", "choice"), rows, 1, 5)
+    return Table(("order", "held-out error", "beyond noise", "whiteness", "dead time", ""), rows, 1, 5)
 
 
 def _functions(summary: Mapping[str, Any], *, linear: bool) -> Table:
@@ -219,12 +219,12 @@ def _chain(summary: Mapping[str, Any]) -> tuple[Table, ...]:
                 f"{quantities.number(m['gain_db'], 2)} dB, {quantities.number(m['phase_deg'], 1)}°"
                 for m in one["misfit"].values()
             ),
-            "taken" if one["chosen"] else "",
+            "chosen" if one["chosen"] else "",
         )
         for one in summary["chains"]
     )
     heads = tuple(channel_label(output).text for output in outputs)
-    tables = [Table(("chain", *heads, "choice"), misfits, 1, 1 + len(heads))]
+    tables = [Table(("chain", *heads, ""), misfits, 1, 1 + len(heads))]
     for one in summary["chains"]:
         if one["chosen"]:
             errors = one["standard_errors"] or {}

@@ -34,10 +34,11 @@ class Table:
 
 @dataclass(frozen=True)
 class Cell:
-    """One field of a map: its text, and how dark it is from 0 (noise) to 1."""
+    """One field of a map: its text, how dark it is from 0 (noise) to 1, and whether it is negative."""
 
     text: str
     shade: float
+    negative: bool = False
 
     @property
     def level(self) -> int:
@@ -230,5 +231,6 @@ def _map_as_data(m: Map) -> dict[str, Any]:
 
 
 def _cell_as_data(cell: Cell) -> dict[str, Any]:
-    background, ink = shades.colours(cell.level, "light")
-    return {"text": cell.text, "level": cell.level, "background": background, "ink": ink}
+    background, ink = shades.colours(cell.level, "light", negative=cell.negative)
+    shade = f"{'below' if cell.negative else 'shade'}-{cell.level}"
+    return {"text": cell.text, "shade": shade, "background": background, "ink": ink}
