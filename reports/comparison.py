@@ -13,9 +13,10 @@ from hil.core.result import Segment
 from reports import quantities, style
 from reports.figure import Band, Figure, Trace
 from reports.labels import Label, channel_label, channel_unit, criterion_title
+from reports.members import controller_name
 from reports.parts import Page, Part, Table, page_html, page_pdf
 from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
-from reports.step_figures import SPECTRUM_WINDOW_S, controller_name
+from reports.step_figures import SPECTRUM_WINDOW_S
 from reports.stretch import cut, line
 
 _ROLES = ("gain", "phase", "third", "fourth", "fifth", "reference")

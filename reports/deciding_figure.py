@@ -13,7 +13,8 @@ from hil.core.result import CriterionResult, RunResult, Segment
 from reports import quantities
 from reports.figure import Figure, Level, Mark
 from reports.labels import Label
-from reports.step_figures import FIRST_SECONDS, Overlay, members
+from reports.members import members
+from reports.step_figures import FIRST_SECONDS, Overlay
 from reports.stretch import cut
 
 FIGURE_ID = "deciding"
@@ -38,7 +39,11 @@ def deciding_figure(recording: Recording, result: RunResult, criterion: Criterio
     else:
         figure = overlay.response("", channel)
         figure = figure and _with_limit(figure, recording, channel, shown, criterion)
-    return figure and replace(figure, id=FIGURE_ID)
+    if figure is None:
+        return None
+    if len(shown) == 1:  # dashes tell repeats of a controller from each other: here is one
+        figure = replace(figure, traces=tuple(replace(trace, dash="solid") for trace in figure.traces))
+    return replace(figure, id=FIGURE_ID)
 
 
 def _kind(segment: Segment) -> tuple[str, float]:
@@ -88,6 +93,12 @@ def _extreme(
     return Mark(when_s, value, label, role)
 
 
+def _as_chosen(limit: float, unit: str) -> str:
+    """A limit that somebody chose as written, another segment's value with four digits."""
+    chosen = float(f"{limit:.6g}") == limit
+    return quantities.nominal(limit, unit) if chosen else quantities.quantity(limit, unit)
+
+
 def _levels(
     figure: Figure, criterion: CriterionResult, metric: str, segment: Segment, *, downward: bool
 ) -> tuple[Level, ...]:
@@ -104,7 +115,7 @@ def _levels(
     of = f" ({criterion.below})" if criterion.below else f", {segment.id}"
     above = "reference + " if metric == "overshoot" else ""
     return tuple(
-        Level(at, f"Limit {above}{quantities.quantity(limit, criterion.unit)}{of}")
+        Level(at, f"Limit {above}{_as_chosen(limit, criterion.unit)}{of}")
         for limit, at in where.items()
         if low - room < at < high + room
     )

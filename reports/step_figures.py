@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ from hil.core.result import CriterionResult, Segment
 from reports import quantities, style
 from reports.figure import Band, Figure, Level, Mark, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
+from reports.members import Member, members
 from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.stretch import cut, line
 
@@ -22,22 +23,11 @@ SPECTRUM_WINDOW_S = (4.0, 20.0)
 FIRST_SECONDS = 2.0
 _SPECTRUM_TO_HZ = 30.0
 _SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
-_LONGEST_NAME = 26
 _TIME = "Time from the step"
 _MOTOR_SPEED = "motor_speed_rad_s"
 _SHAFT_TORQUE = "shaft_torque_nm"
 
 Criteria = dict[str, CriterionResult]
-
-
-@dataclass(frozen=True)
-class Member:
-    """One segment of an overlay with its name and line style."""
-
-    segment: Segment
-    name: str
-    role: str
-    dash: str
 
 
 def _short(channel: str) -> str:
@@ -46,6 +36,7 @@ def _short(channel: str) -> str:
 
 
 class _Plan(NamedTuple):
+    title: str
     channel: str
     draw: Callable[[], Figure | None]
 
@@ -56,12 +47,12 @@ def step_section(recording: Recording, segments: list[Segment], criteria: Criter
     section_id = f"steps-{segments[0].initial_speed_km_h:g}kmh"
     overlay = Overlay(recording, members(segments), criteria, section_id)
     plans = [
-        _Plan(_MOTOR_SPEED, overlay.motor_speed),
-        _Plan(_MOTOR_SPEED, overlay.motor_speed_spectrum),
-        _Plan(_SHAFT_TORQUE, overlay.shaft_torque),
-        _Plan(_SHAFT_TORQUE, overlay.shaft_torque_enlarged),
-        _Plan("driving_torque_est_nm", overlay.driving_torque),
-        _Plan("motor_torque_ref_nm", overlay.torque_request),
+        _Plan("Motor speed", _MOTOR_SPEED, overlay.motor_speed),
+        _Plan("Spectrum of motor speed", _MOTOR_SPEED, overlay.motor_speed_spectrum),
+        _Plan("Shaft torque", _SHAFT_TORQUE, overlay.shaft_torque),
+        _Plan("First seconds of shaft torque", _SHAFT_TORQUE, overlay.shaft_torque_enlarged),
+        _Plan("Driving torque", "driving_torque_est_nm", overlay.driving_torque),
+        _Plan("Torque request", "motor_torque_ref_nm", overlay.torque_request),
     ]
     drawn = [(plan, plan.draw()) for plan in plans]
     figures = [figure for _, figure in drawn if figure is not None]
@@ -70,34 +61,20 @@ def step_section(recording: Recording, segments: list[Segment], criteria: Criter
         f"Steps from {speed}",
         _text(segments),
         tuple(figures),
-        not_drawn(channel_label(plan.channel) for plan, figure in drawn if figure is None),
+        not_drawn(_missing(drawn)),
     )
 
 
-def members(segments: list[Segment]) -> list[Member]:
-    """Names and line styles: one colour for each controller, one dash for each repeat of it."""
-    further = iter(style.FURTHER_ROLES * len(segments))
-    roles: dict[str, str] = {}
-    uses: dict[str, int] = {}
-    found = []
-    for segment in segments:
-        controller = segment.controller or segment.id
-        if controller not in roles:
-            roles[controller] = controller if controller in ("gain", "phase") else next(further)
-        repeat = uses[controller] = uses.get(controller, -1) + 1
-        name = _shortened(controller_name(controller))
-        name = f"{name} ({_shortened(segment.id)})" if repeat else name
-        found.append(Member(segment, name, roles[controller], style.DASHES[repeat % len(style.DASHES)]))
-    return found
-
-
-def controller_name(controller: str) -> str:
-    """'gain' and 'phase' in full; another controller's own name."""
-    return f"{controller.capitalize()} stabilization" if controller in ("gain", "phase") else controller
-
-
-def _shortened(name: str) -> str:
-    return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
+def _missing(drawn: list[tuple[_Plan, Figure | None]]) -> list[Label]:
+    """A channel without any figure by its own name; a single figure that lacks values by its title."""
+    there = {plan.channel for plan, figure in drawn if figure is not None}
+    return [
+        Label(plan.title, channel_label(plan.channel).symbol)
+        if plan.channel in there
+        else channel_label(plan.channel)
+        for plan, figure in drawn
+        if figure is None
+    ]
 
 
 def _text(segments: list[Segment]) -> str:

@@ -65,7 +65,7 @@ def test_a_relative_criterion_is_drawn_with_its_rival(recording: Recording, resu
     first = found(recording, result.model_copy(update={"criteria": (rival, *result.criteria)}))
     assert first.figure is not None
     assert [trace.role for trace in first.figure.traces] == ["phase", "gain"]
-    assert [level.label for level in first.figure.levels] == ["Limit 381.0\u202fN\u202fm (gain_20kmh)"]
+    assert [level.label for level in first.figure.levels] == ["Limit 381\u202fN\u202fm (gain_20kmh)"]
 
 
 def test_without_limits_or_channels_there_is_nothing_to_decide(
