@@ -8,11 +8,11 @@ from dataclasses import replace
 from hil.analysis.comparison import ComparedRun
 from hil.core.result import RunResult
 from reports import quantities
-from reports.comparison import overlay
 from reports.figure import Figure
 from reports.labels import criterion_title
 from reports.origin import Origin
 from reports.outputs.autotune import Closing, closing_verdict
+from reports.overlay_figures import overlay
 from reports.parts import Page, Part, Table
 from reports.tuning_report import Shown
 

@@ -23,7 +23,7 @@ from reports import quantities
 from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay
 from reports.diagnosis_names import alternatives_table, considered_table, effects_table, effects_text
 from reports.gap_bars import GapBars, GapRow
-from reports.labels import Label, channel_label
+from reports.labels import Label, channel_label, parameter_title
 from reports.parts import Cell, Map, Part, Table
 
 Array = npt.NDArray[np.float64]
@@ -244,7 +244,7 @@ def _parameters(found: Diagnosis) -> Table:
 def _changes(changes: Mapping[str, tuple[float, float, float]]) -> Table:
     rows = tuple(
         (
-            name,
+            parameter_title(name),
             quantities.number(old),
             quantities.number(new),
             quantities.number(error, significant=2),

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from hil.analysis.diagnosis import BOOTSTRAP_DRAWS, Considered, Diagnosis, NamedEffect
 from hil.core.effects import EFFECTS
 from reports import quantities
-from reports.labels import channel_label, with_titles
+from reports.labels import channel_label, parameter_title, with_titles
 from reports.parts import Table
 
 _MOST_CONSIDERED = 20
@@ -45,7 +45,7 @@ def effects_table(found: Diagnosis) -> Table:
             rows.append(
                 (
                     EFFECTS[e.use.id].title if index == 0 else "",
-                    name,
+                    parameter_title(name),
                     shown,
                     quantities.number(error, significant=2) if error is not None else "",
                     quantities.chance(e.confidence) if index == 0 else "",

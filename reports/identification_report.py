@@ -17,7 +17,7 @@ from hil.analysis.identification import (
 from hil.core.model import parameter_unit
 from reports import quantities
 from reports.figure import Figure
-from reports.labels import channel_label, with_titles
+from reports.labels import channel_label, parameter_title, with_titles
 from reports.origin import Origin
 from reports.parts import Page, Part, Table, paired
 from reports.response_figures import (
@@ -229,7 +229,12 @@ def _chain(summary: Mapping[str, Any]) -> tuple[Table, ...]:
         if one["chosen"]:
             errors = one["standard_errors"] or {}
             rows = tuple(
-                (name, quantities.number(value), _error(errors.get(name)), parameter_unit(name))
+                (
+                    parameter_title(name),
+                    quantities.number(value),
+                    _error(errors.get(name)),
+                    parameter_unit(name),
+                )
                 for name, value in one["parameters"].items()
             )
             tables.append(Table(("parameter", "value", "standard error", "unit"), rows, 1, 3))

@@ -82,6 +82,13 @@ def criterion_title(id_: str) -> str:
     return f"{words[:1].upper()}{words[1:]}, {segment}" + (f" below {rival}" if rival else "")
 
 
+def parameter_title(name: str) -> str:
+    """A parameter of a model or an effect in words, its unit left to a column of its own."""
+    id_, _, number = name.rpartition(".")
+    words = re.sub(r"_(rad_s|rad|nm|m_s|s|hz|deg|m)$", "", number).replace("_", " ")
+    return f"{id_.replace('.', ', ').replace('_', ' ')}, {words}".removeprefix(", ")
+
+
 def with_titles(text: str) -> str:
     """A sentence with the names of channels in words: 'shaft_torque_nm' becomes shaft torque."""
     return _NAMES.sub(lambda found: _SHORT[found[2]].lower(), text)

@@ -12,12 +12,12 @@ from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, valu
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports import quantities
-from reports.comparison import overlay
 from reports.figure import Level
 from reports.front_figures import front_figures
 from reports.labels import Label, criterion_title
 from reports.origin import Origin
 from reports.outputs.tuning import verdict
+from reports.overlay_figures import overlay
 from reports.parts import Cell, Map, Page, Part, Table
 from test_plans.criteria import Criterion
 

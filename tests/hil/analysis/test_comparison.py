@@ -133,6 +133,7 @@ def test_another_controller_is_no_other_plan_and_what_differs_in_it_is_named():
     old, new = b"[wsc]\ngain = 1.0\npole = 2\n", b"[wsc]\ngain = 1.5\npole = 2\n"
     first, other = loading("a", {"old": old}, "old"), loading("b", {"new": new}, "new")
     assert compare([first, other]).notes == ("Controllers differ between the runs: new.toml, old.toml.",)
+    assert "old: wsc.gain" in comparison_html(compare([first, other]))
     told = [(one.kind, one.name, one.first, one.other) for one in differences(first, other)]
     assert told == [("controller", "file", "old", "new"), ("controller", "old: wsc.gain", "1.0", "1.5")]
 
