@@ -85,8 +85,8 @@ def _bars(found: Diagnosis) -> GapBars:
         )
         for channel, gap in after.items()
     )
-    where = "recordings that the fit has not seen" if held else "the recordings that were fitted"
-    return GapBars("gap-bars", Label("Measured minus simulated"), rows, f"On {where}.")
+    where = "held-out recordings" if held else "the recordings that were fitted"
+    return GapBars("gap-bars", Label("Measured minus simulated"), rows, f"On {where}.", wide=False)
 
 
 def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
