@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from reports.figure import Figure, Trace
+from reports.figure import Figure, Range, Trace
 
 Array = npt.NDArray[np.float64]
 
@@ -41,6 +41,14 @@ def outlines(figure: Figure) -> dict[int, Outline]:
         if _drawn(trace) and (outline := _outline(trace, figure, height)) is not None
     }
     return found if len(found) > 1 else {}
+
+
+def shown_x(figure: Figure, covering: dict[int, Outline]) -> Range | None:
+    """The range of x; of envelopes that of their curves, which reach to the ends of the outer stretches."""
+    if figure.x_range is not None or not covering:
+        return figure.x_range
+    curves = [figure.traces[number].x for number in covering]
+    return min(float(x[0]) for x in curves), max(float(x[-1]) for x in curves)
 
 
 def _drawn(trace: Trace) -> bool:

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reports import quantities, style
-from reports.covering import Outline, outlines
+from reports.covering import Outline, outlines, shown_x
 from reports.envelope import envelope
 from reports.figure import Band, Figure, Mark, Trace
 
@@ -38,7 +38,9 @@ def plotly_figure(figure: Figure) -> dict[str, Any]:
         "data": [*lines, *edges, *spreads, *marks],
         "covering": _covering(covering, len(lines), len(edges)),
         "layout": {
-            "xaxis": _axis(figure.x_title, figure.x_range, figure.logarithmic or figure.logarithmic_x)
+            "xaxis": _axis(
+                figure.x_title, shown_x(figure, covering), figure.logarithmic or figure.logarithmic_x
+            )
             | ({"dtick": "D2", "exponentformat": "none"} if figure.logarithmic_x else {}),
             "yaxis": _axis(figure.y_title.as_html(), figure.shown_y, figure.logarithmic),
             "shapes": shapes + level_shapes,

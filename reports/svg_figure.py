@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from reports import style
-from reports.covering import Outline, outlines
+from reports.covering import Outline, outlines, shown_x
 from reports.envelope import envelope
 from reports.figure import Figure
 from reports.labels import Label
@@ -21,6 +21,7 @@ _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
 _LEGEND_ROW_MM = 3.4
 _MOST_LEGEND_ROWS = 6
 _PLATE = {"facecolor": "white", "alpha": 0.85, "linewidth": 0, "pad": 0.6}  # no line strikes a label through
+_CLEAR_PT = 1.6  # between a level and its label
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
 
@@ -99,8 +100,8 @@ def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
     elif figure.logarithmic_x:
         _plain_decades(axes)
     axes.margins(x=0)
-    if figure.x_range:
-        axes.set_xlim(figure.x_range)
+    if (shown := shown_x(figure, covering)) is not None:
+        axes.set_xlim(shown)
     if figure.shown_y:
         axes.set_ylim(figure.shown_y)
     axes.set_xlabel(Label(figure.x_title).as_mathtext(), labelpad=2)
@@ -150,13 +151,15 @@ def _mark(axes: Axes, figure: Figure) -> None:
     for level in figure.levels:
         color = style.SERIES[level.role].light
         axes.axhline(level.value, color=color, linewidth=0.8, linestyle="--")
-        axes.text(
-            0.995,
-            level.value,
+        above = figure.label_above(level)
+        axes.annotate(
             Label(level.label).as_mathtext(),
-            transform=axes.get_yaxis_transform(),
+            (0.995, level.value),
+            xycoords=axes.get_yaxis_transform(),
+            xytext=(0, _CLEAR_PT if above else -_CLEAR_PT),
+            textcoords="offset points",
             ha="right",
-            va="bottom" if figure.label_above(level) else "top",
+            va="bottom" if above else "top",
             color=color,
             bbox=_PLATE,
             zorder=6,

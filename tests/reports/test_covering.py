@@ -38,6 +38,7 @@ def test_a_page_shows_the_curves_once_it_is_zoomed_in() -> None:
     assert [trace["visible"] for trace in drawn["data"][:2]] == [False, False]
     assert [trace.get("fill") for trace in drawn["data"][2:]] == [None, "tonexty"] * 2
     assert drawn["covering"]["envelopes"] == [2, 3, 4, 5]
+    assert drawn["layout"]["xaxis"]["range"] == [TIME[0], TIME[-1]]
     assert 3.0 < drawn["covering"]["curves_below"] < 5.0
     assert plotly_figure(figure(0.2, 0.3))["covering"] is None
     assert svg_figure(figure(10.0, 12.0)) != svg_figure(figure(0.2, 0.3))
