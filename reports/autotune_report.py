@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from hil.analysis.comparison import ComparedRun
 from hil.core.result import RunResult
 from reports import quantities
-from reports.comparison import overlay
+from reports.figure import Figure
+from reports.labels import criterion_title
 from reports.origin import Origin
 from reports.outputs.autotune import Closing, closing_verdict
+from reports.overlay_figures import overlay
 from reports.parts import Page, Part, Table
 from reports.tuning_report import Shown
 
@@ -35,7 +38,22 @@ def autotune_page(
         notes=(consented,),
         parts=(*_parts(closing), *_responses(closing, shown, segments), origin.part),
         mark=origin.mark,
+        first=_first(closing, shown, segments),
     )
+
+
+def _first(closing: Closing, shown: Sequence[Shown], segments: Sequence[str]) -> Part | None:
+    """Margins before and after, and the response of the criterion with the least measured one."""
+    if closing.best is None:
+        return None
+    measured = closing.best.measured
+    worst = min(measured, key=lambda name: measured[name]).partition(".")[0]
+    drawn = _responses(closing, shown, segments)
+    part = next((one for one in drawn if one.id == worst), drawn[0] if drawn else None)
+    first = part.figures[:1] if part else ()
+    figures = tuple(replace(figure, wide=True) for figure in first if isinstance(figure, Figure))
+    words = "Before: the plan's own controller, measured. The others: the best run."
+    return Part("margins", "Margins", words, (_margins(closing),), figures=figures)
 
 
 def _parts(closing: Closing) -> list[Part]:
@@ -50,9 +68,6 @@ def _parts(closing: Closing) -> list[Part]:
     if closing.diagnosis is not None and closing.diagnosis.effects:
         words = "By the newest diagnosis, with the chance that a name is right."
         parts.append(Part("named", "What the model lacked", words, (_effects(closing),)))
-    if closing.best is not None:
-        words = "Before: the plan's own controller in that place, measured. The others: the best run."
-        parts.append(Part("margins", "Margins", words, (_margins(closing),)))
     return parts
 
 
@@ -81,7 +96,7 @@ def _margins(closing: Closing) -> Table:
     assert best is not None
     rows = [
         (
-            name.replace(".", " "),
+            criterion_title(name),
             quantities.share(closing.before_margins.get(name)),
             *(quantities.share(of[name]) for of in (best.predicted.margins, best.expected, best.measured)),
         )

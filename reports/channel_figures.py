@@ -13,8 +13,8 @@ from hil.core.result import Segment
 from reports import quantities
 from reports.figure import Band, Figure, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
+from reports.members import controller_name
 from reports.spectrum import DESCRIPTION, amplitude_spectrum
-from reports.step_figures import controller_name
 from reports.stretch import Array, Lines, cut, line
 
 _ROLES = ("gain", "phase", "third", "fourth")

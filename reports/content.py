@@ -17,6 +17,7 @@ from reports.guards import hold_facts, limit_facts
 from reports.labels import channel_label, channel_unit
 from reports.provenance import ControllerTable, Fact, StoredFile
 from reports.sections import sections
+from reports.summary import Summary, summary
 
 _HEADLINE = {"pass": "Passed", "fail": "Failed", "error": "Error", "unjudged": "Carried out, nothing judged"}
 _SAFE_STATE = {
@@ -82,7 +83,9 @@ class Content:
 
     title: str
     simulated: bool
+    identity: str
     banner: Banner
+    summary: Summary | None
     run: tuple[Fact, ...]
     dut: tuple[Fact, ...]
     laboratory: tuple[Fact, ...]
@@ -110,7 +113,7 @@ class Content:
 
     @property
     def unmet(self) -> tuple[CriterionRow, ...]:
-        """Criteria that failed or could not be computed; those not judged are told by their segments."""
+        """Criteria that failed or could not be computed; those not judged are reported by segment."""
         groups = self.criteria.groups if self.criteria else ()
         return tuple(r for group in groups for r in group.rows if r.unmet and r.verdict != "not_judged")
 
@@ -125,11 +128,14 @@ def content(recording: Recording, result: RunResult | None) -> Content:
     calibration, files = provenance.calibration_facts(recording, result), provenance.stored_files(recording)
     identification = identification_facts(recording, result)
     zeros = zero_facts(result)
+    criteria = criteria_table(result) if result and result.criteria else None
     marks = (plan or recording.source.name, started, f"SHA-256 {sha256[:12]}" if sha256 else "")
     return Content(
         title=title,
         simulated=provenance.simulated(recording),
+        identity=provenance.identity(recording, result),
         banner=_banner(result),
+        summary=summary(recording, result, criteria) if result and criteria else None,
         run=provenance.run_facts(recording, result),
         dut=provenance.dut_facts(recording),
         laboratory=provenance.laboratory_facts(recording, result),
@@ -149,7 +155,7 @@ def content(recording: Recording, result: RunResult | None) -> Content:
         sha256=sha256,
         samples_sha256=recording.samples_sha256,
         mark=" · ".join(part for part in marks if part),
-        criteria=criteria_table(result) if result and result.criteria else None,
+        criteria=criteria,
         controllers=provenance.controller_table(recording),
         segments=_segments(result),
         channels=() if result else tuple(_channel(recording, n) for n in recording.channels if n != TIME),
@@ -181,7 +187,7 @@ def _banner(result: RunResult | None) -> Banner:
 def _counts(result: RunResult) -> list[str]:
     """What became of the criteria, in sentences."""
     sentences = []
-    for source, name in (("plan", "criteria"), ("device", "checks of what any device must do")):
+    for source, name in (("plan", "criteria"), ("device", "device checks")):
         demanding = [one for one in result.criteria if one.has_limit and one.source == source]
         passed = sum(one.verdict == "pass" for one in demanding)
         failed = sum(one.failed for one in demanding)
@@ -199,7 +205,7 @@ def _counts(result: RunResult) -> list[str]:
         f"{counts['not_judged']} not judged: {_why_not_judged(result)}.": counts["not_judged"],
         f"{counts['error']} could not be computed.": counts["error"],
         f"{counts['informational']} informational.": counts["informational"],
-        f"{unsettled} did not settle.": unsettled,
+        f"{unsettled} {'response' if unsettled == 1 else 'responses'} did not settle.": unsettled,
     }
     return [*sentences, *(sentence for sentence, count in told.items() if count)]
 

@@ -8,7 +8,7 @@ from typing import get_args
 
 from hil.core.result import CriterionResult, CriterionVerdict, RunResult, Segment
 from reports import quantities
-from reports.step_figures import controller_name
+from reports.members import controller_name
 
 _USUAL_DECIMALS, _MOST_DECIMALS = 4, 9
 

@@ -5,9 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from hil.analysis.control_design import Design
+import numpy as np
+
+from hil.analysis.control_design import (
+    LARGEST_SENSITIVITY,
+    LEAST_GAIN_MARGIN_DB,
+    LEAST_PHASE_MARGIN_DEG,
+    Design,
+)
+from hil.core.conventions import COMFORT_BAND_HZ
 from reports import quantities
 from reports.drawings import Drawing
+from reports.figure import Band, Figure, Level, Trace
 from reports.labels import Label
 from reports.origin import Origin
 from reports.parts import Page, Part, Table
@@ -45,6 +54,7 @@ def design_page(
             origin.part,
         ),
         mark=origin.mark,
+        first=_first(found),
     )
 
 
@@ -89,19 +99,77 @@ def _continuous(found: Design) -> Table:
 def _table(name: str, loops: list[tuple[str, Any]], chosen: str) -> Table:
     rows = tuple(
         (
-            _LOOPS[loop] + (" (taken)" if loop == chosen else ""),
+            _LOOPS[loop] + (" (chosen)" if loop == chosen else ""),
             quantities.number(m.sensitivity_peak, 3),
             quantities.number(m.sensitivity_peak_hz, 1),
             quantities.number(m.comfort_peak, 3),
             quantities.number(m.gain_margin_db, 1),
             quantities.number(m.phase_margin_deg, 1),
-            quantities.number(1e3 * m.delay_margin_s, 1),
+            _delay(m.delay_margin_s),
             "yes" if m.stable else "NO",
         )
         for loop, m in loops
     )
     head = (name, "|S|max", "at Hz", "max 8-20 Hz", "gain dB", "phase °", "delay ms", "stable")
     return Table(head, rows, 1, 7)
+
+
+def _delay(margin_s: float) -> str:
+    """In ms; far beyond what any dead time of a driveline is, digits say nothing."""
+    return f">{quantities.THIN}1000" if margin_s > 1.0 else quantities.number(1e3 * margin_s, 1)
+
+
+def _first(found: Design) -> Part:
+    """The limits that a loop is accepted by, and the sensitivity over frequency."""
+    m = found.loop(found.chosen).margins
+    deg = quantities.unit("°")
+    rows = (
+        _judged("Largest sensitivity |S|max", m.sensitivity_peak, LARGEST_SENSITIVITY, "", most=True),
+        _judged("Gain margin", m.gain_margin_db, LEAST_GAIN_MARGIN_DB, "dB", most=False),
+        _judged("Phase margin", m.phase_margin_deg, LEAST_PHASE_MARGIN_DEG, deg, most=False),
+        ("Stable", "yes" if m.stable else "no", "yes", "met" if m.stable else "not met"),
+    )
+    table = Table(("criterion, sampled loop", "value", "limit", "verdict"), rows, 1, 3)
+    return Part("summary", "Acceptance of the loop", "", (table,), figures=(_sensitivity(found),))
+
+
+def _judged(name: str, value: float, limit: float, unit: str, *, most: bool) -> tuple[str, str, str, str]:
+    met = value <= limit if most else value >= limit
+    sign = "≤" if most else "≥"
+    of_limit = f"{quantities.nominal(limit)} {unit}".strip()
+    return name, quantities.quantity(value, unit, 2), f"{sign} {of_limit}", "met" if met else "not met"
+
+
+def _sensitivity(found: Design) -> Figure:
+    """|S| of every controlled loop; the limit belongs to the largest value of the chosen one."""
+    roles = {"pi": "reference", "phase": "phase", "gain": "gain"}
+    low, high = max(0.1, float(found.frequency_hz[0])), min(100.0, float(found.frequency_hz[-1]))
+    traces = tuple(
+        Trace(
+            Label(_LOOPS[loop.name] + (" (chosen)" if loop.name == found.chosen else "")),
+            found.frequency_hz,
+            -20.0 * np.log10(np.maximum(np.abs(1.0 + loop.sampled), 1e-300)),
+            roles[loop.name],
+        )
+        for loop in found.loops
+        if loop.name in roles
+    )
+    limit = 20.0 * float(np.log10(LARGEST_SENSITIVITY))
+    name = f"{COMFORT_BAND_HZ[0]:g}{quantities.DASH}{COMFORT_BAND_HZ[1]:g}{quantities.THIN}Hz"
+    return Figure(
+        "sensitivity",
+        Label("Sensitivity of the wheel speed control"),
+        "Frequency",
+        "Hz",
+        Label("Sensitivity |S|"),
+        "dB",
+        traces,
+        bands=(Band(*COMFORT_BAND_HZ, name),),
+        levels=(Level(limit, f"Limit |S|max {LARGEST_SENSITIVITY:g}, {_LOOPS[found.chosen]}"),),
+        x_range=(low, high),
+        logarithmic_x=True,
+        wide=True,
+    )
 
 
 def _figures(files: Mapping[str, bytes]) -> tuple[Drawing, ...]:

@@ -8,7 +8,8 @@ from __future__ import annotations
 from typing import Literal
 
 from hil.analysis.diagnosis import Diagnosis
-from reports.diagnosis_content import headline, lead, parts
+from reports.diagnosis_content import first, headline, lead, parts
+from reports.labels import with_titles
 from reports.origin import Origin
 from reports.parts import Page, documents, page_html, page_pdf
 
@@ -21,7 +22,7 @@ def diagnosis_documents(found: Diagnosis, title: str, origin: Origin | None = No
 
 
 def diagnosis_html(found: Diagnosis, title: str, origin: Origin | None = None) -> str:
-    """The page: one file without scripts, figures drawn into it."""
+    """The page: one file with interactive figures."""
     return page_html(_page(found, title, origin))
 
 
@@ -37,9 +38,10 @@ def _page(found: Diagnosis, title: str, origin: Origin | None) -> Page:
         headline=headline(found),
         tone=_tone(found),
         lead=lead(found),
-        notes=tuple(found.notes),
+        notes=tuple(map(with_titles, found.notes)),
         parts=(*parts(found), *((origin.part,) if origin else ())),
         mark=origin.mark if origin else "",
+        first=first(found),
     )
 
 

@@ -23,7 +23,7 @@ from reports import quantities
 from reports.diagnosis_figures import WINDOW_S, overlay_figures, shown_overlay
 from reports.diagnosis_names import alternatives_table, considered_table, effects_table, effects_text
 from reports.gap_bars import GapBars, GapRow
-from reports.labels import Label, channel_label
+from reports.labels import Label, channel_label, parameter_title
 from reports.parts import Cell, Map, Part, Table
 
 Array = npt.NDArray[np.float64]
@@ -61,12 +61,12 @@ def lead(found: Diagnosis) -> str:
     worst, left = max(before, key=lambda c: before[c]), max(after.values())
     name = channel_label(worst).text.lower()
     held = max(_over_noise(found.holdout_after).values(), default=None)
-    also = "" if held is None else f", {multiple(held)} in recordings that no fit has seen"
+    also = "" if held is None else f", {multiple(held)} in held-out recordings"
     if found.verdict == "none":
         return f"The gap is at most {multiple(left)} the noise{also}."
     return (
-        f"The model as it came leaves a gap of up to {multiple(before[worst])} the noise ({name}); the model "
-        f"given back leaves {multiple(left)} the noise at most{also}."
+        f"Largest gap of the model before: {multiple(before[worst])} the noise ({name}); of the model after: "
+        f"{multiple(left)} the noise{also}."
     )
 
 
@@ -85,12 +85,20 @@ def _bars(found: Diagnosis) -> GapBars:
         )
         for channel, gap in after.items()
     )
-    where = "recordings that the fit has not seen" if held else "the recordings that were fitted"
-    return GapBars("gap-bars", Label("How far simulation and measurement are apart"), rows, f"On {where}.")
+    where = "held-out recordings" if held else "the recordings that were fitted"
+    return GapBars("gap-bars", Label("Measured minus simulated"), rows, f"On {where}.", wide=False)
 
 
 def _over_noise(gaps: Mapping[str, ChannelGap]) -> dict[str, float]:
     return {c: g.noises for c, g in gaps.items()}
+
+
+def first(found: Diagnosis) -> Part:
+    """The gaps that count most, of each channel beside what noise alone gives."""
+    held = bool(found.holdout_after)
+    table = _gaps(found)[-1 if held else 0]
+    text = "Rms of measured minus simulated, in % of the channel's own rms around its mean."
+    return Part("glance", "Gap per channel", text, (table,), figures=(_bars(found),))
 
 
 def parts(found: Diagnosis) -> list[Part]:
@@ -98,7 +106,6 @@ def parts(found: Diagnosis) -> list[Part]:
     overlay = shown_overlay(found)
     first = Part("start", "Identified first", _start_text(found), _if_any(_start(found)))
     return [
-        Part("glance", "At a glance", "", figures=(_bars(found),)),
         *([first] if found.start is not None else []),
         Part("effects", "Effects named", effects_text(found), _if_any(effects_table(found))),
         Part(
@@ -127,19 +134,19 @@ def parts(found: Diagnosis) -> list[Part]:
             "consequences",
             "What it does to a torque step",
             "Open-loop step of 20 N m from 5 rad/s wheel speed, model before and after; ± for what the fit "
-            "leaves open of its numbers. Energy: of what rings in the 5 s from the step on. What becomes of "
-            "a run with a controller tells hil compare."
+            "leaves open of its numbers. Energy: of the ringing in the 5 s after the step. For "
+            "the effect in closed loop, see hil compare."
             if found.consequences
             else why_no_step(found.model),
             _if_any(_consequences(found)),
         ),
         Part(
             "considered",
-            "Considered and not named",
+            "Considered and rejected",
             "Expected drop: of the squared error in noise variances, by the linearised score.",
             _if_any(considered_table(found)),
         ),
-        Part("alternatives", "Other names for the same gap", "", _if_any(alternatives_table(found))),
+        Part("alternatives", "Alternative explanations", "", _if_any(alternatives_table(found))),
     ]
 
 
@@ -237,7 +244,7 @@ def _parameters(found: Diagnosis) -> Table:
 def _changes(changes: Mapping[str, tuple[float, float, float]]) -> Table:
     rows = tuple(
         (
-            name,
+            parameter_title(name),
             quantities.number(old),
             quantities.number(new),
             quantities.number(error, significant=2),

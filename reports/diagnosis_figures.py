@@ -46,9 +46,9 @@ def _in_time(o: Overlay, column: int, channel: str) -> Figure:
     window = _worst(o, column)
     t = np.asarray(np.arange(window.start, window.stop) * o.dt, dtype=float)
     traces = (
-        Trace(Label("measured"), t, o.measured[window, column], "reference", width=4.0),
+        Trace(Label("model after"), t, o.after[window, column], "gain", width=2.2),
         Trace(Label("model before"), t, o.before[window, column], "phase", "dash"),
-        Trace(Label("model after"), t, o.after[window, column], "gain", width=0.7),
+        Trace(Label("measured"), t, o.measured[window, column], "measured", width=0.9),
     )
     unit = CHANNELS[channel].unit
     label = channel_label(channel)

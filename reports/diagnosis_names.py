@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from hil.analysis.diagnosis import BOOTSTRAP_DRAWS, Diagnosis, NamedEffect
-from hil.core.digits import multiple
+from hil.analysis.diagnosis import BOOTSTRAP_DRAWS, Considered, Diagnosis, NamedEffect
 from hil.core.effects import EFFECTS
 from reports import quantities
-from reports.labels import channel_label
+from reports.labels import channel_label, parameter_title, with_titles
 from reports.parts import Table
 
 _MOST_CONSIDERED = 20
@@ -26,21 +25,13 @@ def effects_text(found: Diagnosis) -> str:
         return said
     chance = quantities.number(float(f"{found.by_chance:.2g}"), significant=2)
     return (
-        f"{said} Evidence: in {BOOTSTRAP_DRAWS} draws of noise alone no effect took more than {chance} "
-        "noise variances off the squared error; each named one takes "
-        f"{_beyond_chance(min(drops), found.by_chance)}."
+        f"{said} Evidence: each named effect reduces the squared error by {_evidence(min(drops))} noise "
+        f"variances or more; false-alarm level {chance}, the largest of {BOOTSTRAP_DRAWS} noise draws."
     )
 
 
 def _lowered(sentence: str) -> str:
     return f"{sentence[:1].lower()}{sentence[1:]}"
-
-
-def _beyond_chance(drop: float, chance: float) -> str:
-    """The smallest drop against what noise alone gave."""
-    if chance <= 0.0:
-        return f"{_evidence(drop)} or more"
-    return f"{multiple(drop / chance)} as much or more"
 
 
 def effects_table(found: Diagnosis) -> Table:
@@ -54,7 +45,7 @@ def effects_table(found: Diagnosis) -> Table:
             rows.append(
                 (
                     EFFECTS[e.use.id].title if index == 0 else "",
-                    name,
+                    parameter_title(name),
                     shown,
                     quantities.number(error, significant=2) if error is not None else "",
                     quantities.chance(e.confidence) if index == 0 else "",
@@ -71,17 +62,25 @@ def _place(effect: NamedEffect) -> str:
 
 
 def considered_table(found: Diagnosis) -> Table:
-    """What was looked at and not named, the likeliest first."""
+    """What was looked at and not named, the likeliest first; one line for each reason."""
+    alike: dict[str, list[Considered]] = {}
+    for c in found.considered[:_MOST_CONSIDERED]:
+        alike.setdefault(c.reason, []).append(c)
     rows = tuple(
         (
-            c.id + (f" ({c.about})" if c.about else ""),
-            _evidence(c.score),
-            quantities.factor(c.left),
-            c.reason,
+            ", ".join(EFFECTS[c.id].title + (f" ({with_titles(c.about)})" if c.about else "") for c in group),
+            _from_to([_evidence(c.score) for c in group]),
+            _from_to([quantities.factor(c.left) for c in group]),
+            reason,
         )
-        for c in found.considered[:_MOST_CONSIDERED]
+        for reason, group in alike.items()
     )
-    return Table(("effect", "expected drop", "gap left / noise", "why not"), rows, 1, 3)
+    return Table(("effect", "expected drop", "gap left / noise", "reason"), rows, 1, 3)
+
+
+def _from_to(texts: list[str]) -> str:
+    """The first and the last of an ordered list, once if they are the same."""
+    return texts[0] if texts[0] == texts[-1] else f"{texts[0]} to {texts[-1]}"
 
 
 def _evidence(drop: float) -> str:

@@ -14,11 +14,14 @@ from reports.labels import Label
 Array = npt.NDArray[np.float64]
 Range = tuple[float, float]
 
+_ROOM = 0.1  # of the height of the axes: a label of a level
+
 
 @dataclass(frozen=True)
 class Trace:
     """One line: `x`, `y` are 1-D of one length; NaN in `y` is a gap. `role` names a tone of the style.
 
+    `points` draws samples instead of a line; `spread` is the lower and the upper edge of a shade around it.
     `width` is how many times as wide as usual it is: a wide line shows beside a thin one that lies on it.
     """
 
@@ -28,6 +31,8 @@ class Trace:
     role: str
     dash: str = "solid"
     width: float = 1.0
+    points: bool = False
+    spread: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True)
@@ -60,7 +65,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Figure:
-    """One pair of axes. Ranges of None are chosen from the data."""
+    """One pair of axes. Ranges of None are chosen from the data; `logarithmic` are both axes, or x alone."""
 
     id: str
     title: Label
@@ -75,6 +80,7 @@ class Figure:
     x_range: Range | None = None
     y_range: Range | None = None
     logarithmic: bool = False
+    logarithmic_x: bool = False
     caption: str = ""
     wide: bool = False
 
@@ -88,6 +94,26 @@ class Figure:
         """Axis title with unit."""
         tail = f" ({quantities.unit(self.y_unit)})" if self.y_unit else ""
         return Label(self.y_label.text, self.y_label.symbol, self.y_label.tail + tail)
+
+    @property
+    def shown_y(self) -> Range | None:
+        """The range of y; with levels and none given, so wide that lines and labels of levels have room."""
+        if self.y_range is not None or not self.levels or self.logarithmic:
+            return self.y_range
+        shown = [shown for trace in self.traces if (shown := self._visible(trace)).size]
+        values = [level.value for level in self.levels]
+        low = min([*values, *(float(y.min()) for y in shown)])
+        high = max([*values, *(float(y.max()) for y in shown)])
+        room = _ROOM * (high - low or 1.0)
+        return low - 0.5 * room, high + room
+
+    def label_above(self, level: Level) -> bool:
+        """Whether a level's label has room above its line, beside the next level."""
+        shown = self.shown_y
+        if shown is None:
+            return True
+        above = [one.value for one in self.levels if one.value > level.value]
+        return min([*above, shown[1]]) - level.value > 0.7 * _ROOM * (shown[1] - shown[0])
 
     def alternative_text(self) -> str:
         """What a reader who cannot see the figure should know."""

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 30.0, 14.0, 8.5, 5.0
+_NARROW_LEFT_MM = 18.0
 _ROW_MM, _BAR = 9.0, 0.36
 _ROLES = {"before": "phase", "after": "gain"}
 
@@ -50,22 +51,23 @@ class GapBars:
         return f"{self.title.plain()}. " + "; ".join(said) + "."
 
     def as_svg(self) -> bytes:
-        """The picture in the house style for paper, a whole text line wide."""
-        width = style.PAPER_WIDE_MM[0]
+        """The picture in the house style for paper, a whole text line wide or half of one."""
+        width = style.PAPER_WIDE_MM[0] if self.wide else style.PAPER_WIDTH_MM
+        left = _LEFT_MM if self.wide else _NARROW_LEFT_MM
         height = _BOTTOM_MM + _TOP_MM + _ROW_MM * max(1, len(self.rows))
         with svg_canvas(width, height) as picture:
             canvas = picture.canvas
             box = (
-                _LEFT_MM / width,
+                left / width,
                 _BOTTOM_MM / height,
-                1 - (_LEFT_MM + _RIGHT_MM) / width,
+                1 - (left + _RIGHT_MM) / width,
                 1 - (_BOTTOM_MM + _TOP_MM) / height,
             )
             axes = canvas.add_axes(box)
             self._draw(axes)
             canvas.legend(
                 loc="upper left",
-                bbox_to_anchor=(_LEFT_MM / width, 1.0),
+                bbox_to_anchor=(left / width if self.wide else 0.0, 1.0),
                 ncols=3,
                 borderaxespad=0.2,
                 borderpad=0.1,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import html
-import json
 import re
 from importlib import resources
 from pathlib import Path
@@ -15,10 +14,9 @@ from hil.core.result import RunResult
 from reports import style
 from reports.content import Content, content
 from reports.labels import sentence_html
-from reports.plotly_figure import plotly_figure
+from reports.plotly_figure import json_in_script, plotly_figure, plotly_script
 
 _LARGEST_INPUT_FILE = 200_000
-_CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")
 
 
 def write_html(recording: Recording, result: RunResult | None, path: Path) -> Path:
@@ -42,14 +40,16 @@ def html_text(report: Content, texts: list[tuple[str, str]]) -> str:
         trim_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    figures = {f.id: plotly_figure(f) for section in report.sections for f in section.figures}
+    first = [report.summary.figure] if report.summary and report.summary.figure else []
+    drawn = [*first, *(figure for section in report.sections for figure in section.figures)]
+    figures = {figure.id: plotly_figure(figure) for figure in drawn}
     environment.filters["sentence"] = lambda text: Markup(sentence_html(text))
     page = environment.get_template("report.html.j2").render(
         c=report,
         contents=_contents(report, bool(texts)),
         texts=texts,
-        figures=_json_in_script(figures) if figures else "",
-        plotly=_plotly_js() if figures else "",
+        figures=json_in_script(figures) if figures else "",
+        plotly=plotly_script() if figures else "",
         light=style.css_variables("light"),
         dark=style.css_variables("dark"),
         css=_template("report.css"),
@@ -85,31 +85,18 @@ def input_texts(recording: Recording) -> list[tuple[str, str]]:
 def _contents(report: Content, has_texts: bool) -> list[tuple[str, str]]:
     entries = [
         ("verdict", "Summary" if report.banner.tone == "none" else "Verdict", True),
+        ("summary", "Margins", report.summary is not None),
         ("notes", "Notes", bool(report.notes)),
         ("criteria", "Criteria", report.criteria is not None),
         ("statistics", "Statistics", bool(report.channels)),
         *((section.id, section.title, True) for section in report.sections),
+        ("run", "Recording" if report.banner.tone == "none" else "Run and device", True),
         ("provenance", "Provenance", True),
         ("segments", "Segments", bool(report.segments)),
         ("events", "Events", bool(report.events)),
         ("inputs", "Input files", has_texts),
     ]
     return [(anchor, name) for anchor, name, present in entries if present]
-
-
-def _json_in_script(value: object) -> str:
-    """JSON that cannot end the script element that it stands in."""
-    text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
-
-
-def _plotly_js() -> str:
-    """The library, without control characters: HTML forbids them, JavaScript reads them spelled out too."""
-    script = resources.files("reports").joinpath("templates/plotly.min.js")  # a wheel has it
-    if not script.is_file():
-        script = resources.files("plotly").joinpath("package_data/plotly.min.js")
-    text = script.read_text(encoding="utf-8")
-    return _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def _template(name: str) -> str:

@@ -37,6 +37,7 @@ _KNOWN = re.compile(
     )
     + r")(?!\w)"
 )
+_NAMES = re.compile(rf"(['\"]?)\b({'|'.join(_SHORT)})\b\1")
 _HAT = "\u0302"
 _SYMBOL = re.compile(r"(?P<base>[^_*]+)(?:_(?P<sub>[^*]+))?(?P<star>\*?)$")
 
@@ -69,6 +70,28 @@ def channel_label(name: str) -> Label:
     """Short words and symbol of a channel; an unknown channel keeps its name."""
     symbol = CHANNELS[name].symbol if name in CHANNELS else ""
     return Label(_SHORT.get(name, printable(name, 80)), symbol)
+
+
+def criterion_title(id_: str) -> str:
+    """An id of a criterion in words: 'a.peak_shaft_torque.below.b' is 'Peak shaft torque, a below b'."""
+    segment, _, rest = id_.partition(".")
+    metric, _, rival = rest.partition(".below.")
+    if not metric:
+        return id_
+    words = metric.replace("_", " ").replace(".", ", ")
+    return f"{words[:1].upper()}{words[1:]}, {segment}" + (f" below {rival}" if rival else "")
+
+
+def parameter_title(name: str) -> str:
+    """A parameter of a model or an effect in words, its unit left to a column of its own."""
+    id_, _, number = name.rpartition(".")
+    words = re.sub(r"_(rad_s|rad|nm|m_s|s|hz|deg|m)$", "", number).replace("_", " ")
+    return f"{id_.replace('.', ', ').replace('_', ' ')}, {words}".removeprefix(", ")
+
+
+def with_titles(text: str) -> str:
+    """A sentence with the names of channels in words: 'shaft_torque_nm' becomes shaft torque."""
+    return _NAMES.sub(lambda found: _SHORT[found[2]].lower(), text)
 
 
 def pieces(text: str) -> list[tuple[str, bool]]:

@@ -1,13 +1,15 @@
 """Reports made of parts, sections of text, tables, maps (shaded tables) and figures, on screen and on paper.
 
-One file without scripts on screen, figures inside; PDF/A-2a and PDF/UA-1 on paper, from the same `Page`.
+One file on screen that asks no network for anything, with interactive figures; PDF/A-2a and PDF/UA-1 on
+paper, from the same `Page`.
 """
 
 from __future__ import annotations
 
 import base64
 import json
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from importlib import resources
 from typing import Any, Literal, Protocol
@@ -16,6 +18,7 @@ from reports import shades, style
 from reports.figure import Figure
 from reports.labels import Label
 from reports.pdf import _font_directory, _known_characters, _spelled_out
+from reports.plotly_figure import json_in_script, plotly_figure, plotly_script
 from reports.svg_figure import svg_figure
 
 
@@ -31,10 +34,11 @@ class Table:
 
 @dataclass(frozen=True)
 class Cell:
-    """One field of a map: its text, and how dark it is from 0 (noise) to 1."""
+    """One field of a map: its text, how dark it is from 0 (noise) to 1, and whether it is negative."""
 
     text: str
     shade: float
+    negative: bool = False
 
     @property
     def level(self) -> int:
@@ -90,11 +94,20 @@ class Part:
         return _as_data(self)
 
 
+def paired(figures: Iterable[Figure]) -> tuple[Figure, ...]:
+    """Figures stand in pairs; one that is left over takes the whole width."""
+    found = tuple(figures)
+    if sum(not figure.wide for figure in found) % 2 == 0:
+        return found
+    return (*found[:-1], replace(found[-1], wide=True))
+
+
 @dataclass(frozen=True)
 class Page:
     """A whole report: `kind` says what it is a report of, `headline` and `lead` what came out.
 
-    `mark` stands at the head and at the foot: when it was made, by what, from what.
+    `mark` stands at the head and at the foot: when it was made, by what, from what. `first` stands right
+    below the verdict: a table of values beside their limits, and the figure that shows why.
     """
 
     kind: str
@@ -105,6 +118,7 @@ class Page:
     notes: tuple[str, ...]
     parts: tuple[Part, ...]
     mark: str = ""
+    first: Part | None = None
 
 
 def documents(page: Page) -> dict[str, bytes]:
@@ -122,7 +136,14 @@ def page_html(page: Page) -> str:
         trim_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
+    plots: dict[str, dict[str, Any]] = {}
+    first = _with_pictures(page.first, plots) if page.first else None
+    parts = [_with_pictures(part, plots) for part in page.parts]
     return environment.get_template("parts.html.j2").render(
+        first=first,
+        plots=json_in_script(plots) if plots else "",
+        plotly=plotly_script() if plots else "",
+        js=_template("report.js"),
         kind=page.kind,
         title=page.title,
         headline=page.headline,
@@ -130,12 +151,12 @@ def page_html(page: Page) -> str:
         lead=page.lead,
         notes=page.notes,
         mark=page.mark,
-        parts=[_with_pictures(part) for part in page.parts],
+        parts=parts,
         light=style.css_variables("light"),
         dark=style.css_variables("dark"),
         shades_light=shades.css_classes("light"),
         shades_dark=shades.css_classes("dark"),
-        css=resources.files("reports").joinpath("templates/report.css").read_text(encoding="utf-8"),
+        css=_template("report.css"),
     )
 
 
@@ -151,6 +172,7 @@ def page_pdf(page: Page) -> bytes:
         "lead": page.lead,
         "notes": list(page.notes),
         "mark": page.mark,
+        "first": page.first and page.first.drawn,
         "parts": [part.drawn for part in page.parts],
         "colors": {name: tone.light for name, tone in style.SURFACE.items()},
     }
@@ -165,11 +187,21 @@ def page_pdf(page: Page) -> bytes:
     return bytes(pdf)
 
 
-def _with_pictures(part: Part) -> dict[str, Any]:
-    figures = [
-        {**one, "uri": "data:image/svg+xml;base64," + base64.b64encode(one["svg"].encode()).decode()}
-        for one in part.drawn["figures"]
-    ]
+def _template(name: str) -> str:
+    return resources.files("reports").joinpath("templates", name).read_text(encoding="utf-8")
+
+
+def _with_pictures(part: Part, plots: dict[str, dict[str, Any]]) -> dict[str, Any]:
+    """What the page shows of a part; its interactive figures go into `plots` by their place on the page."""
+    figures = []
+    for figure, drawn in zip(part.figures, part.drawn["figures"], strict=True):
+        place = f"figure-{len(plots) + 1}"
+        if isinstance(figure, Figure):
+            plots[place] = plotly_figure(figure)
+            figures.append({**drawn, "title": figure.title.as_html(), "plot": place, "uri": ""})
+        else:
+            uri = "data:image/svg+xml;base64," + base64.b64encode(drawn["svg"].encode()).decode()
+            figures.append({**drawn, "title": figure.title.as_html(), "plot": "", "uri": uri})
     return {**part.drawn, "figures": figures}
 
 
@@ -199,5 +231,6 @@ def _map_as_data(m: Map) -> dict[str, Any]:
 
 
 def _cell_as_data(cell: Cell) -> dict[str, Any]:
-    background, ink = shades.colours(cell.level, "light")
-    return {"text": cell.text, "level": cell.level, "background": background, "ink": ink}
+    background, ink = shades.colours(cell.level, "light", negative=cell.negative)
+    shade = f"{'below' if cell.negative else 'shade'}-{cell.level}"
+    return {"text": cell.text, "shade": shade, "background": background, "ink": ink}

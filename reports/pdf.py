@@ -70,7 +70,11 @@ def _compiled(data: dict[str, Any], started_at: str, *, system_fonts: bool) -> b
 
 
 def _data(report: Content) -> dict[str, Any]:
-    data = dataclasses.asdict(dataclasses.replace(report, sections=()))
+    data = dataclasses.asdict(dataclasses.replace(report, sections=(), summary=None))
+    if report.summary is not None:
+        drawn = report.summary.figure and _figure(report.summary.figure)
+        rows = [dataclasses.asdict(row) for row in report.summary.rows]
+        data["summary"] = {"rows": rows, "further": report.summary.further, "figure": drawn}
     if report.criteria is not None:
         data["definitions"] = [pieces(text) for text in report.criteria.definitions]
     data["unmet"] = [dataclasses.asdict(row) for row in report.unmet]

@@ -58,7 +58,6 @@ def dut_facts(recording: Recording) -> tuple[Fact, ...]:
     return tuple(Fact(_words(fact.name), fact.value) for fact in table(recording, "dut"))
 
 
-_NOT_STATED = "not stated"
 _LABORATORY = {
     "laboratory": "Laboratory",
     "report_number": "Report number",
@@ -69,20 +68,40 @@ _LABORATORY = {
     "measurement_uncertainty": "Measurement uncertainty",
     "decision_rule": "Decision rule",
 }
-_SIMPLE_ACCEPTANCE = "verdicts compare value and limit without a guard band (simple acceptance, ILAC-G8)"
+_SIMPLE_ACCEPTANCE = "simple acceptance: value against limit, no guard band (ILAC-G8)"
 
 
 def laboratory_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...]:
-    """What ISO/IEC 17025 (7.8) asks of a test report beside its results, stated or not."""
+    """What ISO/IEC 17025 (7.8) asks of a test report beside its results, as far as it is stated."""
     if result is None:
         return ()
-    stated = recording.metadata.get("report", {})
+    stated = _stated(recording)
+    missing = [_LABORATORY[key].lower() for key, value in stated.items() if not value]
+    stated["decision_rule"] = stated["decision_rule"] or _SIMPLE_ACCEPTANCE
+    facts = [Fact(_LABORATORY[key], value) for key, value in stated.items() if value]
+    return (*facts, *([Fact("Not stated", ", ".join(missing))] if missing else []))
+
+
+def _stated(recording: Recording) -> dict[str, str]:
+    """Each field of a test report with what the bench file says; '' where it says nothing."""
+    given = recording.metadata.get("report", {})
     dates = recording.metadata.get("calibration", {})
-    told = {key: stated.get(key, "").strip() for key in _LABORATORY}
-    told["calibration"] = "; ".join(f"{_words(sensor)} until {until}" for sensor, until in dates.items())
-    if not told["decision_rule"]:
-        told["decision_rule"] = f"{_NOT_STATED}; {_SIMPLE_ACCEPTANCE}"
-    return tuple(Fact(name, told[key] or _NOT_STATED) for key, name in _LABORATORY.items())
+    stated = {key: given.get(key, "").strip() for key in _LABORATORY}
+    stated["calibration"] = "; ".join(f"{_words(sensor)} until {until}" for sensor, until in dates.items())
+    return stated
+
+
+def identity(recording: Recording, result: RunResult | None) -> str:
+    """One line for the head of a report: device under test, bench, operator, start."""
+    run, dut = recording.metadata.get("run", {}), recording.metadata.get("dut", {})
+    operator = run.get("operator", "")
+    parts = (
+        " ".join(dut[key] for key in ("name", "serial") if dut.get(key)),
+        run.get("bench") or (result.bench if result else ""),
+        f"operator {operator}" if operator else "",
+        _moment(run.get("started_at", "")),
+    )
+    return " · ".join(part for part in parts if part)
 
 
 def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...]:
@@ -95,8 +114,8 @@ def run_facts(recording: Recording, result: RunResult | None) -> tuple[Fact, ...
         Fact("Variables", run.get("variables", "")),
         Fact("Bench", f"{bench} (simulated)" if simulated else bench),
         Fact("Operator", run.get("operator", "")),
-        Fact("Hazard taken upon them by", run.get("hazard_confirmed_by", "")),
-        Fact("Prompts confirmed beforehand by", run.get("prompts_confirmed_by", "")),
+        Fact("Hazardous plan authorised by", run.get("hazard_confirmed_by", "")),
+        Fact("Prompts confirmed in advance by", run.get("prompts_confirmed_by", "")),
         Fact("Vehicle and road, confirmed by the panel", _vehicle(recording)),
         Fact("Started", _moment(run.get("started_at", ""))),
     ]
@@ -128,10 +147,10 @@ def _clocks(result: RunResult) -> str:
     offset_s = max(abs(clock.offset_s) for clock in result.clocks)
     latest_s = max(clock.latest_s for clock in result.clocks)
     lost = sum(clock.lost + clock.left_out for clock in result.clocks)
-    apart = f"{quantities.quantity(drift, 'ppm', 1)} apart"
-    within = f"{quantities.quantity(offset_s * 1e3, 'ms', 2)} within a row"
-    latest = f"latest frame {quantities.quantity(latest_s * 1e3, 'ms', 1)} after its time"
-    return f"{apart}, {within}, {latest}, {lost} samples lost"
+    drifts = f"clock drift {quantities.quantity(drift, 'ppm', 1)}"
+    skew = f"channel skew {quantities.quantity(offset_s * 1e3, 'ms', 2)}"
+    latency = f"maximum latency {quantities.quantity(latest_s * 1e3, 'ms', 1)}"
+    return f"{drifts}, {skew}, {latency}, {lost} samples lost"
 
 
 def timing_facts(result: RunResult) -> list[Fact]:
@@ -140,11 +159,11 @@ def timing_facts(result: RunResult) -> list[Fact]:
     if timing is None:
         return []
     if timing.clock == "virtual":
-        return [Fact("Timing of requests", "virtual time: each exactly when it was meant")]
+        return [Fact("Timing of requests", "simulated time, no jitter")]
     facts = [Fact(f"Timing, {r.device} {r.request}", _request(r)) for r in timing.requests]
     if timing.pauses:
         longest = quantities.quantity(timing.longest_pause_s, "s", 3)
-        facts.append(Fact("Own loop stood still", f"{timing.pauses} times, the longest {longest}"))
+        facts.append(Fact("Service stalled", f"{timing.pauses} times, longest {longest}"))
     return facts
 
 
@@ -152,8 +171,8 @@ def _bus_load_facts(result: RunResult) -> list[Fact]:
     return [
         Fact(
             f"Load of bus '{load.bus}'",
-            f"at most {100.0 * load.mean:.0f} % of {quantities.quantity(load.bit_rate / 1e3, 'kbit/s', 0)}, "
-            f"in the busiest 0.1 s {100.0 * load.busiest:.0f} %",
+            f"mean ≤ {100.0 * load.mean:.0f} %, peak (0.1 s) ≤ {100.0 * load.busiest:.0f} % of "
+            f"{quantities.quantity(load.bit_rate / 1e3, 'kbit/s', 0)}",
         )
         for load in result.bus_loads
     ]

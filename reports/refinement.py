@@ -9,7 +9,7 @@ import numpy as np
 from hil.analysis.tuning import RefinedRun, Refinement
 from reports import quantities
 from reports.figure import Figure, Trace
-from reports.labels import Label
+from reports.labels import Label, criterion_title
 from reports.outputs.refinement import REFINEMENT_HEAD, refinement_rows, refinement_verdict
 from reports.parts import Page, Part, Table
 
@@ -32,7 +32,15 @@ def refined_page(page: Page, found: Refinement, consented: str) -> Page:
         tone="fail" if best is None or best.worst < 0 else "pass",
         lead=f"{refinement_verdict(found)} On the model: {page.lead}",
         parts=(*refinement_parts(found, consented), *page.parts),
+        first=_first(page.first, best, found),
     )
+
+
+def _first(of_model: Part | None, best: RefinedRun | None, found: Refinement) -> Part | None:
+    """What was measured in place of what was predicted; the figure of the binding criterion stays."""
+    if best is None or of_model is None:
+        return of_model
+    return replace(of_model, title="Measured margins", tables=(_margins(found, best),))
 
 
 def refinement_parts(found: Refinement, consented: str) -> tuple[Part, ...]:
@@ -50,7 +58,7 @@ def _margins(found: Refinement, best: RefinedRun) -> Table:
     first = found.runs[0]
     rows = [
         (
-            name.replace(".", " "),
+            criterion_title(name),
             *(quantities.share(one[name]) for one in (first.predicted.margins, first.measured)),
             *(quantities.share(one[name]) for one in (best.predicted.margins, best.measured)),
         )

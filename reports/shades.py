@@ -19,9 +19,10 @@ def level(shade: float) -> int:
     return round(DARKEST * shade)
 
 
-def colours(of_level: int, theme: Theme) -> tuple[str, str]:
-    """Background and ink of a shade."""
-    full, none = (_channels(getattr(style.SURFACE[name], theme)) for name in ("fail", "panel"))
+def colours(of_level: int, theme: Theme, *, negative: bool = False) -> tuple[str, str]:
+    """Background and ink of a shade: red, or blue where the sign is negative."""
+    tone = style.SERIES["gain"] if negative else style.SURFACE["fail"]
+    full, none = (_channels(getattr(one, theme)) for one in (tone, style.SURFACE["panel"]))
     share = _SHARE * of_level / DARKEST
     mixed = tuple(round(share * f + (1 - share) * n) for f, n in zip(full, none, strict=True))
     background = "#{:02X}{:02X}{:02X}".format(*mixed)
@@ -29,11 +30,12 @@ def colours(of_level: int, theme: Theme) -> tuple[str, str]:
 
 
 def css_classes(theme: Theme) -> str:
-    """A rule for each shade: classes shade-0 to shade-10."""
+    """A rule for each shade: classes shade-0 to shade-10, and below-0 to below-10 of negative values."""
     rules = []
-    for of_level in range(DARKEST + 1):
-        background, ink = colours(of_level, theme)
-        rules.append(f".shade-{of_level} {{ background: {background}; color: {ink}; }}")
+    for name, negative in (("shade", False), ("below", True)):
+        for of_level in range(DARKEST + 1):
+            background, ink = colours(of_level, theme, negative=negative)
+            rules.append(f".{name}-{of_level} {{ background: {background}; color: {ink}; }}")
     return " ".join(rules)
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,14 +15,14 @@ from hil.core.result import CriterionResult, Segment
 from reports import quantities, style
 from reports.figure import Band, Figure, Level, Mark, Section, Trace, not_drawn
 from reports.labels import Label, channel_label, channel_unit
+from reports.members import Member, members
 from reports.spectrum import DESCRIPTION, amplitude_spectrum, stretch_in_words
 from reports.stretch import cut, line
 
 SPECTRUM_WINDOW_S = (4.0, 20.0)
-_FIRST_SECONDS = 2.0
+FIRST_SECONDS = 2.0
 _SPECTRUM_TO_HZ = 30.0
 _SLOW_HZ = 2.0  # what is left of the run-up below this does not set the scale
-_LONGEST_NAME = 26
 _TIME = "Time from the step"
 _MOTOR_SPEED = "motor_speed_rad_s"
 _SHAFT_TORQUE = "shaft_torque_nm"
@@ -29,17 +30,13 @@ _SHAFT_TORQUE = "shaft_torque_nm"
 Criteria = dict[str, CriterionResult]
 
 
-@dataclass(frozen=True)
-class Member:
-    """One segment of an overlay with its name and line style."""
-
-    segment: Segment
-    name: str
-    role: str
-    dash: str
+def _short(channel: str) -> str:
+    """A channel as metrics name it: without its unit."""
+    return re.sub(r"_(rad_s|m_s|nm)$", "", channel)
 
 
 class _Plan(NamedTuple):
+    title: str
     channel: str
     draw: Callable[[], Figure | None]
 
@@ -48,14 +45,14 @@ def step_section(recording: Recording, segments: list[Segment], criteria: Criter
     """Figures of `segments`, all steps from one initial speed; `criteria` by id give peaks and limits."""
     speed = quantities.nominal(segments[0].initial_speed_km_h, "km/h")
     section_id = f"steps-{segments[0].initial_speed_km_h:g}kmh"
-    overlay = _Overlay(recording, members(segments), criteria, section_id)
+    overlay = Overlay(recording, members(segments), criteria, section_id)
     plans = [
-        _Plan(_MOTOR_SPEED, overlay.motor_speed),
-        _Plan(_MOTOR_SPEED, overlay.motor_speed_spectrum),
-        _Plan(_SHAFT_TORQUE, overlay.shaft_torque),
-        _Plan(_SHAFT_TORQUE, overlay.shaft_torque_enlarged),
-        _Plan("driving_torque_est_nm", overlay.driving_torque),
-        _Plan("motor_torque_ref_nm", overlay.torque_request),
+        _Plan("Motor speed", _MOTOR_SPEED, overlay.motor_speed),
+        _Plan("Spectrum of motor speed", _MOTOR_SPEED, overlay.motor_speed_spectrum),
+        _Plan("Shaft torque", _SHAFT_TORQUE, overlay.shaft_torque),
+        _Plan("First seconds of shaft torque", _SHAFT_TORQUE, overlay.shaft_torque_enlarged),
+        _Plan("Driving torque", "driving_torque_est_nm", overlay.driving_torque),
+        _Plan("Torque request", "motor_torque_ref_nm", overlay.torque_request),
     ]
     drawn = [(plan, plan.draw()) for plan in plans]
     figures = [figure for _, figure in drawn if figure is not None]
@@ -64,34 +61,20 @@ def step_section(recording: Recording, segments: list[Segment], criteria: Criter
         f"Steps from {speed}",
         _text(segments),
         tuple(figures),
-        not_drawn(channel_label(plan.channel) for plan, figure in drawn if figure is None),
+        not_drawn(_missing(drawn)),
     )
 
 
-def members(segments: list[Segment]) -> list[Member]:
-    """Names and line styles: one colour for each controller, one dash for each repeat of it."""
-    further = iter(style.FURTHER_ROLES * len(segments))
-    roles: dict[str, str] = {}
-    uses: dict[str, int] = {}
-    found = []
-    for segment in segments:
-        controller = segment.controller or segment.id
-        if controller not in roles:
-            roles[controller] = controller if controller in ("gain", "phase") else next(further)
-        repeat = uses[controller] = uses.get(controller, -1) + 1
-        name = _shortened(controller_name(controller))
-        name = f"{name} ({_shortened(segment.id)})" if repeat else name
-        found.append(Member(segment, name, roles[controller], style.DASHES[repeat % len(style.DASHES)]))
-    return found
-
-
-def controller_name(controller: str) -> str:
-    """'gain' and 'phase' in full; another controller's own name."""
-    return f"{controller.capitalize()} stabilization" if controller in ("gain", "phase") else controller
-
-
-def _shortened(name: str) -> str:
-    return name if len(name) <= _LONGEST_NAME else f"{name[: _LONGEST_NAME - 1]}…"
+def _missing(drawn: list[tuple[_Plan, Figure | None]]) -> list[Label]:
+    """A channel without any figure by its own name; a single figure that lacks values by its title."""
+    there = {plan.channel for plan, figure in drawn if figure is not None}
+    return [
+        Label(plan.title, channel_label(plan.channel).symbol)
+        if plan.channel in there
+        else channel_label(plan.channel)
+        for plan, figure in drawn
+        if figure is None
+    ]
 
 
 def _text(segments: list[Segment]) -> str:
@@ -105,7 +88,9 @@ def _text(segments: list[Segment]) -> str:
     return (f"Step of the driving torque reference: {sizes}. " if sizes else "") + f"Segments: {names}."
 
 
-class _Overlay:
+class Overlay:
+    """Figures of steps laid over each other; figure ids begin with `section_id`."""
+
     def __init__(
         self, recording: Recording, overlaid: list[Member], criteria: Criteria, section_id: str
     ) -> None:
@@ -115,27 +100,31 @@ class _Overlay:
         self._id = section_id
 
     def motor_speed(self) -> Figure | None:
-        return self._response("motor-speed", _MOTOR_SPEED)
+        """ω_m over the time from the step."""
+        return self.response("motor-speed", _MOTOR_SPEED)
 
     def torque_request(self) -> Figure | None:
-        return self._response("torque-request", "motor_torque_ref_nm")
+        """T_m* over the time from the step."""
+        return self.response("torque-request", "motor_torque_ref_nm")
 
     def shaft_torque(self) -> Figure | None:
-        figure = self._response("shaft-torque", _SHAFT_TORQUE, "peak_shaft_torque", "peak")
+        """T_s over the time from the step, the peaks that criteria judge marked."""
+        figure = self.response("shaft-torque", _SHAFT_TORQUE, "peak_shaft_torque", "peak")
         return figure and self._with_peaks(figure)
 
     def shaft_torque_enlarged(self) -> Figure | None:
-        figure = self._response("shaft-torque-enlarged", _SHAFT_TORQUE, until_s=_FIRST_SECONDS)
+        """T_s of the first seconds, with its reference and the limits of the peak that are near."""
+        figure = self.response("shaft-torque-enlarged", _SHAFT_TORQUE, until_s=FIRST_SECONDS)
         if figure is None:
             return None
         label = channel_label(_SHAFT_TORQUE)
-        reference = self._reference(-0.1, _FIRST_SECONDS)
+        reference = self._reference(-0.1, FIRST_SECONDS)
         figure = replace(
             figure,
-            title=Label(label.text, label.symbol, f", first {_FIRST_SECONDS:g}{quantities.THIN}s"),
+            title=Label(label.text, label.symbol, f", first {FIRST_SECONDS:g}{quantities.THIN}s"),
             traces=(*figure.traces, *reference),
             levels=self._peak_limits(figure.traces),
-            x_range=(-0.1, _FIRST_SECONDS),
+            x_range=(-0.1, FIRST_SECONDS),
         )
         return self._with_peaks(figure)
 
@@ -159,8 +148,9 @@ class _Overlay:
         return Mark(after_s, value, label, member.role)
 
     def driving_torque(self) -> Figure | None:
+        """Reference and estimate of the driving torque."""
         estimate = channel_label("driving_torque_est_nm")
-        figure = self._response("driving-torque", "driving_torque_est_nm")
+        figure = self.response("driving-torque", "driving_torque_est_nm")
         if figure is None:
             return None
         traces = (*figure.traces, *self._reference(-1.0, np.inf))
@@ -168,12 +158,14 @@ class _Overlay:
         return replace(figure, title=title, y_label=Label("Driving torque"), traces=traces)
 
     def motor_speed_spectrum(self) -> Figure | None:
-        label = channel_label(_MOTOR_SPEED)
+        """Amplitudes of ω_m over frequency."""
+        return self.spectrum(_MOTOR_SPEED)
+
+    def spectrum(self, channel: str) -> Figure | None:
+        """Amplitudes of a channel over frequency in the window of its band energy, the band shaded."""
+        label = channel_label(channel)
         traces = [
-            trace
-            for member in self._members
-            for trace in self._spectrum(member, _MOTOR_SPEED)
-            if trace.x.size
+            trace for member in self._members for trace in self._spectrum(member, channel) if trace.x.size
         ]
         if not traces:
             return None
@@ -181,12 +173,12 @@ class _Overlay:
         lengths = [member.segment.end_s - member.segment.step_s for member in self._members]
         band = f"{COMFORT_BAND_HZ[0]:g}{quantities.DASH}{COMFORT_BAND_HZ[1]:g}{quantities.THIN}Hz"
         return Figure(
-            id=f"{self._id}-motor-speed-spectrum",
-            title=Label("Spectrum of motor speed", label.symbol),
+            id=f"{self._id}-{_short(channel).replace('_', '-')}-spectrum",
+            title=Label(f"Spectrum of {label.text.lower()}", label.symbol),
             x_text="Frequency",
             x_unit="Hz",
             y_label=Label("Amplitude of", label.symbol),
-            y_unit=channel_unit(_MOTOR_SPEED),
+            y_unit=channel_unit(channel),
             traces=tuple(traces),
             bands=(Band(*COMFORT_BAND_HZ, band),),
             x_range=(0.0, _SPECTRUM_TO_HZ),
@@ -203,13 +195,14 @@ class _Overlay:
         if spectrum is None:
             return []
         shown = spectrum.frequency_hz <= 2 * _SPECTRUM_TO_HZ
-        label = self._named(member, "band_energy_motor_speed", "band energy")
+        label = self._named(member, f"band_energy_{_short(name)}", "band energy")
         frequency, amplitude = spectrum.frequency_hz[shown], spectrum.amplitude[shown]
         return [Trace(label, frequency, amplitude, member.role, member.dash)]
 
-    def _response(
+    def response(
         self, suffix: str, channel: str, metric: str = "", word: str = "", until_s: float = np.inf
     ) -> Figure | None:
+        """One channel over the time from the step; `word` and the value of `metric` stand in the names."""
         traces = [
             self._line(channel, member, self._named(member, metric, word), until_s)
             for member in self._members
@@ -274,9 +267,6 @@ class _Overlay:
             if criterion and criterion.upper is not None and 0 < criterion.upper <= 1.8 * highest:
                 near.setdefault(criterion.upper, []).append(member.name)
         return tuple(
-            Level(
-                upper,
-                f"Limit {quantities.nominal(upper, 'N m')}" + (f", {names[0]}" if len(near) > 1 else ""),
-            )
+            Level(upper, f"Limit {quantities.nominal(upper, 'N m')}, {' and '.join(names)}")
             for upper, names in near.items()
         )

@@ -26,6 +26,7 @@ SERIES: dict[str, Tone] = {
     "fourth": Tone("#A8487F", "#DF93BC"),
     "fifth": Tone("#7A6A00", "#E4D34A"),
     "reference": Tone("#5B6673", "#A7B3C0"),
+    "measured": Tone("#1B2229", "#E6EBF0"),
     "limit": Tone("#A4161A", "#FF8A80"),
 }
 #: Roles for lines that are neither of the two controllers, in order of use.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from reports import style
+from reports.covering import Outline, outlines, shown_x
 from reports.envelope import envelope
 from reports.figure import Figure
 from reports.labels import Label
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 _LEFT_MM, _RIGHT_MM, _BOTTOM_MM, _TOP_MM = 14.5, 3.5, 8.5, 1.5
 _LEGEND_ROW_MM = 3.4
 _MOST_LEGEND_ROWS = 6
+_PLATE = {"facecolor": "white", "alpha": 0.85, "linewidth": 0, "pad": 0.6}  # no line strikes a label through
+_CLEAR_PT = 1.6  # between a level and its label
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
 
@@ -73,7 +76,18 @@ def _axes_width_mm(figure: Figure) -> float:
 
 def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
     lines = []
-    for trace in figure.traces:
+    covering = outlines(figure)
+    for number, trace in enumerate(figure.traces):
+        if number in covering:
+            lines.append(_outlined(axes, covering[number], style.SERIES[trace.role].light))
+            continue
+        if trace.spread is not None:
+            tone = style.SERIES[trace.role].light
+            axes.fill_between(trace.x, *trace.spread, color=tone, alpha=0.25, linewidth=0)
+        if trace.points:
+            tone = style.SERIES[trace.role].light
+            lines += axes.plot(trace.x, trace.y, "o", color=tone, markersize=1.6, markeredgewidth=0, zorder=4)
+            continue
         points = style.POINTS_ON_PAPER * (2 if figure.wide else 1)
         x, y = envelope(trace.x, trace.y, points, logarithmic=figure.logarithmic)
         color = style.SERIES[trace.role].light
@@ -83,11 +97,13 @@ def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
     if figure.logarithmic:
         axes.set_xscale("log")
         axes.set_yscale("log")
+    elif figure.logarithmic_x:
+        _plain_decades(axes)
     axes.margins(x=0)
-    if figure.x_range:
-        axes.set_xlim(figure.x_range)
-    if figure.y_range:
-        axes.set_ylim(figure.y_range)
+    if (shown := shown_x(figure, covering)) is not None:
+        axes.set_xlim(shown)
+    if figure.shown_y:
+        axes.set_ylim(figure.shown_y)
     axes.set_xlabel(Label(figure.x_title).as_mathtext(), labelpad=2)
     axes.set_ylabel(figure.y_title.as_mathtext(), va="top")
     axes.yaxis.set_label_coords(-(_LEFT_MM - 0.5) / _axes_width_mm(figure), 0.5)  # one edge for all figures
@@ -95,12 +111,30 @@ def _draw(axes: Axes, figure: Figure) -> list[Line2D]:
     return lines
 
 
+def _plain_decades(axes: Axes) -> None:
+    """A logarithmic x axis whose numbers are written out: 0.1, 1, 10."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(LogLocator(base=10, subs=(1.0, 2.0, 5.0)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _outlined(axes: Axes, outline: Outline, color: str) -> Line2D:
+    """The envelope of a curve, both edges and a light shade between them."""
+    axes.fill_between(outline.x, outline.low, outline.high, color=color, alpha=0.25, linewidth=0)
+    axes.plot(outline.x, outline.low, color=color, linewidth=0.6)
+    (upper,) = axes.plot(outline.x, outline.high, color=color, linewidth=0.6)
+    return upper
+
+
 def _mark(axes: Axes, figure: Figure) -> None:
     ink, band_colour = style.SURFACE["quiet"].light, style.SURFACE["band"].light
     for band in figure.bands:
         axes.axvspan(band.start, band.end, color=band_colour, linewidth=0, zorder=0)
         axes.text(
-            (band.start + band.end) / 2,
+            (band.start * band.end) ** 0.5 if figure.logarithmic_x else (band.start + band.end) / 2,
             0.985,
             Label(band.label).as_mathtext(),
             transform=axes.get_xaxis_transform(),
@@ -108,6 +142,8 @@ def _mark(axes: Axes, figure: Figure) -> None:
             va="top",
             color=ink,
             clip_on=True,
+            bbox=_PLATE | {"facecolor": band_colour},
+            zorder=6,
         )
     for mark in figure.marks:
         color = style.SERIES[mark.role].light
@@ -115,14 +151,18 @@ def _mark(axes: Axes, figure: Figure) -> None:
     for level in figure.levels:
         color = style.SERIES[level.role].light
         axes.axhline(level.value, color=color, linewidth=0.8, linestyle="--")
-        axes.text(
-            0.995,
-            level.value,
+        above = figure.label_above(level)
+        axes.annotate(
             Label(level.label).as_mathtext(),
-            transform=axes.get_yaxis_transform(),
+            (0.995, level.value),
+            xycoords=axes.get_yaxis_transform(),
+            xytext=(0, _CLEAR_PT if above else -_CLEAR_PT),
+            textcoords="offset points",
             ha="right",
-            va="bottom",
+            va="bottom" if above else "top",
             color=color,
+            bbox=_PLATE,
+            zorder=6,
         )
     low, high = axes.get_ylim()
     if not (np.isfinite(low) and np.isfinite(high)):

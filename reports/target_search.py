@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from hil.analysis.target_search import Condition, Explanation, Rival
 from hil.core.effects import EFFECTS
 from hil.core.result import Segment
 from reports import quantities
 from reports.figure import Figure, Level
-from reports.labels import Label, channel_label, channel_unit
+from reports.labels import Label, channel_label, channel_unit, criterion_title, with_titles
 from reports.parts import Page, Part, Table, page_html, page_pdf
 from reports.stretch import line
 
@@ -19,7 +21,7 @@ _SHAFT_TORQUE = "shaft_torque_nm"
 
 
 def explanation_html(found: Explanation) -> str:
-    """The page: one file without scripts, figures drawn into it."""
+    """The page: one file with interactive figures."""
     return page_html(_page(found))
 
 
@@ -40,8 +42,8 @@ def caution(found: Explanation) -> str:
     )
     if found.separating is not None:
         text += (
-            f" The run that would tell the first two apart: {found.separating.words}; they differ there by "
-            f"{found.separating.in_words()}."
+            f" The run that separates the first two: {found.separating.words}; they differ there by "
+            f"{with_titles(found.separating.in_words())}."
         )
     return text
 
@@ -53,19 +55,26 @@ def _several(count: int, what: str) -> str:
 def _page(found: Explanation) -> Page:
     notes = ["The search was interrupted: this is what was known then."] if found.interrupted else []
     return Page(
-        kind="Target figures in place of recordings",
-        title=f"{found.targets.plan.name}: what would give the figures",
+        kind="Model changes that reproduce target values",
+        title=f"{found.targets.plan.name}: model changes for the target values",
         headline="Reached" if found.reached else "Not reached",
         tone="pass" if found.reached else "error",
         lead=found.verdict,
         notes=(caution(found), *notes),
         parts=tuple(_parts(found)),
+        first=_first(found),
     )
+
+
+def _first(found: Explanation) -> Part:
+    """What each candidate reaches of the target values, and the first response beside its target."""
+    figures = tuple(replace(figure, wide=True) for figure in _figures(found)[:1])
+    text = f"Values beside the targets. Figure: shaft torque of the first {_FIRST_SECONDS:g} s."
+    return Part("rivals", "Candidates", text, (_rivals(found),), figures=figures)
 
 
 def _parts(found: Explanation) -> list[Part]:
     return [
-        Part("rivals", "Rivals", "", (_rivals(found),)),
         Part(
             "responses",
             "Responses beside the targets",
@@ -75,7 +84,7 @@ def _parts(found: Explanation) -> list[Part]:
         *(
             Part(
                 f"conditions-{number}",
-                f"Conditions, rival {number}: {rival.name}",
+                f"Conditions, candidate {number}: {rival.name}",
                 _values(rival),
                 (_conditions(rival.conditions),),
             )
@@ -98,7 +107,7 @@ def _rivals(found: Explanation) -> Table:
         figures = (quantities.number(rival.outcome.figures[n], significant=4) for n in names)
         missed = f"{len(rival.missed)} of {len(rival.conditions)}"
         rows.append((name, *figures, str(rival.numbers), missed))
-    heads = (name.replace(".", " ").replace("_", " ") for name in names)  # with room to break lines
+    heads = map(criterion_title, names)
     return Table(("", *heads, "free numbers", "conditions missed"), tuple(rows))
 
 
@@ -163,7 +172,7 @@ def _figure(found: Explanation, segment: str, wanted: float) -> Figure | None:
         label,
         channel_unit(_SHAFT_TORQUE),
         tuple(traces),
-        levels=(Level(wanted, f"{quantities.nominal(wanted, 'N m')}"),),
+        levels=(Level(wanted, f"Target {quantities.nominal(wanted, 'N m')}, {segment}"),),
         x_range=(-0.1, _FIRST_SECONDS),
         y_range=(min(0.0, 1.05 * lowest), 1.1 * max(highest, wanted)),
     )

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,14 +12,17 @@ from hil.analysis.tuning import PARAMETERS, Confirmation, Standing, Tuning, valu
 from hil.core.recording import Recording
 from hil.core.result import RunResult, Segment
 from reports import quantities
-from reports.comparison import overlay
-from reports.drawings import Drawing
-from reports.labels import Label
+from reports.figure import Level
+from reports.front_figures import front_figures
+from reports.labels import Label, criterion_title
 from reports.origin import Origin
 from reports.outputs.tuning import verdict
+from reports.overlay_figures import overlay
 from reports.parts import Cell, Map, Page, Part, Table
+from test_plans.criteria import Criterion
 
-_LEADS = "Each margin on the car that is worst for it, weighted; in brackets: on the model itself."
+_ROWS = 12  # of the first screen
+_LEADS = "Least margin over all vehicles, weighted; in brackets: of the nominal model."
 
 _LIMITS = {
     "sensitivity_peak": "|S|max",
@@ -43,12 +46,11 @@ class Shown:
 def tuning_page(
     found: Tuning,
     runs: Sequence[Shown],
-    files: Mapping[str, bytes],
     title: str,
     origin: Origin,
     confirmed: Confirmation | None = None,
 ) -> Page:
-    """The page; `files` hold the figures that are drawn already, `confirmed` what a run came to."""
+    """The page; `confirmed` is what a run came to."""
     worst = found.chosen.worst
     notes = ["The search was interrupted: this is what was best then."] if found.ended == "stopped" else []
     return Page(
@@ -56,38 +58,79 @@ def tuning_page(
         title=title,
         headline=f"Worst margin {quantities.share(worst.worst)}",
         tone="pass" if worst.worst >= 0 else "fail",
-        lead=verdict(found),
+        lead=_in_titles(verdict(found), found),
         notes=tuple(notes),
-        parts=(*_confirmed(confirmed), *_parts(found, runs, files, origin)),
+        parts=(*_confirmed(confirmed), *_parts(found, runs, origin)),
         mark=origin.mark,
+        first=_first(found, runs),
     )
 
 
-def _parts(found: Tuning, runs: Sequence[Shown], files: Mapping[str, bytes], origin: Origin) -> list[Part]:
+def _first(found: Tuning, runs: Sequence[Shown]) -> Part:
+    """The margins of the tuned controller beside the start's, the least first, and the binding response."""
+    ranked = sorted(found.trial.driven.criteria, key=lambda one: found.chosen.least_margin(one.id))
+    rows = tuple(
+        (
+            criterion_title(criterion.id),
+            _limit(criterion),
+            quantities.share(found.start.least_margin(criterion.id))
+            if found.start.worst.feasible
+            else "none",
+            quantities.share(found.chosen.least_margin(criterion.id)),
+        )
+        for criterion in ranked[:_ROWS]
+    )
+    table = Table(("criterion", "limit", "margin, start", "margin, tuned"), rows, 1)
+    binding = next((one for one in ranked if one.id == found.chosen.worst.binding), ranked[0])
+    segment = next((s for s in (runs[0].segments if runs else ()) if s.id == binding.segment), None)
+    figures = overlay(tuple(_compared(run, found) for run in runs), segment) if segment else ()
+    wanted = "spectrum" if "band_energy" in binding.id else "first"
+    shown = next((figure for figure in figures if figure.id.endswith(wanted)), None)
+    title = f"Binding criterion: {criterion_title(binding.id)}"
+    levels: tuple[Level, ...] = ()
+    if binding.metric.name.startswith("peak") and binding.upper is not None and not binding.below:
+        levels = (Level(binding.upper, f"Limit {_limit(binding)[2:]}, {binding.segment}"),)
+    drawn = (replace(shown, title=Label(title), wide=True, levels=levels),) if shown else ()
+    return Part("summary", "Criteria by margin", "", (table,), figures=drawn)
+
+
+def _in_titles(text: str, found: Tuning) -> str:
+    """A sentence with the criteria's titles in place of their ids, the longest id first."""
+    for id_ in sorted((one.id for one in found.trial.driven.criteria), key=len, reverse=True):
+        text = text.replace(id_, criterion_title(id_))
+    return text
+
+
+def _limit(criterion: Criterion) -> str:
+    if criterion.below:
+        return f"< {criterion.below}"
+    unit = quantities.unit(criterion.metric.unit)
+    bounds = [f"≥ {quantities.nominal(criterion.lower)}"] if criterion.lower is not None else []
+    bounds += [f"≤ {quantities.nominal(criterion.upper)}"] if criterion.upper is not None else []
+    return " ".join([*bounds, unit]) if bounds else quantities.DASH
+
+
+def _parts(found: Tuning, runs: Sequence[Shown], origin: Origin) -> list[Part]:
     parts = [
         Part("margins", "Margins", _margins_text(found), (_margins(found),)),
         Part("limits", "Hard limits", _limits_text(found), (_limits(found),)),
         Part("parameters", "Parameters", "", (_parameters(found),)),
-        Part("binding", "What binds", _binding_text(found), (_binding(found),)),
+        Part("binding", "Binding criteria", _binding_text(found), (_binding(found),)),
     ]
-    if "front.svg" in files:
-        words = "Peak against band energy and against the largest sensitivity, of every candidate."
-        parts.append(
-            Part(
-                "front",
-                "What can be traded",
-                "Grey: candidates within the hard limits, on the model itself. Light blue: those that no "
-                "other beats in all three figures, each the largest over the driven segments.",
-                figures=(Drawing(Label("Front"), files["front.svg"], words),),
-            )
+    drawn = front_figures(found)
+    if drawn:
+        words = (
+            "Largest values over the driven segments, nominal model, of every candidate within the hard "
+            "limits. Pareto front: candidates that no other beats in all three figures."
         )
+        parts.append(Part("front", "Trade-off", words, figures=drawn))
     if found.sensitivities:
         parts.append(
             Part(
                 "sensitivities",
                 "Sensitivities",
-                "Change of a margin, in points of percent, when a parameter moves by a tenth of its range; "
-                "on the model itself.",
+                "Change of margin, percentage points, per 10 % of a parameter's range, on the nominal model. "
+                "Red: the margin rises with the parameter; blue: it falls.",
                 maps=(_sensitivities(found),),
             )
         )
@@ -100,9 +143,8 @@ def _parts(found: Tuning, runs: Sequence[Shown], files: Mapping[str, bytes], ori
         Part(
             "search",
             "The search",
-            f"{found.runs} predicted runs of the plan; {found.ended}. From the start and the best of points "
-            "all over the space uphill on the model itself, by linear programmes on the slopes of all "
-            "margins and hard limits; then on a growing set of cars.",
+            f"{found.runs} predicted runs of the plan; {found.ended}. Multi-start sequential linear "
+            "programming on the nominal model, then on a growing set of sampled vehicles.",
         )
     )
     return [*parts, origin.part]
@@ -114,7 +156,7 @@ def _confirmed(found: Confirmation | None) -> tuple[Part, ...]:
         return ()
     rows = tuple(
         (
-            one.id.replace(".", " "),
+            criterion_title(one.id),
             quantities.number(one.predicted.value),
             quantities.number(one.measured.value),
             quantities.number(one.difference, significant=3),
@@ -156,7 +198,7 @@ def _margins_text(found: Tuning) -> str:
 def _margins(found: Tuning) -> Table:
     names = tuple(one.name for one in found.shown)
     rows = [
-        (criterion.id.replace(".", " "), *(_margin(one, criterion.id) for one in found.shown))
+        (criterion_title(criterion.id), *(_margin(one, criterion.id) for one in found.shown))
         for criterion in found.trial.driven.criteria
     ]
     rows.append(("worst", *(_worst(one, found) for one in found.shown)))
@@ -179,8 +221,8 @@ def _margin(one: Standing, id_: str) -> str:
 
 def _limits_text(found: Tuning) -> str:
     count = len(found.trial.draws)
-    cars = "the model itself" if count == 1 else f"the model and {count - 1} cars drawn around it"
-    return f"Least room over {cars}, a share of the limit. Stability margins are of the sampled loop."
+    cars = "nominal model" if count == 1 else f"least over the nominal model and {count - 1} sampled vehicles"
+    return f"Distance to the stability limits, % of each limit, {cars}. Margins are of the sampled loop."
 
 
 def _limits(found: Tuning) -> Table:
@@ -217,8 +259,9 @@ def _binding_text(found: Tuning) -> str:
         for name, (low, high) in found.trial.free.free.items()
         if min(found.chosen.values[name] - low, high - found.chosen.values[name]) < 1e-3 * (high - low)
     ]
-    told = "The cars with the least margins and the criterion that binds each."
-    return f"{told} At a bound: {', '.join(at_bound)}; wider bounds may give more." if at_bound else told
+    told = "The vehicles with the least margins and the binding criterion of each."
+    names = ", ".join(PARAMETERS[name].words for name in at_bound)
+    return f"{told} At a bound: {names}; wider bounds may give more." if at_bound else told
 
 
 def _binding(found: Tuning) -> Table:
@@ -226,9 +269,11 @@ def _binding(found: Tuning) -> Table:
     for tried in sorted(found.chosen.tried, key=lambda one: one.worst)[:5]:
         differs = found.trial.draws[tried.draw].differs
         words = ", ".join(f"{name} {quantities.number(value)}" for name, value in differs.items())
-        car = "the model itself" if tried.draw == 0 else f"draw\u00a0{tried.draw}"
-        rows.append((car, quantities.share(tried.worst), tried.binding.replace(".", " "), words))
-    return Table(("car", "worst margin", "binding criterion", "differs"), tuple(rows), 1, 2)
+        car = "nominal model" if tried.draw == 0 else f"draw\u00a0{tried.draw}"
+        rows.append((car, quantities.share(tried.worst), criterion_title(tried.binding), words))
+    return Table(
+        ("vehicle", "worst margin", "binding criterion", "deviation from nominal"), tuple(rows), 1, 2
+    )
 
 
 def _sensitivities(found: Tuning) -> Map:
@@ -237,11 +282,12 @@ def _sensitivities(found: Tuning) -> Map:
     )
     rows = tuple(
         (
-            criterion.replace(".", " "),
+            criterion_title(criterion),
             tuple(
                 Cell(
                     quantities.number(10 * value, 1),
                     min(1.0, abs(value) / largest) if np.isfinite(value) else 0.0,
+                    value < 0,
                 )
                 for value in row.values()
             ),

@@ -23,11 +23,11 @@ from test_plans.metrics import (
 )
 
 _TITLES = {
-    "response_time": "The response reaches what was asked, to within the bound of arrival",
-    "arrival": "What was asked for arrives",
-    "holding": "It stays there",
-    "stability_oscillation": "Oscillation that lasts, without the declared orders of the wheel",
-    "stability_torque_request": "Share of time at the torque limit, or against the request",
+    "response_time": "Response time to within the tolerance",
+    "arrival": "Steady-state deviation from the request",
+    "holding": "Largest deviation while holding",
+    "stability_oscillation": "Sustained oscillation, without declared wheel orders",
+    "stability_torque_request": "Share of time at the torque limit or against the request",
 }
 #: Names of the checks, as they end the ids of their criteria.
 CHECKS = tuple(_TITLES)

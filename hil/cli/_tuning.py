@@ -138,7 +138,7 @@ def write_results(
     model = Path(asked.told["model"])
     used = {"model": [model], "bench": [asked.bench.source], "controller": [Path(asked.told["start"])]}
     confirmed = None if ran is None else ran.confirmation
-    page = tuning_page(found, shown, files, asked.plan.name, origin_of(used), confirmed)
+    page = tuning_page(found, shown, asked.plan.name, origin_of(used), confirmed)
     if refinement is not None:
         page = refined_page(page, refinement.found, refinement.allowed.told())
     files |= documents(page)

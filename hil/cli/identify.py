@@ -63,7 +63,7 @@ def carry_out(
             files = output_files(found)
             summary = summary_of(found, experiments, sorted([*files, HTML, PDF]))
             title = ", ".join(path.name for path in recordings)
-            page = identification_page(found, summary, files, title, origin_of({"recording": recordings}))
+            page = identification_page(found, summary, title, origin_of({"recording": recordings}))
             files |= documents(page)
             files["identification.json"] = (to_json(summary) + "\n").encode()
         place.write(files, recordings)

@@ -104,7 +104,7 @@ def coherence(frf: FrequencyResponse, *, least: float = 0.5, resonance_hz: float
     upper.axhline(least, color=style.GREY, linewidth=0.9, linestyle=":")
     upper.set_ylim(0, 1.03)
     upper.set_ylabel("Coherence")
-    upper.set_title("How sure the responses are", loc="left")
+    upper.set_title("Coherence and uncertainty", loc="left")
     lower.set_yscale("log")
     lower.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     lower.set_ylabel("Standard deviation in %")

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from reports.drawings import _canvas as style
 
@@ -14,6 +15,7 @@ Array = npt.NDArray[np.float64]
 
 _COLOURS = (style.BLUE, style.VERMILLION, style.GREEN, style.PURPLE, style.ORANGE)
 _FEWEST_BINS, _MOST_BINS = 5, 40
+_MOST_TICKS = 6
 
 
 def distribution(label: str, values: Mapping[str, Array], limits: tuple[float, ...]) -> Figure:
@@ -22,7 +24,7 @@ def distribution(label: str, values: Mapping[str, Array], limits: tuple[float, .
     Args:
         label: of the value, with its unit.
         values: finite, by name of the controller; what is empty is left out.
-        limits: drawn as lines; one that would flatten the values is told.
+        limits: drawn as lines; one that would flatten the values is named at the edge.
     """
     figure = style.new_figure(11, 6)
     axes = figure.subplots()
@@ -33,18 +35,24 @@ def distribution(label: str, values: Mapping[str, Array], limits: tuple[float, .
         axes.stairs(100 * counts / found.size, edges, color=colour, fill=True, alpha=0.25)
         axes.stairs(100 * counts / found.size, edges, color=colour, linewidth=1.2, label=name or None)
     low, high = edges[0], edges[-1]
-    for number, limit in enumerate(limits):
+    for limit in limits:
         if low - (high - low) < limit < high + (high - low):
-            label_of = None if number else "limit"
-            axes.axvline(limit, color=style.BLACK, linewidth=1.1, linestyle=(0, (5, 2)), label=label_of)
-        else:
-            side = "right" if limit > high else "left"
-            axes.plot([], [], " ", label=f"limit {limit:g}, far to the {side}")
+            axes.axvline(
+                limit, color=style.BLACK, linewidth=1.1, linestyle=(0, (5, 2)), label=f"limit {limit:g}"
+            )
+        else:  # within the axes at the edge that is nearer to it, where nothing cuts it off
+            beyond = limit > high
+            place, words = ((0.99, f"limit {limit:g} →"), (0.01, f"← limit {limit:g}"))[not beyond]
+            side = "right" if beyond else "left"
+            axes.text(place, 0.97, words, ha=side, va="top", fontsize=8, transform=axes.transAxes)
+    if low >= 0.0:
+        axes.set_xlim(left=max(0.0, axes.get_xlim()[0]))
+    axes.xaxis.set_major_locator(MaxNLocator(_MOST_TICKS))
     axes.set_xlabel(label)
     axes.set_ylabel("Simulations in %")
     axes.set_ylim(bottom=0)
     style.style_axes(axes)
-    if limits or any(there):
+    if axes.get_legend_handles_labels()[1]:
         figure.legend(loc="outside lower center", ncols=3, frameon=False, fontsize=8)
     return figure
 
@@ -54,9 +62,13 @@ def _edges(values: Array, limits: tuple[float, ...]) -> Array:
     low, high = float(values.min()), float(values.max())
     if high - low <= 1e-9 * max(abs(low), abs(high), 1e-300):
         room = 0.01 * max(abs(low), 1e-9)
-        return np.linspace(low - room, high + room, 4)
+        least = max(low - room, 0.0) if low >= 0.0 else low - room
+        return np.linspace(least, high + room, 4)
     bins = int(np.clip(np.sqrt(values.size), _FEWEST_BINS, _MOST_BINS))
     width = (high - low) / bins
     inside = [limit for limit in limits if low < limit < high]
-    start = inside[0] - np.ceil((inside[0] - low) / width) * width if inside else low
+    below = np.ceil((inside[0] - low) / width) if inside else 0.0
+    start = inside[0] - below * width if inside else low
+    if start < 0.0 <= low:  # an energy is never negative, and neither is a bin of it
+        start, width = 0.0, inside[0] / below
     return np.asarray(start + width * np.arange(np.ceil((high - start) / width - 1e-9) + 1))

@@ -112,7 +112,7 @@ def closing_verdict(closing: Closing) -> str:
     own = "" if before is None else f"; the plan's own controller has {share(before)} on that bench"
     how = "as predicted" if closing.agrees else "not as predicted"
     names = ", ".join(name.replace(".", " ") for name in closing.traded)
-    less = f" Less margin than before have: {names}." if names else ""
+    less = f" Margin decreased for: {names}." if names else ""
     return (
         f"Worst margin measured {share(best.worst)} (round {closing.best_round}, run {best.number}), "
         f"{how}{own}.{less} Ended: {closing.ended or 'not yet'}."

@@ -118,7 +118,7 @@ def text_of(found: Findings, *, random: bool, wanted: float | None, out: str) ->
         lines.append(f"{count} with: {words}")
     if wanted is not None:
         reached = "reached" if passed(found, wanted) else "not reached"
-        lines.append(f"wanted {100 * wanted:g} %: {reached}")
+        lines.append(f"required pass rate {100 * wanted:g} %: {reached}")
     lines.append(f"{found.simulations} simulations, {_duration(found.processor_s)} of a processor; in {out}")
     return "\n".join(lines)
 

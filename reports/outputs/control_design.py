@@ -91,6 +91,11 @@ def _loop(found: Design, name: str) -> dict[str, Any]:
     }
 
 
+def _delay(margin_s: float) -> str:
+    """In ms; far beyond what any dead time of a driveline is, digits say nothing."""
+    return "> 1000" if margin_s > 1.0 else f"{margin_s * 1e3:.1f}"
+
+
 def text_of(found: Design, paper: Design | None, out: Path) -> str:
     """What a person reads: warnings first, then gains, margins of every loop, the worst case, notes."""
     wsc = found.controller.wsc
@@ -113,8 +118,8 @@ def text_of(found: Design, paper: Design | None, out: Path) -> str:
     for name, m in rows:
         lines.append(
             f"{name:<13}{m.sensitivity_peak:>7.2f}  {m.sensitivity_peak_hz:>9.1f}  {m.comfort_peak:>11.3f}  "
-            f"{m.gain_margin_db:>7.1f}  {m.phase_margin_deg:>7.1f}  {m.delay_margin_s * 1e3:>8.1f}  "
-            f"{'yes' if m.stable else 'NO'}{'  <- taken' if name == found.chosen else ''}"
+            f"{m.gain_margin_db:>7.1f}  {m.phase_margin_deg:>7.1f}  {_delay(m.delay_margin_s):>8}  "
+            f"{'yes' if m.stable else 'NO'}{'  <- chosen' if name == found.chosen else ''}"
         )
     lines.append(
         "gain, phase, delay: how much each alone may grow until the loop is unstable; |S| = |1/(1 + L)|"

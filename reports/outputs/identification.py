@@ -173,7 +173,7 @@ def text_of(found: Identification, summary: dict[str, Any], out: Path) -> str:
     ]
     for c in summary["orders"]:
         kind = "" if c["integrator"] else " (no pole at 0)"
-        mark = "  <- taken" if c["chosen"] else ""
+        mark = "  <- chosen" if c["chosen"] else ""
         name = f"{c['order']}{kind}"
         lines.append(
             f"{name:<18}{c['held_out']:>7.4g}  {share(c['relative_excess'], 2):>11}  "
@@ -184,7 +184,7 @@ def text_of(found: Identification, summary: dict[str, Any], out: Path) -> str:
         lines += ["", f"chain          misfit in dB / degrees rms ({', '.join(symbols)})"]
         for kind, one in zip(CHAINS, summary["chains"], strict=True):
             cells = "  ".join(f"{m['gain_db']:.1f}/{m['phase_deg']:.0f}" for m in one["misfit"].values())
-            lines.append(f"{kind:<15}{cells}{'  <- taken' if one['chosen'] else ''}")
+            lines.append(f"{kind:<15}{cells}{'  <- chosen' if one['chosen'] else ''}")
         lines.append(summary["chain_reason"])
     lines += [f"note: {note}" for note in summary["notes"]]
     lines += [

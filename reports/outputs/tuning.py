@@ -170,8 +170,8 @@ def verdict(found: Tuning) -> str:
         f"{_car(before.draw)})."
     )
     if found.better_in_every_criterion:
-        return f"{told} Every criterion has more margin than before."
-    return f"{told} Less margin than before have: {', '.join(found.traded)}."
+        return f"{told} Margin increased for every criterion."
+    return f"{told} Margin decreased for: {', '.join(found.traded)}."
 
 
 def _margin(one: Standing) -> str:
@@ -179,7 +179,7 @@ def _margin(one: Standing) -> str:
 
 
 def _car(number: int) -> str:
-    return "the model itself" if number == 0 else f"draw {number}"
+    return "nominal model" if number == 0 else f"draw {number}"
 
 
 def _cars(found: Tuning) -> str:

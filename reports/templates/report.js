@@ -19,12 +19,13 @@
     const ink = tone("ink");
     const data = figure.data.map((trace) =>
       ({ ...trace, line: { ...trace.line, color: tone("series-" + trace.meta) },
+        ...(trace.fill && { fillcolor: tone("series-" + trace.meta) + "40" }),
         ...(trace.marker && { marker: { ...trace.marker, color: tone("series-" + trace.meta) } }) }));
     const shapes = figure.layout.shapes.map(({ name, ...shape }) => name === "band"
       ? { ...shape, fillcolor: tone("band") }
       : { ...shape, line: { ...shape.line, color: tone(name) } });
     const annotations = figure.layout.annotations.map(({ name, ...note }) =>
-      ({ ...note, font: { ...note.font, color: tone(name) } }));
+      ({ ...note, font: { ...note.font, color: tone(name) }, bgcolor: tone(name === "quiet" ? "band" : "page") + "d9", borderpad: 1 }));
     const layout = {
       ...figure.layout, ...size, shapes, annotations,
       autosize: !size, xaxis: axis(figure.layout.xaxis), yaxis: axis(figure.layout.yaxis),
@@ -39,6 +40,21 @@
   };
 
   const draw = (id, size) => Plotly.react(id, ...coloured(figures[id], size), config);
+
+  // Envelopes of curves that cover each other; the curves themselves once one has zoomed in.
+  const watch = (id) => {
+    const { covering } = figures[id];
+    if (!covering) return;
+    let curves = false;
+    const place = document.getElementById(id);
+    place.on("plotly_relayout", () => {
+      const [from, to] = place.layout.xaxis.range;
+      if ((to - from < covering.curves_below) === curves) return;
+      curves = !curves;
+      Plotly.restyle(id, { visible: curves }, covering.curves);
+      Plotly.restyle(id, { visible: !curves }, covering.envelopes);
+    });
+  };
   const ids = Object.keys(figures);
 
   // Figures near the screen come first; the rest is drawn when it comes near.
@@ -46,7 +62,7 @@
   const near = new IntersectionObserver((entries) => entries.filter((e) => e.isIntersecting).forEach((entry) => {
     near.unobserve(entry.target);
     drawn.add(entry.target.id);
-    draw(entry.target.id);
+    draw(entry.target.id).then(() => watch(entry.target.id));
   }), { rootMargin: "800px" });
   ids.forEach((id) => near.observe(document.getElementById(id)));
 

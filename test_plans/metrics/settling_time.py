@@ -76,8 +76,8 @@ class SettlingTime(WindowMetric):
         settled = int(outside[-1]) + 1
         if settled == len(grid) or grid[settled] > end - self.mean_s:
             raise DidNotSettleError(
-                f"outside ±{half_width:.4g} {super().unit} around the mean of the last "
-                f"{self.mean_s:g} s until {grid[outside[-1]] - segment.step_s:.4g} s after the step, "
+                f"never settled: last outside ±{half_width:.4g} {super().unit} around the mean of the last "
+                f"{self.mean_s:g} s at {grid[outside[-1]] - segment.step_s:.4g} s after the step; "
                 f"the window ends at {end - segment.step_s:.4g} s"
             )
         return float(grid[settled] - segment.step_s)

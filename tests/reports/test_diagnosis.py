@@ -27,8 +27,10 @@ from hil.analysis.diagnosis import (
 from hil.core.channels import OUTPUTS
 from hil.core.model import EffectUse, Model, load_model
 from reports.diagnosis import diagnosis_html, diagnosis_pdf
-from reports.diagnosis_content import headline, lead, parts
+from reports.diagnosis_content import first, headline, lead, parts
 from reports.diagnosis_figures import overlay_figures
+from reports.diagnosis_names import considered_table
+from reports.figure import Figure
 from reports.outputs.autotune import effects_in_words
 
 MODEL = load_model(Path(__file__).parents[2] / "benches/three_inertia.toml")
@@ -97,8 +99,9 @@ def test_the_page_says_what_was_found_and_links_to_every_section(found: Diagnosi
     links = [a.get("href").removeprefix("#") for a in page.xpath("//nav//a")]
     assert links == [part.id for part in parts(found)]
     assert all(page.get_element_by_id(link).tag == "section" for link in links)
-    assert len(page.xpath("//figure/img[starts-with(@src, 'data:image/svg+xml') and @alt]")) == 7
-    assert not page.xpath("//script")
+    assert len(page.xpath("//figure/img[starts-with(@src, 'data:image/svg+xml') and @alt]")) == 1
+    assert len(page.xpath("//figure/div[@class='plot' and @aria-label]")) == 6
+    assert not page.xpath("//script[@src] | //link")
 
 
 def test_maps_stand_in_pairs_and_shade_what_is_above_the_noise(found: Diagnosis) -> None:
@@ -118,8 +121,8 @@ def test_maps_stand_in_pairs_and_shade_what_is_above_the_noise(found: Diagnosis)
 
 
 def test_headline_and_lead_follow_the_verdict(found: Diagnosis) -> None:
-    assert "up to 15 times the noise (motor speed)" in lead(found)
-    assert "leaves 1.05 times the noise at most" in lead(found)
+    assert "before: 15 times the noise (motor speed)" in lead(found)
+    assert "of the model after: 1.05 times the noise" in lead(found)
     none = dataclasses.replace(found, verdict="none", effects=())
     assert headline(none) == "The model explains the data to the noise"
     assert "as it came" not in lead(none)
@@ -133,7 +136,7 @@ def test_the_pdf_is_archivable_and_says_the_same(found: Diagnosis) -> None:
     reader = PdfReader(io.BytesIO(pdf))
     assert "pdfaid" in str(reader.xmp_metadata.stream.get_data())
     text = " ".join(" ".join(page.extract_text().split()) for page in reader.pages)
-    for said in ("Named: backlash", "Motor speed, before", "Considered and not named", "U+8EF8"):
+    for said in ("Named: backlash", "Motor speed, before", "Considered and rejected", "U+8EF8"):
         assert said in text
 
 
@@ -184,12 +187,39 @@ def test_gaps_over_next_to_no_noise_have_no_digits_that_mean_nothing(found: Diag
         by_chance=11.0,
         considered=(Considered("dead_time", "", 2.9e19, 3392320.78, "not fitted"),),
     )
-    assert "leaves > 1000 times the noise at most" in lead(shown)
+    assert "of the model after: > 1000 times the noise" in lead(shown)
     text = {part.id: part for part in parts(shown)}
-    assert "more than 11 noise variances" in text["effects"].text
-    assert "> 1000 times as much or more" in text["effects"].text
+    assert "squared error by >\u202f10⁶ noise variances" in text["effects"].text
+    assert "false-alarm level 11," in text["effects"].text
     assert text["considered"].tables[0].rows[0][1:3] == (">\u202f10⁶", ">\u202f1000")
     assert "e+" not in " ".join(cell for table in text["gap"].tables for row in table.rows for cell in row)
+
+
+def test_effects_rejected_for_one_reason_stand_on_one_line(found: Diagnosis) -> None:
+    considered = (
+        Considered("dead_time", "", 900.0, None, "not fitted"),
+        Considered("sensor_gain", "motor_speed_rad_s", 300.0, None, "not fitted"),
+        Considered("dyno_lag", "", 200.0, 12.0, "leaves 12 times the gap"),
+    )
+    table = considered_table(dataclasses.replace(found, considered=considered))
+    assert [row[1:] for row in table.rows] == [
+        ("900 to 300", "–", "not fitted"),
+        ("200", "12", "leaves 12 times the gap"),
+    ]
+    assert "(motor speed)" in table.rows[0][0]
+
+
+def test_measured_is_drawn_over_what_was_simulated(found: Diagnosis) -> None:
+    (overlays,) = (part.figures for part in parts(found) if part.id == "overlays")
+    shown = [figure for figure in overlays if isinstance(figure, Figure) and figure.id.startswith("time-")]
+    assert shown
+    assert all(figure.traces[-1].label.text == "measured" for figure in shown)
+
+
+def test_the_first_screen_has_the_gaps_and_their_picture(found: Diagnosis) -> None:
+    part = first(found)
+    assert part.tables[0].head[0] == "held-out recordings"
+    assert [figure.alternative_text()[:25] for figure in part.figures] == ["Measured minus simulated."]
 
 
 def test_a_name_is_never_quite_certain(found: Diagnosis) -> None:

@@ -50,7 +50,7 @@ def test_every_figure_has_its_place_data_and_alternative_text(acceptance: dict[s
     plots = document.xpath("//*[@class='plot']")
     data = json.loads(document.xpath("//script[@id='figure-data']")[0].text)
     assert [plot.get("id") for plot in plots] == list(data)
-    assert len(plots) == 15
+    assert len(plots) == 16
     for plot in plots:
         assert plot.get("role") == "group"  # an image could hold no buttons
         assert plot.get("aria-label").startswith("Line chart: ")

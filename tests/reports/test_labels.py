@@ -6,7 +6,15 @@ import pytest
 from matplotlib.mathtext import MathTextParser
 
 from hil.core.channels import CHANNELS
-from reports.labels import Label, channel_label, pieces, sentence_html
+from reports.labels import (
+    Label,
+    channel_label,
+    criterion_title,
+    parameter_title,
+    pieces,
+    sentence_html,
+    with_titles,
+)
 
 
 def test_symbols_become_subscripts() -> None:
@@ -32,3 +40,13 @@ def test_a_sentence_is_cut_at_known_symbols_only() -> None:
     assert [piece for piece, known in pieces(text) if known] == ["T_s"]
     assert "".join(piece for piece, _ in pieces(text)) == text
     assert sentence_html("T_s < 5") == "<i>T</i><sub>s</sub> &lt; 5"
+
+
+def test_ids_of_criteria_and_channels_have_titles() -> None:
+    assert criterion_title("a.peak_shaft_torque") == "Peak shaft torque, a"
+    assert criterion_title("a.peak_shaft_torque.below.b") == "Peak shaft torque, a below b"
+    assert criterion_title("own") == "own"
+    assert with_titles("coherence of 'shaft_torque_nm' is low") == "coherence of shaft torque is low"
+    assert with_titles("my_shaft_torque_nm") == "my_shaft_torque_nm"
+    assert parameter_title("motor_inertia") == "motor inertia"
+    assert parameter_title("backlash.half_gap_rad") == "backlash, half gap"

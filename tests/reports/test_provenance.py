@@ -96,7 +96,7 @@ def test_the_banner_counts_what_was_demanded_and_says_why_the_rest_was_not_judge
     )
     words = " ".join(content(recording, stopped).banner.sentences)
     assert words.startswith(f"Stopped by the operator. {len(rest)} of {len(rest) + 1} criteria passed. ")
-    assert "1 not judged: segment 'a' was stopped. 1 informational. 1 did not settle." in words
+    assert "1 not judged: segment 'a' was stopped. 1 informational. 1 response did not settle." in words
 
 
 def test_damage_stands_in_the_report(recording: Recording, result: RunResult, tmp_path: Path) -> None:
@@ -120,7 +120,9 @@ def test_what_a_laboratory_says_and_what_it_does_not(recording: Recording, resul
     recording.metadata["report"] = {"laboratory": "Test house, Street 1", "report_number": ""}
     told = {fact.name: fact.value for fact in provenance.laboratory_facts(recording, result)}
     assert told["Laboratory"] == "Test house, Street 1"
-    assert told["Report number"] == told["Customer"] == told["Measurement uncertainty"] == "not stated"
+    assert told["Not stated"] == (
+        "report number, customer, conditions, equipment, measurement uncertainty, decision rule"
+    )
     assert "2026-11-30" in told["Calibration"]
     assert "simple acceptance" in told["Decision rule"]
     assert provenance.laboratory_facts(recording, None) == ()

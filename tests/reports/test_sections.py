@@ -72,6 +72,15 @@ def test_a_missing_channel_is_named_and_costs_only_its_figures(
     assert "rF̂_d" in note
 
 
+def test_a_step_too_short_for_a_spectrum_lacks_the_spectrum_alone(
+    recording: Recording, result: RunResult
+) -> None:
+    short = result.segments[0].model_copy(update={"end_s": result.segments[0].step_s + 3.0})
+    section = sections(recording, result.model_copy(update={"segments": (short,)}))[0]
+    assert section.figures[0].title.text == "Motor speed"
+    assert section.notes == ("Not drawn for want of values: Spectrum of motor speed ω_m.",)
+
+
 def test_a_sweep_shows_input_outputs_and_their_spectra(recording: Recording, result: RunResult) -> None:
     sweep = Segment(id="chirp", kind="chirp", start_s=2.0, step_s=2.0, end_s=22.0)
     section = sections(recording, result.model_copy(update={"segments": (sweep,)}))[0]

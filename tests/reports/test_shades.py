@@ -12,6 +12,13 @@ def test_every_shade_can_be_read(level: int, theme: shades.Theme) -> None:
     assert shades.contrast(background, ink) >= 4.5
 
 
+@pytest.mark.parametrize("level", range(1, shades.DARKEST + 1))
+def test_negative_shades_are_of_another_colour_and_can_be_read(level: int) -> None:
+    background, ink = shades.colours(level, "light", negative=True)
+    assert shades.contrast(background, ink) >= 4.5
+    assert background != shades.colours(level, "light")[0]
+
+
 def test_contrast_is_that_of_the_guidelines() -> None:
     assert shades.contrast("#000000", "#FFFFFF") == pytest.approx(21.0)
     assert shades.contrast("#777777", "#FFFFFF") == pytest.approx(4.48, abs=0.005)  # their own example

@@ -20,10 +20,22 @@ from hil.analysis.identification._identify import Identification, identify
 from hil.analysis.identification._modal import Modes, Structure
 from hil.analysis.identification._order import ORDERS, Candidate, OrderChoice, choose_order
 from hil.analysis.identification._table import fit_of, model_of, stated_errors
-from hil.analysis.identification._trust import Judgement, Trust, judge
+from hil.analysis.identification._trust import (
+    LARGEST_DISTORTION,
+    LARGEST_EXCESS,
+    LARGEST_MISFIT,
+    LEAST_COHERENCE,
+    Judgement,
+    Trust,
+    judge,
+)
 
 __all__ = [
     "CHAINS",
+    "LARGEST_DISTORTION",
+    "LARGEST_EXCESS",
+    "LARGEST_MISFIT",
+    "LEAST_COHERENCE",
     "ORDERS",
     "TOLERANCE_DB",
     "TOLERANCE_DEG",

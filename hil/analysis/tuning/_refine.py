@@ -182,7 +182,7 @@ class _Refining:
             return "stopped"
         gain = found.worst - self._runs[self._best].worst
         if gain < self._patience.least_gain:
-            return f"the worst margin would grow by no more than {percent(max(gain, 0.0), 2)} of a limit"
+            return f"no further improvement predicted ({percent(max(gain, 0.0), 2)} of a limit)"
         return self._carried_out(found, self._decided)
 
     def _carried_out(self, promise: Promise, decide: Callable[[RefinedRun], tuple[Decision, str]]) -> str:

@@ -165,7 +165,7 @@ def test_what_was_found_can_be_used(found):
     )
     assert "does not single out" in caution(found)
     page = explanation_html(found)
-    assert page.count("<figure") == 1
+    assert page.count("<figure") == 2  # on top and among the responses
     assert explanation_pdf(found).startswith(b"%PDF")
 
 

@@ -46,10 +46,10 @@ def test_what_it_writes_and_says_and_goes_on_with(tmp_path, capsys):
     share = told["controllers"][0]["share"]
     assert share["interval"][0] < share["share"] <= share["interval"][1]
     assert told["passed"] is True
-    assert "wanted 50 %: reached" in said
+    assert "required pass rate 50 %: reached" in said
     assert "phase_stabilization: 8 of 8 (100.0 %; 63.1 to 100.0 %) pass" in said
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF")
-    assert "What decides" in (out / "report.html").read_text()
+    assert "What the criteria depend on" in (out / "report.html").read_text()
 
     assert campaign(file, "--workers", 0, "--out", out) == 2
     assert "--overwrite" in capsys.readouterr().err

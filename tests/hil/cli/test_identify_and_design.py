@@ -75,7 +75,7 @@ def test_text_names_the_evidence(recording: Path, tmp_path: Path) -> None:
     text = invoke("identify", recording, "--out", tmp_path, "--order", "5", "--gear-ratio", "8.148")
     assert "dead time 8.0" in text
     assert "three_inertia  " in text
-    assert "<- taken" in text
+    assert "<- chosen" in text
 
 
 def test_notch_on_the_command_line(identified: tuple[Path, str], tmp_path: Path) -> None:

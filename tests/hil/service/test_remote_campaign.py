@@ -41,7 +41,7 @@ def test_its_files_and_exit_code_are_those_of_one_here(there: Served, tmp_path: 
     again = hil(*asked, "--resume", cwd=tmp_path)
     assert (again.returncode, len(Client(there.url).campaigns())) == (1, 1), again.stderr
     assert "phase_stabilization: 8 of 8 (100.0 %; 63.1 to 100.0 %) pass\n" in again.stdout
-    assert "wanted 90 %: not reached" in again.stdout
+    assert "required pass rate 90 %: not reached" in again.stdout
     here = hil("campaign", "campaign.yaml", "--out", "out", "--resume", "--workers", "0", cwd=tmp_path)
     assert (here.returncode, "16 simulations" in here.stdout) == (1, True), here.stderr
 

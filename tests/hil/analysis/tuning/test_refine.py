@@ -80,7 +80,7 @@ def test_on_the_model_itself_nothing_is_gained_after_a_search(trial):
     found = refined(trial, bench, space.point(search.chosen.values), patience=Patience(least_gain=0.01))
     assert found.runs[0].worst == pytest.approx(search.chosen.worst.worst, abs=1e-6)
     assert len(found.runs) == 1
-    assert "would grow by no more than" in found.ended
+    assert "no further improvement predicted" in found.ended
 
 
 def test_hard_limits_hold_on_every_car():

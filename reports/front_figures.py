@@ -1,0 +1,76 @@
+"""What can be traded in a tuning: figures of merit of the candidates, those that none beats, named ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.tuning import Tuning, front_of, metrics_of, point_of
+from reports import quantities
+from reports.figure import Figure, Mark, Range, Trace
+from reports.labels import Label
+
+Array = npt.NDArray[np.float64]
+
+_ROLES = ("gain", "phase", "third", "fifth")  # as in the responses
+_ROOM = 0.08  # of what is shown, on either side
+
+
+def front_figures(found: Tuning) -> tuple[Figure, ...]:
+    """The second metric and the largest sensitivity over the first metric; empty with one metric alone."""
+    criteria = found.trial.driven.criteria
+    metrics = metrics_of(criteria)
+    best = front_of(found.archive, criteria)
+    every = [point for tried in found.archive if tried.feasible and (point := point_of(tried, criteria))]
+    if len(metrics) < 2 or not best:
+        return ()
+    units = {criterion.metric.name: criterion.metric.unit for criterion in criteria}
+    axes = [(name.replace("_", " ").capitalize(), units[name]) for name in metrics] + [("|S|max", "")]
+    named = [(one.name, point.figures) for one in found.shown if (point := point_of(one.nominal, criteria))]
+    clouds = (np.array([p.figures for p in every]), np.array([p.figures for p in best]))
+    return tuple(_figure(axes[0], axes[column], column, clouds, named) for column in (1, 2))
+
+
+def _figure(
+    across: tuple[str, str],
+    upwards: tuple[str, str],
+    column: int,
+    clouds: tuple[Array, Array],
+    named: Sequence[tuple[str, Sequence[float]]],
+) -> Figure:
+    every, best = clouds
+    traces = [
+        Trace(Label("candidates"), every[:, 0], every[:, column], "reference", points=True),
+        Trace(Label("Pareto front"), best[:, 0], best[:, column], "fourth", points=True),
+    ]
+    marks = []
+    for (name, point), role in zip(named, _ROLES, strict=False):
+        where = f"{_value(point[0], across[1])}, {_value(point[column], upwards[1])}"
+        marks.append(Mark(point[0], point[column], f"{name}: {where}", role))
+    shown = np.vstack([best[:, [0, column]], *([[p[0], p[column]]] for _, p in named)])
+    return Figure(
+        id=f"front-{column}",
+        title=Label(f"{upwards[0]} over {across[0].lower()}"),
+        x_text=across[0],
+        x_unit=across[1],
+        y_label=Label(upwards[0]),
+        y_unit=upwards[1],
+        traces=tuple(traces),
+        marks=tuple(marks),
+        x_range=_range(shown[:, 0]),
+        y_range=_range(shown[:, 1]),
+        caption="○ " + "; ".join(mark.label for mark in marks) + "." if marks else "",
+    )
+
+
+def _value(value: float, unit: str) -> str:
+    return quantities.quantity(value, unit, significant=3)
+
+
+def _range(values: Array) -> Range:
+    """What is shown: the front and what is named; far candidates would flatten both."""
+    low, high = float(values.min()), float(values.max())
+    room = _ROOM * max(high - low, 1e-3 * abs(high), 1e-12)
+    return low - room, high + room
