@@ -9,8 +9,8 @@ import sys
 import time
 from types import FrameType
 
-_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
-NUMBERS = tuple(getattr(signal, name) for name in _NAMES if hasattr(signal, name))
+from hil.core.conventions import ENDING_SIGNALS
+
 EXIT_CODE = 130
 _AT_ONCE_S = 0.002  # nobody presses a key twice so fast
 
@@ -31,13 +31,13 @@ class Interrupts:
 
     def raise_from_now_on(self) -> None:
         """Take the signals; a SIGHUP that is ignored (`nohup`) stays so."""
-        for number in NUMBERS:
+        for number in ENDING_SIGNALS:
             if number == signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN:
                 signal.signal(number, self._on_signal)
 
     def ignore_from_now_on(self) -> None:
         """The outcome is settled: what comes now changes nothing."""
-        for number in NUMBERS:
+        for number in ENDING_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
     def answered(self) -> None:

@@ -10,7 +10,7 @@ from hil.cli._place import refuse_missing, results_in
 from hil.cli._result_file import RESULT, write_result
 from hil.cli._streams import complain
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.printable import printable, refuse_long
 from hil.core.recording import read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING, load_bench
@@ -64,6 +64,7 @@ def _request(
     segments: Path | None,
     operator: str,
 ) -> ReplayRequest:
+    refuse_long(operator, "--operator")
     if (bench is None) == (not dbc):
         raise BadInputError(
             "what the frames mean is said by --bench or by --dbc, one of them",

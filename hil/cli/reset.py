@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hil.cli._output import console, print_json
 from hil.core.errors import BadInputError
-from hil.core.printable import is_printable, printable
+from hil.core.printable import is_printable, printable, refuse_long
 from hil.engine import load_bench
 from hil.engine.bus_identity import within_process
 from hil.engine.emergency_stop import reset
@@ -14,6 +14,7 @@ from hil.engine.emergency_stop import reset
 
 def carry_out(*, bench: str, by: str, data: Path | None, as_json: bool) -> int:
     """Carry the command out; its exit code."""
+    refuse_long(by, "--by")
     name = by.strip()
     if not name or not is_printable(name):
         raise BadInputError("--by names nobody", fix="give the name of who has made sure that it is safe")

@@ -13,11 +13,13 @@ from hil.cli._result_file import RESULT
 from hil.cli._streams import complain
 from hil.cli._verified import of_run
 from hil.core.errors import BadInputError
+from hil.core.printable import refuse_long
 from hil.core.signatures import fingerprint, private_key, sign_folder
 
 
 def carry_out(*, folder: Path, key: Path, by: str, overwrite: bool, as_json: bool) -> int:
     """Carry the command out; its exit code."""
+    refuse_long(by, "--by")
     refuse_missing(folder)
     if not folder.is_dir():
         raise BadInputError("is not a directory", where=str(folder), fix="name a run's folder")

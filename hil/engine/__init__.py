@@ -4,13 +4,12 @@ from hil.engine.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench_tables import BenchFile
 from hil.engine.border import RECORDING, RunOutcome, RunRequest
 from hil.engine.run import run_plan
-from hil.engine.stopping import STOP_SIGNALS, StopRequest
+from hil.engine.stopping import StopRequest
 from hil.engine.supervisor import carry_out
 
 __all__ = [
     "DEFAULT_BENCH",
     "RECORDING",
-    "STOP_SIGNALS",
     "BenchFile",
     "RunOutcome",
     "RunRequest",

@@ -10,6 +10,7 @@ from pydantic import BeforeValidator, Field, SerializeAsAny, model_validator
 
 from drivers import DeviceTable, File, LoadTable, Name
 from hil.core.file_format import FORMAT, FormatNumber
+from hil.core.printable import LONGEST_NAME
 from hil.engine.limit_tables import Bound, Interlock, Limit, Limits, Table
 
 
@@ -23,6 +24,8 @@ def _date(value: object) -> object:
 
 
 Day = Annotated[datetime.date, BeforeValidator(_date)]
+Line = Annotated[str, Field(max_length=200)]
+Statement = Annotated[str, Field(max_length=1000)]
 _HIGHEST_CHANNEL = 255
 Deviation = Annotated[float, Field(ge=0, le=1e4)]
 
@@ -182,13 +185,15 @@ class Supervision(Table):
 class ReportTable(Table):
     """What a test report has to say beside the results (ISO/IEC 17025, 7.8); left out: 'not stated'."""
 
-    laboratory: str = Field("", description="name and address")
-    report_number: str = ""
-    customer: str = Field("", description="name and contact")
-    conditions: str = Field("", description="of the environment, where they matter for the results")
-    equipment: str = Field("", description="what was measured with, by inventory or serial numbers")
-    measurement_uncertainty: str = Field("", description="of the results, in their unit, with its coverage")
-    decision_rule: str = Field("", description="how uncertainty counts in a verdict (ILAC-G8)")
+    laboratory: Statement = Field("", description="name and address")
+    report_number: Line = ""
+    customer: Statement = Field("", description="name and contact")
+    conditions: Statement = Field("", description="of the environment, where they matter for the results")
+    equipment: Statement = Field("", description="what was measured with, by inventory or serial numbers")
+    measurement_uncertainty: Statement = Field(
+        "", description="of the results, in their unit, with its coverage"
+    )
+    decision_rule: Statement = Field("", description="how uncertainty counts in a verdict (ILAC-G8)")
 
 
 class BenchFile(Table):
@@ -196,8 +201,8 @@ class BenchFile(Table):
 
     format: FormatNumber = FORMAT
     name: Name
-    title: str = ""
-    operator: str = ""
+    title: Line = ""
+    operator: Annotated[str, Field(max_length=LONGEST_NAME)] = ""
     time_scale: float = Field(
         1.0, ge=0.001, le=1, description="seconds of bench time in a second; for `hil sim-bench` only"
     )
@@ -210,7 +215,7 @@ class BenchFile(Table):
     vehicle: Vehicle = Vehicle()
     supervision: Supervision = Supervision()
     zero: dict[str, ZeroLimit] = Field({}, description="channel: what it may read at rest")
-    dut: dict[str, str] = Field({})
+    dut: dict[Line, Line] = Field({}, max_length=50)
     report: ReportTable = Field(ReportTable(), description="what the test report says of the laboratory")
     calibration: dict[str, Day] = Field({}, description="sensor: valid until")
     noise: StatedNoise = Field(

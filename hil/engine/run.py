@@ -17,6 +17,7 @@ from hil.core.errors import (
     OrderlyEndError,
 )
 from hil.core.files import make_directory
+from hil.core.printable import LONGEST_REASON, refuse_long
 from hil.core.recording import Recording
 from hil.core.result import (
     AcceptedExpiry,
@@ -58,6 +59,13 @@ def run_plan(request: RunRequest) -> RunOutcome:
     with request.stop.by_signals():
         make_directory(request.out)
         today = datetime.datetime.now(datetime.UTC).date()
+        for option, name in (
+            ("--operator", request.operator),
+            ("--yes", request.confirmed_by),
+            ("--confirm", request.hazard_confirmed_by),
+        ):
+            refuse_long(name, option)
+        refuse_long(request.accept_expired, "--accept-expired", LONGEST_REASON)
         answers = request.terminal is not None or request.confirmed_by != ""
         expired = accepted_expiry(request.bench, today, request.accept_expired)
         preflight(request.plan, request.bench, request.out, somebody_answers=answers)

@@ -8,16 +8,13 @@ import threading
 from collections.abc import Callable, Iterator
 from types import FrameType
 
-#: SIGHUP is a closed terminal; Windows has none.
-STOP_SIGNALS = tuple(
-    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
-)
+from hil.core.conventions import ENDING_SIGNALS
 
 
 @contextlib.contextmanager
 def held_back() -> Iterator[None]:
     """Keep the signals until this is left; a process started meanwhile keeps its own until `hear_signals`."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, STOP_SIGNALS)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING_SIGNALS)
     try:
         yield
     finally:
@@ -27,7 +24,7 @@ def held_back() -> Iterator[None]:
 def hear_signals() -> None:
     """Take the signals that were held back, and those to come."""
     if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, STOP_SIGNALS)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING_SIGNALS)
 
 
 class StopRequest:
@@ -69,7 +66,7 @@ class StopRequest:
             self.ask()
 
         previous = {}
-        for number in STOP_SIGNALS:
+        for number in ENDING_SIGNALS:
             if number == signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN:
                 previous[number] = signal.signal(number, on_signal)
         try:

@@ -46,6 +46,10 @@ def _contradictions() -> Iterator[Case]:
     yield _case("run", "--yes with an empty name", (*usual("run"), "--yes", ""), (DONE, REFUSED))
     named = (*usual("run"), "--operator", "a\x1b[31m\nb")
     yield _case("run", "an operator with control characters", named, (DONE, REFUSED))
+    for option in ("--operator", "--yes", "--confirm", "--accept-expired"):
+        yield _case("run", f"{option} of 5000 letters", (*usual("run"), option, _LONG))
+    yield _case("reset", "--by of 5000 letters", with_other(usual("reset"), "A. Tester", _LONG))
+    yield _case("sign", "--by of 5000 letters", with_other(usual("sign"), "A. Tester", _LONG))
     yield _case("check", "a plan with an unknown step", usual("check"), prepare=_unknown_step)
     yield _case("report", "a folder without a recording", ("empty",), prepare=_empty_folder)
     yield _case("identify", "a segment that there is not", (*usual("identify"), "--segment", "nowhere"))

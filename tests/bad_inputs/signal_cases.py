@@ -1,4 +1,4 @@
-"""Ctrl-C, a termination and a closed terminal, at every moment of a command."""
+"""Ctrl-C, a termination, a closed terminal and a quit, at every moment of a command."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from tests.bad_inputs.case import FINISHED, INTERRUPTED, SIGNALS, Case, Interruption
 from tests.bad_inputs.commands import usual
 
-_NAMES = ("SIGINT", "SIGTERM", "SIGHUP")
+_NAMES = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT")
 _MOMENTS_S = (0.1, 0.3, 0.6, 1.0, 2.0, 4.0)
 _COMMANDS = ("run", "diagnose", "identify", "design", "check", "report", "export")
 _APPEARING = ("out/recording.mcap", "out/report.html", "out/result.json")
-_WORDS = {"SIGINT": "Ctrl-C", "SIGTERM": "a termination", "SIGHUP": "a closed terminal"}
+_WORDS = {"SIGINT": "Ctrl-C", "SIGTERM": "a termination", "SIGHUP": "a closed terminal", "SIGQUIT": "SIGQUIT"}
 
 
 def signal_cases() -> Iterator[Case]:

@@ -20,7 +20,7 @@ from tests.bad_inputs.inputs import HIL, copy_inputs
 
 LIMIT_S = 60.0
 _POLL_S = 0.005
-_SIGNALS = "INT,TERM,HUP"
+_SIGNALS = "INT,TERM,HUP,QUIT"
 _LARGEST_HASHED = 1 << 28
 _LONGEST_OUTPUT = 2_000_000
 

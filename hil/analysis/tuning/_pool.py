@@ -12,6 +12,7 @@ from concurrent.futures import ProcessPoolExecutor
 from types import TracebackType
 
 from hil.analysis.tuning._trial import Trial, Tried
+from hil.core.conventions import ENDING_SIGNALS
 from hil.core.other_process import end_with_parent
 
 Work = tuple[Mapping[str, float], int]
@@ -71,7 +72,7 @@ class Pool:
 def _begin(trial: Trial, parent: int) -> None:
     global _trial
     _trial = trial
-    for number in (signal.SIGINT, signal.SIGTERM, getattr(signal, "SIGHUP", signal.SIGINT)):
+    for number in ENDING_SIGNALS:
         signal.signal(number, signal.SIG_IGN)  # the process that asked ends this one
     threading.Thread(target=end_with_parent, args=(parent,), daemon=True).start()
 

@@ -209,7 +209,7 @@ class StopPostProcess:
 def main() -> None:
     """Work with the descriptors and settings that the service gives as arguments."""
     control, listening, settings = sys.argv[1:4]
-    for number in (signal.SIGINT, signal.SIGHUP):
+    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(number, signal.SIG_IGN)
     allow_all_descriptors()
     chosen = json.loads(settings)

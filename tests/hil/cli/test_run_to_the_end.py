@@ -100,7 +100,7 @@ def test_reports_are_renewed_in_place_but_not_those_of_another_recording(tmp_pat
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT])
 @pytest.mark.parametrize("sign", ["recording.mcap", "junit.xml"])
 def test_a_signal_at_any_time_leaves_a_result(number: int, sign: str, tmp_path: Path) -> None:
     out = tmp_path / "out"

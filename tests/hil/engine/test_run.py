@@ -285,3 +285,13 @@ def test_a_bus_that_cannot_be_opened_says_so(tmp_path):
     buses["dyno"] = buses["dyno"].model_copy(update={"interface": "no-such-interface"})
     with pytest.raises(BenchError, match="no-such-interface"):
         run(tmp_path, name="wrong", buses=buses)
+
+
+@pytest.mark.parametrize(
+    "named", [{"operator": "x" * 101}, {"confirmed_by": "x" * 101}, {"accept_expired": "x" * 501}]
+)
+def test_a_name_that_no_report_has_room_for_is_refused_before_anything_moves(tmp_path, named):
+    request = RunRequest(plan(CHIRP, "[]"), sim_bench("named"), tmp_path / "out", **named)
+    with pytest.raises(BadInputError, match=r"has \d01 characters, at most \d00 are taken"):
+        run_plan(request)
+    assert not list(tmp_path.glob("out/*"))

@@ -8,7 +8,8 @@ import threading
 
 import pytest
 
-from hil.engine.stopping import STOP_SIGNALS, StopRequest
+from hil.core.conventions import ENDING_SIGNALS
+from hil.engine.stopping import StopRequest
 
 pytestmark = pytest.mark.usefixtures("heard_hangups")
 
@@ -35,9 +36,9 @@ def test_nobody_is_told_before_somebody_asks() -> None:
         assert told == []
 
 
-@pytest.mark.parametrize("number", STOP_SIGNALS)
+@pytest.mark.parametrize("number", ENDING_SIGNALS)
 def test_signals_are_requests_and_the_handlers_come_back(number: signal.Signals) -> None:
-    before = {one: signal.getsignal(one) for one in STOP_SIGNALS}
+    before = {one: signal.getsignal(one) for one in ENDING_SIGNALS}
     stop = StopRequest()
     with stop.by_signals():
         os.kill(os.getpid(), number)
@@ -45,7 +46,7 @@ def test_signals_are_requests_and_the_handlers_come_back(number: signal.Signals)
             os.kill(os.getpid(), number)
         os.kill(os.getpid(), number)
     assert stop.times == 3
-    assert {one: signal.getsignal(one) for one in STOP_SIGNALS} == before
+    assert {one: signal.getsignal(one) for one in ENDING_SIGNALS} == before
 
 
 def test_a_hang_up_that_is_ignored_stays_ignored_and_an_ignored_interrupt_does_not() -> None:
