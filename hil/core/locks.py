@@ -26,8 +26,11 @@ class HeldError(Exception):
 
 
 @contextlib.contextmanager
-def lock_on(path: Path) -> Iterator[int]:
+def lock_on(path: Path, *, shared: bool = False) -> Iterator[int]:
     """Hold a lock on a directory or file that is there; it leaves nothing behind.
+
+    Args:
+        shared: others may hold it too that share it.
 
     Yields:
         the descriptor that holds it.
@@ -40,7 +43,7 @@ def lock_on(path: Path) -> Iterator[int]:
     try:
         if fcntl is not None:
             try:
-                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
             except BlockingIOError:
                 raise HeldError(_holder(handle)) from None
             except OSError:
@@ -51,10 +54,14 @@ def lock_on(path: Path) -> Iterator[int]:
 
 
 @contextlib.contextmanager
-def lock_named(name: str) -> Iterator[None]:
+def lock_named(name: str, *, shared: bool = False) -> Iterator[None]:
     """Hold a lock on something that is no file, for all processes of this machine.
 
-    A file named by it is locked. It stays after a kill and holds nobody up: only the lock counts.
+    A file named by it is locked. It stays after a kill, and where it is shared, and holds nobody up: only the
+    lock counts.
+
+    Args:
+        shared: others may hold it too that share it.
 
     Raises:
         HeldError: another process holds it.
@@ -62,16 +69,17 @@ def lock_named(name: str) -> Iterator[None]:
     """
     path = shared_place() / f"eaxle-hil-{re.sub('[^A-Za-z0-9.-]+', '_', name)[:100]}.lock"
     with contextlib.ExitStack() as held:
-        while not _has_name(path, held):
+        while not _has_name(path, held, shared=shared):
             held.close()
         try:
             yield
         finally:
-            with contextlib.suppress(OSError):  # another user's file
-                path.unlink()
+            if not shared:  # another may hold it still
+                with contextlib.suppress(OSError):  # another user's file
+                    path.unlink()
 
 
-def _has_name(path: Path, held: contextlib.ExitStack) -> bool:
+def _has_name(path: Path, held: contextlib.ExitStack, *, shared: bool) -> bool:
     """Lock the file; whether it is still the one of this name: its holder takes it away when it is done."""
     with contextlib.suppress(FileExistsError):
         made = os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o644)
@@ -79,7 +87,7 @@ def _has_name(path: Path, held: contextlib.ExitStack) -> bool:
             path.chmod(0o644)  # whatever the umask: another account has to be able to look at it
         os.close(made)
     with contextlib.suppress(FileNotFoundError):
-        handle = held.enter_context(lock_on(path))
+        handle = held.enter_context(lock_on(path, shared=shared))
         return os.path.samestat(os.fstat(handle), path.stat())
     return False
 

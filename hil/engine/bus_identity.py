@@ -29,6 +29,15 @@ _ADDRESS = re.compile(r"(?P<host>[^/\s]+):(?P<port>\d+)")
 
 def identity_of(bus: Bus) -> str:
     """The physical port of a bus, as a word or some; '' where no other process can reach it."""
+    port = port_of_any_adapter(bus)
+    if not port or port.startswith("port "):
+        return port
+    which = [f"{key}={bus.options[key]}" for key in sorted(_WHICH) if bus.options.get(key) is not None]
+    return " ".join([port, *which])
+
+
+def port_of_any_adapter(bus: Bus) -> str:
+    """The same as if the table did not say which of several adapters it means: that may be any of them."""
     if bus.interface in _IN_PROCESS:
         return ""
     channel = str(bus.channel)
@@ -40,8 +49,7 @@ def identity_of(bus: Bus) -> str:
         return f"port {channel.upper()}"
     address = _network_address(bus)
     interface = _ALIKE.get(bus.interface, bus.interface)
-    which = [f"{key}={bus.options[key]}" for key in sorted(_WHICH) if bus.options.get(key) is not None]
-    return " ".join([interface, *([address] if address else []), _plain(channel), *which])
+    return " ".join([interface, *([address] if address else []), _plain(channel)])
 
 
 def identities_of(file: BenchFile) -> dict[str, str]:

@@ -58,3 +58,18 @@ def test_an_adapter_is_known_by_what_its_link_points_to(tmp_path) -> None:
     )
     with alone_on(one), pytest.raises(BenchError, match="in use"), alone_on(other):
         pass
+
+
+def test_a_table_that_names_no_adapter_may_mean_any_of_them() -> None:
+    def kvaser(**options: object):
+        return bench(rmcu={"interface": "kvaser", "channel": 0, "options": options})
+
+    with alone_on(kvaser(serial=5)), alone_on(kvaser(serial=6)):
+        for other in (kvaser(), kvaser(serial=5, receive_own_messages=True)):
+            with pytest.raises(BenchError, match="in use"), alone_on(other):
+                pass
+    for other in (kvaser(serial=5), kvaser()):
+        with alone_on(kvaser()), pytest.raises(BenchError, match="in use"), alone_on(other):
+            pass
+    with alone_on(kvaser()):
+        pass
