@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from tests.bad_inputs.all_cases import all_cases
+from tests.bad_inputs.api_bounds import table_of, try_routes
 from tests.bad_inputs.case import Case
 from tests.bad_inputs.inputs import make_inputs
 from tests.bad_inputs.page import BOUNDS_PAGE, PAGE, Tried, bounds_page_of, failures_of, page_of
@@ -45,7 +46,9 @@ def main() -> int:
     print(f"{len(tried)} tried, {len(failures)} faults")
     if options.write and not options.only:
         PAGE.write_text(page_of(tried), "utf-8")
-        BOUNDS_PAGE.write_text(bounds_page_of(tried), "utf-8")
+        routes = list(try_routes())
+        failures += [fault for route in routes for fault in route.faults]
+        BOUNDS_PAGE.write_text(bounds_page_of(tried, table_of(routes)), "utf-8")
     return 1 if failures else 0
 
 

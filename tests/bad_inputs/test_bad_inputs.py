@@ -4,6 +4,8 @@ import pytest
 
 from tests.bad_inputs.__main__ import AT_ONCE, try_all
 from tests.bad_inputs.all_cases import all_cases, quick_cases
+from tests.bad_inputs.api_bounds import try_routes
+from tests.bad_inputs.bound_cases import bound_cases
 from tests.bad_inputs.case import FILES, REFUSED, SIGNALS, Case, Outcome
 from tests.bad_inputs.judging import HALF_WRITTEN, HANG, TRACEBACK, UNCLEAR, WRONG_CODE, faults_of
 from tests.bad_inputs.page import failures_of, page_of
@@ -51,4 +53,19 @@ def test_a_sixteenth_of_all_cases_stands_bad_input(tmp_path):
     assert AT_ONCE == 2
     cases = [case for case in all_cases() if case.kind != SIGNALS][::16]
     assert len({case.command for case in cases}) >= 9
+    assert failures_of(try_all(cases, tmp_path)) == []
+
+
+@pytest.mark.slow
+def test_every_route_refuses_what_is_too_large_too_deep_too_long_or_too_many():
+    routes = list(try_routes())
+    assert len(routes) >= 20
+    assert [fault for route in routes for fault in route.faults] == []
+
+
+@pytest.mark.slow
+def test_files_without_end_are_refused_in_little_memory(tmp_path):
+    """A device in the place of each file; all shapes of them are `make bad-inputs`."""
+    cases = [case for case in bound_cases() if case.tried.endswith("is a device")]
+    assert len(cases) >= 30
     assert failures_of(try_all(cases, tmp_path)) == []
