@@ -1,4 +1,4 @@
-"""Each route of the API that takes a body, with bodies that are too large, deep, long or have too many keys."""
+"""Each route of the API that takes a body, with bodies too large, too deep, too long or of too many keys."""
 
 from __future__ import annotations
 

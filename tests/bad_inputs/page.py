@@ -51,10 +51,10 @@ _ROUTES_INTRODUCTION = """
 
 ## Routes of the API
 
-Every route that takes a body, on one service with a simulated bench: 3 MB, 100,000 lists in each other (of TOML a
-key of as many parts), a text of 200,000 characters, 20,000 keys. Given are the status of each answer, how long the
-slowest took, and by how much the memory of the service and of the process that reads for it grew. That process
-starts with the first file.
+Every route that takes a body, on one service with a simulated bench: 3 MB, 100,000 lists in each other
+(of TOML a key of as many parts), a text of 200,000 characters, 20,000 keys. Given are the status of each
+answer, how long the slowest took, and by how much the memory of the service and of the process that reads
+for it grew. That process starts with the first file.
 
 """
 
