@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+from pydantic import ValidationError
 
 from hil.analysis.identification import transfer_functions_of
 from hil.core.channels import OUTPUTS
 from hil.core.controller import LARGEST_ORDER, Plant
 from hil.core.errors import BadInputError
+from hil.core.field_words import needed
 from hil.core.model import Model, TransferFunction, refuse_without_vehicle
 from hil.plant import refuse_too_stiff
 
@@ -72,12 +74,18 @@ def design_plant(model: Model) -> DesignPlant:
     changes = list(notes)
     numerators[1] = _invertible(numerators[1], len(numerators[0]) - 1, "wheel speed", "(17)", changes)
     numerators[2] = _invertible(numerators[2], len(denominator) - 1, "shaft torque", "(18)", changes)
-    filters = Plant(
-        denominator=tuple(float(c) for c in denominator),
-        motor_speed=tuple(float(c) for c in numerators[0]),
-        wheel_speed=tuple(float(c) for c in numerators[1]),
-        shaft_torque=tuple(float(c) for c in numerators[2]),
-    )
+    try:
+        filters = Plant(
+            denominator=tuple(float(c) for c in denominator),
+            motor_speed=tuple(float(c) for c in numerators[0]),
+            wheel_speed=tuple(float(c) for c in numerators[1]),
+            shaft_torque=tuple(float(c) for c in numerators[2]),
+        )
+    except ValidationError as error:
+        raise BadInputError(
+            f"the RMCU's filters cannot hold this plant: {needed(dict(error.errors()[0]))}",
+            fix="is a parameter of the model in another unit? Else identify it again",
+        ) from error
     return DesignPlant(
         functions,
         filters,

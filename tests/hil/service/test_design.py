@@ -59,7 +59,7 @@ def test_an_unstable_loop_is_drawn_and_said_and_gives_no_controller(client: Clie
     ("wrong", "said"),
     [
         ({"lead_deg": 90.0}, "at most 85 degrees"),
-        ({"lead_hz": 0.0}, "positive number below 500 Hz"),
+        ({"lead_hz": 0.0}, "from 0.01 to below 500 Hz"),
         ({"stabilisation": "gain", "notch_depth": 2.0}, "from 0"),
         ({"model": "none"}, "there is no model 'none'"),
     ],
