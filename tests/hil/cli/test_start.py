@@ -51,6 +51,8 @@ def test_every_command_is_listed_and_every_listed_one_is_there(capsys):
     assert modules == {name for name in there if not name.startswith("_")}
     assert guarded(["--help"]) == 0
     told = capsys.readouterr().out
+    assert guarded([]) == 0
+    assert capsys.readouterr().out == told
     assert all(f"  {name} " in told and text in told for name, text in _COMMANDS.items())
 
 
