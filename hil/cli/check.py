@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 
 from hil.cli._choices import choices_of
+from hil.cli._default_bench import bench_or_own
 from hil.cli._loop_margins import loop_margins, margins_json, margins_table, remarks_on_load, warnings_of
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
 from hil.core.channels import CHANNELS
@@ -75,7 +76,7 @@ def _loaded(plan: str, choices: Choices, bench: str) -> tuple[Plan, BenchFile]:
     except BadInputError as error:
         refused.append(error)
     try:
-        file = load_bench(bench)
+        file = load_bench(bench_or_own(bench, plan))
     except BadInputError as error:
         refused.append(error)
     all_of(refused)

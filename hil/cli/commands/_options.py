@@ -24,6 +24,8 @@ def found_targets(given: Path | None) -> Path | None:
     return None if given is None else shipped_file(given, "targets file")
 
 
+_OWN_BENCH = "default: bench.toml beside the plan or here, else sim"
+
 PlanName = Annotated[
     str,
     typer.Argument(
@@ -32,13 +34,22 @@ PlanName = Annotated[
     ),
 ]
 BenchName = Annotated[
-    str, typer.Option(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
+    str,
+    typer.Option(
+        help=f"bench file, or the name of a shipped bench; {_OWN_BENCH}", autocompletion=shipped_bench()
+    ),
+]
+DefaultBenchArgument = Annotated[
+    str,
+    typer.Argument(
+        help=f"bench file, or the name of a shipped bench; {_OWN_BENCH}", autocompletion=shipped_bench()
+    ),
 ]
 BenchArgument = Annotated[
     str, typer.Argument(help="bench file, or the name of a shipped bench", autocompletion=shipped_bench())
 ]
 SimulatedBenchName = Annotated[
-    str, typer.Option(help="simulated bench, by file or name", autocompletion=shipped_bench())
+    str, typer.Option(help=f"simulated bench, by file or name; {_OWN_BENCH}", autocompletion=shipped_bench())
 ]
 ModelOption = Annotated[
     Path,

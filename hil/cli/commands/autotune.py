@@ -27,7 +27,7 @@ def command(
     sequence: Annotated[
         str, typer.Argument(help="sequence file, or the name of a shipped one: autotune")
     ] = "autotune",
-    bench: BenchName = "sim",
+    bench: BenchName = "",
     out: Annotated[
         Path | None, typer.Option(help="directory for the results; default: out/autotune-NNN")
     ] = None,

@@ -26,7 +26,7 @@ def command(
     plan: Annotated[
         str | None, typer.Option(help="plan file or name; default: the targets file's, or acceptance")
     ] = None,
-    bench: SimulatedBenchName = "sim",
+    bench: SimulatedBenchName = "",
     model: Annotated[
         Path | None,
         typer.Option(

@@ -16,7 +16,7 @@ SEVERAL = ("--controller", "--set")
 
 def command(
     plan: PlanName,
-    bench: BenchName = "sim",
+    bench: BenchName = "",
     out: Annotated[
         Path | None,
         typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),

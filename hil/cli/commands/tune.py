@@ -58,7 +58,8 @@ def command(
     bench: Annotated[
         str,
         typer.Option(
-            help="simulated bench to predict on, by file or name; default: sim, or that of --on-bench",
+            help="simulated bench to predict on, by file or name; default: that of --on-bench, else as of "
+            "`hil run`",
             autocompletion=shipped_bench(),
         ),
     ] = "",

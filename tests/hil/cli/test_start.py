@@ -13,7 +13,6 @@ from hil.analysis.identification import ORDERS
 from hil.cli import commands
 from hil.cli._app import _COMMANDS, guarded
 from hil.core.channels import INPUT
-from hil.engine import DEFAULT_BENCH
 from tests.hil.cli.test_commands import hil
 
 SLOW = {
@@ -84,7 +83,6 @@ def test_options_say_the_defaults_that_the_work_would_take():
     assert given["pole"] == paper.pole_rad_s
     assert given["torque_limit"] == paper.torque_limit_nm
     assert given["largest_sensitivity"] == paper.limits.sensitivity_peak
-    assert defaults("run")["bench"] == defaults("check")["bench"] == DEFAULT_BENCH
     assert defaults("identify")["input_channel"] == INPUT
     for order in (ORDERS[0] - 1, ORDERS[-1] + 1):
         assert guarded(["identify", "x.csv", "--out", "x", "--order", str(order)]) == 2
