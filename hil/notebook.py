@@ -98,8 +98,16 @@ def read(path: str | Path) -> Recording:
     return read_recording(Path(path))
 
 
-def frame(recording: Recording) -> pd.DataFrame:
-    """Channels over time: the index is `time_s`, units stand in `attrs["units"]` by channel."""
+def frame(recording: Recording | str | Path) -> pd.DataFrame:
+    """Channels over time: the index is `time_s`, units stand in `attrs["units"]` by channel.
+
+    Args:
+        recording: as `read` gives it, or the file, which is read then.
+
+    Raises:
+        BadInputError: the file is no recording.
+    """
+    recording = recording if isinstance(recording, Recording) else read(recording)
     columns = {name: values for name, values in recording.channels.items() if name != TIME}
     found = pd.DataFrame(columns, index=pd.Index(recording.time_s, name=TIME))
     found.attrs["units"] = {name: unit_of(name) for name in columns}
