@@ -48,7 +48,7 @@ class Run:
 def run(
     plan: str | Path,
     out: str | Path,
-    bench: str | Path = "sim",
+    bench: str | Path = "",
     *,
     variables: dict[str, float] | None = None,
     options: Sequence[str] = (),
@@ -56,7 +56,8 @@ def run(
     """Carry out a plan, as `hil run` does, and write its reports.
 
     Args:
-        plan: file, or the name of a built-in plan; likewise `bench`.
+        plan: file, or the name of a built-in plan.
+        bench: file, or the name of a shipped bench; default: as that of `hil run`.
         out: new folder for recording and reports.
         variables: values of the plan's variables, in their units.
         options: further options of `hil run`, such as `--model FILE` or `--confirm NAME`.
@@ -71,8 +72,7 @@ def run(
         *_COMMAND,
         "run",
         str(plan),
-        "--bench",
-        str(bench),
+        *(("--bench", str(bench)) if bench else ()),
         "--out",
         str(out),
         *chosen,
@@ -98,8 +98,16 @@ def read(path: str | Path) -> Recording:
     return read_recording(Path(path))
 
 
-def frame(recording: Recording) -> pd.DataFrame:
-    """Channels over time: the index is `time_s`, units stand in `attrs["units"]` by channel."""
+def frame(recording: Recording | str | Path) -> pd.DataFrame:
+    """Channels over time: the index is `time_s`, units stand in `attrs["units"]` by channel.
+
+    Args:
+        recording: as `read` gives it, or the file, which is read then.
+
+    Raises:
+        BadInputError: the file is no recording.
+    """
+    recording = recording if isinstance(recording, Recording) else read(recording)
     columns = {name: values for name, values in recording.channels.items() if name != TIME}
     found = pd.DataFrame(columns, index=pd.Index(recording.time_s, name=TIME))
     found.attrs["units"] = {name: unit_of(name) for name in columns}

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from hil.pytest_folders import Folders, folder_name, leave_if_empty
+
 if TYPE_CHECKING:
     from hil.core.recording import Recording
     from hil.core.result import CriterionResult, RunResult
@@ -27,14 +29,28 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """`--bench` and `--bench-out`, and the ini option `hil_bench`."""
     group = parser.getgroup("hil", "test benches for electric axles")
     group.addoption(
-        "--bench", metavar="BENCH", help="bench file, or the name of a shipped bench, such as sim"
+        "--bench",
+        metavar="BENCH",
+        help="bench file, or the name of a shipped bench, such as sim; "
+        "default: bench.toml beside the plan or here, if it is simulated",
     )
     group.addoption(
         "--bench-out",
         metavar="DIR",
         help="where recordings and reports go; default: pytest's temporary folder",
     )
+    group.addoption(
+        "--bench-overwrite",
+        action="store_true",
+        help="replace the results of an earlier session in --bench-out; default: new numbered folders",
+    )
     parser.addini("hil_bench", "bench in place of --bench; a file is relative to this ini file")
+
+
+def pytest_report_header(config: pytest.Config) -> str | None:
+    """The bench of those tests that have none of their own beside them."""
+    found = _bench_for(config, config.invocation_params.dir)
+    return f"bench: {found}" if found else None
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> PlanFile | None:
@@ -86,10 +102,11 @@ class Ran:
 class PytestBench:
     """The fixture `bench`: runs plans, each into a folder of its own."""
 
-    def __init__(self, bench: str, out: Path, beside: Path, properties: list[tuple[str, object]]) -> None:
+    def __init__(
+        self, bench: str, folders: Folders, beside: Path, properties: list[tuple[str, object]]
+    ) -> None:
         self.name = bench
-        self._out, self._beside, self._properties = out, beside, properties
-        self._count = 0
+        self._folders, self._beside, self._properties = folders, beside, properties
 
     def run(self, plan: str | Path, *, variables: Mapping[str, float] | None = None, **options: str) -> Ran:
         """Carry out a plan as `hil run` does; criteria stand among the test's JUnit properties.
@@ -103,22 +120,34 @@ class PytestBench:
             BadInputError: plan, bench or an option cannot be used.
         """
         beside = self._beside / plan
-        self._count += 1
-        folder = self._out / f"{Path(plan).name.partition('.')[0]}-{self._count:03d}"
-        ran = _run(beside if beside.is_file() else plan, self.name, folder, variables, options)
+        ran = _run(
+            beside if beside.is_file() else plan,
+            self.name,
+            self._folders.next(Path(plan).name.partition(".")[0]),
+            variables,
+            options,
+            overwrite=self._folders.overwrite,
+        )
         self._properties += _properties(ran, *ran.result.criteria)
         return ran
 
 
 @pytest.fixture
 def bench(request: pytest.FixtureRequest, tmp_path: Path) -> PytestBench:
-    """The bench of --bench, of the ini option hil_bench, or of the bench.toml beside the test's file."""
+    """The bench of --bench, of the ini option hil_bench, or of the bench.toml beside the test or here."""
+    from hil.core.errors import HilError
+
     found = _bench_for(request.config, request.path.parent)
     if found is None:
         pytest.skip(_NO_BENCH)
+    try:
+        _refuse_unnamed_hardware(request.config, found)
+    except HilError as error:
+        pytest.fail(str(error), pytrace=False)
     out = request.config.getoption("--bench-out")
-    place = Path(out).absolute() / _plain(request.node.nodeid) if out else tmp_path / "bench"
-    return PytestBench(found, place, request.path.parent, request.node.user_properties)
+    place = Path(out).absolute() / folder_name(request.node.nodeid) if out else tmp_path / "bench"
+    folders = Folders(place, overwrite=request.config.getoption("--bench-overwrite"))
+    return PytestBench(found, folders, request.path.parent, request.node.user_properties)
 
 
 class PlanFile(pytest.File):
@@ -135,6 +164,7 @@ class PlanFile(pytest.File):
         try:
             plan = load_plan(self.path)
             load_bench(self.bench)
+            _refuse_unnamed_hardware(self.config, self.bench)
         except HilError as error:
             raise self.CollectError(str(error)) from None
         names = ["run", *(criterion.id for criterion in plan.criteria), "safe_state"]
@@ -153,15 +183,14 @@ class PlanFile(pytest.File):
     @cached_property
     def ran(self) -> Ran | Exception:
         """The run, carried out when the first of the tests asks for it."""
-        name = self.path.name.partition(".")[0]
-        out = self.config.getoption("--bench-out")
+        out, overwrite = self.config.getoption("--bench-out"), self.config.getoption("--bench-overwrite")
         if out:
-            folder = Path(out).absolute() / _plain(self.nodeid)
+            folder = Folders(Path(out).absolute(), overwrite=overwrite).next(folder_name(self.nodeid))
         else:
             factory: Any = self.config._tmp_path_factory  # type: ignore[attr-defined]
-            folder = factory.mktemp(name) / "run"
+            folder = factory.mktemp(self.path.name.partition(".")[0]) / "run"
         try:
-            return _run(self.path, self.bench, folder, None, {})
+            return _run(self.path, self.bench, folder, None, {}, overwrite=overwrite)
         except Exception as error:
             return error
 
@@ -215,8 +244,18 @@ def _bench_for(config: pytest.Config, folder: Path) -> str | None:
     told = config.getini("hil_bench")
     if told:
         return _placed(told, config.inipath.parent if config.inipath else config.rootpath)
-    beside = folder / _BENCH
-    return str(beside) if beside.is_file() else None
+    own = (place / _BENCH for place in (folder, config.invocation_params.dir))
+    return next((str(file) for file in own if file.is_file()), None)
+
+
+def _refuse_unnamed_hardware(config: pytest.Config, found: str) -> None:
+    """Raises:
+    BadInputError: a bench.toml that nobody has named describes hardware.
+    """
+    if not config.getoption("--bench") and not config.getini("hil_bench"):
+        from hil.engine.found_bench import refuse_hardware
+
+        refuse_hardware(Path(found))
 
 
 def _placed(bench: str, base: Path) -> str:
@@ -229,19 +268,23 @@ def _run(
     folder: Path,
     variables: Mapping[str, float] | None,
     options: Mapping[str, str],
+    *,
+    overwrite: bool,
 ) -> Ran:
     """A run by the command, in a process that leaves the bench safe whatever becomes of pytest."""
     from hil import notebook
-    from hil.core.errors import BenchError
+    from hil.core.errors import BenchError, HilError
     from hil.core.result import RunResult
 
     words = [word for name, value in options.items() for word in (f"--{name.replace('_', '-')}", value)]
+    words += ["--overwrite"] if overwrite else []
     try:
         ran = notebook.run(plan, folder, bench, variables=dict(variables or {}), options=words)
         return Ran(ran.result, folder)
-    except BenchError as error:
+    except HilError as error:
         stored = folder / "result.json"
-        if not stored.is_file():
+        if not isinstance(error, BenchError) or not stored.is_file():
+            leave_if_empty(folder)
             raise
         return Ran(RunResult.model_validate_json(stored.read_bytes()), folder, str(error))
 
@@ -280,8 +323,3 @@ def _properties(ran: Ran, *criteria: CriterionResult) -> list[tuple[str, object]
         found += [(f"{one.id}.{key}", repr(value)) for key, value in figures.items() if value is not None]
         found += [(f"{one.id}.unit", one.unit), (f"{one.id}.verdict", one.verdict)]
     return found
-
-
-def _plain(node: str) -> str:
-    """A test's id as the name of a folder."""
-    return "".join(character if character.isalnum() else "_" for character in node).strip("_")[-120:]

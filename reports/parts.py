@@ -24,12 +24,16 @@ from reports.svg_figure import svg_figure
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of text under a head; columns from `numbers_from` to before `words_from` are numbers."""
+    """Rows of text under a head; columns from `numbers_from` to before `words_from` are numbers.
+
+    `links` are addresses for the first field of each row, relative to the page; '' for none. Paper has none.
+    """
 
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     numbers_from: int = 1
     words_from: int = 99
+    links: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

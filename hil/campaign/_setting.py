@@ -19,8 +19,9 @@ from hil.analysis.campaigns import (
 from hil.analysis.tuning import differing, driven_by, refuse_model
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
-from hil.core.files import sha256_of
+from hil.core.files import is_file, sha256_of
 from hil.core.model import Model, load_model
+from hil.core.shipped import shipped_file
 from hil.core.suggestion import did_you_mean
 from hil.engine import BenchFile, load_bench
 from hil.engine.trial_runs import controller_files
@@ -112,8 +113,14 @@ def _model_file(file: CampaignFile, bench: BenchFile) -> Path:
             raise BadInputError(what, where=where, fix="model: FILE, a chain as hil identify writes it")
         return bench.simulation.model
     found = file.beside(file.model, Path())
-    if found is None:
-        fix = "name a model file beside the campaign's, or leave it out for the bench's own"
+    try:
+        found = found or shipped_file(file.model, "model", file.source.parent)
+    except BadInputError as error:
+        raise BadInputError(error.what, where=where, fix=error.fix) from None
+    if not is_file(found):
+        fix = (
+            "name a model file beside the campaign's or a shipped model, or leave it out for the bench's own"
+        )
         raise BadInputError(f"there is no file '{file.model}'", where=where, fix=fix)
     return found
 

@@ -56,7 +56,7 @@ _COMMANDS = {
     "monitor": "Decoded channels and bus load live, touching nothing.",
     "jog": "Turn the axle at low torque and check the sign of every sensor.",
     "reset": "Let a bench be armed again after an emergency stop.",
-    "list": "What there is: plans, benches, effects, steps, metrics, devices.",
+    "list": "What there is: plans, benches, models, effects, steps, metrics, devices.",
     "init": "A folder of one's own, ready to run: plan, bench, model, test.",
     "schema": "JSON schemas of plan, bench, model, controller and campaign files, for editors.",
 }
@@ -84,11 +84,7 @@ def _dispatch(arguments: list[str]) -> int:
         take_named_shell(arguments)
         _app_of(*_COMMANDS)(arguments, prog_name="hil")
         return 0
-    if not arguments:
-        raise BadInputError(
-            "name a command", fix=f"one of {', '.join(_COMMANDS)}; hil --help tells about them"
-        )
-    if arguments[0] in ("-h", "--help"):
+    if not arguments or arguments[0] in ("-h", "--help"):
         print(_help())
         return 0
     if arguments[0] == "--version":

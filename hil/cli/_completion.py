@@ -41,6 +41,11 @@ def shipped_bench() -> Complete:
     return _completing(lambda: _stems("benches", "*.toml", "[buses."))
 
 
+def shipped_model() -> Complete:
+    """Completes with the names of shipped models; the shell offers files where none fits."""
+    return _completing(lambda: _stems("benches", "*.toml", "\nkind = ", "[buses."))
+
+
 def shipped_campaign() -> Complete:
     """Completes with the names of shipped campaigns; the shell offers files where none fits."""
     return _completing(lambda: _stems("hil", "analysis/campaigns/library/*.yaml"))
@@ -53,9 +58,10 @@ def _completing(words: Callable[[], Iterable[str]]) -> Complete:
     return complete
 
 
-def _stems(package: str, pattern: str, holding: str = "") -> list[str]:
+def _stems(package: str, pattern: str, holding: str = "", without: str = "\0") -> list[str]:
     """Names of a package's files, which is not imported for it: that takes longer than a key press."""
     spec = importlib.util.find_spec(package)
     folders = [Path(place) for place in spec.submodule_search_locations or ()] if spec else []
     files = sorted(path for folder in folders for path in folder.glob(pattern))
-    return [path.stem for path in files if holding in path.read_text(encoding="utf-8")]
+    texts = {path.stem: path.read_text(encoding="utf-8") for path in files}
+    return [name for name, text in texts.items() if holding in text and without not in text]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +17,11 @@ from hil.core.result import RunResult
 from hil.engine import BenchFile
 from hil.engine.bench_file import with_seed
 from hil.engine.disk_room import needed_bytes, refuse_too_little_room
+from reports.series_report import SERIES_HTML, limit_in_words, series_html, values_in_words
 from test_plans import Plan, estimate_duration_s
 
 SUMMARY = "series.json"
+_BADNESS = ("informational", "pass", "did_not_settle", "undecided", "fail", "not_judged", "error")
 
 
 def announce_series(plans: Sequence[Plan], repeat: int, out: Path | None) -> None:
@@ -59,7 +61,11 @@ def carry_out_series(
     done: list[tuple[int, Finished]] = []
     code = 0
     with results_in(
-        out, (SUMMARY,), inputs=runs.inputs, overwrite=runs.overwrite, default=f"{plans[0].name}-series"
+        out,
+        (SUMMARY, SERIES_HTML),
+        inputs=runs.inputs,
+        overwrite=runs.overwrite,
+        default=f"{plans[0].name}-series",
     ) as place:
         for number, (group, plan, bench) in enumerate(_each(plans, benches), 1):
             with runs.finished(plan, bench, place.folder / f"{number:03d}") as run:
@@ -71,6 +77,8 @@ def carry_out_series(
                 if run.outcome.error is not None:
                     break
         summary = _summary(done)
+        page = series_html(plans[0].title or plans[0].name, benches[0].name, summary)
+        write_atomically(place.folder / SERIES_HTML, page)
         _tell_all(summary, place, as_json=as_json)
     return code
 
@@ -91,6 +99,9 @@ def _summary(done: Sequence[tuple[int, Finished]]) -> dict[str, Any]:
                 "folder": run.folder.name,
                 "variables": _variables(run.result),
                 "verdict": run.result.verdict,
+                "report": f"{run.folder.name}/{run.result.files['html']}"
+                if "html" in run.result.files
+                else "",
                 "criteria": {one.id: one.value for one in run.result.criteria},
             }
             for _, run in done
@@ -106,13 +117,17 @@ def _variables(result: RunResult) -> dict[str, float]:
 
 
 def _spread(results: Sequence[RunResult]) -> dict[str, dict[str, Any]]:
-    """Of each criterion: runs with a value, mean, standard deviation (of two runs or more), ends."""
+    """Of each criterion: limits (null where they move), worst verdict, and how its values spread."""
     found = {}
     for criterion in results[0].criteria:
-        of_runs = [one.value for result in results for one in result.criteria if one.id == criterion.id]
-        values = [value for value in of_runs if value is not None]
+        of_runs = [one for result in results for one in result.criteria if one.id == criterion.id]
+        values = [one.value for one in of_runs if one.value is not None]
         found[criterion.id] = {
             "unit": criterion.unit,
+            "lower": _common(one.lower for one in of_runs),
+            "upper": _common(one.upper for one in of_runs),
+            "below": criterion.below,
+            "verdict": max((one.verdict for one in of_runs), key=_BADNESS.index),
             "count": len(values),
             "mean": statistics.fmean(values) if values else None,
             "standard_deviation": statistics.stdev(values) if len(values) > 1 else None,
@@ -120,6 +135,12 @@ def _spread(results: Sequence[RunResult]) -> dict[str, dict[str, Any]]:
             "highest": max(values, default=None),
         }
     return found
+
+
+def _common(limits: Iterable[float | None]) -> float | None:
+    """The limit that all runs have; None where it differs, as one does that another segment sets."""
+    found = set(limits)
+    return found.pop() if len(found) == 1 else None
 
 
 def _tell(run: Finished) -> None:
@@ -138,16 +159,19 @@ def _tell_all(summary: dict[str, Any], place: Place, *, as_json: bool) -> None:
     table = plain_table()
     table.add_column("variables")
     table.add_column("criterion", no_wrap=True)
+    table.add_column("limit", no_wrap=True)
+    table.add_column("verdict", no_wrap=True)
     for name in ("runs", "mean", "standard deviation", "lowest", "highest"):
         table.add_column(name, justify="right")
     table.add_column("unit")
     for group in summary["spread"]:
-        values = ", ".join(f"{name} = {value:g}" for name, value in group["variables"].items())
+        values = values_in_words(group["variables"])
         for number, (name, spread) in enumerate(group["criteria"].items()):
             numbers = (spread[key] for key in ("mean", "standard_deviation", "lowest", "highest"))
             cells = ("-" if value is None else f"{value:.4g}" for value in numbers)
-            table.add_row(values if number == 0 else "", name, str(spread["count"]), *cells, spread["unit"])
+            said = (name, limit_in_words(spread), spread["verdict"].replace("_", " "), str(spread["count"]))
+            table.add_row(values if number == 0 else "", *said, *cells, spread["unit"])
     page = console()
     page.print()
     page.print(table)
-    page.print(f"\nsummary: {place.folder / SUMMARY}", highlight=False)
+    page.print(f"\nsummary: {place.folder / SUMMARY}\nreport: {place.folder / SERIES_HTML}", highlight=False)

@@ -9,6 +9,7 @@ from typing import Any
 from hil.cli._autotune_loop import AutotuneLoop
 from hil.cli._autotune_stages import MODEL, Told, asked_for
 from hil.cli._consent import consent, refuse_nobody
+from hil.cli._default_bench import bench_or_own
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_values import named_numbers
 from hil.cli._on_bench import Allowed, predicted_run
@@ -93,6 +94,7 @@ def _told(
         BadInputError: something of it cannot be used, leaves the envelope, or nobody consents.
     """
     identify = load_plan(sequence.identify_plan)
+    bench = bench_or_own(bench, drives=True)
     asked = asked_for(sequence, model, bench)
     for plan in (identify, asked.plan):
         refuse_nobody(plan, asked.bench, confirm)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 
 from hil.cli._choices import choices_of
+from hil.cli._default_bench import bench_or_own
 from hil.cli._loop_margins import loop_margins, margins_json, margins_table, remarks_on_load, warnings_of
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
 from hil.core.channels import CHANNELS
@@ -22,7 +23,7 @@ from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.forecast import Forecast, forecast
 from hil.engine.measured import refuse_unmeasured
 from hil.engine.preflight import preflight
-from test_plans import Choices, Pace, Plan, estimate_duration_s, load_plan
+from test_plans import Choices, Plan, load_plan
 
 if TYPE_CHECKING:
     from hil.analysis.control_design import Margins
@@ -44,8 +45,6 @@ def carry_out(
         accepted_expiry(file, today, "")
         preflight(checked, file, Path(directory))
     refuse_unmeasured(file)
-    pace = Pace(speed_ramp_m_s2=file.dyno.speed_ramp_m_s2, wheel_radius_m=file.vehicle.wheel_radius_m)
-    duration_s = estimate_duration_s(checked, pace)
     with progress(checked.name) as show:
         show("predicting")
         predicted = forecast(checked, file)
@@ -58,9 +57,9 @@ def carry_out(
         warn(f"no margins of the loops: {missing}")
         loops = {}
     if as_json:
-        print_json(_json(checked, file.name, duration_s, predicted) | {"loops": margins_json(loops)})
+        print_json(_json(checked, file.name, predicted) | {"loops": margins_json(loops)})
     else:
-        _tell(checked, file.name, duration_s, predicted, loops)
+        _tell(checked, file.name, predicted, loops)
     unjudged = (f"not checked: {text}" for text in checked.device_gaps)
     for text in (*warnings_of(loops), *remarks_on_load(checked), *unjudged):
         warn(text)
@@ -75,20 +74,20 @@ def _loaded(plan: str, choices: Choices, bench: str) -> tuple[Plan, BenchFile]:
     except BadInputError as error:
         refused.append(error)
     try:
-        file = load_bench(bench)
+        file = load_bench(bench_or_own(bench, plan))
     except BadInputError as error:
         refused.append(error)
     all_of(refused)
     return checked, file
 
 
-def _json(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> dict[str, object]:
+def _json(plan: Plan, bench: str, predicted: Forecast) -> dict[str, object]:
     peaks = {name: {"value": value, "limit": limit} for name, (value, limit) in predicted.peaks.items()}
     return {
         "plan": plan.name,
         "bench": bench,
         "fits": predicted.fits,
-        "duration_s": round(duration_s, 1),
+        "duration_s": round(predicted.duration_s, 1),
         "steps": len(plan.steps),
         "segments": [segment.id for segment in plan.segments],
         "predicted": peaks,
@@ -101,11 +100,11 @@ def _json(plan: Plan, bench: str, duration_s: float, predicted: Forecast) -> dic
     }
 
 
-def _tell(plan: Plan, bench: str, duration_s: float, predicted: Forecast, loops: dict[str, Margins]) -> None:
+def _tell(plan: Plan, bench: str, predicted: Forecast, loops: dict[str, Margins]) -> None:
     page = console()
     page.print(
         f"{plan.name}: valid, {len(plan.steps)} steps, {len(plan.segments)} segments, "
-        f"{len(plan.criteria)} criteria, about {duration_s:.0f} s on the bench '{bench}'",
+        f"{len(plan.criteria)} criteria, about {predicted.duration_s:.0f} s on the bench '{bench}'",
         highlight=False,
     )
     page.print(_table(predicted.peaks))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.table import Table
 
+from hil.cli._default_bench import bench_or_own
 from hil.cli._output import console, plain_table, print_json, progress
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
@@ -21,7 +22,7 @@ _COUNTERS = {"state": "", "transmit_errors": "transmit errors ", "receive_errors
 
 def carry_out(*, bench: str, for_s: float, as_json: bool) -> int:
     """Carry the command out; its exit code."""
-    file = load_bench(bench)
+    file = load_bench(bench_or_own(bench))
     with progress(f"looking at {file.name}") as show:
         request = DoctorRequest(file, for_s, stop=StopRequest())
         request.progress = lambda share, text: show(text, share)

@@ -16,6 +16,7 @@ from hil.analysis.target_search import (
     model_name,
     read_targets,
 )
+from hil.cli._default_bench import bench_or_own
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_values import named_numbers
 from hil.cli._output import console, plain_table, print_json, progress, to_json
@@ -47,7 +48,10 @@ def carry_out(
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
-    wanted, file = read_targets(targets, plan, named_numbers(target, "--target")), load_bench(bench)
+    wanted, file = (
+        read_targets(targets, plan, named_numbers(target, "--target")),
+        load_bench(bench_or_own(bench, plan)),
+    )
     if file.simulation is None:
         raise BadInputError("is no simulated bench", where=str(file.source), fix="give one with [simulation]")
     source = model or file.simulation.model

@@ -36,7 +36,7 @@ def carry_out(
         print_json({"folder": str(folder), "files": list(files)})
     else:
         print(f"{folder}: {', '.join(files)}")
-        print(f"next: cd {shlex.quote(str(folder))} && hil check plan.yaml --bench bench.toml")
+        print(f"next: cd {shlex.quote(str(folder))} && hil check plan.yaml")
     return 0
 
 

@@ -12,7 +12,9 @@ from rich.markup import escape
 from hil.cli._output import console, plain_table, print_json
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
+from hil.core.model import load_model
 from hil.core.printable import printable
+from hil.core.shipped import shipped_file, shipped_names
 from hil.core.suggestion import did_you_mean
 from hil.engine import load_bench
 from hil.engine.bench_file import shipped_benches
@@ -61,6 +63,25 @@ def _benches() -> list[Row]:
     ]
 
 
+def _models() -> list[Row]:
+    models = {name: load_model(shipped_file(name, "model")) for name in shipped_names("model")}
+    return [
+        {
+            "name": name,
+            "title": _heading(name),
+            "kind": model.kind,
+            "effects": [use.id for use in model.effects],
+        }
+        for name, model in models.items()
+    ]
+
+
+def _heading(name: str) -> str:
+    """What a shipped model's file says in its first line."""
+    text = shipped_file(name, "model").read_text("utf-8")
+    return text.partition("\n")[0].removeprefix("# ")
+
+
 def _effects() -> list[Row]:
     return [
         {
@@ -100,6 +121,7 @@ def _keys(found: type[BaseModel] | None) -> list[str]:
 _LISTS: dict[str, Callable[[], list[Row]]] = {
     "plans": _plans,
     "benches": _benches,
+    "models": _models,
     "effects": _effects,
     "steps": lambda: _classes(STEPS),
     "metrics": lambda: _classes(METRICS),

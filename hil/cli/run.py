@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hil.cli._browser import show_in_browser
 from hil.cli._choices import all_choices
+from hil.cli._default_bench import bench_or_own
 from hil.cli._one_run import Runs
 from hil.cli._output import (
     console,
@@ -23,7 +24,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.printable import printable
 from hil.core.result import RunResult
-from hil.engine import load_bench
+from hil.engine import DEFAULT_BENCH, load_bench
 from test_plans import Plan, load_plan
 
 
@@ -51,9 +52,12 @@ def carry_out(
         _refuse_here_only(model=model, controller=controller, repeat=repeat * len(choices), confirm=confirm)
         from hil.cli._remote_run import RemoteRun  # costs a run here nothing
 
-        remote = RemoteRun(server, plan, bench, dict(choices[0].values), yes, accept_expired, overwrite)
+        remote = RemoteRun(
+            server, plan, bench or DEFAULT_BENCH, dict(choices[0].values), yes, accept_expired, overwrite
+        )
         return remote.carry_out(out, lambda result, folder: _tell(result, folder, show=show, as_json=as_json))
-    plans, bench_file = [load_plan(plan, choice) for choice in choices], load_bench(bench)
+    plans = [load_plan(plan, choice) for choice in choices]
+    bench_file = load_bench(bench_or_own(bench, plan, drives=True))
     inputs = [bench_file.source, *([Path(plan)] if Path(plan).is_file() else []), *([model] if model else [])]
     runs = Runs(
         model=load_model(model) if model else None,

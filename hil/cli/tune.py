@@ -8,6 +8,7 @@ from pathlib import Path
 
 from hil.analysis.tuning import Effort, Patience, Tuning, tune
 from hil.cli._asked_twice import at_once
+from hil.cli._default_bench import bench_or_own
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._on_bench import FOLDER, Wanted, WireBench, allowed_on
 from hil.cli._one_run import Runs
@@ -19,7 +20,7 @@ from hil.cli._then_run import OnTheWire, Ran, refuse_unasked, tell
 from hil.cli._then_run import then_run as run_tuned
 from hil.cli._tuning import NAMES, SUMMARY, asked_of, write_results
 from hil.core.errors import BadInputError
-from hil.engine import DEFAULT_BENCH, StopRequest
+from hil.engine import StopRequest
 from reports.outputs.tuning import text_of
 
 
@@ -50,7 +51,7 @@ def carry_out(
     """Carry the command out; its exit code."""
     wanted = Wanted(on_bench, runs, envelope or [], confirm)
     _refuse_together(wanted, bench, then_run=then_run)
-    used = wanted.bench or bench or DEFAULT_BENCH
+    used = wanted.bench or bench_or_own(bench, plan, drives=then_run)
     asked = asked_of(plan, model, free, controller, start, draws, seed, used)
     if then_run:
         refuse_unasked(asked.plan)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import Path
@@ -102,16 +102,13 @@ def read_dbc(path: Path, needed: Mapping[str, Needed], names: Names | None = Non
     names = names or Names()
     database = database_of(path)
     found: dict[str, Message] = {}
+    there = {message.name: message for message in database.messages}
+    _refuse_missing(there, needed, names, str(path))
     for ours, parts in needed.items():
         name = names.message(ours)
-        try:
-            message = database.get_message_by_name(name)
-        except KeyError:
-            if parts.may_miss and ours not in names.messages:
-                continue
-            raise BadInputError(
-                f"has no message '{name}'", where=str(path), fix="use the RMCU's DBC"
-            ) from None
+        if name not in there:
+            continue
+        message = there[name]
         for mistake in _mistakes(message, _as_called(parts, names, ours)):
             raise BadInputError(f"message '{name}'{mistake}", where=str(path), fix=_FIX)
         found[ours] = message
@@ -124,6 +121,21 @@ def read_dbc(path: Path, needed: Mapping[str, Needed], names: Names | None = Non
             )
     layouts = {ours: _renamed(layout_of(message), names.ours(ours)) for ours, message in found.items()}
     return Dbc(layouts, dict(_texts(found, names)))
+
+
+def _refuse_missing(there: Container[str], needed: Mapping[str, Needed], names: Names, where: str) -> None:
+    """Raises:
+    BadInputError: names all messages that are missing at once.
+    """
+    ours = (ours for ours, one in needed.items() if not one.may_miss or ours in names.messages)
+    missing = [name for name in map(names.message, ours) if name not in there]
+    if missing:
+        called = ", ".join(f"'{name}'" for name in missing)
+        raise BadInputError(
+            f"has no message{'s' if len(missing) > 1 else ''} {called}",
+            where=where,
+            fix="use the RMCU's DBC; if it calls them otherwise, [rmcu.messages] of the bench file says how",
+        )
 
 
 def _as_called(needed: Needed, names: Names, message: str) -> Needed:

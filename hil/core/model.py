@@ -24,17 +24,19 @@ from hil.core.chain import WHEEL_RADIUS_M
 from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT
 from hil.core.files import write_atomically
+from hil.core.shipped import shipped_file
 from hil.core.toml_file import parse_toml, toml_text
 
 logger = logging.getLogger(__name__)
 
 
 def load_model(path: Path) -> Model:
-    """Read a model file.
+    """Read a model file, or a shipped one by its name.
 
     Raises:
         BadInputError: not readable, not TOML, or every key that is unknown, missing or not physical.
     """
+    path = shipped_file(path, "model")
     text = toml_text(path)
     model = model_from_dict(parse_toml(text, str(path)), str(path), text)
     effects = ", ".join(use.id for use in model.effects) or "none"

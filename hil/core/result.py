@@ -306,6 +306,9 @@ class RunResult(_Frozen):
     verdict: Verdict
     plan: str
     bench: str
+    started_at: str = Field(
+        "", description="when the recording begins: ISO 8601, UTC; '' of files that do not say it"
+    )
     real_time_factor: float
     bench_time_s: float
     safe_state: SafeState

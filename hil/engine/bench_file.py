@@ -15,6 +15,7 @@ from hil.core.errors import BadInputError
 from hil.core.file_kind import refuse_other_kind
 from hil.core.mistakes import keyed, refuse
 from hil.core.printable import is_printable, printable
+from hil.core.shipped import shipped_file
 from hil.core.suggestion import did_you_mean
 from hil.core.table_mistakes import told
 from hil.core.toml_file import parse_toml, toml_text
@@ -67,7 +68,8 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
     _refuse(where, [*(mistakes or contradictions(bench)), *of_files], text)
     changes: dict[str, Any] = _beside(devices, base)
     if bench.simulation:
-        changes["simulation"] = bench.simulation.model_copy(update={"model": base / bench.simulation.model})
+        model = _model_of(data, base)
+        changes["simulation"] = bench.simulation.model_copy(update={"model": model})
     loaded = bench.model_copy(update=changes)
     _refuse(where, device_mistakes(loaded), text)
     return loaded
@@ -93,10 +95,15 @@ def _beside(devices: dict[str, Any], base: Path) -> dict[str, Any]:
 
 
 def _model_of(data: dict[str, Any], base: Path) -> Path | None:
-    """The model file that the contents of a bench file name."""
+    """The model file that the contents of a bench file name: beside it, or a shipped one."""
     simulation = data.get("simulation")
     model = simulation.get("model") if isinstance(simulation, dict) else None
-    return base / model if isinstance(model, str) and model and is_printable(model) else None
+    if not isinstance(model, str) or not model or not is_printable(model):
+        return None
+    try:
+        return shipped_file(model, "model", base)
+    except BadInputError:  # told among the bench file's other mistakes
+        return base / model
 
 
 def _refuse(where: str, mistakes: list[str], text: str) -> None:

@@ -25,12 +25,14 @@ LONGEST_WITH_ANALYSIS_S = 2 * 3600.0
 class Forecast:
     """`peaks` has the largest magnitude of each limited channel with its limit, in the channel's unit.
 
-    `bus_loads` has the share of each bus that the frames of every millisecond take, at most.
+    `bus_loads` has the share of each bus that the frames of every millisecond take, at most; `duration_s` is
+    the bench time of steps and end steps, operator prompts not counted.
     """
 
     peaks: dict[str, tuple[float, float]]
     criteria: tuple[CriterionResult, ...]
     bus_loads: dict[str, float]
+    duration_s: float
 
     @property
     def fits(self) -> bool:
@@ -62,14 +64,16 @@ def forecast(plan: Plan, bench: BenchFile) -> Forecast:
         predicted = PredictedBench(bench, load_model(simulation.model))
         take = None if _analyses(plan, bench) else judgement.take
         run = PredictedRun(predicted, Path(folder), each_segment=take)
+        begin_s = predicted.loop.clock.now_s()
         run.carry_out((*plan.steps, *plan.finally_))
+        duration_s = predicted.loop.clock.now_s() - begin_s
         found = run.ended()
     if take is None:
         for segment in found.segments:
             judgement.take(found.recording, segment)
     limits = limits_of_channels(bench.limits)
     peaks = {channel: (found.peaks[channel], limit) for channel, limit in limits.items()}
-    return Forecast(peaks, judgement.results(), found.bus_loads)
+    return Forecast(peaks, judgement.results(), found.bus_loads, duration_s)
 
 
 def _analyses(plan: Plan, bench: BenchFile) -> bool:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from drivers import Samples, Stream
+from hil.core.channels import unit_of
 from hil.core.errors import BenchError, LimitTripError
 from hil.core.result import LimitResult
 from hil.engine.limit_tables import Interlock, Limits
@@ -17,6 +18,8 @@ from hil.engine.ranges import Range, ranges_of
 _PAUSE_S = 0.03  # wires are looked at every 10 ms
 #: Longer than this nobody watches the bench: RMCU and dynos have long gone to safety by themselves.
 LONGEST_PAUSE_S = 0.5
+_TEMPERATURES = ("K", "degC", "°C")
+_OF_MOTION = ("N m", "rad/s", "rad", "km/h", "m/s", "m/s²", "1/min", "rpm")
 _MATTERS_S = 0.045  # an RMCU takes a host that is silent for 50 ms for gone
 _MAY_BE_BLAMED_S = 0.5  # devices tell within this time what they made of a host that was silent
 
@@ -100,7 +103,7 @@ class LimitWatch:
                     raise LimitTripError(
                         f"limit tripped: {text}",
                         where="bench limits",
-                        fix="lower the plan's torque or speed; the limit is in the bench file",
+                        fix=f"{_advice(samples.stream, reached.channel)}; the limit is in the bench file",
                     )
                 self._answer(reached, text)
 
@@ -146,3 +149,13 @@ class LimitWatch:
                 where="this computer",
                 fix="let no other program keep it busy, and record to a disk that keeps up",
             )
+
+
+def _advice(stream: Stream, channel: str) -> str:
+    """What brings a channel back within its limit, as far as its unit says."""
+    unit = dict(zip(stream.channels, stream.units, strict=True)).get(channel) or unit_of(channel)
+    if unit in _TEMPERATURES:
+        return "let it cool down and look at its cooling, or have the plan ask for less, or for less long"
+    if unit in _OF_MOTION:
+        return "lower the plan's torque or speed"
+    return "look at what this channel measures, and at the plan's steps before it"

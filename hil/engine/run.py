@@ -8,6 +8,7 @@ import time
 from functools import partial
 
 from drivers import TICK_S, SaysDamage
+from hil.core.clock import utc
 from hil.core.errors import (
     BadInputError,
     BenchError,
@@ -123,7 +124,8 @@ class _Run:
             clock_0_ns=time.time_ns() - round(clock.now_s() * 1e9),
             between=bench.loop.keep_up,
         )
-        self._inputs = store_inputs(self._recorder, request, bench)
+        self._started_at = utc(time.time_ns())
+        self._inputs = store_inputs(self._recorder, request, bench, self._started_at)
         if self._expired:
             store_expiry(self._recorder, self._expired)
         # In virtual time nothing can be late.
@@ -263,6 +265,7 @@ class _Run:
             verdict=verdict,
             plan=request.plan.name,
             bench=request.bench.name,
+            started_at=self._started_at,
             real_time_factor=round(bench_time_s / max(wall_s, 1e-9), 2),
             bench_time_s=round(bench_time_s, 3),
             safe_state=safe,

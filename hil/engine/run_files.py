@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import time
-
 from hil.core.channels import CHANNELS
-from hil.core.clock import utc
 from hil.core.file_format import FORMAT
 from hil.core.files import read_bytes
 from hil.core.model import model_to_toml
@@ -19,8 +16,11 @@ from hil.engine.provenance import hashes
 from hil.engine.recorder import Recorder
 
 
-def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> dict[str, bytes]:
+def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench, started_at: str) -> dict[str, bytes]:
     """What is known at the start stands at the start: also a recording that is cut off has it.
+
+    Args:
+        started_at: ISO 8601, UTC.
 
     Returns:
         The files as stored, for their hashes.
@@ -42,7 +42,7 @@ def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench) -> dict[
             "bench": request.bench.title or request.bench.name,
             "operator": request.operator or request.bench.operator,
             "format": str(FORMAT),
-            "started_at": utc(time.time_ns()),
+            "started_at": started_at,
             "simulated": str(bench.simulated).lower(),
             **{key: name for key, name in confirmed.items() if name},
             **({"variables": values} if values else {}),

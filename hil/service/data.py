@@ -19,6 +19,7 @@ Number = Annotated[float, Field(allow_inf_nan=False)]
 
 #: `waiting_approval`: hazardous, and nobody has approved it. `interrupted`: the service ended meanwhile.
 RunState = Literal["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"]
+RunVerdict = Literal["pass", "fail", "error", "done"]
 OVER: tuple[RunState, ...] = ("ended", "interrupted", "cancelled")
 
 #: `away`: its agent is not heard of.
@@ -112,7 +113,7 @@ class RunData(_Data):
     doing: str = Field("", description="what is going on, while it is running")
     told: str = Field("", description="what its operator was told last, while it is running")
     exit_code: int | None = Field(None, description="as `hil run` would have ended")
-    verdict: Literal["pass", "fail", "error", "done"] | None = None
+    verdict: RunVerdict | None = None
     safe_state: Literal["confirmed", "not_confirmed", "not_needed"] | None = None
     reason: str = Field("", description="what stopped it, or why it waits")
     files: list[str] = Field([], description="names of its files, once it is over")

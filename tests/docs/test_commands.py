@@ -102,7 +102,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
         shutil.move(path, folder / path.name)
     (folder / "mine").rmdir()
     shutil.copytree(ROOT / "benches", folder / "benches")
-    (folder / "benches/paper_targets.toml").write_text(TARGETS)
+    (folder / "paper_targets").write_text(TARGETS)
     for name, text in PLANS.items():
         (folder / name).write_text(text)
     (folder / "mine.yaml").write_text(SEQUENCE)

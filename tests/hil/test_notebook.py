@@ -37,6 +37,14 @@ def test_a_frame_has_units_and_becomes_a_recording_again() -> None:
     }
 
 
+def test_a_frame_is_made_of_a_file_too(tmp_path: Path) -> None:
+    names = ("time_s", "motor_torque_ref_nm", "motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
+    rows = [",".join(names), *(f"{n / 10},0,{n + 1},0,0" for n in range(4))]
+    (tmp_path / "r.csv").write_text("\n".join(rows) + "\n")
+    for path in (tmp_path / "r.csv", str(tmp_path / "r.csv")):
+        assert notebook.frame(path)["motor_speed_rad_s"].tolist() == [1.0, 2.0, 3.0, 4.0]
+
+
 def test_a_column_of_words_is_refused_by_name() -> None:
     with pytest.raises(BadInputError, match="column 'word' is not numeric"):
         notebook.recording_of(pd.DataFrame({"word": ["a"]}, index=[0.0]), "mine")

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from hil.engine.bench_file import shipped
+
 PLAN = """
 name: short
 steps:
@@ -52,6 +54,47 @@ def test_mistakes_of_plan_and_bench_are_told_when_tests_are_collected(
     said = tried(tmp_path, "--bench", bench, code=2)
     assert told in said
     assert "Traceback" not in said
+
+
+@pytest.mark.slow
+def test_a_second_session_has_folders_of_its_own_or_replaces(tmp_path: Path) -> None:
+    (tmp_path / "plan.yaml").write_text(PLAN.replace("UPPER", "500"))
+    (tmp_path / "test_own.py").write_text("def test_a(bench):\n    bench.run('plan.yaml').check()\n")
+    named = ("--bench", "sim", "--bench-out", "out")
+    folders = {"plan_yaml-001", "test_own_py__test_a/plan-001"}
+    tried(tmp_path, *named, code=0)
+    assert results(tmp_path / "out") == folders
+    tried(tmp_path, *named, "--bench-overwrite", code=0)
+    assert results(tmp_path / "out") == folders
+    tried(tmp_path, *named, code=0)
+    assert results(tmp_path / "out") == folders | {name.replace("001", "002") for name in folders}
+
+
+def results(out: Path) -> set[str]:
+    return {str(path.parent.relative_to(out)) for path in out.rglob("result.json")}
+
+
+@pytest.mark.slow
+def test_a_run_that_cannot_begin_leaves_no_folder(tmp_path: Path) -> None:
+    (tmp_path / "test_own.py").write_text("def test_a(bench):\n    bench.run('gone')\n")
+    assert "there is no plan 'gone'" in tried(tmp_path, "--bench", "sim", "--bench-out", "out", code=1)
+    assert not list((tmp_path / "out/test_own_py__test_a").iterdir())
+
+
+@pytest.mark.slow
+def test_hardware_beside_a_plan_is_driven_only_if_it_is_named(tmp_path: Path) -> None:
+    hardware = shipped("rear_axle_socketcan.toml")
+    text = hardware.read_text("utf-8")
+    for name in ("rmcu.dbc", "rcs_dyno.eds"):
+        text = text.replace(f'"{name}"', f'"{shipped(name)}"')
+    (tmp_path / "bench.toml").write_text(text)
+    (tmp_path / "plan.yaml").write_text(PLAN.replace("UPPER", "500"))
+    assert "describes hardware, which is driven only if it is named" in tried(tmp_path, code=2)
+    (tmp_path / "plan.yaml").unlink()
+    (tmp_path / "test_own.py").write_text("def test_a(bench):\n    raise AssertionError('driven')\n")
+    said = tried(tmp_path, code=1)
+    assert "describes hardware, which is driven only if it is named" in said
+    assert "driven'" not in said
 
 
 @pytest.mark.slow

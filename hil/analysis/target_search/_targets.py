@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model
+from hil.core.shipped import shipped_file
 from hil.core.suggestion import did_you_mean
 from hil.core.toml_file import parse_toml, toml_text
 from test_plans import Plan, load_plan
@@ -130,7 +131,7 @@ def _keys_of(path: Path) -> _FileKeys:
 def _response(keys: _ResponseKeys, path: Path) -> ResponseTarget:
     where = str(path)
     _refuse_unknown(keys.within, OUTPUTS, "output", where)
-    functions = load_model(path.parent / keys.functions)
+    functions = load_model(shipped_file(keys.functions, "model", path.parent))
     for name in keys.within:
         if name not in functions.transfer_functions:
             raise BadInputError(f"has no transfer function of '{name}'", where=str(keys.functions))

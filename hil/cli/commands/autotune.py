@@ -7,18 +7,27 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_model
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import BenchName, Operator
+from hil.cli.commands._options import BenchName, Operator, found_model
 
 SEVERAL = ("--envelope",)
 
 
 def command(
-    model: Annotated[Path, typer.Option("--model", help="model file of the axle (a chain) to begin with")],
+    model: Annotated[
+        Path,
+        typer.Option(
+            "--model",
+            help="model file of the axle (a chain) to begin with, or the name of a shipped model",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
+    ],
     sequence: Annotated[
         str, typer.Argument(help="sequence file, or the name of a shipped one: autotune")
     ] = "autotune",
-    bench: BenchName = "sim",
+    bench: BenchName = "",
     out: Annotated[
         Path | None, typer.Option(help="directory for the results; default: out/autotune-NNN")
     ] = None,

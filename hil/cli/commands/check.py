@@ -14,7 +14,7 @@ SEVERAL = ("--controller", "--set")
 
 def command(
     plan: PlanName,
-    bench: BenchName = "sim",
+    bench: BenchName = "",
     values: Annotated[
         list[str] | None,
         typer.Option(

@@ -7,9 +7,20 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_model
+from hil.cli.commands._options import found_model
+
 
 def command(
-    model: Annotated[Path, typer.Option("--model", help="Model file of any kind.")],
+    model: Annotated[
+        Path,
+        typer.Option(
+            "--model",
+            help="Model file of any kind, or the name of a shipped model.",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
+    ],
     out: Annotated[
         Path | None,
         typer.Option("--out", help="Directory for the results; default: out/design-001 and so on."),

@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_model
+from hil.cli.commands._options import found_model
+
 #: Options that take several values.
 SEVERAL = ("--holdout",)
 
@@ -15,7 +18,15 @@ def command(
     recordings: Annotated[
         list[Path], typer.Argument(help="Recordings to explain (.mcap, .csv, .parquet, .mf4, .mat).")
     ],
-    model: Annotated[Path, typer.Option("--model", help="Model file to start from.")],
+    model: Annotated[
+        Path,
+        typer.Option(
+            "--model",
+            help="Model file to start from, or the name of a shipped model.",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
+    ],
     out: Annotated[
         Path | None,
         typer.Option("--out", help="Directory for the results; default: out/diagnose-001 and so on."),

@@ -7,11 +7,11 @@ from typing import Annotated
 import typer
 
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import BenchArgument
+from hil.cli.commands._options import DefaultBenchArgument
 
 
 def command(
-    bench: BenchArgument = "sim",
+    bench: DefaultBenchArgument = "",
     for_s: Annotated[
         float, typer.Option("--for", metavar="SECONDS", help="how long to listen before anybody is asked")
     ] = 2.0,

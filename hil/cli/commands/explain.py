@@ -7,13 +7,17 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_model
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import SimulatedBenchName
+from hil.cli.commands._options import SimulatedBenchName, found_model, found_targets
 
 
 def command(
     targets: Annotated[
-        Path | None, typer.Argument(help="targets file (TOML), such as benches/paper_targets.toml")
+        Path | None,
+        typer.Argument(
+            help="targets file (TOML), or the name of a shipped one: paper_targets", callback=found_targets
+        ),
     ] = None,
     target: Annotated[
         list[str] | None,
@@ -22,8 +26,15 @@ def command(
     plan: Annotated[
         str | None, typer.Option(help="plan file or name; default: the targets file's, or acceptance")
     ] = None,
-    bench: SimulatedBenchName = "sim",
-    model: Annotated[Path | None, typer.Option(help="model file; default: the bench's")] = None,
+    bench: SimulatedBenchName = "",
+    model: Annotated[
+        Path | None,
+        typer.Option(
+            help="model file, or the name of a shipped model; default: the bench's",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
+    ] = None,
     among: Annotated[
         list[str] | None,
         typer.Option(

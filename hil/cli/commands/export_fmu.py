@@ -7,9 +7,19 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_model
+from hil.cli.commands._options import found_model
+
 
 def command(
-    model: Annotated[Path, typer.Argument(help="model file")],
+    model: Annotated[
+        Path,
+        typer.Argument(
+            help="model file, or the name of a shipped model",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
+    ],
     out: Annotated[Path, typer.Option(help="unit to write: NAME.fmu")],
     controller: Annotated[
         Path | None, typer.Option(help="controller file; without it motor torque is asked for")

@@ -14,15 +14,15 @@ def command(
     what: Annotated[
         str,
         typer.Argument(
-            help="plans, benches, effects, steps, metrics or devices",
-            autocompletion=one_of("plans", "benches", "effects", "steps", "metrics", "devices"),
+            help="plans, benches, models, effects, steps, metrics or devices",
+            autocompletion=one_of("plans", "benches", "models", "effects", "steps", "metrics", "devices"),
         ),
     ],
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """List built-in plans and benches, effects of models, or what plans and bench files may use.
+    """List built-in plans, benches and models, effects of models, or what plans and bench files may use.
 
     Steps, metrics and devices of installed packages stand there too.
     """

@@ -7,20 +7,28 @@ from typing import Annotated
 
 import typer
 
+from hil.cli._completion import shipped_model
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import BenchName, Controllers, Operator, PlanName
+from hil.cli.commands._options import BenchName, Controllers, Operator, PlanName, found_model
 
 SEVERAL = ("--controller", "--set")
 
 
 def command(
     plan: PlanName,
-    bench: BenchName = "sim",
+    bench: BenchName = "",
     out: Annotated[
         Path | None,
         typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
     ] = None,
-    model: Annotated[Path | None, typer.Option(help="model file for the simulated bench")] = None,
+    model: Annotated[
+        Path | None,
+        typer.Option(
+            help="model file for the simulated bench, or the name of a shipped model",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
+    ] = None,
     values: Annotated[
         list[str] | None,
         typer.Option(

@@ -7,9 +7,11 @@ from typing import Annotated
 
 import typer
 
+from hil.cli.commands._options import ModelOption
+
 
 def command(
-    model: Annotated[Path, typer.Option(help="model file")],
+    model: ModelOption,
     source: Annotated[Path, typer.Option("--input", help="recording with motor_torque_ref_nm")],
     out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet, .mf4 or .mat")],
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,

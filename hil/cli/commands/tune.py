@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._completion import shipped_bench
+from hil.cli._completion import shipped_bench, shipped_model
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import Operator, PlanName
+from hil.cli.commands._options import Operator, PlanName, found_model
 
 SEVERAL = ("--envelope",)
 
@@ -17,7 +17,13 @@ SEVERAL = ("--envelope",)
 def command(
     plan: PlanName,
     model: Annotated[
-        Path, typer.Option("--model", help="model file of the axle (a chain), effects included")
+        Path,
+        typer.Option(
+            "--model",
+            help="model file of the axle (a chain), effects included, or the name of a shipped model",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
     ],
     out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/tune-NNN")] = None,
     free: Annotated[
@@ -52,7 +58,8 @@ def command(
     bench: Annotated[
         str,
         typer.Option(
-            help="simulated bench to predict on, by file or name; default: sim, or that of --on-bench",
+            help="simulated bench to predict on, by file or name; default: that of --on-bench, else as of "
+            "`hil run`",
             autocompletion=shipped_bench(),
         ),
     ] = "",

@@ -61,6 +61,7 @@ def _as_far_as_recorded(recording: Recording) -> RunResult:
         verdict="error",
         plan=run.get("plan", "?"),
         bench=run.get("bench", "?"),
+        started_at=run.get("started_at", ""),
         real_time_factor=0.0,
         bench_time_s=last_s,
         safe_state="not_confirmed",

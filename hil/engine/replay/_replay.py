@@ -81,6 +81,8 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
         found = segments.on(written.row_0_ns) if segments else ()
         remarks += decoder.remarks if request.plan else [*decoder.remarks, _NO_PLAN]
         result = _judged(request, written.recording, found, time.perf_counter() - began)
+        if result is not None and frames.began_ns is not None:
+            result = result.model_copy(update={"started_at": utc(written.row_0_ns)})
         _describe(written, request, decoder, logs, frames, remarks, result)
     channels = tuple(written.recording.channels)
     return Replayed(

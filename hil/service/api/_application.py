@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 import json
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from starlette.types import ASGIApp
 
 from hil.service.api import (
@@ -25,6 +25,7 @@ from hil.service.api import (
 )
 from hil.service.api._guard import Guard, Guarding
 from hil.service.api._problems import RESPONSES, answer_problems
+from hil.service.api._queries import refuse_unknown_query
 from hil.service.service import Service
 
 PREFIX = "/api/v1"
@@ -69,7 +70,7 @@ def _bare(service: Service | None) -> FastAPI:
     )
     app.state.service = service
     for part in _PARTS:
-        app.include_router(part.router, prefix=PREFIX)
+        app.include_router(part.router, prefix=PREFIX, dependencies=[Depends(refuse_unknown_query)])
     _page.add_to(app)
     answer_problems(app)
     return app

@@ -13,7 +13,7 @@ from hil.service.api._from_store import from_store
 from hil.service.api._left_files import disposition_of, headers_of, left_file, media_of
 from hil.service.api._problems import RefusedError, missing
 from hil.service.carrying_out import RunningRun
-from hil.service.data import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunWanted
+from hil.service.data import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunVerdict, RunWanted
 from hil.service.plan_reading import hazard_of
 from hil.service.remote_bench import RemoteBench
 from hil.service.service import Service
@@ -29,12 +29,15 @@ async def list_runs(
     me: Viewer,
     bench: Annotated[BenchName | None, Query()] = None,
     state: Annotated[list[RunState] | None, Query(max_length=6)] = None,
+    verdict: Annotated[list[RunVerdict] | None, Query(max_length=4)] = None,
     before: Annotated[int, Query(ge=1, le=_LAST)] = _LAST,
     most: Annotated[int, Query(ge=1, le=200)] = 50,
 ) -> list[RunData]:
-    """Runs, newest first; `before` is the number of a run."""
+    """Runs, newest first, of any of the states and verdicts given; `before` is the number of a run."""
     del me
-    found = service.runs.all(bench=bench, states=state or (), before=before, most=most)
+    found = service.runs.all(
+        bench=bench, states=state or (), verdicts=verdict or (), before=before, most=most
+    )
     return [service.with_progress(run) for run in found]
 
 

@@ -87,13 +87,23 @@ class RunStore:
             row = session.get(RunRow, run)
             return None if row is None else _data(row)
 
-    def all(self, *, bench: str | None, states: Sequence[RunState], before: int, most: int) -> list[RunData]:
-        """Runs, newest first."""
+    def all(
+        self,
+        *,
+        bench: str | None,
+        states: Sequence[RunState],
+        before: int,
+        most: int,
+        verdicts: Sequence[str] = (),
+    ) -> list[RunData]:
+        """Runs, newest first; of those in given states, and with given verdicts."""
         chosen = select(RunRow).order_by(RunRow.id.desc()).limit(most).where(RunRow.id < before)
         if bench is not None:
             chosen = chosen.where(RunRow.bench == bench)
         if states:
             chosen = chosen.where(RunRow.state.in_(states))
+        if verdicts:
+            chosen = chosen.where(RunRow.verdict.in_(verdicts))
         with self._transaction() as session:
             return [_data(row) for row in session.scalars(chosen)]
 

@@ -54,6 +54,10 @@ def test_a_run_writes_what_the_reference_says(finished):
     assert (result["verdict"], result["plan"], result["bench"]) == ("pass", "quick", "sim")
     assert result["safe_state"] == "confirmed"
     assert result["real_time_factor"] > 1
+    started = read_recording(out / "recording.mcap").metadata["run"]["started_at"]
+    assert result["started_at"] == started
+    suite = ElementTree.parse(out / "junit.xml").getroot()
+    assert started in [one.get("timestamp") for one in suite.iter("testsuite")]
     assert result["files"] == {
         "recording": "recording.mcap", "html": "report.html", "pdf": "report.pdf", "junit": "junit.xml"
     }  # fmt: skip

@@ -10,6 +10,7 @@ import pytest
 from hil.cli._app import guarded
 from hil.cli.list import _tell
 from hil.core.effects import EFFECTS
+from hil.core.shipped import shipped_names
 from hil.engine.device_kinds import KINDS
 from test_plans import METRICS, STEPS, library_plans
 
@@ -23,6 +24,7 @@ def listed(what, capsys):
     ("what", "names"),
     [
         ("plans", library_plans()),
+        ("models", shipped_names("model")),
         ("effects", tuple(EFFECTS)),
         ("steps", STEPS.names()),
         ("metrics", METRICS.names()),

@@ -7,14 +7,17 @@ import logging
 import re
 import tomllib
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from hil.cli._choices import all_choices
-from hil.cli._series import announce_series
+from hil.cli._series import _BADNESS, announce_series
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
+from hil.core.result import CriterionVerdict
 from hil.engine.bench_file import with_seed
+from reports.series_report import limit_in_words
 from test_plans import load_plan
 from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import hil
@@ -49,6 +52,13 @@ def test_every_combination_has_a_folder_and_repeats_have_a_spread(plan, tmp_path
     assert (low["count"], high["count"], low["unit"]) == (2, 2, "N m")
     assert 0 < low["standard_deviation"] < 2  # of the sensors' noise, which is another one each time
     assert low["lowest"] < low["mean"] < low["highest"] < high["lowest"]
+    assert (low["lower"], low["upper"], low["verdict"], high["verdict"]) == (None, 250.0, "pass", "fail")
+    page = (out / "series.html").read_text()
+    assert "2 of 4 runs passed" in page
+    assert "≤ 250" in page
+    for run in told["runs"]:
+        assert f'<a href="{run["report"]}">{run["folder"]}</a>' in page
+        assert (out / run["report"]).is_file()
     recording = read_recording(out / "002/recording.mcap")
     assert "default: 100" in recording.attachments["plan.yaml"].decode()
     assert recording.metadata["run"]["variables"] == "torque_nm = 100 N m"
@@ -94,3 +104,15 @@ def test_a_series_says_its_size_and_is_bounded(plan, tmp_path, caplog):
     with caplog.at_level(logging.INFO):
         announce_series([loaded] * 2, 3, tmp_path / "new")
     assert re.search(r"6 runs, \S+ min of bench time, at most \S+ GB on the disk", caplog.text)
+
+
+def test_every_verdict_has_its_place_among_the_worst():
+    assert set(_BADNESS) == set(get_args(CriterionVerdict))
+
+
+def test_a_limit_that_another_segment_sets_is_named_by_it():
+    limits = {"lower": None, "upper": 3.0, "below": ""}
+    assert limit_in_words(limits) == "≤ 3"
+    assert limit_in_words(limits | {"upper": None, "below": "gain_0kmh"}) == "below gain_0kmh"
+    assert limit_in_words(limits | {"lower": 1.0}) == "≥ 1 ≤ 3"
+    assert limit_in_words(limits | {"upper": None}) == "-"

@@ -13,7 +13,6 @@ from hil.analysis.identification import ORDERS
 from hil.cli import commands
 from hil.cli._app import _COMMANDS, guarded
 from hil.core.channels import INPUT
-from hil.engine import DEFAULT_BENCH
 from tests.hil.cli.test_commands import hil
 
 SLOW = {
@@ -51,6 +50,8 @@ def test_every_command_is_listed_and_every_listed_one_is_there(capsys):
     assert modules == {name for name in there if not name.startswith("_")}
     assert guarded(["--help"]) == 0
     told = capsys.readouterr().out
+    assert guarded([]) == 0
+    assert capsys.readouterr().out == told
     assert all(f"  {name} " in told and text in told for name, text in _COMMANDS.items())
 
 
@@ -82,7 +83,6 @@ def test_options_say_the_defaults_that_the_work_would_take():
     assert given["pole"] == paper.pole_rad_s
     assert given["torque_limit"] == paper.torque_limit_nm
     assert given["largest_sensitivity"] == paper.limits.sensitivity_peak
-    assert defaults("run")["bench"] == defaults("check")["bench"] == DEFAULT_BENCH
     assert defaults("identify")["input_channel"] == INPUT
     for order in (ORDERS[0] - 1, ORDERS[-1] + 1):
         assert guarded(["identify", "x.csv", "--out", "x", "--order", str(order)]) == 2

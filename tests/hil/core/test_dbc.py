@@ -54,6 +54,15 @@ def test_what_cannot_be_used_is_told_with_message_and_signal(old, new, said, tmp
     assert said in refused(TEXT.replace(old, new), tmp_path)
 
 
+def test_all_missing_messages_are_named_at_once_with_the_table_that_maps_names(tmp_path):
+    path = tmp_path / "some.dbc"
+    path.write_text(TEXT.replace(" RMCU_Request", " Request").replace(" RMCU_Control", " Control"))
+    with pytest.raises(BadInputError) as caught:
+        read_dbc(path, NEEDED)
+    assert caught.value.what == "has no messages 'RMCU_Request', 'RMCU_Control'"
+    assert "[rmcu.messages]" in caught.value.fix
+
+
 def test_a_multiplexed_signal_is_refused(tmp_path):
     text = TEXT.replace("SG_ MotorSpeed :", "SG_ MotorSpeed m0 :")
     text = text.replace("SG_ MotorTorque :", "SG_ MotorTorque M :")

@@ -318,6 +318,16 @@ def test_a_forecast_judges_each_segment_as_a_whole_prediction_does():
     }
 
 
+def test_a_forecast_takes_as_long_as_the_run(tmp_path):
+    """The estimate from the plan alone does not know how fast a step leaves the wheels."""
+    step = "{segment: s, quantity: driving_torque, from_nm: 0, to_nm: 300, before_s: 0.2, after_s: 4}"
+    text = f"\n  - set_controller: {{file: phase_stabilization.toml}}\n  - step: {step}\n"
+    checked = plan(f"{text}  - hold_speed: {{speed_km_h: 0, duration_s: 0.5}}\n")
+    run = run_plan(RunRequest(checked, sim_bench("duration"), tmp_path))
+    assert run.error is None
+    assert forecast(checked, SIM).duration_s == pytest.approx(run.result.bench_time_s, abs=0.3)
+
+
 def test_a_forecast_keeps_no_rows_of_what_is_over(monkeypatch):
     kept = []
     forget = PredictedBench.forget

@@ -64,6 +64,18 @@ def test_a_channel_may_have_a_limit_beside_that_of_the_axle() -> None:
         watched.take(Samples(FAST, np.arange(20, dtype=np.float64), backwards), 0.0)
 
 
+def test_the_advice_fits_the_quantity() -> None:
+    with pytest.raises(BenchError) as hot:
+        watch(oil_temperature_k=ChannelLimit(above=363.0)).take(temperatures(*[370.0] * 5), 0.0)
+    assert "let it cool down" in hot.value.fix
+    assert "torque" not in hot.value.fix
+    backwards = np.column_stack([np.full(20, -2.0), np.zeros(20)])
+    watched = watch(motor_speed_rad_s=ChannelLimit(below=-1.0))
+    with pytest.raises(BenchError) as fast:
+        watched.take(Samples(FAST, np.arange(20, dtype=np.float64), backwards), 0.0)
+    assert fast.value.fix == "lower the plan's torque or speed; the limit is in the bench file"
+
+
 def listen(watched: LimitWatch, from_s: float, to_s: float) -> None:
     """Look every 10 ms, as the loop does."""
     for now_s in np.arange(from_s, to_s, 0.01):

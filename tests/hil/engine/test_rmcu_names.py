@@ -80,7 +80,7 @@ def test_a_dbc_with_other_names_gives_the_same_run(tmp_path: Path) -> None:
 
 def test_without_the_mapping_the_missing_message_is_named(tmp_path: Path) -> None:
     other_names(tmp_path / "other.dbc")
-    with pytest.raises(BadInputError, match="rmcu.dbc = 'other.dbc': has no message 'RMCU_Request'"):
+    with pytest.raises(BadInputError, match="rmcu.dbc = 'other.dbc': has no messages 'RMCU_Request', '"):
         load_bench(bench_file(tmp_path, "", "other.dbc"))
 
 

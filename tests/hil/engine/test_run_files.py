@@ -18,6 +18,7 @@ from hil.engine.recorder import Recorder
 from hil.engine.run_files import store_expiry, store_inputs, store_result
 from tests.benches_for_tests import plan, running, sim_bench
 
+STARTED = "2026-01-02T03:04:05.678+00:00"
 RESULT = RunResult(
     verdict="error",
     plan="test",
@@ -39,7 +40,7 @@ def made_run(tmp_path: Path) -> Iterator[Any]:
     )
     with running("files") as bench:
         recorder = Recorder(tmp_path / "r.mcap", bench.streams, list(bench.file.buses), 0.001)
-        inputs = store_inputs(recorder, request, bench)
+        inputs = store_inputs(recorder, request, bench, STARTED)
         recorder.begin()
 
         def take() -> None:
