@@ -121,7 +121,11 @@ def make_token(folder: Path, database: str, name: str, role: str, for_days: floa
             f"there is no role '{printable(role)}'", where="--add-token", fix=f"one of {', '.join(ROLES)}"
         )
     if not name.strip() or not name.isprintable() or len(name) > 100:
-        raise BadInputError("names nobody", where="--add-token", fix="write NAME=ROLE")
+        raise BadInputError(
+            "the name of the token is empty, too long or not printable",
+            where="--add-token",
+            fix="write NAME=ROLE, NAME with 1 to 100 printable characters",
+        )
     make_private(folder)
     engine = _database(folder, database)
     try:

@@ -22,7 +22,7 @@ def command(
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """List built-in plans and benches, effects of models, or what plans and bench files may use.
+    """List built-in plans, benches and effects, or the steps, metrics and devices that files can use.
 
     Steps, metrics and devices of installed packages stand there too.
     """

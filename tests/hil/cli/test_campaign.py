@@ -166,7 +166,9 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path):
         said, err = process.communicate(timeout=60)
     assert (process.returncode, said) == (130, "")
     kept = len(table_of(out))
-    assert f"{kept} of 1500 simulations are kept; go on with: hil campaign {file} --out {out} --resume" in err
+    assert (
+        f"{kept} of 1500 simulations are kept; continue with: hil campaign {file} --out {out} --resume" in err
+    )
     assert err.count("\n") == 2
     assert 0 < kept < 1500
     assert not workers_of(process)
