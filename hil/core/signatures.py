@@ -30,7 +30,7 @@ class _Manifest(BaseModel):
 
     format: Literal["hil signature"] = "hil signature"
     signed_by: str
-    signed_at: str = Field(description="by the clock of who signed; nothing proves it")
+    signed_at: str = Field(description="clock of the signer; not verified")
     public_key: str = Field(description="of OpenSSH's form")
     files: dict[str, str] = Field(description="SHA-256 of each file, by its path in the folder")
 
@@ -71,7 +71,7 @@ def sign_folder(
     signature = manifest.with_suffix(_SIGNATURE)
     if not overwrite and (manifest.exists() or signature.exists()):
         raise BadInputError(
-            "is signed with this key already", where=str(manifest), fix="add --overwrite to sign it anew"
+            "is already signed with this key", where=str(manifest), fix="add --overwrite to sign it again"
         )
     files = hashes_of(folder)
     if not files:

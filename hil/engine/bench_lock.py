@@ -25,13 +25,13 @@ def alone_on(file: BenchFile) -> Iterator[None]:
                 held.enter_context(lock_named(identity))
             except HeldError as error:
                 raise BenchError(
-                    f"the bench is in use: {error} drives {identity}",
+                    f"the bench is in use: {error} holds {identity}",
                     where=f"bus '{buses[identity]}'",
                     fix="wait until it has ended, or stop it",
                 ) from None
             except OSError as error:
                 raise BenchError(
-                    f"the bench cannot be locked against others: {error.strerror}",
+                    f"the bench cannot be locked: {error.strerror}",
                     where=str(error.filename),
                     fix="make the folder writable",
                 ) from error

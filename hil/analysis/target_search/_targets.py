@@ -143,4 +143,6 @@ def _refuse_unknown(names: Iterable[str], known: Iterable[str], what: str, where
     choices = list(known)
     for name in names:
         if name not in choices:
-            raise BadInputError(f"no {what} is called '{name}'", where=where, fix=did_you_mean(name, choices))
+            raise BadInputError(
+                f"no {what} has the name '{name}'", where=where, fix=did_you_mean(name, choices)
+            )

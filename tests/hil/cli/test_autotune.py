@@ -161,7 +161,7 @@ def test_whoever_ends_it_what_is_known_is_kept(tmp_path, sequence, kind):
     [
         (["nowhere.yaml"], "nowhere.yaml"),
         (["autotun"], "no sequence 'autotun'"),
-        (["--bench", HARDWARE], "somebody's consent"),
+        (["--bench", HARDWARE], "a person's consent"),
         (["--model", "benches/paper_functions.toml"], "no shaft to load"),
         (["--envelope", "motor_torque_nm=1"], "would leave the envelope"),
         (["--envelope", "bench_time_s=1"], "one run takes"),
@@ -186,12 +186,12 @@ def test_wrong_input_is_one_message_and_leaves_nothing(tmp_path, arguments, said
             "sequence.yaml",
             "accept: short.yaml",
             "accept: chirp.yaml",
-            "no criterion can depend on a controller",
+            "no criterion depends on a controller",
         ),
         ("sequence.yaml", "identify: chirp.yaml", "identify: none.yaml", "none.yaml"),
         ("sequence.yaml", "free: free.toml", "free: none.toml", "none.toml"),
         ("sequence.yaml", "free: free.toml", "controller: other", "driven by a controller 'other'"),
-        ("chirp.yaml", CHIRP_STEP, "wait: {duration_s: 1}", "no segment to explain"),
+        ("chirp.yaml", CHIRP_STEP, "wait: {duration_s: 1}", "the plan for identification has no segment"),
     ],
 )
 def test_a_sequence_that_cannot_be_carried_out_is_refused(tmp_path, sequence, file, old, new, said, capsys):

@@ -74,8 +74,8 @@ def test_a_simulated_bench_of_another_process_is_another_bench(bench: Path, tmp_
         arguments = ("run", tmp_path / "moving.yaml", "--bench", bench, "--out", tmp_path / str(number))
         stopped = hil(*arguments, code=3)
         assert "emergency stop: motor_speed_rad_s reached" in stopped.stderr
-        assert "ends with it" in stopped.stderr
-    assert "with its service" in hil("reset", bench, "--by", "A. Tester").stdout
+        assert "its stop ends with the process" in stopped.stderr
+    assert "its service keeps" in hil("reset", bench, "--by", "A. Tester").stdout
 
 
 @pytest.mark.slow

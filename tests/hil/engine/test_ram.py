@@ -259,7 +259,7 @@ def refusing(command: int, answer: bytes, times: int = 1000) -> Callable[[Simula
         (0xD4, b"\xfe\x10", 5, ""),
         (0xE1, b"\xfe\x10", 1000, "WRITE_DAQ: the slave is busy"),
         (0xD7, b"\xff\x04\xff\x00\x05\x06\x00", 1000, "comes every 5 ms, the bench file says 1 ms"),
-        (0xD9, b"\xff\x01\x07\x01\x07\xf2\x01\x00", 1000, "says of itself what cannot be"),
+        (0xD9, b"\xff\x01\x07\x01\x07\xf2\x01\x00", 1000, "reports invalid properties"),
         (0xDD, b"\xff", 1000, "its list does not run though it was started"),
         (0xFD, b"\xff\x00\x04\x00\x00\x00", 1000, "locked by seed and key"),
     ],

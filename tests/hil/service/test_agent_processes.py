@@ -212,7 +212,7 @@ def test_what_an_agent_cannot_use_is_said(tmp_path: Path) -> None:
     for bench, name, for_s, said in (
         (["none"], "", None, "none"),
         (["sim"], "a\nb", None, "is not a valid name"),
-        (["sim", "sim"], "", None, "given to two benches"),
+        (["sim", "sim"], "", None, "used by two benches"),
         (["sim"], "", 0.0, "--for is 0"),
     ):
         with pytest.raises(BadInputError, match=said):
