@@ -43,7 +43,7 @@ _LEAST_S = 1.0  # after a step: in less nothing comes to rest
 
 
 class DeviceChecks(Strict):
-    """Bounds of what any device must do, in % of the largest torque asked for; null takes a check out."""
+    """Limits of the device checks, in % of the largest requested torque; null removes a check."""
 
     arrival_percent: float | None = Field(
         default=10.0, gt=0, le=1000, description="largest deviation from the request"

@@ -26,7 +26,7 @@ _WITHIN = re.compile(rf"\$\{{({NAME})\}}")
 
 
 class Variable(Strict):
-    """A number that a run may choose."""
+    """A variable that a run can set."""
 
     default: float = Field(description="default value, in its unit")
     unit: str = Field(default="", max_length=20, description="unit, for display only")

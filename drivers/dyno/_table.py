@@ -19,7 +19,7 @@ NodeId = Annotated[int, Field(ge=1, le=127)]
 
 
 class DynoTable(LoadTable):
-    """Where the dynamometers are."""
+    """Bus, EDS and node ids of the dynamometers."""
 
     kind: str = "rcs-canopen"
     bus: str

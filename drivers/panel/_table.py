@@ -10,7 +10,7 @@ from drivers.table import Connections, DeviceTable
 
 
 class PanelTable(DeviceTable):
-    """Where the panel of the dynos is: a serial line."""
+    """Serial line of the dynos' panel."""
 
     kind: str = "rcs-panel"
     port: str = Field(min_length=1, description="as pyserial opens it: /dev/ttyUSB0, COM3, rfc2217://…")

@@ -18,7 +18,7 @@ _STAMP_BYTES = 2  # of most slaves on CAN
 
 
 class RamTable(DeviceTable):
-    """What is measured in the RMCU's memory by XCP on CAN, and where its file says that it lies."""
+    """Measurement of the RMCU's memory by XCP on CAN, with its symbol file."""
 
     kind: str = "ram-xcp"
     bus: str

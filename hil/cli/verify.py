@@ -28,7 +28,7 @@ def carry_out(*, sources: list[Path], by: Path | None, as_json: bool) -> int:
         refuse_missing(source)
         if not source.is_dir() and source.suffix.lower() not in (*RECORDINGS, *REPORTS):
             raise BadInputError(
-                f"is no folder and ends in none of {', '.join((*RECORDINGS, *REPORTS))}",
+                f"is not a folder, and its name ends in none of {', '.join((*RECORDINGS, *REPORTS))}",
                 where=str(source),
                 fix="give a run's folder, a report, a recording, or a service's folder",
             )

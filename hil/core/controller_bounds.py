@@ -77,7 +77,7 @@ def coefficients_checked(values: tuple[float, ...]) -> tuple[float, ...]:
         raise ValueError("all coefficients are 0: the output would never move")
     for value in values:
         if value and not least <= abs(value) <= most:
-            raise ValueError(f"{value:g} is no coefficient: it is 0 or lies from {least:g} to {most:g}, "
+            raise ValueError(f"{value:g} is not valid: a coefficient is 0 or from {least:g} to {most:g}, "
                              "or the RMCU's filters overflow")  # fmt: skip
     return values
 

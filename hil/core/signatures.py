@@ -107,7 +107,7 @@ def read_signature(manifest: Path) -> Signature:
         what = error.what if Path(error.where).exists() else "is missing"
         raise BrokenSignatureError(f"{Path(error.where).name} {what}") from error
     except ValueError as error:  # pydantic's too
-        raise BrokenSignatureError("is no manifest of a signature, or was changed") from error
+        raise BrokenSignatureError("is not the manifest of a signature, or was changed") from error
     try:
         key.verify(signature, text)
         intact = True
@@ -153,10 +153,10 @@ def private_key(path: Path, passphrase: Callable[[], bytes]) -> Ed25519PrivateKe
             key = load(text, passphrase())
     except (ValueError, TypeError, UnsupportedAlgorithm) as error:
         raise BadInputError(
-            "is no private key, or the passphrase is wrong", where=str(path), fix=_MAKE_ONE
+            "is not a private key, or the passphrase is wrong", where=str(path), fix=_MAKE_ONE
         ) from error
     if not isinstance(key, Ed25519PrivateKey):
-        raise BadInputError("is no Ed25519 key", where=str(path), fix=_MAKE_ONE)
+        raise BadInputError("is not an Ed25519 key", where=str(path), fix=_MAKE_ONE)
     return key
 
 
@@ -184,9 +184,9 @@ def _public(text: bytes) -> Ed25519PublicKey:
     try:
         key = load_pem_public_key(text) if b"PUBLIC KEY" in text else load_ssh_public_key(text)
     except (ValueError, TypeError, UnsupportedAlgorithm) as error:
-        raise ValueError("is no public key") from error
+        raise ValueError("is not a public key") from error
     if not isinstance(key, Ed25519PublicKey):
-        raise ValueError("is no Ed25519 key")
+        raise ValueError("is not an Ed25519 key")
     return key
 
 

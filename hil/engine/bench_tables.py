@@ -42,7 +42,7 @@ SamplePoint = Annotated[float, Field(ge=50.0, le=100.0, description="%")]
 
 
 class Timing(Table):
-    """How an adapter cuts a bit, where its own choice does not do; by sample points or by segments.
+    """Bit timing of an adapter, if its default does not fit; by sample points or by segments.
 
     Segments count time quanta and have CiA's and python-can's names; those of CAN FD's data phase begin
     with data_.
@@ -115,7 +115,7 @@ class Vehicle(Table):
 
 
 class ZeroLimit(Table):
-    """What a sensor may read at rest, in its channel's unit; what is left out is measured and not judged."""
+    """Limits of a sensor's reading at rest, in its channel's unit; without one it is not evaluated."""
 
     within: Limit | None = Field(None, description="largest magnitude before a run")
     drift: Limit | None = Field(None, description="largest change from before a run to after it")
@@ -136,14 +136,14 @@ class NoiseTable(Table):
 
 
 class SensorTable(Table):
-    """What is wrong with a simulated sensor: it reads gain times the truth plus offset."""
+    """Errors of a simulated sensor: reading = gain × true value + offset."""
 
     gain: Bound = 1.0
     offset: Bound = 0.0
 
 
 class StatedNoise(Table):
-    """Standard deviations of a sample that the sensors' makers state."""
+    """Standard deviations of a sample, from the sensors' data sheets."""
 
     motor_speed_rad_s: Deviation | None = None
     wheel_speed_rad_s: Deviation | None = None
@@ -163,7 +163,7 @@ class Simulation(Table):
 
 
 class Supervision(Table):
-    """Two processes that watch each other: the command, and the one that holds the bench for it.
+    """Mutual supervision of the command and of the process that drives the bench for it.
 
     Times are those of a bench in real time; with `time_scale` they are as much longer.
     """
@@ -180,7 +180,7 @@ class Supervision(Table):
 
 
 class ReportTable(Table):
-    """What a test report has to say beside the results (ISO/IEC 17025, 7.8); left out: 'not stated'."""
+    """Data of a test report in addition to the results (ISO/IEC 17025, 7.8); default: 'not stated'."""
 
     laboratory: str = Field("", description="name and address")
     report_number: str = ""

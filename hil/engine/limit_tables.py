@@ -74,7 +74,7 @@ class NamedLimit(ChannelLimit):
 
 
 class Interlock(RangeTable):
-    """What must hold while a run goes on, and before it is armed."""
+    """A condition that must hold during a run, and before it is armed."""
 
     channel: str = Field(min_length=1)
     unit: str = Field(min_length=1, max_length=20)
@@ -89,7 +89,7 @@ class Interlock(RangeTable):
 
 
 class TwistTable(Table):
-    """What the shafts' twist is computed with: motor speed over gear ratio less wheel speed, integrated."""
+    """Computation of the shafts' twist: motor speed over gear ratio less wheel speed, integrated."""
 
     gear_ratio: float = Field(gt=0, le=100, description="motor speed / wheel speed")
     forget_s: float = Field(
@@ -98,7 +98,7 @@ class TwistTable(Table):
 
 
 class Limits(Table):
-    """What the bench never exceeds; magnitudes. They lie below every plan."""
+    """Limits of the bench, magnitudes; a plan cannot raise them."""
 
     motor_torque_nm: Limit
     driving_torque_nm: Limit

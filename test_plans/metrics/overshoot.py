@@ -54,7 +54,7 @@ class Overshoot(Extreme):
 
 
 class OvershootShaftTorque(Overshoot):
-    """Overshoot of T_s over the driving torque asked for."""
+    """Overshoot of T_s over the requested driving torque."""
 
     name: ClassVar[str] = "overshoot_shaft_torque"
     channel: ChannelName = "shaft_torque_nm"

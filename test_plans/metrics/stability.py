@@ -31,7 +31,7 @@ _MOST_OF_IT = 0.2  # of the second half: a stable loop has left its limit by the
 
 
 class StabilityTorqueRequest(Metric):
-    """Share of a window's second half in which T_m* lies at its limit, or against what was asked for."""
+    """Share of a window's second half in which T_m* is at its limit, or opposite to the request."""
 
     name: ClassVar[str] = "stability_torque_request"
     never_negative: ClassVar[bool] = True
@@ -76,7 +76,7 @@ class StabilityTorqueRequest(Metric):
 
 
 class StabilityOscillation(WindowMetric):
-    """Amplitude of the strongest line that lasts, and is no declared order of the wheel."""
+    """Amplitude of the strongest sustained line that is not a declared order of the wheel."""
 
     name: ClassVar[str] = "stability_oscillation"
     never_negative: ClassVar[bool] = True

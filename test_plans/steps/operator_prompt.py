@@ -12,7 +12,7 @@ from test_plans.steps._step import Step
 
 
 class OperatorPrompt(Step):
-    """Show a text and wait for the answer, but not for ever."""
+    """Show a text to the operator and wait for the answer, up to a time limit."""
 
     kind: ClassVar[str] = "operator_prompt"
     text: str = Field(min_length=1, max_length=1000, description="message to the operator")

@@ -12,7 +12,7 @@ from test_plans.steps._step import Duration, Step
 
 
 class RampDown(Step):
-    """Come to rest within a time."""
+    """Ramp to rest within a time."""
 
     kind: ClassVar[str] = "ramp_down"
     down_s: Duration = Field(alias="duration_s", description="duration of the ramp to rest, s, at least 0.1")

@@ -15,7 +15,7 @@ LARGEST_COUNT = 10_000
 
 
 class Repeat(Step):
-    """Steps carried out `times` times; in pass n the ids of their segments end in _n."""
+    """Repeat steps `times` times; in pass n the ids of their segments end in _n."""
 
     kind: ClassVar[str] = "repeat"
     nested: ClassVar[tuple[str, ...]] = ("steps",)

@@ -13,7 +13,7 @@ from test_plans.steps._step import Duration, Name, Seconds, Torque
 
 
 class TorqueStep(Excitation):
-    """A torque for a while, then suddenly another one."""
+    """A step of torque from one constant level to another."""
 
     kind: ClassVar[str] = "step"
     segment: Name = Field(description="name of the recorded segment")

@@ -145,7 +145,7 @@ def test_what_does_not_fit_is_refused_with_words():
             served.connect(bitrate=1_000_000)
         with served.connect() as bus, pytest.raises(can.CanOperationError, match="at most 8 bytes"):
             bus.send(can.Message(arbitration_id=1, data=bytes(12), is_fd=True))
-    with pytest.raises(can.CanInitializationError, match="is no address on this machine"):
+    with pytest.raises(can.CanInitializationError, match="is not an address on this machine"):
         can.Bus(interface="hil-udp", channel="10.0.0.1:5000")
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))

@@ -96,7 +96,7 @@ def read_targets(path: Path | None, plan: str | None, further: Mapping[str, floa
     for name in keys.settles:
         if name not in steps:
             fix = f"name a step: {', '.join(steps) or 'this plan has none'}"
-            raise BadInputError(f"settles.{name}: that segment is no step", where=where, fix=fix)
+            raise BadInputError(f"settles.{name}: that segment is not a step", where=where, fix=fix)
     for name, value in values.items():
         if not value > 0:
             raise BadInputError(f"target '{name}' is {value:g}", where=where, fix="give a positive figure")

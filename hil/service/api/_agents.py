@@ -66,7 +66,7 @@ async def take_run(agent: AgentId, bench: BenchName, service: TheService, me: Ag
     """Take the next run of a bench; the agent owns it from then on."""
     place = service.agents.benches.get(bench)
     if place is None or place.agent.id != agent:
-        raise RefusedError(409, f"'{bench}' is no bench of this agent")
+        raise RefusedError(409, f"'{bench}' does not belong to this agent")
     try:
         taken = service.agents.take(agent, bench)
     except HilError as error:

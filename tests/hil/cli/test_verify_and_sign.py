@@ -115,10 +115,10 @@ def test_bad_input_is_one_message(run: Path, tmp_path: Path, capsys) -> None:
     (tmp_path / "key.txt").write_text("no key")
     for arguments, said in (
         (["verify", tmp_path / "nothing"], "no such file"),
-        (["verify", tmp_path / "key.txt"], "is no folder and ends in none of"),
+        (["verify", tmp_path / "key.txt"], "is not a folder, and its name ends in none of"),
         (["verify", run / "report.pdf", "--by", tmp_path / "key.txt"], "--by goes with a folder"),
-        (["verify", run, "--by", tmp_path / "key.txt"], "is no public key"),
-        (["sign", run, "--key", tmp_path / "key.txt"], "is no private key"),
+        (["verify", run, "--by", tmp_path / "key.txt"], "is not a public key"),
+        (["sign", run, "--key", tmp_path / "key.txt"], "is not a private key"),
         (["sign", run / "report.pdf", "--key", tmp_path / "key.txt"], "is not a directory"),
         (["sign", run, "--key", run / "key"], "the private key is in the folder"),
     ):

@@ -110,10 +110,10 @@ def test_keys_of_openssh_and_pem_are_read_and_others_refused(tmp_path: Path) -> 
     curve = generate_private_key(SECP256R1()).private_bytes(*forms["pem"])
     (tmp_path / "curve").write_bytes(curve)
     (tmp_path / "rubbish").write_bytes(b"rubbish")
-    for name, said in {"curve": "is no Ed25519 key", "rubbish": "is no private key"}.items():
+    for name, said in {"curve": "is not an Ed25519 key", "rubbish": "is not a private key"}.items():
         with pytest.raises(BadInputError, match=said):
             private_key(tmp_path / name, no_passphrase)
-    for name, said in {"ssh": "is a private key", "rubbish": "is no public key"}.items():
+    for name, said in {"ssh": "is a private key", "rubbish": "is not a public key"}.items():
         with pytest.raises(BadInputError, match=said):
             public_key(tmp_path / name)
 

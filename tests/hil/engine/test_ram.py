@@ -94,7 +94,7 @@ def test_every_fifth_sample_fits_beside_the_rmcus_own_frames(tmp_path: Path) -> 
     ("keys", "said"),
     [
         ({"bus": "rmcu"}, "devices.ram.bus = 'rmcu': its frames take up to 665 kbit/s, those of others 540"),
-        ({"symbols": "rmcu.dbc"}, "devices.ram.symbols = 'rmcu.dbc': is no table of symbols"),
+        ({"symbols": "rmcu.dbc"}, "devices.ram.symbols = 'rmcu.dbc': is not a table of symbols"),
         ({"channels": {"dfc_torque_nm": "Tm_DFC"}}, "has no symbol 'Tm_DFC'; did you mean 'Tm_DFC_ref'?"),
         ({"channels": {"dfc_torque": "Tm_DFC_ref"}}, "the simulated RMCU has no such variable; did you mean"),
         ({"answer_id": 0x550}, "request_id and answer_id are both 0x550"),

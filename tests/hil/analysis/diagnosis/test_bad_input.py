@@ -135,7 +135,7 @@ def test_a_file_that_is_no_recording_is_refused_with_its_place(tables, run) -> N
     bad = {
         "head": (steps.iloc[:0], "has 0 samples"),
         "short": (steps.iloc[:150], "150 samples"),
-        "slow": (steps.assign(time_s=1000 * steps.time_s), "is it in milliseconds?"),
+        "slow": (steps.assign(time_s=1000 * steps.time_s), "if it is in milliseconds"),
         "back": (steps.assign(time_s=steps.time_s.where(steps.index != 500, 0.1)), "line 502"),
         "nan": (steps.assign(**{WHEEL: np.nan}), f"100.0% of '{WHEEL}' is NaN"),
         "no_input": (steps.drop(columns=TORQUE), f"no channel '{TORQUE}'"),

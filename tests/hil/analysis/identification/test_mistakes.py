@@ -188,4 +188,4 @@ def test_an_inverter_that_gives_less_than_asked_is_doubted_and_not_taken_for_ano
     asked = paper_plant.chirp(60.0)
     recording = paper_plant.recording(np.clip(asked, -8.0, 8.0))
     doubts = checked({**recording.channels, INPUT: asked})
-    assert "does the inverter give less torque than asked?" in doubts[-1]
+    assert "that the inverter gives the requested torque" in doubts[-1]
