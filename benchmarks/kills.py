@@ -65,7 +65,7 @@ class Fault:
 
 FAULTS = (
     Fault("the process that holds the bench is killed", signal.SIGKILL, "holder", "was ended by SIGKILL"),
-    Fault("the process that holds the bench is frozen", signal.SIGSTOP, "holder", "not turn|still"),
+    Fault("the process that holds the bench is frozen", signal.SIGSTOP, "holder", "not running|stopped"),
     Fault("the command is killed", signal.SIGKILL, "command"),
     Fault("the command is frozen", signal.SIGSTOP, "command"),
     Fault("the bench is killed", signal.SIGKILL, "stand-in"),

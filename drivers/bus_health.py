@@ -18,8 +18,8 @@ _LINUX = frozenset({"socketcan", "socketcand", "gs_usb", "slcan"})
 _ASKABLE = frozenset({"etas", "ixxat", "systec"})
 # PCAN-Basic's status of a channel (PCANBasic.h)
 _PCAN = {
-    0x00010: "bus-off: after too many errors the adapter takes no more part in the bus",
-    0x40000: "error-passive: frames are damaged, or nobody acknowledges them",
+    0x00010: "bus-off: after too many errors the adapter is disconnected from the bus",
+    0x40000: "error-passive: frames are damaged, or no node acknowledges them",
     0x00001: "the transmit queue is full: the adapter refuses frames",
     0x00080: "the transmit queue is full: the adapter refuses frames",
 }

@@ -39,11 +39,11 @@ def fault(message: can.Message) -> str:
     if len(data) == _LENGTH and any(data[i] for i in _COUNTERS):
         counted = f", error counters: transmit {data[_COUNTERS[0]]}, receive {data[_COUNTERS[1]]}"
     if kind & BUS_OFF:
-        return f"bus-off: after too many errors the adapter takes no more part in the bus{counted}"
+        return f"bus-off: after too many errors the adapter is disconnected from the bus{counted}"
     if kind & TRANSMIT_TIMEOUT:
         return "the adapter's driver says that a frame could not be sent in time"
     if kind & CONTROLLER and state & PASSIVE:
-        return f"error-passive: frames are damaged, or nobody acknowledges them{counted}"
+        return f"error-passive: frames are damaged, or no node acknowledges them{counted}"
     if kind & CONTROLLER and state & TRANSMIT_OVERFLOW:
         return "the transmit queue is full: the adapter refuses frames"
     return ""
@@ -54,7 +54,7 @@ def remark(message: can.Message) -> str:
     kind, data = message.arbitration_id, bytes(message.data)
     state = data[1] if len(data) > 1 else 0
     if kind & RESTARTED:
-        return "the adapter takes part in the bus again after bus-off"
+        return "the adapter is connected to the bus again after bus-off"
     if kind & CONTROLLER and state & RECEIVE_OVERFLOW:
         return "the adapter lost frames: its receive buffer was full"
     if kind & CONTROLLER and state & WARNING:

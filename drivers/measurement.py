@@ -108,11 +108,11 @@ class SampleAssembler:
             if said:
                 blamed = self._less_in_time(waiting)
                 if blamed is not waiting:
-                    said = f"its count leaves the bench's clock; beside it {waiting.stream.label}: {said}"
+                    said = f"its counter deviates from the bench clock; beside {waiting.stream.label}: {said}"
                 raise BenchError(
                     f"{blamed.stream.label}: {said}",
                     where=blamed.stream.where,
-                    fix="look for lost frames, a device that started again, and the adapter's time stamps",
+                    fix="check for lost frames, a restarted device, and the adapter's time stamps",
                 )
 
     def _less_in_time(self, waiting: Waiting) -> Waiting:

@@ -72,7 +72,7 @@ class DeviceTable(BaseModel):
 
     kind: str
     expects: dict[str, str] = Field(
-        {}, description="what the device must say that it is: software, calibration, serial number"
+        {}, description="expected identification of the device: software, calibration, serial number"
     )
 
     def open(self, name: str, connections: Connections) -> Device:

@@ -39,8 +39,8 @@ _OTHER_CLOCK_S = 10.0  # stamps that are further off are none since 1970, but of
 
 # What drivers and adapters say of why nothing passes, in words
 _GONE = "the adapter is gone: unplugged, or its driver was unloaded"
-_FULL = "the transmit queue is full: frames do not leave; is another node there that acknowledges them?"
-_CLOSED = "nobody is at the other end any more"
+_FULL = "the transmit queue is full: frames are not sent; check that another node acknowledges them"
+_CLOSED = "the other end is no longer connected"
 _REASONS = {
     errno.ENETDOWN: "the network interface is down",
     errno.ENXIO: _GONE,
@@ -56,7 +56,7 @@ _REASONS = {
 _FIX = (
     "check the CAN adapter, its cable and terminators (120 ohm at both ends), and the bit rate of all nodes"
 )
-_CLOCK_FIX = "let nothing set the time of the computer in the middle of a run; slew it (chrony, ntpd -x)"
+_CLOCK_FIX = "do not set the computer's clock during a run; slew it (chrony, ntpd -x)"
 _FULL_WORDS = ("buffer full", "queue full", "queue is full", "buffer overflow", "QXMTFULL", "XMTFULL")
 
 
@@ -209,7 +209,7 @@ class Wire:
         try:
             faults = self._health.new_faults(self._clock.now_s())
         except (can.CanError, OSError) as error:
-            raise self._failed("asking for its state", error) from error
+            raise self._failed("reading its state", error) from error
         if faults:
             raise BenchError("; ".join(faults), where=f"bus '{self.name}'", fix=_FIX)
         if self._jumps:

@@ -20,13 +20,15 @@ MODEL, CHAIN, RESPONSES = "model.toml", "physical.toml", "frf.csv"
 
 
 class IdentifyStep(Step):
-    """Transfer functions and chain from what this run has recorded so far."""
+    """Identify transfer functions and chain from the recording so far."""
 
     kind: ClassVar[str] = "identify"
     use: tuple[Name, ...] = Field(
         default=(), strict=False, description="segments to use; default: every chirp and multisine"
     )
-    order: int | None = Field(default=None, ge=2, le=7, description="order of the fit; default: by evidence")
+    order: int | None = Field(
+        default=None, ge=2, le=7, description="order of the fit; default: chosen from the data"
+    )
 
     def carry_out(self, conductor: Conductor) -> None:
         """Fit, and keep model.toml, physical.toml, frf.csv and figures."""
@@ -49,15 +51,19 @@ class IdentifyStep(Step):
 
 
 class DesignStep(Step):
-    """A controller from the model that an `identify` step of this run has made."""
+    """Design a controller for the model of an `identify` step of this run."""
 
     kind: ClassVar[str] = "design"
     name: Name = Field(description="the controller's name; set_controller: {designed: NAME} loads it")
     stabilization: Literal["phase", "gain"] = Field(description="phase lead (6)(7) or notch (8)")
-    pole_rad_s: float = Field(default=0.3, gt=0, le=10, description="p of (4)(5)")
-    lead_deg: float = Field(default=36.0, gt=0, lt=90, description="P_h of (6)")
-    lead_hz: float = Field(default=40.0, gt=0, le=200, description="f_ph of (7)")
-    optimize: bool = Field(default=False, description="search lead and pole for the least sensitivity")
+    pole_rad_s: float = Field(
+        default=0.3, gt=0, le=10, description="pole p of the observer, rad/s (equations 4, 5)"
+    )
+    lead_deg: float = Field(default=36.0, gt=0, lt=90, description="phase lead P_h, degrees (equation 6)")
+    lead_hz: float = Field(
+        default=40.0, gt=0, le=200, description="centre frequency of the lead f_ph, Hz (equation 7)"
+    )
+    optimize: bool = Field(default=False, description="optimise lead and pole for the lowest sensitivity")
     torque_limit_nm: float = Field(default=150.0, gt=0, description="largest |T_m*|")
 
     def carry_out(self, conductor: Conductor) -> None:

@@ -126,7 +126,7 @@ def address_of(channel: str) -> tuple[str, int]:
     except ValueError:
         loopback, number = False, 0
     if not loopback or not 0 < number < 1 << 16:
-        raise ValueError(f"'{channel}' is no address on this machine; write \"{LOOPBACK}:47110\"")
+        raise ValueError(f"'{channel}' is not an address on this machine; write \"{LOOPBACK}:47110\"")
     return host, number
 
 

@@ -156,7 +156,9 @@ class LoopbackBus(can.BusABC):
                     datagram = self._socket.recv(LARGEST)
                     if kind_of(datagram) is Kind.WELCOME:
                         return welcome_of(datagram)
-        raise can.CanInitializationError(f"nobody serves {self._address}; 'hil sim-bench' does")
+        raise can.CanInitializationError(
+            f"no simulated bench at {self._address}; start one with 'hil sim-bench'"
+        )
 
     def _put(self, datagram: bytes) -> None:
         try:

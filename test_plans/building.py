@@ -45,7 +45,7 @@ def mapping_at(value: object, document: Document, path: KeyPath, example: str) -
     """`value` if it is a mapping, else BadInputError."""
     if not isinstance(value, dict):
         raise BadInputError(
-            f"{brief(value)} stands where keys and values are needed",
+            f"{brief(value)} is given where keys and values are needed",
             where=document.place(path),
             fix=f"write: {example}",
         )
@@ -56,7 +56,7 @@ def list_at(value: object, document: Document, path: KeyPath, example: str) -> l
     """`value` if it is a list, else BadInputError."""
     if not isinstance(value, list):
         raise BadInputError(
-            f"{brief(value)} stands where a list is needed",
+            f"{brief(value)} is given where a list is needed",
             where=document.place(path),
             fix=f"begin each entry with a dash: {example}",
         )

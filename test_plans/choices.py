@@ -106,7 +106,7 @@ def _controllers(document: Document, chosen: Mapping[str, Path]) -> Iterator[tup
             raise BadInputError(
                 f"loads {len(names)} controllers: {', '.join(names)}",
                 where=document.where,
-                fix=f"say which is replaced: --controller {names[0]}={chosen[name]}",
+                fix=f"select the one to replace: --controller {names[0]}={chosen[name]}",
             )
         if name and name not in names:
             raise BadInputError(

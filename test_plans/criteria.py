@@ -28,9 +28,9 @@ class CriterionKeys(Strict):
     below: str | None = Field(
         default=None, description="id of a segment in which the same metric must be larger"
     )
-    title: str = Field(default="", max_length=200, description="what the report calls it")
+    title: str = Field(default="", max_length=200, description="title in the report")
     id: str | None = Field(
-        default=None, pattern=r"^[A-Za-z0-9_.-]{1,200}$", description="else made of segment and metric"
+        default=None, pattern=r"^[A-Za-z0-9_.-]{1,200}$", description="default: segment and metric"
     )
 
 
@@ -129,7 +129,9 @@ def _check_segments(
         if objection:
             raise BadInputError(f"'{metric.name}' in segment '{id_}': {objection}", where=where)
     if keys.below == keys.segment:
-        raise BadInputError("a segment cannot be below itself", where=document.place((*path, "below")))
+        raise BadInputError(
+            "'below' names the criterion's own segment", where=document.place((*path, "below"))
+        )
 
 
 def _check_limits(keys: CriterionKeys, metric: Metric, document: Document, path: KeyPath) -> None:
@@ -137,7 +139,7 @@ def _check_limits(keys: CriterionKeys, metric: Metric, document: Document, path:
         raise BadInputError(
             "'below' is an upper limit already",
             where=document.place((*path, "upper")),
-            fix="make two criteria of it",
+            fix="write two criteria",
         )
     if keys.upper is not None and keys.lower is not None and keys.lower > keys.upper:
         raise BadInputError(
@@ -146,7 +148,7 @@ def _check_limits(keys: CriterionKeys, metric: Metric, document: Document, path:
     toothless = keys.upper is None and keys.below is None and keys.lower is not None and keys.lower <= 0
     if toothless and metric.never_negative:
         raise BadInputError(
-            f"nothing could break lower = {keys.lower:g}: '{keys.metric}' is never negative",
+            f"no value can violate lower = {keys.lower:g}: '{keys.metric}' is never negative",
             where=document.place((*path, "lower")),
             fix="give an upper limit, or a lower one above 0",
         )
@@ -154,7 +156,7 @@ def _check_limits(keys: CriterionKeys, metric: Metric, document: Document, path:
         raise BadInputError(
             f"the unit of '{keys.metric}' is '{metric.unit}', not {keys.unit!r}",
             where=document.place((*path, "unit")),
-            fix="convert the limits, or choose the metric that was meant",
+            fix="convert the limits, or choose another metric",
         )
 
 

@@ -27,7 +27,7 @@ _TITLES = {
     "arrival": "Steady-state deviation from the request",
     "holding": "Largest deviation while holding",
     "stability_oscillation": "Sustained oscillation, without declared wheel orders",
-    "stability_torque_request": "Share of time at the torque limit or against the request",
+    "stability_torque_request": "Share of time at the torque limit or opposite to the request",
 }
 #: Names of the checks, as they end the ids of their criteria.
 CHECKS = tuple(_TITLES)
@@ -43,28 +43,28 @@ _LEAST_S = 1.0  # after a step: in less nothing comes to rest
 
 
 class DeviceChecks(Strict):
-    """Bounds of what any device must do, in % of the largest torque asked for; null takes a check out."""
+    """Limits of the device checks, in % of the largest requested torque; null removes a check."""
 
     arrival_percent: float | None = Field(
-        default=10.0, gt=0, le=1000, description="largest distance from what was asked"
+        default=10.0, gt=0, le=1000, description="largest deviation from the request"
     )
     response_s: float | None = Field(
-        default=2.0, gt=0, description="longest time until the response is as near as that, s"
+        default=2.0, gt=0, description="longest time until the response is within that deviation, s"
     )
     holding_percent: float | None = Field(
         default=20.0,
         gt=0,
         le=1000,
-        description="largest distance of quarter-second means from what was asked, in the second half",
+        description="largest deviation of quarter-second means from the request, in the second half",
     )
     oscillation_percent: float | None = Field(
-        default=10.0, gt=0, le=1000, description="largest amplitude of a line that lasts"
+        default=10.0, gt=0, le=1000, description="largest amplitude of a sustained line"
     )
     at_limit_share: float | None = Field(
         default=0.05,
         gt=0,
         le=1,
-        description="largest share of time at the torque limit or against the request",
+        description="largest share of time at the torque limit or opposite to the request",
     )
 
     def criteria(self, segments: tuple[PlannedSegment, ...]) -> tuple[Criterion, ...]:

@@ -147,7 +147,7 @@ class Judgement:
         for one, found in self._found.get(segment, ()):
             if one == metric:
                 return found
-        return _Found(trouble="not_judged", reason=f"segment '{segment}' was not carried out")
+        return _Found(trouble="not_judged", reason=f"segment '{segment}' was not run")
 
     def _computed(
         self, criteria: list[Criterion], recording: Recording, segment: Segment, doubts: dict[str, str]

@@ -141,9 +141,9 @@ class _Reader:
         count = sum(step.count for step in steps)
         if count > LARGEST_COUNT:
             raise BadInputError(
-                f"{count} steps altogether, at most {LARGEST_COUNT} are carried out",
+                f"{count} steps in total, at most {LARGEST_COUNT} are allowed",
                 where=self._document.place(("steps",)),
-                fix="make several plans of it",
+                fix="split the plan",
             )
         self._refuse_same_segments(steps)
         return steps
@@ -198,7 +198,7 @@ class _Reader:
         criterion = criterion_at(entry, self._document, path, segments)
         if criterion.id in seen:
             raise BadInputError(
-                f"the criterion '{criterion.id}' stands twice, as number {seen[criterion.id]} too",
+                f"the criterion '{criterion.id}' occurs twice, as number {seen[criterion.id]} too",
                 where=self._document.place(path),
                 fix="give one of them an 'id' of its own",
             )
@@ -219,9 +219,9 @@ class _Reader:
     def _refuse_segments_at_the_end(self, steps: tuple[Step, ...]) -> None:
         for index, id_ in _ids(steps):
             raise BadInputError(
-                f"the segment '{id_}' would not be judged in 'finally'",
+                f"the segment '{id_}' is not evaluated in 'finally'",
                 where=self._document.place(("finally", index)),
-                fix="move the step to 'steps'; 'finally' is for coming to rest",
+                fix="move the step to 'steps'; 'finally' brings the axle to rest",
             )
 
     def _refuse_without_controller(self, steps: tuple[Step, ...], first: int) -> None:
@@ -231,7 +231,7 @@ class _Reader:
             for place, one in _each(step, path):
                 if one.needs_controller:
                     raise BadInputError(
-                        f"'{one.kind}' asks for driving torque before any set_controller step",
+                        f"'{one.kind}' requests driving torque before any set_controller step",
                         where=self._document.place(place),
                         fix="write before it: - set_controller: {file: my_controller.toml}",
                     )
@@ -244,7 +244,7 @@ class _Reader:
             raise BadInputError(
                 f"would take {duration / 3600:.1f} h, at most {LONGEST_PLAN_S / 3600:g} h are carried out",
                 where=self._document.place(("steps",)),
-                fix="make several plans of it",
+                fix="split the plan",
             )
 
 

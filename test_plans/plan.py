@@ -24,18 +24,18 @@ class PlanKeys(Strict):
     format: FormatNumber = FORMAT
     name: str = Field(
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$",
-        description="letters, digits, _, - and ., at most 64: what results are filed under",
+        description="name of the results; letters, digits, _, - and ., at most 64",
     )
-    title: str = Field(default="", max_length=200, description="what the report is headed with")
-    description: str = Field(default="", max_length=10_000, description="what the plan is for")
+    title: str = Field(default="", max_length=200, description="title of the report")
+    description: str = Field(default="", max_length=10_000, description="purpose of the plan")
     hazardous: bool | Annotated[str, Field(min_length=1, max_length=500)] = Field(
-        default=False, description="true, or why: it is carried out only if somebody confirms it by name"
+        default=False, description="true, or the reason; a run then needs a person's authorisation by name"
     )
     variables: dict[str, Variable] = Field(
-        default={}, description="numbers that a run may choose, by name; $name stands for them"
+        default={}, description="variables that a run can set, by name; use them as $name"
     )
     device: DeviceChecks = Field(
-        default=DeviceChecks(), description="bounds of what any device must do, judged in every step"
+        default=DeviceChecks(), description="limits of the device checks, evaluated in every step"
     )
 
 

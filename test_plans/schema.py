@@ -32,11 +32,11 @@ def plan_schema() -> dict[str, Any]:
         "type": "object",
         "properties": {
             **keys["properties"],
-            "steps": {**steps, "minItems": 1, "description": "what is done, in order"},
+            "steps": {**steps, "minItems": 1, "description": "steps, in order"},
             "finally": {
                 **steps,
                 "type": ["array", "null"],
-                "description": "what is done at the end, whatever happened",
+                "description": "steps at the end, run in any case",
             },
             "criteria": {"type": ["array", "null"], "items": {"$ref": "#/$defs/criterion"}},
         },

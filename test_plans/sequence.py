@@ -20,29 +20,37 @@ class SequenceKeys(Strict):
 
     name: str = Field(
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$",
-        description="letters, digits, _, - and ., at most 64: what results are filed under",
+        description="name of the results; letters, digits, _, - and ., at most 64",
     )
-    title: str = Field(default="", max_length=200, description="what the report is headed with")
-    description: str = Field(default="", max_length=10_000, description="what it is for")
-    identify: str = Field(min_length=1, description="plan whose recording the diagnosis explains")
-    accept: str = Field(min_length=1, description="plan whose worst margin is to be as large as it can be")
-    controller: str = Field(default="", description="which of its controllers is tuned; '' for the last")
-    free: str = Field(default="", description="what is free, as for hil tune --free; '' for as shipped")
-    rounds: int = Field(default=3, ge=1, le=20, description="of diagnosis, tuning and confirmation, at most")
-    runs: int = Field(default=6, ge=1, le=50, description="on the bench in a round, at most")
+    title: str = Field(default="", max_length=200, description="title of the report")
+    description: str = Field(default="", max_length=10_000, description="purpose")
+    identify: str = Field(
+        min_length=1, description="plan for identification; the diagnosis uses its recording"
+    )
+    accept: str = Field(min_length=1, description="acceptance plan, whose worst margin is maximised")
+    controller: str = Field(default="", description="file name of the controller to tune; '' for the last")
+    free: str = Field(
+        default="", description="file of free parameters, as for hil tune --free; '' for the built-in one"
+    )
+    rounds: int = Field(
+        default=3, ge=1, le=20, description="largest number of rounds of diagnosis, tuning and confirmation"
+    )
+    runs: int = Field(default=6, ge=1, le=50, description="largest number of runs on the bench in a round")
     agree_percent: float = Field(
-        default=3.0, gt=0, le=1000, description="of a limit: how far a run may be from its prediction"
+        default=3.0, gt=0, le=1000, description="largest deviation of a run from its prediction, % of a limit"
     )
     grow_percent: float = Field(
-        default=0.2, gt=0, le=100, description="of a limit: a margin that would grow by less does not grow"
+        default=0.2, gt=0, le=100, description="smallest growth of the margin that counts, % of a limit"
     )
-    draws: int = Field(default=0, ge=0, le=5000, description="cars around the model; 0: the model alone")
-    seed: int = Field(default=0, ge=0, le=2**31, description="of draws and search")
+    draws: int = Field(
+        default=0, ge=0, le=5000, description="vehicles sampled around the model; 0: the model alone"
+    )
+    seed: int = Field(default=0, ge=0, le=2**31, description="random seed of draws and search")
     starts: int = Field(
-        default=6, ge=0, le=1000, description="points that the search goes uphill from, beside the plan's own"
+        default=6, ge=0, le=1000, description="number of additional starting points of the optimiser"
     )
     diagnose_minutes: float = Field(
-        default=15.0, gt=0, le=1440, description="processor time of one diagnosis, at most"
+        default=15.0, gt=0, le=1440, description="largest processor time of a diagnosis, minutes"
     )
 
 

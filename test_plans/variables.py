@@ -26,13 +26,13 @@ _WITHIN = re.compile(rf"\$\{{({NAME})\}}")
 
 
 class Variable(Strict):
-    """A number that a run may choose."""
+    """A variable that a run can set."""
 
-    default: float = Field(description="what it is if nobody chooses, in its unit")
-    unit: str = Field(default="", max_length=20, description="what it is counted in; for people")
-    lower: float | None = Field(default=None, description="smallest value that may be chosen")
-    upper: float | None = Field(default=None, description="largest value that may be chosen")
-    description: str = Field(default="", max_length=200, description="what it is for")
+    default: float = Field(description="default value, in its unit")
+    unit: str = Field(default="", max_length=20, description="unit, for display only")
+    lower: float | None = Field(default=None, description="smallest allowed value")
+    upper: float | None = Field(default=None, description="largest allowed value")
+    description: str = Field(default="", max_length=200, description="purpose")
 
     @model_validator(mode="after")
     def _default_is_within(self) -> Self:
@@ -45,9 +45,9 @@ class Variable(Strict):
         """Why it may not have a value; empty if it may."""
         unit = f" {self.unit}" if self.unit else ""
         if self.lower is not None and value < self.lower:
-            return f"{value:g}{unit} is below the smallest that may be chosen, {self.lower:g}{unit}"
+            return f"{value:g}{unit} is below the smallest allowed value, {self.lower:g}{unit}"
         if self.upper is not None and value > self.upper:
-            return f"{value:g}{unit} is above the largest that may be chosen, {self.upper:g}{unit}"
+            return f"{value:g}{unit} is above the largest allowed value, {self.upper:g}{unit}"
         return ""
 
 
@@ -63,7 +63,7 @@ def variables_at(value: object, document: Document) -> dict[str, Variable]:
         with mistakes.collected():
             if not re.fullmatch(NAME, name):
                 raise BadInputError(
-                    f"{brief(name)} is no name",
+                    f"{brief(name)} is not a valid name",
                     where=document.place(path),
                     fix="letters, digits and _, a letter first",
                 )

@@ -70,9 +70,7 @@ def read_yaml(text: str, where: str) -> Document:
         BadInputError: not YAML, a duplicate key, a tag, an alias, nested too deeply, or far too large.
     """
     if len(text) > LARGEST_BYTES:  # of bytes there are more still
-        raise BadInputError(
-            f"has more than {LARGEST_BYTES / 1e6:g} MB", where=where, fix="make several of it"
-        )
+        raise BadInputError(f"has more than {LARGEST_BYTES / 1e6:g} MB", where=where, fix="split the file")
     try:
         node = yaml.compose(text, Loader=_PlainLoader)
         lines: dict[KeyPath, int] = {(): 1}
@@ -133,7 +131,7 @@ def _mapping(
     for key_node, value_node in node.value:
         line = key_node.start_mark.line + 1
         if not isinstance(key_node, yaml.ScalarNode):
-            raise BadInputError("a key must be a word", where=f"{where}: line {line}")
+            raise BadInputError("a key must be a text", where=f"{where}: line {line}")
         key = _text(key_node, where)
         if key in values:
             raise BadInputError(

@@ -29,8 +29,8 @@ _ABORTS = {
     0x05030000: "its answer and the request do not alternate",
     0x05040000: "it waited too long for the transfer to go on",
     0x05040001: "it does not know the request",
-    0x05040005: "it has no memory left",
-    0x06010000: "the object cannot be accessed so",
+    0x05040005: "it is out of memory",
+    0x06010000: "the object does not support this access",
     0x06010001: "the object can only be written",
     0x06010002: "the object can only be read",
     0x06020000: "it has no such object",
@@ -38,7 +38,7 @@ _ABORTS = {
     0x06040042: "the mapped objects are longer than a PDO",
     0x06040043: "the value does not go with its other parameters",
     0x06040047: "the value does not go with its state inside",
-    0x06060000: "its hardware fails",
+    0x06060000: "its hardware has a fault",
     0x06070010: "the object has another length or type",
     0x06070012: "the object is shorter",
     0x06070013: "the object is longer",
@@ -47,11 +47,11 @@ _ABORTS = {
     0x06090031: "the value is above its range",
     0x06090032: "the value is below its range",
     0x06090036: "its largest value would be below its smallest",
-    0x060A0023: "what is needed for it is not there",
+    0x060A0023: "a required resource is not available",
     0x08000000: "it gives no reason",
     0x08000020: "it cannot store the value",
     0x08000021: "it is under local control",
-    0x08000022: "it does not take it in its present state",
+    0x08000022: "it refuses it in its present state",
     0x08000023: "it has no dictionary of its objects",
     0x08000024: "it has no data",
 }
@@ -67,7 +67,7 @@ class BrokenOffError(SdoCommunicationError):  # type: ignore[misc]
 
 def abort_in_words(code: int) -> str:
     """Why a node refused an object, by the code of its SDO abort."""
-    return f"{_ABORTS.get(code, 'it gives a reason of its maker')} (SDO abort 0x{code:08X})"
+    return f"{_ABORTS.get(code, 'it gives a manufacturer-specific reason')} (SDO abort 0x{code:08X})"
 
 
 class LoopNetwork(canopen.Network):  # type: ignore[misc]

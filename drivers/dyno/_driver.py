@@ -191,9 +191,9 @@ class DynoDriver:
         if not self._asked_until(command, lambda: all(n.in_state(state) for n in self.rear)):
             states = ", ".join(f"{n.name} is in '{n.state}'" for n in self.rear)
             raise BenchError(
-                f"controlword 0x{controlword:02X} did not bring the drives along: {states}",
+                f"controlword 0x{controlword:02X} did not change the state of the drives: {states}",
                 where=f"bus '{self._wire.name}'",
-                fix="reset the dyno controller and look at its fault list",
+                fix="reset the dyno controller and check its fault list",
             )
 
     def _asked_until(self, ask: Callable[[], None], reached: Callable[[], bool]) -> bool:

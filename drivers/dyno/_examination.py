@@ -88,7 +88,7 @@ def _look_at(node: DynoNode, found: Examined, *, beats: bool, drives: bool, ask:
         device_type = None
         if not beats:
             return False
-        fix = "may the adapter send (listen-only)? Is another node on the bus that has the same id?"
+        fix = "check that the adapter can send (not listen-only), and that no other node has the same id"
         found.findings.append(
             Finding("fault", "sends heartbeats, but does not answer when it is read", where, fix)
         )
@@ -109,7 +109,7 @@ def _look_at(node: DynoNode, found: Examined, *, beats: bool, drives: bool, ask:
 def _read(node: DynoNode, found: Examined, device_type: int, where: str, *, drives: bool) -> None:
     if drives and device_type & 0xFFFF != _DRIVE_PROFILE:
         fix = "check the node ids in the bench file"
-        what = f"is no drive of CiA 402: its device type is 0x{device_type:08X}"
+        what = f"is not a CiA 402 drive: its device type is 0x{device_type:08X}"
         found.findings.append(Finding("fault", what, where, fix))
         return
     register = node.read(0x1001)
@@ -124,8 +124,8 @@ def _read(node: DynoNode, found: Examined, device_type: int, where: str, *, driv
         fix = "look at the dyno controller's fault list; a run tries to reset it once"
         found.findings.append(Finding("fault", "the drive is in fault", where, fix))
     if status & STATE_MASK == ENABLED:
-        fix = "find out who switched it on; switch it off before anybody goes near"
-        found.findings.append(Finding("fault", "the drive is enabled, and no run goes on", where, fix))
+        fix = "find out why it was switched on; switch it off before anyone approaches"
+        found.findings.append(Finding("fault", "the drive is enabled, but no run is active", where, fix))
 
 
 def _missing(node: DynoNode, bus: str, strangers: Collection[int], *, used: bool) -> Finding:

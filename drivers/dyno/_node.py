@@ -139,13 +139,13 @@ class DynoNode:
             raise BenchError(
                 f"no answer within {SDO_TIMEOUT_S:g} s while {named} was written",
                 where=self._where,
-                fix="is it powered and on this bus?",
+                fix="check that it is powered and on this bus",
             ) from error
         except canopen.SdoAbortedError as error:
             raise BenchError(
                 f"refused {named} = {value:g}: {abort_in_words(error.code)}",
                 where=self._where,
-                fix="look at the value, at the drive's state and at its manual",
+                fix="check the value, the drive's state and its manual",
             ) from error
         sent = float(np.float32(value)) if isinstance(answer, float) else value
         if answer != sent:
@@ -171,7 +171,7 @@ class DynoNode:
             raise BenchError(
                 f"no answer within {SDO_TIMEOUT_S:g} s while {_object(index, subindex)} was read",
                 where=self._where,
-                fix="is it powered and on this bus?",
+                fix="check that it is powered and on this bus",
             ) from error
 
     def measured(self, name: str) -> float | None:

@@ -19,14 +19,14 @@ NodeId = Annotated[int, Field(ge=1, le=127)]
 
 
 class DynoTable(LoadTable):
-    """Where the dynamometers are."""
+    """Bus, EDS and node ids of the dynamometers."""
 
     kind: str = "rcs-canopen"
     bus: str
     eds: File
     rear_left: NodeId = 3
     rear_right: NodeId = 4
-    idle: dict[Name, NodeId] = Field({}, description="nodes that are watched but not used")
+    idle: dict[Name, NodeId] = Field({}, description="nodes that are monitored but not used")
     host_node: NodeId = 127
     emergency_stop_codes: tuple[Annotated[int, Field(ge=0x100, le=0xFFFF)], ...] = Field(
         (), strict=False, description="EMCY codes that say that the dynos' emergency stop was pressed"

@@ -20,8 +20,8 @@ _NEAR = 1e-4  # what reads back may be rounded by, as a share
 _NO_ANSWER: Answer | None = None
 _IN_WORDS = {
     "SE": "does not understand it",
-    "DF": "does not take the value",
-    "OF": "is not remote: somebody works at it",
+    "DF": "refuses the value",
+    "OF": "is not in remote mode: it is operated by hand",
     "NA": "does not know it",
 }
 #: What can be set: code to write, code to read, name, unit, and the panel's units in one of ours.
@@ -76,10 +76,10 @@ class Panel:
             self._ask(RESET)
             self._look()
         if self.alarms:
-            raise self._failed(f"has alarms: {', '.join(self.alarms)}", "clear their cause at the panel")
+            raise self._failed(f"has alarms: {', '.join(self.alarms)}", "remove their cause at the panel")
         if self.state != REMOTE:
             stands = {"SMAN": "local", "": "silent"}.get(self.state, printable(self.state, 20))
-            raise self._failed(f"stays {stands}", "let the panel be remote")
+            raise self._failed(f"stays {stands}", "switch the panel to remote")
 
     def beat(self) -> None:
         """Ask for state and alarms; the answers are looked at when they come."""
@@ -90,11 +90,11 @@ class Panel:
         """Alarms, somebody who took it to local, silence."""
         found = [f"alarm {alarm}" for alarm in self.alarms]
         if self.state not in ("", REMOTE):
-            found.append("somebody took the panel to local")
+            found.append("the panel was switched to local")
         silent_s = self._loop.clock.now_s() - self._seen_s
         if silent_s > self._gone_after_s:
             why = f": {self._line.gone}" if self._line.gone else ""
-            found.append(f"the panel has said nothing for {silent_s:.1f} s{why}")
+            found.append(f"the panel has sent nothing for {silent_s:.1f} s{why}")
         return found
 
     def make_safe(self) -> None:
@@ -134,7 +134,7 @@ class Panel:
         """State and alarms."""
         where = f"device '{self.name}'"
         if not ask:
-            return Examined(answers=False, findings=[Finding("hint", "is only heard if it is asked", where)])
+            return Examined(answers=False, findings=[Finding("hint", "only answers requests", where)])
         try:
             self._look()
         except BenchError as error:
@@ -170,7 +170,7 @@ class Panel:
         away = f" (the line is away: {self._line.gone})" if self._line.gone else ""
         raise self._failed(
             f"no answer to {function} in {_ATTEMPTS} attempts of {self._within_s:g} s{away}",
-            "is it switched on, and set to this baud rate?",
+            "check that it is switched on and set to this baud rate",
         )
 
     def _refused(self, function: str, data: tuple[str, ...], answer: Answer) -> BenchError:
@@ -178,11 +178,13 @@ class Panel:
             return self._failed(f"is busy for more than {_LONGEST_BUSY_S:g} s")
         why = _IN_WORDS.get(answer.error, f"says {printable(answer.error, 20)}")
         fix = (
-            "switch the panel to remote" if answer.error == OFFLINE else "does it fit this panel's software?"
+            "switch the panel to remote"
+            if answer.error == OFFLINE
+            else "check that it matches this panel's software"
         )
         return self._failed(f"{' '.join((function, *data))}: the panel {why}", fix)
 
-    def _failed(self, what: str, fix: str = "look at the panel") -> BenchError:
+    def _failed(self, what: str, fix: str = "check the panel") -> BenchError:
         return BenchError(what, where=f"device '{self.name}'", fix=fix)
 
     def _take(self, data: bytes, time_s: float) -> None:

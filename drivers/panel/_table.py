@@ -10,17 +10,15 @@ from drivers.table import Connections, DeviceTable
 
 
 class PanelTable(DeviceTable):
-    """Where the panel of the dynos is: a serial line."""
+    """Serial line of the dynos' panel."""
 
     kind: str = "rcs-panel"
     port: str = Field(min_length=1, description="as pyserial opens it: /dev/ttyUSB0, COM3, rfc2217://…")
     baud_rate: int = Field(9600, ge=300, le=1_000_000, description="bit/s")
-    channel: int = Field(
-        0, ge=0, le=9, description="of the protocol: which test bench the panel is asked about"
-    )
+    channel: int = Field(0, ge=0, le=9, description="number of the test bench in the protocol")
     answers_within_s: float = Field(0.3, ge=0.01, le=10, description="deadline of an answer")
     gone_after_s: float = Field(
-        3.0, ge=0.5, le=60, description="a panel that has said nothing for so long ends the run"
+        3.0, ge=0.5, le=60, description="a panel that is silent for this time ends the run"
     )
 
     def open(self, name: str, connections: Connections) -> Panel:

@@ -82,7 +82,7 @@ class Master:
                 raise self.failed(f"{command.name}: the slave {in_words(answer[1])}")
         raise self.failed(
             f"no answer to {command.name} in {_ATTEMPTS} attempts of {self._within_s:g} s",
-            f"is the RMCU powered, is its XCP on bus '{self._wire.name}', are these its identifiers?",
+            f"check the RMCU's power, the identifiers, and that its XCP is on bus '{self._wire.name}'",
         )
 
     def read(self, answer: bytes, layout: str) -> tuple[Any, ...]:
@@ -117,9 +117,7 @@ class Master:
         data = answer[8 : 8 + count] if mode & _IN_THE_ANSWER else self._uploaded(count)
         return printable(data.decode("ascii", errors="replace").rstrip("\0 "), _LONGEST_TEXT)
 
-    def failed(
-        self, what: str, fix: str = "look at the RMCU's XCP, and at the file of its symbols"
-    ) -> BenchError:
+    def failed(self, what: str, fix: str = "check the RMCU's XCP, and the file of its symbols") -> BenchError:
         """An error of this device."""
         return BenchError(what, where=self._where, fix=fix)
 
@@ -129,7 +127,7 @@ class Master:
             piece = min(count - len(found), self.largest_command - 1)
             data = self.ask(Command.UPLOAD, "B", piece)[1 : 1 + piece]
             if len(data) < piece:
-                raise self.failed(f"UPLOAD: {piece} bytes were asked for, {len(data)} came")
+                raise self.failed(f"UPLOAD: {piece} bytes were requested, {len(data)} received")
             found += data
         return found
 

@@ -99,8 +99,8 @@ class RamMonitor:
         self._setup.start()
         if not self._loop.wait_for(lambda: self._measured.came, _FIRST_SAMPLE_S):
             raise self._master.failed(
-                f"has been started, but no whole sample came within {_FIRST_SAMPLE_S:g} s",
-                "does the bus take so many frames? Measure fewer symbols, or give every = 2",
+                f"was started, but no complete sample arrived within {_FIRST_SAMPLE_S:g} s",
+                "the bus may be overloaded: measure fewer symbols, or give every = 2",
             )
         self._master.events.clear()
         self._measured.begin(self._loop.clock.now_s())
@@ -156,7 +156,7 @@ class RamMonitor:
         """Whether it answers, and is of the software that the symbols are of."""
         where = f"device '{self.name}'"
         if not ask:
-            silent = [] if self._measured.came else [Finding("hint", "is only heard if it is asked", where)]
+            silent = [] if self._measured.came else [Finding("hint", "only answers requests", where)]
             return Examined(answers=self._measured.came, findings=silent)
         try:
             self._connect()
@@ -173,7 +173,7 @@ class RamMonitor:
             )
         self._in_session = False
         if status & DAQ_RUNNING:
-            what = "it measures for another master: a run would take it over"
+            what = "it measures for another master; a run would end that"
             fix = "end the other tool's measurement before a run"
             found.findings.append(Finding("hint", what, where, fix))
         else:
@@ -205,4 +205,4 @@ class RamMonitor:
         if packet[0] == ERROR:
             self._said = f"asked for its status the slave {in_words(packet[1])}"
         elif not packet[1] & DAQ_RUNNING:
-            self._said = "it does not measure any more: it has started anew, or another master has stopped it"
+            self._said = "it no longer measures: it has restarted, or another master has stopped it"

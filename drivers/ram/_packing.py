@@ -58,7 +58,7 @@ def packed(
             odts[-1].append(Entry(address, symbol.extension, size))
             address, left, room = address + size, left - size, room - size
     if len(odts) > LARGEST_ODT_NUMBER:
-        raise BenchError(f"{len(odts)} packets are wanted each time; leave symbols out")
+        raise BenchError(f"{len(odts)} packets are needed for each sample; omit symbols")
     return [tuple(odt) for odt in odts]
 
 

@@ -85,8 +85,8 @@ class Setup:
         status, protected = self._master.read(self._master.ask(Command.GET_STATUS), "BB")
         if protected & LOCKED_DAQ:
             raise self._master.failed(
-                "its measuring is locked by seed and key",
-                "unlock it with its maker's tool, or have it unlocked",
+                "its measurement is locked by seed and key",
+                "unlock it with the manufacturer's tool",
             )
         return int(status)
 
@@ -157,9 +157,9 @@ class Setup:
         if key & IDENTIFICATION_FIELD:
             raise failed("its packets are not numbered by absolute ODT numbers, which is the only way known")
         if not properties & TIME_STAMPS:
-            raise failed("gives its samples no time stamps: nobody could say which of them are lost")
+            raise failed("gives its samples no time stamps, so lost samples cannot be detected")
         if self._every > 1 and not properties & PRESCALER:
-            raise failed("cannot leave samples out", "write every = 1, and measure fewer symbols")
+            raise failed("cannot skip samples", "write every = 1, and measure fewer symbols")
         if events and self._event >= events:
             raise failed(f"has no event channel {self._event}, only 0 to {events - 1}", "correct 'event'")
         granularity, most, _, _, mode, ticks = read(ask(Command.GET_DAQ_RESOLUTION_INFO), "BBBBBH")
@@ -168,9 +168,9 @@ class Setup:
             _, _, _, cycle, unit, _ = read(ask(Command.GET_DAQ_EVENT_INFO, "xH", self._event), "BBBBBB")
             its_period_s = period_s(cycle, unit)
         except ValueError as error:
-            raise failed(f"says of itself what cannot be: {error}") from None
+            raise failed(f"reports invalid properties: {error}") from None
         if not stamps.size or not stamps.tick_s:
-            raise failed("gives its samples no time stamps: nobody could say which of them are lost")
+            raise failed("gives its samples no time stamps, so lost samples cannot be detected")
         if its_period_s and abs(its_period_s - self._event_period_s) > 1e-3 * self._event_period_s:
             raise failed(
                 f"its event channel {self._event} comes every {its_period_s * 1e3:g} ms, "

@@ -18,17 +18,17 @@ _STAMP_BYTES = 2  # of most slaves on CAN
 
 
 class RamTable(DeviceTable):
-    """What is measured in the RMCU's memory by XCP on CAN, and where its file says that it lies."""
+    """Measurement of the RMCU's memory by XCP on CAN, with its symbol file."""
 
     kind: str = "ram-xcp"
     bus: str
     symbols: File = Field(description="an A2L, or a CSV with symbol, address, type, unit, scale, offset")
-    channels: dict[str, str] = Field(min_length=1, description="our channel, with its unit: the symbol")
+    channels: dict[str, str] = Field(min_length=1, description="symbol by channel (name with unit)")
     request_id: int | None = Field(None, ge=0, le=0x7FF, description="of commands; default: the A2L's")
     answer_id: int | None = Field(None, ge=0, le=0x7FF, description="of answers and data; default: the A2L's")
-    event: int = Field(0, ge=0, le=0xFFFE, description="event channel of the RMCU at which is measured")
-    event_period_s: float = Field(0.001, ge=1e-4, le=10, description="distance of the event's samples")
-    every: int = Field(1, ge=1, le=255, description="of the event's samples each such is sent")
+    event: int = Field(0, ge=0, le=0xFFFE, description="event channel of the RMCU for the measurement")
+    event_period_s: float = Field(0.001, ge=1e-4, le=10, description="period of the event, s")
+    every: int = Field(1, ge=1, le=255, description="every n-th sample of the event is sent")
     answers_within_s: float = Field(0.2, ge=0.01, le=10, description="deadline of an answer")
 
     def read(self) -> tuple[Symbols, dict[str, Symbol], tuple[int, int]]:

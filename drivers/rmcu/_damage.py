@@ -45,7 +45,7 @@ class FrameDamage:
             for name, wrong in self._wrong.items()
             if wrong > _FEW
         ]
-        return f"bus '{self._bus}': {', '.join(found)} came damaged (wrong checksum)" if found else ""
+        return f"bus '{self._bus}': {', '.join(found)} are damaged (wrong checksum)" if found else ""
 
 
 def has_checksum(layout: FrameLayout) -> bool:

@@ -156,7 +156,9 @@ class RmcuDriver:
             BenchError: it has not.
         """
         if self.state == "":
-            raise BenchError("the RMCU sends no status", where="RMCU", fix="is it powered and on this bus?")
+            raise BenchError(
+                "the RMCU sends no status", where="RMCU", fix="check that it is powered and on this bus"
+            )
 
     def beat(self) -> None:
         """Not needed."""
@@ -224,7 +226,9 @@ class RmcuDriver:
         found = Examined(answers=True, facts={"state": self.state})
         if self.state == "fault":
             found.facts["fault"] = self.fault
-            fix = "a run begins with a request for off, which ends it; if it comes back, mend its cause"
+            fix = (
+                "a run starts with a request for off, which clears the fault; if it returns, remove its cause"
+            )
             found.findings.append(Finding("hint", f"is in fault: {self.fault}", where, fix))
         if ask:
             try:
@@ -233,7 +237,7 @@ class RmcuDriver:
             except BenchError:
                 found.facts["answers parameter reads"] = "no"
                 what = "sends its status, but does not answer when a parameter is read"
-                fix = "may the adapter send (listen-only)? Is RMCU_ParameterWrite of the DBC this RMCU's?"
+                fix = "check that the adapter can send (not listen-only), and RMCU_ParameterWrite in the DBC"
                 found.findings.append(Finding("fault", what, where, fix))
         return found
 
@@ -302,7 +306,7 @@ class RmcuDriver:
             raise BenchError(
                 f"no reply to parameter '{name}' within {_REPLY_TIMEOUT_S:g} s",
                 where="RMCU",
-                fix="is the RMCU powered and on this bus?",
+                fix="check that the RMCU is powered and on this bus",
             )
         assert self._answer is not None
         signals = self._reply.signals

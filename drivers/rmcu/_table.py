@@ -17,7 +17,7 @@ from hil.core.printable import printable
 
 
 class RmcuTable(DeviceTable):
-    """Where the RMCU is, and what its DBC calls things that benches/rmcu.dbc calls otherwise."""
+    """Bus and DBC of the RMCU, with the names that differ from benches/rmcu.dbc."""
 
     kind: str = "rmcu-can"
     bus: str

@@ -248,7 +248,7 @@ class _Agent:
         return end_of_left(run.folder, "agent")
 
 
-_URL_FIX = "is this the URL of a bench service, of the same version?"
+_URL_FIX = "check that this is the URL of a bench service of the same version"
 _TOKEN_FIX = "set HIL_TOKEN to a token with the role agent: hil serve --data DIR --add-token NAME=agent"
 
 

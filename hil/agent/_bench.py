@@ -60,9 +60,9 @@ class DrivenBench:
             facts.share = None if running.share is None else min(max(running.share, 0.0), 1.0)
             facts.doing, facts.told = _short(running.doing), _short(running.told)
         elif self.left:
-            facts.doing = "it is being ended; its agent was killed"
+            facts.doing = "the run is being ended, because its agent was killed"
         elif self.kept is not None:
-            facts.doing, facts.share = "its files are being delivered", 1.0
+            facts.doing, facts.share = "its files are being uploaded", 1.0
         if stopped:
             facts.state, facts.why = "emergency_stop", _short(stopped)
         elif self.kept is not None:

@@ -46,7 +46,7 @@ def refuse_implausible(recording: Recording) -> None:
                 f"'{name}' is {one.first:g} at {one.first_s:.6g} s: no axle does that "
                 f"({one.impossible} such values, {LARGEST_VALUE:g} is allowed)",
                 where=where,
-                fix="mend or leave out these samples",
+                fix="correct or omit these samples",
             )
     for name, other in alike:
         if seen[name].highest > seen[name].lowest:
@@ -117,7 +117,7 @@ def refuse_same_data(recordings: Sequence[Recording], holdout: Sequence[Recordin
                 f"holds the same data as {one.source}"
                 + (", which is fitted: it cannot be held out" if apart else ", given twice"),
                 where=str(other.source),
-                fix="what a fit has seen proves nothing: hold another recording back"
+                fix="a recording used in the fit cannot validate it: give another one to --holdout"
                 if apart
                 else "give each recording once",
             )

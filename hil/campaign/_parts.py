@@ -112,9 +112,9 @@ def begun_batch(folder: Path, setting: Setting) -> int:
     changed = _changed(identity, setting.identity)
     if changed:
         raise BadInputError(
-            f"was begun with other files: {', '.join(changed)}",
+            f"was started with other files: {', '.join(changed)}",
             where=str(folder),
-            fix=f"put back what was there; or {_NOT_THIS}",
+            fix=f"restore these files; or {_NOT_THIS}",
         )
     return batch
 

@@ -167,7 +167,9 @@ def _criteria(file: CampaignFile, plan: Plan) -> tuple[Criterion, ...]:
     found = tuple(known[name] for name in dict.fromkeys(file.criteria)) or plan.criteria
     if not any(c.upper is not None or c.lower is not None or c.below is not None for c in found):
         fix = "give a limit to one of them, or name others under criteria"
-        raise BadInputError("no criterion has a limit: nothing could pass", where=str(file.source), fix=fix)
+        raise BadInputError(
+            "no criterion has a limit, so no simulation can be judged", where=str(file.source), fix=fix
+        )
     return found
 
 
@@ -186,8 +188,8 @@ def _refuse_same_cars(file: CampaignFile, model: Model, cases: Cases) -> None:
         ) from None
     if not differs:
         raise BadInputError(
-            f"{file.draws} cars are to be drawn, but nothing differs between them",
+            f"{file.draws} vehicles are to be sampled, but no parameter varies between them",
             where=file.document.place(("draws",)),
-            fix="under tolerance say what does (vehicle_inertia: 0.1), give a model with standard errors, or "
-            "leave draws out",
+            fix="give parameters under tolerance (vehicle_inertia: 0.1), or a model with standard errors; "
+            "or omit draws",
         )

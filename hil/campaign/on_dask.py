@@ -211,7 +211,9 @@ class Workers:
     def _gone(self) -> BenchError:
         where = f"--scheduler {self._scheduler}" if self._scheduler else ""
         return BenchError(
-            "the scheduler is gone", where=where, fix="what was done is kept: go on with --resume"
+            "the connection to the scheduler is lost",
+            where=where,
+            fix="finished simulations are kept; continue with --resume",
         )
 
 
@@ -235,7 +237,7 @@ def _rows(source: str, digest: str, first: int, last: int) -> list[Row]:
             raise BadInputError(
                 "a worker has other files, or another version of this software",
                 where=source,
-                fix="go on with --resume once all of them have the same",
+                fix="install the same version and files everywhere, then continue with --resume",
             )
         _known.clear()
         _known[digest] = Simulations(setting)

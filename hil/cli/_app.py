@@ -31,34 +31,34 @@ logger = logging.getLogger(__name__)
 
 # name: one line for `hil --help`. The module hil.cli.commands.NAME (_ for -) is imported when it is used.
 _COMMANDS = {
-    "run": "Run a test plan on a bench, and report.",
-    "check": "Validate a plan, estimate its duration, predict its peaks.",
-    "report": "Make the report again from a recording.",
-    "identify": "Frequency responses and fits from recordings.",
-    "design": "Controller from a model, with margins.",
-    "tune": "Controller for the largest worst margin over a plan's criteria.",
-    "autotune": "Identify, diagnose, add, tune, confirm on a bench, and again.",
-    "campaign": "Many simulations: parameters varied, cars drawn, controllers compared.",
-    "diagnose": "Find where model and measurement disagree, name the effect, add it.",
-    "compare": "The same plan on several runs, side by side.",
-    "explain": "What would bring a predicted run to target figures.",
+    "run": "Run a test plan on a bench and write its report.",
+    "check": "Validate a plan; predict its duration, peaks and criteria.",
+    "report": "Renew a report from its recording.",
+    "identify": "Identify frequency responses and model parameters from recordings.",
+    "design": "Design a controller for a model; show its stability margins.",
+    "tune": "Optimise a controller's parameters for a plan's criteria.",
+    "autotune": "Identify, diagnose, tune and confirm on a bench, in rounds, unattended.",
+    "campaign": "Simulate a plan many times: vary parameters, sample vehicles, compare controllers.",
+    "diagnose": "Find where a model and recordings disagree; identify the missing effect and add it.",
+    "compare": "Compare runs of one plan side by side.",
+    "explain": "Find model changes that reproduce target values.",
     "simulate": "Replay a recording's torque through a model.",
-    "recover": "A whole recording from what a crash left.",
-    "verify": "Prove that report and recording belong together and nothing changed.",
-    "sign": "Sign a run's directory: who approved it.",
+    "recover": "Recover a recording after a crash.",
+    "verify": "Verify that reports match their recording and that no file changed.",
+    "sign": "Sign a run's directory as its approver.",
     "export": "Write a recording as CSV, Parquet, MDF4 or MAT, or its frames as a CAN log.",
-    "export-fmu": "A model with its controller as an FMI 2 unit for other tools.",
-    "replay": "CAN logs of other tools, decoded to a recording with its report.",
-    "sim-bench": "The simulated bench as a process of its own, in wall-clock time.",
-    "serve": "The bench service: a queue of runs, an API, a page that shows what benches do.",
-    "agent": "Benches of this machine for a bench service elsewhere.",
-    "doctor": "What of a bench is there, what is wrong with it, and what to do.",
-    "monitor": "Decoded channels and bus load live, touching nothing.",
+    "export-fmu": "Export a model with its controller as an FMI 2 FMU.",
+    "replay": "Decode CAN logs of other tools to a recording and report on it.",
+    "sim-bench": "Run the simulated bench in its own process, in real time.",
+    "serve": "Run the bench service: run queue, REST API and live page.",
+    "agent": "Drive benches of this machine for a bench service on another machine.",
+    "doctor": "Check a bench's devices; report faults and remedies.",
+    "monitor": "Show decoded channels and bus load live; send nothing.",
     "jog": "Turn the axle at low torque and check the sign of every sensor.",
-    "reset": "Let a bench be armed again after an emergency stop.",
-    "list": "What there is: plans, benches, models, effects, steps, metrics, devices.",
-    "init": "A folder of one's own, ready to run: plan, bench, model, test.",
-    "schema": "JSON schemas of plan, bench, model, controller and campaign files, for editors.",
+    "reset": "Reset an emergency stop so that the bench can be armed again.",
+    "list": "List plans, benches, models, effects, steps, metrics and devices.",
+    "init": "Make a folder that is ready to run: plan, bench, model, controller.",
+    "schema": "Print the JSON schema of plan, bench, model, controller or campaign files.",
 }
 
 
@@ -73,7 +73,7 @@ def run_command_line() -> int:
     sys.stdout.flush()
     if out.failure is not None:
         reason = out.failure.strerror or str(out.failure)
-        complain("error", f"standard output: {reason}\n  make room, or send the output elsewhere")
+        complain("error", f"standard output: {reason}\n  free disk space, or redirect the output")
         code = code or BenchError.exit_code
     sys.stderr.flush()
     return code
@@ -115,7 +115,7 @@ def _of_a_server(arguments: list[str]) -> list[str]:
     url = url or (arguments[1] if len(arguments) > 1 else "")
     if not url or rest[:1] not in (["run"], ["campaign"]):
         raise BadInputError(
-            "a service carries out 'run' and 'campaign', and no other command",
+            "a service accepts the commands 'run' and 'campaign' only",
             where="--server",
             fix="write: hil --server URL run PLAN --bench NAME; or campaign FILE",
         )
@@ -141,11 +141,11 @@ def _refuse_empty_out(arguments: list[str]) -> None:
     """An empty --out would be this very folder: a shell variable that is not set, most likely."""
     for option, value in zip(arguments, [*arguments[1:], None], strict=True):
         if option == "--out=" or (option == "--out" and value == ""):
-            raise BadInputError("--out is empty", fix="name a place; '.' is this folder")
+            raise BadInputError("--out is empty", fix="give a directory; '.' is the current one")
 
 
-_VERBOSE = Annotated[bool, typer.Option("--verbose", help="tell on standard error what is being done")]
-_LOG = Annotated[Path | None, typer.Option("--log", metavar="FILE", help="file for what is done, in detail")]
+_VERBOSE = Annotated[bool, typer.Option("--verbose", help="print each action on standard error")]
+_LOG = Annotated[Path | None, typer.Option("--log", metavar="FILE", help="write a detailed log to FILE")]
 
 
 def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
@@ -181,7 +181,7 @@ def _help() -> str:
         "Usage: hil COMMAND [ARGS]...\n\nHardware-in-the-loop bench service for electric axles.\n\nCommands:"
     )
     return "\n".join(
-        [head, *lines, "", "hil COMMAND --help tells about one of them, hil --version which version this is."]
+        [head, *lines, "", "hil COMMAND --help describes a command. hil --version prints the version."]
     )
 
 
@@ -192,7 +192,7 @@ def guarded(arguments: list[str]) -> int:
         code = _carried_out(arguments)
         logger.info("exit code %d", code)
         if LOG.faulty:
-            complain("note", f"what happened is in {LOG.kept() or 'no log: it cannot be written'}")
+            complain("note", f"details are in {LOG.kept() or 'no log: it cannot be written'}")
         return code
     finally:
         LOG.end()
@@ -235,7 +235,7 @@ def _too_little_memory() -> BenchError:
     limit, _ = resource.getrlimit(resource.RLIMIT_DATA)  # a service sets one for what it begins
     limited = f", which may use {limit / 1e9:.3g} GB" if limit != resource.RLIM_INFINITY else ""
     return BenchError(
-        f"there is not enough memory for this command{limited}", fix="give a shorter recording or plan"
+        f"there is not enough memory for this command{limited}", fix="use a shorter recording or plan"
     )
 
 

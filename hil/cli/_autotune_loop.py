@@ -45,7 +45,7 @@ class AutotuneLoop:
             before = self._before()
             for number in range(1, self._told.sequence.rounds + 1):
                 self._round(number, before)
-            raise EndedError(f"all {self._told.sequence.rounds} rounds were made")
+            raise EndedError(f"all {self._told.sequence.rounds} rounds are complete")
         except EndedError as ended:
             self.closing.ended, code = str(ended), ended.exit_code
         except HilError as error:  # such as recordings that cannot belong to the model
@@ -60,8 +60,8 @@ class AutotuneLoop:
         carried = self._stages.run(self._told.identify, "identify")
         self._explained.append(Recorded(carried.folder / RECORDING))
         what = f"{len(carried.segments)} segments recorded"
-        why = "what a model lacks shows where torque varies"
-        self._decide(0, "identify", what, "let the diagnosis explain them", why, carried.folder)
+        why = "varying torque reveals effects that the model lacks"
+        self._decide(0, "identify", what, "diagnose the recording", why, carried.folder)
 
     def _before(self) -> Confirmation:
         """The plan that accepts as it is: what is to be bettered, and what the given model says of it."""
@@ -74,7 +74,7 @@ class AutotuneLoop:
             f"worst margin {share(min(closing.before_margins.values()), 2)}; the given model is {_off(found)}"
         )
         agrees = "agrees" if found.agrees else "does not agree"
-        why = f"it {agrees} within {share(found.allowed)}; what is missing shows in recordings of excitation"
+        why = f"it {agrees} within {share(found.allowed)}; recordings with excitation show what is missing"
         self._decide(0, "before", what, "diagnose", why, carried.folder)
         return found
 
@@ -108,14 +108,14 @@ class AutotuneLoop:
         if found.verdict == "unknown":
             why = found.unfinished or found.signature or "no known effect closes the gap"
             self._decide(number, "diagnose", what, "end", why, folder)
-            raise EndedError(f"the diagnosis does not know what is missing: {why}")
+            raise EndedError(f"the diagnosis cannot identify what is missing: {why}")
         was = {name: share(found.gap_before[name].gap, 2, digits=3) for name in found.gap_after}
         gaps = ", ".join(
             f"{name} {was[name]} to {share(gap.gap, 2, digits=3)} of the signal"
             for name, gap in found.gap_after.items()
         )
         names = ", ".join(effect.use.id for effect in found.effects)
-        decided = f"add {names}" if names else "keep the model, its numbers corrected"
+        decided = f"add {names}" if names else "keep the model with corrected parameters"
         self._decide(number, "diagnose", what, decided, f"gaps: {gaps}", folder)
 
     def _foretells(self, before: Confirmation, number: int, asked: Asked) -> bool:
@@ -126,9 +126,9 @@ class AutotuneLoop:
         enough = found.agrees or recording in self._explained
         if not enough:
             self._explained.append(recording)
-        what = f"of the plan as it was run before, the better model is {_off(found)}"
-        decided = "tune on it" if enough else "let the diagnosis explain that run, too"
-        self._decide(number, "diagnose", what, decided, f"{share(found.allowed)} are allowed")
+        what = f"for the plan as run before, the improved model is {_off(found)}"
+        decided = "tune on it" if enough else "diagnose that run, too"
+        self._decide(number, "diagnose", what, decided, f"the tolerance is {share(found.allowed)}")
         return enough
 
     def _weigh(self, number: int, came: Refined, wire: WireBench, folder: Path) -> bool:
@@ -156,9 +156,9 @@ class AutotuneLoop:
             decided, why = ("keep it" if kept else "keep the earlier one"), came.found.ended
         else:
             last = number == self._told.sequence.rounds
-            decided = "end" if last else "let the diagnosis explain that run, too"
+            decided = "end" if last else "diagnose that run, too"
             names = ", ".join(one.id.replace(".", " ") for one in first.beyond)
-            why = f"not as predicted within {share(first.allowed)}: {names}"
+            why = f"deviation from the prediction above {share(first.allowed)}: {names}"
         self._decide(number, "confirm", what, decided, why, folder)
         return best.worst - earlier[1] >= self._told.sequence.grow_percent / 100
 
@@ -188,10 +188,10 @@ def _off(found: Confirmation) -> str:
     """How far a prediction is off: the criterion that is furthest, in its unit and against its limit."""
     unknown = [one.id.replace(".", " ") for one in found.criteria if one.apart is None]
     if unknown:
-        return f"of another mind whether there is a value for {', '.join(unknown)}"
+        return f"different: prediction or run has no value for {', '.join(unknown)}"
     worst = max(found.criteria, key=lambda one: one.apart or 0.0, default=None)
     if worst is None or not worst.apart or worst.difference is None:
-        return "not off at all"
+        return "exact"
     of = "its limit" if worst.of_limit else "the larger value, without a limit"
     name, by = worst.id.replace(".", " "), f"{worst.difference:+.3g} {worst.unit}".strip()
     return f"off by up to {share(worst.apart, 2)} of {of} ({name}: {by})"

@@ -52,7 +52,7 @@ def _number(name: str, text: str) -> float:
     value = number_of(text.strip())
     if value is None:
         raise BadInputError(
-            f"{printable(name, 60)} = '{printable(text, 60)}' is no number",
+            f"{printable(name, 60)} = '{printable(text, 60)}' is not a number",
             where=_OPTION,
             fix="write NAME=VALUE, with a decimal point and without a unit",
         )

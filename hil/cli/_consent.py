@@ -11,7 +11,7 @@ from hil.engine.envelope import Envelope
 from hil.engine.preflight import Rehearsal
 from test_plans import Plan
 
-NOT_NEEDED = "none asked for: the bench is simulated"
+NOT_NEEDED = "not required: the bench is simulated"
 
 
 def refuse_nobody(plan: Plan, bench: BenchFile, confirm: str) -> None:
@@ -22,9 +22,9 @@ def refuse_nobody(plan: Plan, bench: BenchFile, confirm: str) -> None:
     """
     if _needed(plan, bench) and not confirm.strip() and not sys.stdin.isatty():
         raise BadInputError(
-            f"runs on '{bench.name}' need somebody's consent, and there is no terminal to ask on",
+            f"runs on '{bench.name}' need a person's consent, and there is no terminal to ask on",
             where="--confirm",
-            fix="who takes them upon them says so with --confirm 'their name'; the report prints it",
+            fix="authorise them with --confirm 'YOUR NAME'; the report prints the name",
         )
 
 
@@ -39,10 +39,14 @@ def consent(plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope, confi
     print(_question(plans, bench, envelope), file=sys.stderr)
     if confirm.strip():
         return confirm.strip()
-    print("Your name, to carry this out:", file=sys.stderr)
+    print("Enter your name to authorise these runs:", file=sys.stderr)
     name = sys.stdin.readline().strip()
     if not name:
-        raise BadInputError("nobody consented", where=f"bench '{bench.name}'", fix="nothing was moved")
+        raise BadInputError(
+            "no consent was given",
+            where=f"bench '{bench.name}'",
+            fix="nothing has moved; run the command again to consent",
+        )
     return name
 
 
@@ -53,7 +57,9 @@ def _needed(plan: Plan, bench: BenchFile) -> bool:
 def _question(plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope) -> str:
     names = ", ".join(dict.fromkeys(plan.name for plan in plans))
     lines = [f"Runs of {names} on {bench.name}, one after the other: {envelope.told()}."]
-    lines.append("Each is predicted first and refused beyond these; a run that leaves them trips.")
+    lines.append(
+        "Each run is predicted first. It is refused beyond these limits, and trips if it exceeds them."
+    )
     for plan in plans:
         if plan.hazardous:
             why = f": {printable(plan.hazardous, 500)}" if isinstance(plan.hazardous, str) else ""
@@ -61,5 +67,5 @@ def _question(plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope) -> 
         rehearsal = Rehearsal(bench)
         for step in (*plan.steps, *plan.finally_):
             step.carry_out(rehearsal)
-        lines += [f"Taken for confirmed in each run of {plan.name}: {text}" for text in rehearsal.prompts]
+        lines += [f"Confirmed in advance for each run of {plan.name}: {text}" for text in rehearsal.prompts]
     return "\n".join(lines)

@@ -141,7 +141,7 @@ def _refuse_unless_log(path: Path) -> None:
         raise of_the_system(error) from error
     if head not in (b"", _HEAD.encode()):
         raise BadInputError(
-            "exists already and is no log", where=str(path), fix="name another place with --log"
+            "exists and is not a log file", where=str(path), fix="give another file with --log"
         )
 
 

@@ -79,9 +79,9 @@ def remarks_on_load(plan: Plan) -> Iterable[str]:
     if names:
         shown = ", ".join(f"'{name}'" for name in names[:5]) + (", …" if len(names) > 5 else "")
         yield (
-            f"driving torque while the dynos hold the speed (load: speed, segment {shown}): the table "
-            "is of the car and says nothing of it; driving force control acts on wheels that do not "
-            "give way, see the predicted peaks"
+            f"driving torque while the dynos hold the speed (load: speed, segment {shown}): the loop "
+            "margins in the table apply to the vehicle only; driving force control then acts on wheels of "
+            "fixed speed, see the predicted peaks"
         )
 
 

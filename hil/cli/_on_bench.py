@@ -69,7 +69,9 @@ class Allowed:
     def told(self) -> str:
         """To what somebody consented, and who."""
         by = (
-            f"{self.name} consented to" if self.name else "The bench is simulated, nobody was asked; allowed:"
+            f"{self.name} consented to"
+            if self.name
+            else "The bench is simulated, no consent is needed; allowed:"
         )
         return f"{by} {self.envelope.told()}."
 

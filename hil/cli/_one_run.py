@@ -141,7 +141,7 @@ class _Conclusion:
             error = InterruptError(
                 "interrupted before the reports were written",
                 where=str(self._place.folder),
-                fix=f"hil report {self._place.folder} makes them",
+                fix=f"make them with: hil report {self._place.folder}",
             )
             self._outcome.error = self._outcome.error or error
         return result

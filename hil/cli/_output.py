@@ -164,8 +164,8 @@ def count_in_words(criteria: tuple[CriterionResult, ...]) -> str:
         parts += [f"{passed} of {len(judged)} {name} passed"] if judged and not failed else []
         parts += [f"{failed} of {len(judged)} {name} failed"] if failed else []
         unjudged = len(judged) - passed - failed
-        parts += [f"{unjudged} could not be judged"] if unjudged else []
-    parts = parts or ["nothing was judged"]
+        parts += [f"{unjudged} could not be evaluated"] if unjudged else []
+    parts = parts or ["no criterion was evaluated"]
     informational = sum(c.verdict == "informational" for c in criteria)
     return ", ".join([*parts, f"{informational} informational"] if informational else parts)
 
@@ -174,7 +174,7 @@ def expiry_in_words(accepted: AcceptedExpiry) -> str:
     """Which sensors measured although their calibration had run out, and who answers for it."""
     sensors = ", ".join(f"{printable(name, 60)} (until {until})" for name, until in accepted.sensors.items())
     by, reason = printable(accepted.by, 100), printable(accepted.reason, 400)
-    return f"calibration has run out: {sensors}; accepted by {by}: {reason}"
+    return f"calibration expired: {sensors}; accepted by {by}: {reason}"
 
 
 def told_identities(identities: Iterable[Identity]) -> str:

@@ -31,7 +31,7 @@ from reports.outputs.campaign import OWN, share_in_words
 from test_plans import load_plan
 
 SUMMARY = "campaign.json"
-_GO_ON = "the service goes on with --resume"
+_GO_ON = "continue it with --resume"
 _LOOK_S = 0.5
 
 
@@ -65,7 +65,7 @@ class RemoteCampaign:
                 raise BenchError(
                     found.reason,
                     where=f"campaign {found.id} of the service",
-                    fix=f"what was done is kept: {_GO_ON}",
+                    fix=f"finished simulations are kept: {_GO_ON}",
                 )
             summary = _brought(client, found, place)
             if as_json:
@@ -108,9 +108,9 @@ def _wanted(file: CampaignFile) -> CampaignWanted:
         return CampaignWanted(text=file.text, files=files)
     except ValidationError as error:
         raise BadInputError(
-            f"the service cannot take it: {error.errors()[0]['msg']}",
+            f"the service rejects it: {error.errors()[0]['msg']}",
             where=str(file.source),
-            fix="it takes 200 kB, and files by plain names that end in .yaml or .toml",
+            fix="limits: 200 kB, and file names without path that end in .yaml or .toml",
         ) from None
 
 
@@ -161,7 +161,7 @@ class _Watching:
     def _ask(self) -> None:
         number = self.campaign.id
         if self.stop.times > 1:
-            raise InterruptError(f"interrupted; campaign {number} is being ended by the service")
+            raise InterruptError(f"interrupted; campaign {number} is being stopped by the service")
         if self.stop.times and not self.told_stop:
             self.told_stop = True
             self.campaign = self.client.cancel_campaign(number)
@@ -200,6 +200,6 @@ def _in_words(campaign: CampaignData, folder: Path) -> str:
         lines.append(f"{one.controller or OWN}: {share} pass")
     if campaign.pass_share_wanted is not None:
         reached = "reached" if campaign.passed else "not reached"
-        lines.append(f"wanted {100 * campaign.pass_share_wanted:g} %: {reached}")
+        lines.append(f"required {100 * campaign.pass_share_wanted:g} %: {reached}")
     lines.append(f"{campaign.done} simulations; in {folder}")
     return "\n".join(lines)

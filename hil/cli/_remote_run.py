@@ -88,7 +88,7 @@ class RemoteRun:
                 raise BadInputError(error.what, where=error.where, fix=error.fix) from error
             raise
         except ValueError as error:
-            raise BadInputError(f"the service cannot take it: {str(error)[:300]}") from error
+            raise BadInputError(f"the service rejects it: {str(error)[:300]}") from error
 
 
 @dataclass
@@ -128,7 +128,7 @@ class _Watching:
     def _speak(self) -> None:
         if self.stop.times > 1:
             raise InterruptError(
-                f"interrupted; run {self.run.id} is being ended by the service", where=f"run {self.run.id}"
+                f"interrupted; run {self.run.id} is being stopped by the service", where=f"run {self.run.id}"
             )
         if self.stop.times and not self.told_stop:
             self._ask("q")
@@ -157,7 +157,7 @@ class _Watching:
         except RefusedError:
             pass  # the bench is not there any more
         except BenchError as error:
-            complain("error", f"the emergency stop has NOT been taken: {error}")
+            complain("error", f"the service has NOT accepted the emergency stop: {error}")
 
     def _ask(self, line: str) -> None:
         """What the keys of `hil run` mean, over the API; what is too late is no mistake."""

@@ -7,7 +7,7 @@ import os
 import select
 import sys
 
-KEYS = "p + Enter pauses, q + Enter ends, e + Enter: emergency stop"
+KEYS = "p + Enter: pause, q + Enter: end, e + Enter: emergency stop"
 _LONGEST_LINE = 1000
 
 

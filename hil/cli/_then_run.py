@@ -59,9 +59,9 @@ def refuse_unasked(plan: Plan) -> None:
     """
     if plan.hazardous:
         raise BadInputError(
-            "a hazardous plan is not run unasked",
+            "a hazardous plan needs authorisation by name",
             where=f"plan '{plan.name}'",
-            fix="leave --then-run out, then: hil run --controller … --confirm 'your name'",
+            fix="omit --then-run; then run: hil run --controller … --confirm 'YOUR NAME'",
         )
 
 
@@ -155,4 +155,6 @@ def _verdict(ran: Ran) -> str:
     if ran.confirmation.agrees:
         return f"As predicted, within {allowed}."
     names = ", ".join(one.id for one in ran.confirmation.beyond)
-    return f"Not as predicted, by more than {allowed}: {names}. Diagnosis: {ran.diagnosed or 'none'}"
+    return (
+        f"Deviation from the prediction by more than {allowed}: {names}. Diagnosis: {ran.diagnosed or 'none'}"
+    )

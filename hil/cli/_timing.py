@@ -24,7 +24,7 @@ def timing_in_words(timing: Timing | None) -> Iterator[str]:
         )
     if timing.pauses:
         times = "once" if timing.pauses == 1 else f"{timing.pauses} times"
-        yield f"own loop stood still {times}, the longest {timing.longest_pause_s:g} s"
+        yield f"the bench loop was delayed {times}, at most {timing.longest_pause_s:g} s"
 
 
 def _late(late: Lateness) -> str:

@@ -43,7 +43,7 @@ def of_audit_log(folder: Path) -> Finding:
     from hil.service.audit import checked
 
     found = checked(folder, os.environ.get("HIL_DATABASE", ""))
-    said = found.problem or f"each of its {found.rows} rows fits the one before it; up to row {found.head.id}"
+    said = found.problem or f"its {found.rows} rows form an unbroken chain up to row {found.head.id}"
     return Finding(not found.problem, folder, f"audit log: {said}")
 
 
@@ -54,8 +54,8 @@ def of_run(folder: Path) -> Iterator[Finding]:
         text = read_bytes(result_file).decode()
         result = RunResult.model_validate_json(text)
     except (BadInputError, ValueError):
-        there = "was changed: it cannot be read" if result_file.exists() else "is missing"
-        yield Finding(False, result_file, f"{there}; nothing else tells which files there were")
+        there = "cannot be read: it was changed" if result_file.exists() else "is missing"
+        yield Finding(False, result_file, f"{there}; no other file lists the files of the run")
         return
     yield from _listed(folder, result)
     recording = folder / result.files.get("recording", RECORDING)
@@ -72,15 +72,15 @@ def _listed(folder: Path, result: RunResult) -> Iterator[Finding]:
         path = folder / name
         wanted = result.sha256.get(name)
         if Path(name).name != name:
-            yield Finding(False, folder / RESULT, f"names a file of another folder: {name}")
+            yield Finding(False, folder / RESULT, f"lists a file outside of this folder: {name}")
         elif not path.is_file():
             yield Finding(False, path, "is missing")
         elif wanted is None:
             yield Finding(False, path, f"has no hash in {RESULT}: made by an earlier version?")
         elif sha256_of(path) != wanted:
-            yield Finding(False, path, f"was changed, or {RESULT} was: its SHA-256 is another there")
+            yield Finding(False, path, f"does not match its SHA-256 in {RESULT}: one of the two was changed")
         else:
-            yield Finding(True, path, f"is as {RESULT} says")
+            yield Finding(True, path, f"matches its SHA-256 in {RESULT}")
 
 
 def _of_result(file: Path, text: str, result: RunResult, path: Path) -> Finding:
@@ -91,14 +91,14 @@ def _of_result(file: Path, text: str, result: RunResult, path: Path) -> Finding:
     except BadInputError:
         return Finding(False, file, "cannot be compared with the recording")
     if text_of(result) != text:
-        return Finding(False, file, "was changed after it had been written")
+        return Finding(False, file, "was changed after the run")
     if RUN not in recording.attachments and told and recording.damage:
         return _of_a_lost_run(file, result, told)
     if result.of_the_run not in [run.of_the_run for run in told]:
-        return Finding(False, file, "was changed: the recording says something else of the run")
+        return Finding(False, file, "was changed: it contradicts the recording")
     if result.samples_sha256 != recording.samples_sha256:
-        return Finding(False, file, "was changed: it names other samples than the recording")
-    return Finding(True, file, "says what the recording says of the run")
+        return Finding(False, file, "was changed: its hash of the samples is not the recording's")
+    return Finding(True, file, "agrees with the recording")
 
 
 def _of_a_lost_run(file: Path, result: RunResult, told: Iterable[RunResult]) -> Finding:
@@ -107,8 +107,10 @@ def _of_a_lost_run(file: Path, result: RunResult, told: Iterable[RunResult]) -> 
     if result.verdict != "error" or result.of_the_run not in [
         run.of_the_run.model_copy(update=said) for run in told
     ]:
-        return Finding(False, file, "was changed: what was recorded until the run was cut off says otherwise")
-    text = "agrees with what was recorded until the run was cut off; how it ended stands here alone, unproven"
+        return Finding(
+            False, file, "was changed: it contradicts what was recorded before the run was cut off"
+        )
+    text = "agrees with what was recorded before the run was cut off; how the run ended cannot be verified"
     return Finding(False, file, text)
 
 
@@ -122,7 +124,7 @@ def of_recording(path: Path) -> Iterator[Finding]:
     bad = [*recording.damage, *(note for note in recording.notes if "index" in note)]
     bad += [f"{f.name}: its hash {f.check}" for f in stored_files(recording) if f.state == "bad"]
     if not recording.samples_sha256 and not bad:
-        bad = ["has no hash of its samples: nothing says what they were"]
+        bad = ["has no hash of its samples, so they cannot be verified"]
     for text in bad:
         yield Finding(False, path, text)
     if not bad:
@@ -133,7 +135,7 @@ def of_report(report: Path, recordings: Iterable[Path]) -> Finding:
     """Whether a report was made from one of the recordings, or without any from the one beside it."""
     claim = claim_of(report)
     if claim is None:
-        return Finding(False, report, "does not say which recording it was made from, or cannot be read")
+        return Finding(False, report, "cannot be read, or does not name its recording")
     among = list(recordings) or [report.parent / Path(claim.recording).name]
     there = [path for path in among if path.is_file()]
     for path in there:
@@ -141,9 +143,11 @@ def of_report(report: Path, recordings: Iterable[Path]) -> Finding:
             return Finding(True, report, f"was made from {path}")
     for path in there:
         if claim.samples_sha256 and _samples_of(path) == claim.samples_sha256:
-            return Finding(True, report, f"was made from the samples of {path}, then in another file")
+            return Finding(
+                True, report, f"was made from the samples of {path}, when they were in another file"
+            )
     names = ", ".join(str(path) for path in among)
-    what = "was made from another recording than" if there else "has lost its recording"
+    what = "was made from another recording than" if there else "lacks its recording"
     return Finding(False, report, f"{what} {names}: from {claim.recording}, SHA-256 {claim.sha256}")
 
 
@@ -159,14 +163,14 @@ def of_signatures(folder: Path, by: bytes | None) -> Iterator[Finding]:
             yield Finding(False, manifest, str(error))
             continue
         if not signature.intact:
-            yield Finding(False, manifest, "was changed after it had been signed, or its signature was")
+            yield Finding(False, manifest, "does not match its signature: one of the two was changed")
             continue
         changed = list(_changes(signature.files, files))
         for name, text in changed:
-            yield Finding(False, folder / name, f"{text} after {signature.signed_by} had signed")
+            yield Finding(False, folder / name, f"{text} after {signature.signed_by} signed")
         if not changed:
             keys.add(signature.key)
-            whose = "the key that was given" if signature.key == by else f"key {signature.fingerprint}"
+            whose = "the given key" if signature.key == by else f"key {signature.fingerprint}"
             told = (
                 f"{len(files)} files as {signature.signed_by} signed them at {signature.signed_at}, {whose}"
             )

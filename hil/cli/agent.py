@@ -34,7 +34,9 @@ def carry_out(
     name = name or socket.gethostname()
     if not name.strip() or not name.isprintable() or len(name) > 100:
         raise BadInputError(
-            f"'{printable(name)}' names nobody", where="--name", fix="write up to 100 letters"
+            f"'{printable(name)}' is not a valid name",
+            where="--name",
+            fix="use 1 to 100 printable characters",
         )
     stop = StopRequest()
 
@@ -42,9 +44,9 @@ def carry_out(
         if as_json:
             print_json({"agent": name, "servers": server, "data": str(data.resolve()), "away": away})
         elif away:
-            print(f"Agent {name} is ready; the service is away, and asked again: {away}")
+            print(f"Agent {name} is ready; the service cannot be reached, the agent retries: {away}")
         else:
-            print(f"Agent {name} works for {server[0]} (Ctrl-C ends it); its data are in {data}")
+            print(f"Agent {name} works for {server[0]} (Ctrl-C ends it); data directory: {data}")
         sys.stdout.flush()
 
     request = AgentRequest(

@@ -50,7 +50,9 @@ def carry_out(
 ) -> int:
     """Carry the command out; its exit code."""
     if resume and out is None:
-        raise BadInputError("--resume goes with --out", where="--resume", fix="name the folder to go on in")
+        raise BadInputError(
+            "--resume goes with --out", where="--resume", fix="name the directory to continue with --out"
+        )
     kept = resume or overwrite
     told = _told(load_sequence(sequence), model, bench, envelope or [], confirm, operator, processes, kept)
     told = replace(told, resume=resume)
@@ -126,9 +128,9 @@ def _refuse_unvaried(plan: Plan) -> None:
     """
     if not plan.segments:
         raise BadInputError(
-            "the plan that identifies has no segment to explain",
+            "the plan for identification has no segment",
             where=f"plan '{plan.name}'",
-            fix="give it a chirp, a multisine or a step, such as short_identification has",
+            fix="add a chirp, a multisine or a step; see the built-in plan short_identification",
         )
 
 
@@ -139,10 +141,10 @@ def _asked_for(told: Told) -> dict[str, Any]:
 
 def _consented(allowed: Allowed) -> Decision:
     envelope = allowed.envelope
-    who = allowed.name or "nobody was asked: the bench is simulated"
+    who = allowed.name or "no consent needed: the bench is simulated"
     what = f"{who}; {envelope.runs} runs and {envelope.bench_time_s / 60:.3g} min of bench time at most"
     return Decision(
-        0, "consent", what, "begin", "each run is predicted first, and watched within the envelope"
+        0, "consent", what, "begin", "each run is predicted first and monitored against the envelope"
     )
 
 

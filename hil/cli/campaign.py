@@ -115,7 +115,9 @@ def _refuse_together(
     if scheduler and workers is not None:
         raise BadInputError("--workers does not go with --scheduler", where="--workers", fix="leave one out")
     if resume and out is None:
-        raise BadInputError("--resume goes with --out", where="--resume", fix="name the folder to go on in")
+        raise BadInputError(
+            "--resume goes with --out", where="--resume", fix="name the directory to continue with --out"
+        )
     if resume and overwrite:
         raise BadInputError("--overwrite does not go with --resume", where="--resume", fix="leave one out")
 
@@ -127,7 +129,7 @@ def _simulated(
     setting = simulations.setting
     stop = StopRequest()
     with progress(f"campaign {setting.file.name}") as show, stop.by_signals(), stop.telling(at_once(stop)):
-        show("looking at what there is")
+        show("reading finished simulations")
         batch = begun_batch(place.folder, setting) if resume else 0
         if not batch:
             show("trying one")
@@ -147,7 +149,7 @@ def _simulated(
         done = len(setting.cases) - sum(len(batch) for batch in parts.missing())
         INTERRUPTS.tell()
         command = shlex.join(["hil", "campaign", campaign, "--out", str(place.folder), "--resume"])
-        complain("note", f"{done} of {len(setting.cases)} simulations are kept; go on with: {command}")
+        complain("note", f"{done} of {len(setting.cases)} simulations are kept; continue with: {command}")
     return whole
 
 

@@ -60,7 +60,9 @@ def _read(runs: list[Path], paths: list[Path], show: Show) -> list[ComparedRun]:
         result = rejudged(recording)
         if result is None:
             raise BadInputError(
-                "is no run of a plan: another tool made it", where=str(path), fix="compare runs of 'hil run'"
+                "is not a run of a plan: another tool made it",
+                where=str(path),
+                fix="compare runs of 'hil run'",
             )
         found.append(ComparedRun(name, recording, result))
     return found

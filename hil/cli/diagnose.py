@@ -82,7 +82,7 @@ def _refuse_twice(recordings: list[Path], holdout: list[Path]) -> None:
                 raise BadInputError(
                     "is given both as a recording and as --holdout",
                     where=str(path),
-                    fix="what a fit has seen proves nothing: hold another recording back",
+                    fix="a recording used in the fit cannot validate it: give another one to --holdout",
                 )
         if len({path.resolve() for path in paths}) < len(paths):
             twice = next(p for p in paths if sum(p.resolve() == q.resolve() for q in paths) > 1)
@@ -115,7 +115,7 @@ def output_files(found: Diagnosis, title: str, origin: Origin | None = None) -> 
 
 def text_of(found: Diagnosis, out: Path) -> str:
     """What a person reads."""
-    unfinished = f" (unfinished: {found.unfinished}; what was known by then)" if found.unfinished else ""
+    unfinished = f" (unfinished: {found.unfinished}; result so far)" if found.unfinished else ""
     lines = [f"verdict: {found.verdict}{unfinished}"]
     for e in found.effects:
         values = ", ".join(
@@ -135,11 +135,11 @@ def text_of(found: Diagnosis, out: Path) -> str:
             about = a.use.values.get("channel", a.use.values.get("parameter"))
             name = f"{a.use.id} of {about}" if about else a.use.id
             test = f"hil run {out / a.plan}" if a.plan else a.separating_test
-            lines.append(f"  or {name} ({chance(a.confidence)}); to tell: {test}")
+            lines.append(f"  or {name} ({chance(a.confidence)}); test to distinguish them: {test}")
     if found.start is not None:
         lines.append("  the base model was far from the data; identified first:")
         for parameter, (old, new, error) in found.start.parameters.items():
-            lines.append(f"    {parameter} = {new:.5g} ± {error:.2g} in place of {old:g}")
+            lines.append(f"    {parameter} = {new:.5g} ± {error:.2g} instead of {old:g}")
     lines += ["", f"{'gap, of the signal':<28}{'before':>14}{'after':>14}{'noise':>14}{'after/noise':>13}"]
     for suffix, before, after in (
         ("", found.gap_before, found.gap_after),
@@ -150,7 +150,7 @@ def text_of(found: Diagnosis, out: Path) -> str:
             shown = "".join(f"{share(figure, 2, digits=3):>14}" for figure in figures)
             lines.append(f"{name + suffix:<28}{shown}{factor(gap.noises):>13}")
     if found.open_channels and found.verdict == "named":
-        lines.append(f"what stays is more than noise: {', '.join(found.open_channels)}")
+        lines.append(f"remaining error above noise: {', '.join(found.open_channels)}")
     lines += [f"made worse: {place}" for place in found.worse[:_MOST_WORSE]]
     if len(found.worse) > _MOST_WORSE:
         lines.append(f"made worse: {len(found.worse) - _MOST_WORSE} more, see diagnosis.json")

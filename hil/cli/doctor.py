@@ -15,7 +15,7 @@ _EXIT_CODES = {"fine": 0, "faults": 1, "not_there": 3}
 _VERDICTS = {
     "fine": "[green]no fault found[/]",
     "faults": "[bold red]faults found[/]",
-    "not_there": "[bold red]the bench is not there[/]: neither RMCU nor dynos answer",
+    "not_there": "[bold red]the bench does not respond[/]: neither RMCU nor dynos answer",
 }
 _COUNTERS = {"state": "", "transmit_errors": "transmit errors ", "receive_errors": "receive errors "}
 
@@ -23,7 +23,7 @@ _COUNTERS = {"state": "", "transmit_errors": "transmit errors ", "receive_errors
 def carry_out(*, bench: str, for_s: float, as_json: bool) -> int:
     """Carry the command out; its exit code."""
     file = load_bench(bench_or_own(bench))
-    with progress(f"looking at {file.name}") as show:
+    with progress(f"checking {file.name}") as show:
         request = DoctorRequest(file, for_s, stop=StopRequest())
         request.progress = lambda share, text: show(text, share)
         found = examine_bench(request)
@@ -88,14 +88,14 @@ def _buses(buses: dict[str, BusFacts]) -> Table:
             f"{words}{facts.controller[key]}" for key, words in _COUNTERS.items() if key in facts.controller
         ]
         interface = f"{printable(facts.interface)} {printable(facts.channel)}"
-        state = ", ".join(told) or ("not told by this interface" if facts.opened else "not opened")
+        state = ", ".join(told) or ("not available from this interface" if facts.opened else "not opened")
         table.add_row(printable(name), interface, str(facts.bit_rate), *heard, state)
     return table
 
 
 def _devices(found: Examination) -> Table:
-    table = _table("device", "answers", "what it says of itself")
-    words = {True: "yes", False: "[bold red]no[/]", None: "cannot be asked"}
+    table = _table("device", "answers", "data reported")
+    words = {True: "yes", False: "[bold red]no[/]", None: "cannot be read"}
     for key, device in found.devices.items():
         lines = _by_part(device.facts)
         table.add_row(

@@ -53,7 +53,9 @@ def carry_out(
         load_bench(bench_or_own(bench, plan)),
     )
     if file.simulation is None:
-        raise BadInputError("is no simulated bench", where=str(file.source), fix="give one with [simulation]")
+        raise BadInputError(
+            "is not a simulated bench", where=str(file.source), fix="give a bench file with [simulation]"
+        )
     source = model or file.simulation.model
     base = load_model(source)
     refuse_too_stiff(base)
@@ -134,7 +136,7 @@ def _tell(found: Explanation, folder: Path) -> None:
         table.add_column(name, justify="right", no_wrap=True)
     table.add_column("missed", justify="right", no_wrap=True)
     table.add_row("target", *(f"{value:.4g}" for value in found.targets.values.values()), "")
-    for name, rival in (("model as it came", found.base), *((r.name, r) for r in found.rivals)):
+    for name, rival in (("base model", found.base), *((r.name, r) for r in found.rivals)):
         figures = (rival.outcome.figures[n] for n in found.targets.values)
         cells = ("-" if figure is None else f"{figure:.4g}" for figure in figures)
         table.add_row(name, *cells, f"{len(rival.missed)} of {len(rival.conditions)}")

@@ -16,7 +16,7 @@ from hil.fmu import export_fmu
 def carry_out(*, model: Path, out: Path, controller: Path | None, overwrite: bool, as_json: bool) -> int:
     """Carry the command out; its exit code."""
     if out.suffix.lower() != ".fmu":
-        raise BadInputError("is no unit by its name", where=str(out), fix="give a name that ends in .fmu")
+        raise BadInputError("is not the name of an FMU", where=str(out), fix="give a name that ends in .fmu")
     refuse_file(out, [model, *([controller] if controller else [])], overwrite=overwrite)
     chosen = load_model(model)
     loaded = (load_controller(controller), read_text(controller)) if controller else None

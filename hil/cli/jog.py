@@ -20,7 +20,7 @@ from hil.engine.jog import JogOutcome, JogRequest, Sign, jog
 
 JOG = "jog.json"
 NAMES = (RECORDING, JOG)
-_WORDS = {"right": "right", "wrong": "WRONG", "not_seen": "did not move", "not_there": "no such channel"}
+_WORDS = {"right": "right", "wrong": "WRONG", "not_seen": "no motion", "not_there": "no such channel"}
 _STYLES = {"right": "green", "wrong": "bold red", "not_seen": "bold red", "not_there": "bold red"}
 
 

@@ -138,7 +138,7 @@ def _tell(rows: list[Row]) -> None:
     page = console()
     page.print(table)
     if "keys" in rows[0] or "parameters" in rows[0]:
-        page.print("\nwith ?: may be left out", style="dim", highlight=False)
+        page.print("\n?: optional", style="dim", highlight=False)
 
 
 def _cell(value: object) -> str:

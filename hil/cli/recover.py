@@ -25,11 +25,15 @@ def carry_out(*, source: Path, out: Path | None, overwrite: bool, as_json: bool)
         raise BadInputError(
             "only recordings in MCAP can be recovered",
             where=str(path),
-            fix="give the run's recording.mcap; tables of other formats have no blocks to go on with",
+            fix="give the run's recording.mcap; other formats have no blocks to recover from",
         )
     target = out or path.with_name(path.stem + _RECOVERED)
     if target.suffix.lower() != ".mcap":
-        raise BadInputError("a recovered recording ends in .mcap", where=str(target), fix="name it so")
+        raise BadInputError(
+            "a recovered recording ends in .mcap",
+            where=str(target),
+            fix="give --out a name that ends in .mcap",
+        )
     with alone_in(path.parent):
         found = read_recording(path, least_samples=0, allow_missing=True)
         if found.damage:
@@ -71,13 +75,13 @@ def _tell(path: Path, out: Path | None, found: Recording, absent: list[str]) -> 
 
     missing = missing_of(found)
     if out is None:
-        say(f"{path} is whole: {found.samples} samples, nothing to recover")
+        say(f"{path} is complete: {found.samples} samples, nothing to recover")
     else:
         say(f"{found.samples} samples until {missing.until_s:.3f} s: {out}")
     for sentence in (*found.damage, *_sentences(missing, run_of(found), absent)):
         say(f"  {sentence}")
     if out is not None or absent:
-        say(f"hil report {out or path} makes its report")
+        say(f"hil report {out or path} makes the report")
 
 
 def _sentences(missing: Missing, run: RunResult | None, absent: list[str]) -> list[str]:
@@ -86,8 +90,8 @@ def _sentences(missing: Missing, run: RunResult | None, absent: list[str]) -> li
     if missing.files:
         said.append(f"missing in the recording: {', '.join(missing.files)}")
     if absent:
-        said.append(f"missing beside it: {', '.join(absent)}")
-    said += [f"segment '{name}' was not recorded whole: it is not judged" for name in _cut_segments(run)]
+        said.append(f"missing in the folder: {', '.join(absent)}")
+    said += [f"segment '{name}' is incomplete: it is not evaluated" for name in _cut_segments(run)]
     return said if math.isfinite(missing.until_s) else ["no sample", *said]
 
 

@@ -67,8 +67,8 @@ def _request(
     refuse_long(operator, "--operator")
     if (bench is None) == (not dbc):
         raise BadInputError(
-            "what the frames mean is said by --bench or by --dbc, one of them",
-            fix="a bench file gives the axle's channels; a DBC gives its signals under their own names",
+            "decoding needs either --bench or --dbc",
+            fix="with a bench file: the axle's channels; with a DBC: its signals under their own names",
         )
     if bus and bench is None:
         raise BadInputError("--bus goes with --bench", fix="with --dbc write --dbc CHANNEL=FILE")

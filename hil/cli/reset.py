@@ -17,7 +17,7 @@ def carry_out(*, bench: str, by: str, data: Path | None, as_json: bool) -> int:
     refuse_long(by, "--by")
     name = by.strip()
     if not name or not is_printable(name):
-        raise BadInputError("--by names nobody", fix="give the name of who has made sure that it is safe")
+        raise BadInputError("--by is empty", fix="give the name of the person who checked that it is safe")
     file = load_bench(bench)
     stops = reset(file, name, data.resolve() if data is not None else None)
     if as_json:
@@ -30,8 +30,6 @@ def carry_out(*, bench: str, by: str, data: Path | None, as_json: bool) -> int:
     if not stops:
         page.print(f"no emergency stop is latched on {file.name}", highlight=False, markup=False)
         if within_process(file) and data is None:
-            text = (
-                "a simulated bench's stop is with its service: reset it there, or name its folder with --data"
-            )
+            text = "its service keeps a simulated bench's stop: reset it there, or give its --data directory"
             page.print(text, highlight=False, markup=False)
     return 0

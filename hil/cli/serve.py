@@ -51,7 +51,7 @@ def carry_out(
         if as_json:
             print_json(made.model_dump(mode="json"))
         else:
-            print(f"# token of {made.token.name}, {made.token.role}; it is told this once\n{made.secret}")
+            print(f"# token of {made.token.name}, {made.token.role}; it is printed only once\n{made.secret}")
         return 0
     simulating = _simulating(workers, scheduler)
     stop = StopRequest()
@@ -60,7 +60,7 @@ def carry_out(
         if as_json:
             print_json({"url": url, "data": str(data.resolve())})
         else:
-            print(f"The bench service is at {url} (Ctrl-C ends it); its data are in {data}")
+            print(f"The bench service is at {url} (Ctrl-C ends it); data directory: {data}")
         sys.stdout.flush()
 
     request = ServeRequest(

@@ -25,14 +25,16 @@ def carry_out(*, folder: Path, key: Path, by: str, overwrite: bool, as_json: boo
         raise BadInputError("is not a directory", where=str(folder), fix="name a run's folder")
     if folder.resolve() in key.resolve().parents:
         raise BadInputError(
-            "the key lies in the folder that it is to sign", where=str(key), fix="keep it elsewhere"
+            "the private key is in the folder to be signed",
+            where=str(key),
+            fix="move the key to another folder",
         )
     signer = private_key(key, _passphrase)
     with alone_in(folder):
         wrong = [f for f in of_run(folder) if not f.holds] if (folder / RESULT).exists() else []
         if wrong:
             told = "\n  ".join(f"{finding.file}: {finding.text}" for finding in wrong)
-            complain("error", f"nothing was signed, for something does not match:\n  {told}")
+            complain("error", f"not signed, because something does not match:\n  {told}")
             return 1
         name = by or getpass.getuser()
         at = datetime.datetime.now().astimezone().isoformat(timespec="seconds")

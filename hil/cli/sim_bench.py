@@ -70,10 +70,10 @@ def _print(name: str, time_scale: float, serving: Serving) -> None:
     pace = "in real time" if time_scale == 1.0 else f"at {time_scale:g} of real time"
     print(f"# The simulated bench '{name}' {pace}: its RMCU and dynos, served until Ctrl-C.")
     for hidden in serving.hidden:
-        print(f"# Hidden in it: {hidden}")
+        print(f"# Hidden effect: {hidden}")
     for device in serving.left_out:
         print(f"# Not served: devices.{device}")
-    print("# Save what follows and give it to another command: hil run acceptance --bench FILE.toml\n")
+    print("# Save the text below as a bench file for other commands: hil run acceptance --bench FILE.toml\n")
     print(serving.bench_file, end="")
 
 
@@ -97,6 +97,6 @@ def _in_words(served: Served) -> str:
         f"{left_out:.0f} ms left out"
     ]
     for bus, (sent, received) in served.frames.items():
-        lost = f", {served.lost[bus]} lost on the way" if served.lost[bus] else ""
+        lost = f", {served.lost[bus]} lost in transfer" if served.lost[bus] else ""
         lines.append(f"bus '{bus}': {sent} frames sent, {received} received{lost}")
     return "\n".join(lines)

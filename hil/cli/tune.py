@@ -85,7 +85,7 @@ def carry_out(
         tried, every = len(found.trial.draws), len(asked.trial.draws)
         if tried < every:
             complain(
-                "note", f"stopped: compared on {tried} of {every} cars, those that the search had got to"
+                "note", f"stopped: compared on {tried} of {every} vehicles, those that the search had used"
             )
         if then_run and not stop.times:
             wire = OnTheWire(asked.bench, differ / 100, carried)

@@ -28,12 +28,12 @@ def carry_out(*, sources: list[Path], by: Path | None, as_json: bool) -> int:
         refuse_missing(source)
         if not source.is_dir() and source.suffix.lower() not in (*RECORDINGS, *REPORTS):
             raise BadInputError(
-                f"is no folder and ends in none of {', '.join((*RECORDINGS, *REPORTS))}",
+                f"is not a folder, and its name ends in none of {', '.join((*RECORDINGS, *REPORTS))}",
                 where=str(source),
                 fix="give a run's folder, a report, a recording, or a service's folder",
             )
     if by is not None and not any(source.is_dir() for source in sources):
-        raise BadInputError("--by goes with a folder", fix="name the folder that was signed")
+        raise BadInputError("--by goes with a folder", fix="give the folder that was signed")
     key = public_key(by) if by else None
     findings = list(dict.fromkeys(_findings(sources, key)))
     holds = all(finding.holds for finding in findings)

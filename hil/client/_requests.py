@@ -102,9 +102,9 @@ class Requests:
     def _unreachable(self, error: Exception) -> BenchError:
         reason = getattr(error, "reason", error)
         return BenchError(
-            f"the service cannot be reached, or does not answer as one: {reason}",
+            f"the service cannot be reached: {reason}",
             where=self._url,
-            fix="is it running (hil serve)? Is the URL what it said when it began?",
+            fix="check that hil serve is running and that the URL is the one it printed",
         )
 
 
@@ -161,7 +161,7 @@ def _checked(adapter: TypeAdapter[A], found: Any) -> A:
         return adapter.validate_python(found)
     except ValidationError as error:
         raise BenchError(
-            f"the service answers in another way than this version knows: {error.errors()[0]['msg']}",
+            f"this version cannot read the service's answer: {error.errors()[0]['msg']}",
             where="service",
             fix="install the same version of eaxle-hil on both sides",
         ) from error

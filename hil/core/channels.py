@@ -17,9 +17,9 @@ class Channel:
 
 _ALL = (
     Channel("time_s", "s", "t", "time from the start of the recording, increasing"),
-    Channel("motor_torque_ref_nm", "N m", "T_m*", "torque that the RMCU asks of the inverter"),
+    Channel("motor_torque_ref_nm", "N m", "T_m*", "motor torque requested by the RMCU"),
     Channel("motor_torque_nm", "N m", "T_m", "torque reported by the inverter"),
-    Channel("motor_speed_rad_s", "rad/s", "ω_m", "rotor speed against the housing"),
+    Channel("motor_speed_rad_s", "rad/s", "ω_m", "rotor speed relative to the housing"),
     Channel("wheel_speed_rad_s", "rad/s", "ω_l", "wheel speed at the dynos, mean of left and right"),
     Channel("shaft_torque_nm", "N m", "T_s", "drive shaft torque, left plus right, wheel side"),
     Channel("wheel_speed_left_rad_s", "rad/s", "ω_l,left", "wheel speed at the left dyno"),
@@ -27,7 +27,7 @@ _ALL = (
     Channel("shaft_torque_left_nm", "N m", "T_s,left", "torque of the left drive shaft"),
     Channel("shaft_torque_right_nm", "N m", "T_s,right", "torque of the right drive shaft"),
     Channel("vehicle_speed_m_s", "m/s", "V̂", "vehicle speed from the dyno controller's vehicle model"),
-    Channel("driving_torque_ref_nm", "N m", "rF_d*", "driving torque asked for"),
+    Channel("driving_torque_ref_nm", "N m", "rF_d*", "requested driving torque"),
     Channel("driving_torque_est_nm", "N m", "rF̂_d", "driving torque estimated by the observer"),
     Channel("dyno_torque_ref_nm", "N m", "T_dyno", "load torque of the dynos, left plus right"),
 )

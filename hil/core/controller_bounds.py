@@ -13,7 +13,7 @@ from pydantic_core import CoreSchema, core_schema
 SAMPLE_TIMES_S = (1e-4, 1e-2)
 SLOWEST_HZ = 0.01  # of a lead or a notch: no axle swings slower
 LARGEST_TORQUE_NM = 300.0
-_OTHER_UNIT = "no axle needs more: is it in another unit?"
+_OTHER_UNIT = "no axle needs more; check the unit"
 
 
 @dataclass(frozen=True)
@@ -40,30 +40,28 @@ class Within:
         return value
 
 
-SampleTime = Annotated[float, Within(*SAMPLE_TIMES_S, "the RMCU takes no other; is it in seconds?")]
-Torque = Annotated[float, Within(1e-3, LARGEST_TORQUE_NM, "the RMCU takes no other")]
+SampleTime = Annotated[float, Within(*SAMPLE_TIMES_S, "the range of the RMCU; check that it is in seconds")]
+Torque = Annotated[float, Within(1e-3, LARGEST_TORQUE_NM, "the range of the RMCU")]
 Gain = Annotated[float, Within(0.0, 1e6, _OTHER_UNIT)]
 TimeConstant = Annotated[
     float,
     Within(
         1e-5,
         1e4,
-        "the RMCU samples every 0.1 ms or slower, and an axle settles soon; is it in seconds?",
+        "the sample time of the RMCU is 0.1 ms or more, and an axle settles fast; give it in seconds",
     ),
 ]
 Alpha = Annotated[
     float, Within(1.9e-3, 1.0, "(6) gives 0.0019 for 85 degrees of lead, the most that can be made")
 ]
-Radius = Annotated[float, Within(1e-3, 100.0, "no wheel has another, in m")]
+Radius = Annotated[float, Within(1e-3, 100.0, "the range of wheels, m")]
 SlipFloor = Annotated[float, Within(1e-3, 1e3, "a speed in m/s by which slip is divided")]
 SlipLimit = Annotated[float, Within(0.0, 100.0, _OTHER_UNIT)]
-Frequency = Annotated[
-    float, Within(SLOWEST_HZ, 0.5 / SAMPLE_TIMES_S[0], "slower or faster the RMCU can make no notch")
-]
+Frequency = Annotated[float, Within(SLOWEST_HZ, 0.5 / SAMPLE_TIMES_S[0], "the range of the RMCU's notch")]
 Width = Annotated[float, Within(1e-3, 1e3, "narrower or wider (8) is no notch")]
 Depth = Annotated[float, Within(0.0, 10.0, "0 lets nothing pass, 1 is no notch, and above 1 it amplifies")]
-Ratio = Annotated[float, Within(1e-3, 1e4, "no gear has another: motor speed / wheel speed")]
-Inertia = Annotated[float, Within(1e-6, 1e6, "no wheel has another, in kg m2")]
+Ratio = Annotated[float, Within(1e-3, 1e4, "the range of gears: motor speed / wheel speed")]
+Inertia = Annotated[float, Within(1e-6, 1e6, "the range of wheels, kg m2")]
 #: Of a polynomial, where it is not 0.
 COEFFICIENTS = (1e-60, 1e60)
 
@@ -79,7 +77,7 @@ def coefficients_checked(values: tuple[float, ...]) -> tuple[float, ...]:
         raise ValueError("all coefficients are 0: the output would never move")
     for value in values:
         if value and not least <= abs(value) <= most:
-            raise ValueError(f"{value:g} is no coefficient: it is 0 or lies from {least:g} to {most:g}, "
+            raise ValueError(f"{value:g} is not valid: a coefficient is 0 or from {least:g} to {most:g}, "
                              "or the RMCU's filters overflow")  # fmt: skip
     return values
 

@@ -62,7 +62,7 @@ def _message(module: str, instead: str) -> BadInputError:
     extra = MODULES[module]
     install = f"pip install 'eaxle-hil[{extra}]', or 'eaxle-hil[all]'"
     return BadInputError(
-        f"this needs the library '{module}', which a base install leaves out: the extra '{extra}' "
+        f"this needs the library '{module}', not in the base install, in the extra '{extra}' "
         f"({PURPOSES[extra]})",
         fix=f"{install}; or {instead}" if instead else install,
     )

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 #: What this version writes, and the newest that it reads.
 FORMAT = 1
-FORMAT_SCHEMA = {"const": FORMAT, "default": FORMAT, "description": "of this file, counted by what reads it"}
+FORMAT_SCHEMA = {"const": FORMAT, "default": FORMAT, "description": "version of the format of this file"}
 
 
 def readable_format(value: object) -> int:

@@ -37,4 +37,4 @@ def refuse_other_kind(data: Mapping[str, Any], wanted: Kind, where: str) -> None
     """
     kind = kind_of(data)
     if kind not in (None, wanted):
-        raise BadInputError(f"this is a {kind}, where a {wanted} is needed", where=where, fix=_GIVEN[kind])
+        raise BadInputError(f"this is a {kind}; a {wanted} is needed", where=where, fix=_GIVEN[kind])

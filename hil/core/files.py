@@ -85,9 +85,9 @@ def read_bytes(path: Path, at_most: int = LARGEST_BYTES, fix: str = "") -> bytes
         raise BadInputError(_reason(error), where=str(path), fix=fix or _CHECK_PATH) from error
     if len(content) > at_most:
         raise BadInputError(
-            f"has more than {at_most / 1e6:g} MB, which no such file has",
+            f"has more than {at_most / 1e6:g} MB, too much for a file of this kind",
             where=str(path),
-            fix=fix or "is it the file that you meant?",
+            fix=fix or "check that it is the right file",
         )
     return content
 
@@ -179,7 +179,9 @@ def refuse_special(path: Path) -> None:
     """
     with contextlib.suppress(OSError):
         if path.is_symlink() and not path.exists():
-            raise BadInputError("is a link to nothing", where=str(path), fix="remove the link, or mend it")
+            raise BadInputError(
+                "is a link to a missing file", where=str(path), fix="remove or correct the link"
+            )
         if path.exists() and not path.is_file():
             what = "is a directory" if path.is_dir() else "is not a regular file"
             raise BadInputError(what, where=str(path), fix="name a file, not a directory")
@@ -201,7 +203,7 @@ def of_the_system(error: OSError) -> HilError:
     """What the operating system refused, in our words: a full or broken disk is no mistake of the user's."""
     kind = BenchError if error.errno in _DISK_FAILURES else BadInputError
     return kind(
-        _reason(error), where=str(error.filename or ""), fix="look at the path, its rights and the disk"
+        _reason(error), where=str(error.filename or ""), fix="check the path, its permissions and the disk"
     )
 
 
@@ -210,7 +212,7 @@ def _unwritable(path: Path, error: OSError) -> HilError:
         return BenchError(
             f"cannot be written: {full_disk_in_words(error, path)}",
             where=str(path),
-            fix="make room on the disk, then try again",
+            fix="free disk space, then try again",
         )
     return BadInputError(
         f"cannot be written: {_reason(error)}", where=str(path), fix="choose another place with --out"

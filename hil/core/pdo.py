@@ -56,7 +56,7 @@ def read_eds(
         if variable is None:
             raise BadInputError(f"has no object {place}", where=str(path), fix=_FIX)
         if variable.data_type not in _BITS:
-            raise BadInputError(f"object {place} is no number", where=str(path), fix=_FIX)
+            raise BadInputError(f"object {place} is not a number", where=str(path), fix=_FIX)
         if (index, subindex) in floats and variable.data_type not in _FLOATS:
             raise BadInputError(f"object {place} is no IEEE float (REAL32)", where=str(path), fix=_FIX)
     return dictionary
@@ -117,7 +117,7 @@ def _mappings(dictionary: ObjectDictionary, mapping_index: int, where: str) -> l
         if subindex > 0 and entry.default and not (isinstance(count, int) and subindex > count)
     ]
     if not all(isinstance(entry, int) for entry in entries):
-        raise BadInputError("maps what is no number", where=where, fix=_FIX)
+        raise BadInputError("maps an object that is not a number", where=where, fix=_FIX)
     return entries
 
 

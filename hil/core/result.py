@@ -38,9 +38,7 @@ class CriterionResult(_Frozen):
     title: str = ""
     definition: str = ""
     reason: str = ""
-    source: Literal["plan", "device"] = Field(
-        "plan", description="who asks: the plan's author, or the checks of what any device must do"
-    )
+    source: Literal["plan", "device"] = Field("plan", description="source: the plan, or the device checks")
 
     @property
     def has_limit(self) -> bool:
@@ -102,12 +100,12 @@ class Segment(_Frozen):
     controller: str = ""
     initial_speed_km_h: float = 0.0
     load: Literal["vehicle", "speed"] = Field(
-        "vehicle", description="what the dynos did: simulate the vehicle, or hold a speed"
+        "vehicle", description="load by the dynos: simulate the vehicle, or hold a speed"
     )
     reference_before: float = Field(0.0, description="value of the stepped quantity before the step")
     reference_after: float = Field(0.0, description="value of the stepped quantity after the step")
     quantity: Literal["", "motor_torque", "driving_torque"] = Field(
-        "", description="what was requested; '' in recordings of version 0.1"
+        "", description="requested quantity; '' in recordings of version 0.1"
     )
     torque_limit_nm: float | None = Field(None, description="of the controller; null: none drove the segment")
     gear_ratio: float | None = Field(
@@ -134,8 +132,8 @@ class StreamClock(_Frozen):
         description="how much slower its clock is than the time base's; the base's: than the bench's"
     )
     latest_s: float = Field(description="by how much the latest frame came after its time")
-    lost: int = Field(description="samples of which no frame came")
-    left_out: int = Field(description="frames that came, but nobody can say of which sample")
+    lost: int = Field(description="samples without a frame")
+    left_out: int = Field(description="frames that cannot be assigned to a sample")
 
 
 class Lateness(_Frozen):
@@ -211,7 +209,7 @@ class Zero(_Frozen):
         None, description="largest magnitude before; null: the bench file states none"
     )
     drift_within: float | None = Field(None, description="largest change; null: none is stated")
-    reason: str = Field("", description="why something is missing")
+    reason: str = Field("", description="reason of a missing value")
 
     @property
     def drift(self) -> float | None:
@@ -244,7 +242,7 @@ class LimitResult(_Frozen):
     response: str
     lowest: float | None = Field(None, description="null: nothing came, or a value was not known")
     highest: float | None = Field(None, description="null: nothing came, or a value was not known")
-    reached: int = Field(0, description="how often the response was called for")
+    reached: int = Field(0, description="number of times the response was triggered")
 
 
 class Hold(_Frozen):
@@ -262,7 +260,7 @@ class StoppedInEmergency(_Frozen):
     by: str
     why: str
     latched: bool
-    origin: str = Field("", description="the address, terminal or device that it came from")
+    origin: str = Field("", description="source: address, terminal or device")
     way: StopWay = Field("", description="terminal, api, page, device or interlock")
 
 
@@ -323,20 +321,18 @@ class RunResult(_Frozen):
     limits: tuple[LimitResult, ...] = ()
     holds: tuple[Hold, ...] = ()
     emergency_stop: StoppedInEmergency | None = None
-    end_steps: str = Field("", description="what became of the plan's end steps, as read back")
+    end_steps: str = Field("", description="result of the plan's end steps, as read back")
     missing: tuple[str, ...] = Field(
         (), description="devices and parts that were not there and not needed; frames that came damaged"
     )
     not_checked: tuple[str, ...] = Field(
-        (), description="what any device must do that was not checked, and why, one sentence each"
+        (), description="device checks that were not made, with the reason, one sentence each"
     )
     accepted_expired: AcceptedExpiry | None = Field(
-        None, description="who answered for sensors whose calibration had run out"
+        None, description="person who accepted expired sensor calibrations"
     )
     files: dict[str, str] = {}
     sha256: dict[str, str] = Field({}, description="of each file that `files` names")
     samples_sha256: str = Field("", description="of the recording's samples, as its table `channels` has it")
     reason: str = ""
-    limit_tripped: str = Field(
-        "", description="the bench's limit that ended the run, in words; '' if none did"
-    )
+    limit_tripped: str = Field("", description="limit of the bench that ended the run; '' if none")

@@ -30,7 +30,7 @@ class _Manifest(BaseModel):
 
     format: Literal["hil signature"] = "hil signature"
     signed_by: str
-    signed_at: str = Field(description="by the clock of who signed; nothing proves it")
+    signed_at: str = Field(description="clock of the signer; not verified")
     public_key: str = Field(description="of OpenSSH's form")
     files: dict[str, str] = Field(description="SHA-256 of each file, by its path in the folder")
 
@@ -71,7 +71,7 @@ def sign_folder(
     signature = manifest.with_suffix(_SIGNATURE)
     if not overwrite and (manifest.exists() or signature.exists()):
         raise BadInputError(
-            "is signed with this key already", where=str(manifest), fix="add --overwrite to sign it anew"
+            "is already signed with this key", where=str(manifest), fix="add --overwrite to sign it again"
         )
     files = hashes_of(folder)
     if not files:
@@ -107,7 +107,7 @@ def read_signature(manifest: Path) -> Signature:
         what = error.what if Path(error.where).exists() else "is missing"
         raise BrokenSignatureError(f"{Path(error.where).name} {what}") from error
     except ValueError as error:  # pydantic's too
-        raise BrokenSignatureError("is no manifest of a signature, or was changed") from error
+        raise BrokenSignatureError("is not the manifest of a signature, or was changed") from error
     try:
         key.verify(signature, text)
         intact = True
@@ -153,10 +153,10 @@ def private_key(path: Path, passphrase: Callable[[], bytes]) -> Ed25519PrivateKe
             key = load(text, passphrase())
     except (ValueError, TypeError, UnsupportedAlgorithm) as error:
         raise BadInputError(
-            "is no private key, or the passphrase is wrong", where=str(path), fix=_MAKE_ONE
+            "is not a private key, or the passphrase is wrong", where=str(path), fix=_MAKE_ONE
         ) from error
     if not isinstance(key, Ed25519PrivateKey):
-        raise BadInputError("is no Ed25519 key", where=str(path), fix=_MAKE_ONE)
+        raise BadInputError("is not an Ed25519 key", where=str(path), fix=_MAKE_ONE)
     return key
 
 
@@ -184,9 +184,9 @@ def _public(text: bytes) -> Ed25519PublicKey:
     try:
         key = load_pem_public_key(text) if b"PUBLIC KEY" in text else load_ssh_public_key(text)
     except (ValueError, TypeError, UnsupportedAlgorithm) as error:
-        raise ValueError("is no public key") from error
+        raise ValueError("is not a public key") from error
     if not isinstance(key, Ed25519PublicKey):
-        raise ValueError("is no Ed25519 key")
+        raise ValueError("is not an Ed25519 key")
     return key
 
 

@@ -36,7 +36,9 @@ def read_symbols(path: Path) -> Symbols:
         return replace(read_a2l(text, str(path)), file=path)
     if path.suffix.lower() == ".csv":
         return Symbols(dict(_rows(text, str(path))), file=path)
-    raise BadInputError("is no table of symbols", where=str(path), fix="give an A2L (.a2l) or a CSV (.csv)")
+    raise BadInputError(
+        "is not a table of symbols", where=str(path), fix="give an A2L (.a2l) or a CSV (.csv)"
+    )
 
 
 def _rows(text: str, where: str) -> list[tuple[str, Symbol]]:
@@ -102,5 +104,5 @@ def _number(cells: Mapping[str, str], key: str, default: float, where: str) -> f
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise BadInputError(f"{key} '{printable(text, 40)}' is no number", where=where, fix="correct it")
+        raise BadInputError(f"{key} '{printable(text, 40)}' is not a number", where=where, fix="correct it")
     return value

@@ -122,7 +122,7 @@ def refuse_extended(number: int, what: str, where: str) -> int:
     """
     if not 0 <= number <= _LARGEST_ID:
         raise BadInputError(
-            f"{what} 0x{number:X} is no identifier of 11 bits",
+            f"{what} 0x{number:X} is not an identifier of 11 bits",
             where=where,
             fix="only standard frames are sent: give request_id and answer_id in the bench file",
         )

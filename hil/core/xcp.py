@@ -74,18 +74,18 @@ class Happened(IntEnum):
 #: Error codes in words that a message can go on with: "the slave …".
 IN_WORDS = {
     Code.CMD_BUSY: "is busy",
-    Code.DAQ_ACTIVE: "is measuring and does not take that now",
+    Code.DAQ_ACTIVE: "is measuring and refuses this now",
     Code.CMD_UNKNOWN: "does not know this command",
     Code.CMD_SYNTAX: "does not understand it",
-    Code.OUT_OF_RANGE: "does not take a value of it",
+    Code.OUT_OF_RANGE: "refuses a value in it",
     Code.ACCESS_DENIED: "does not let this memory be read",
     Code.ACCESS_LOCKED: "is locked: it wants seed and key",
     Code.MODE_NOT_VALID: "has no such mode",
-    Code.SEQUENCE: "does not take commands in this order",
-    Code.DAQ_CONFIG: "takes no such list of what is to be measured",
+    Code.SEQUENCE: "refuses commands in this order",
+    Code.DAQ_CONFIG: "refuses this measurement list",
     Code.MEMORY_OVERFLOW: "has no room for so many symbols",
     Code.GENERIC: "fails",
-    Code.RESOURCE_NOT_ACCESSIBLE: "cannot get at it for the moment",
+    Code.RESOURCE_NOT_ACCESSIBLE: "has no access to it at present",
 }
 
 # Bits of COMM_MODE_BASIC, RESOURCE, DAQ_PROPERTIES, session status, list modes

@@ -106,7 +106,7 @@ def _of_uses(bench: BenchFile) -> Iterator[str]:
             yield f"{key} = '{shown}': bus '{shown}' is not under [buses]; known: {known}"
     for name in bench.buses:
         if name not in used.values():
-            yield f"buses.{name}: is used by nothing; name it under [rmcu], [dyno] or [devices], or drop it"
+            yield f"buses.{name}: no device uses it; name it under [rmcu], [dyno] or [devices], or remove it"
     seen: dict[str, str] = {}
     for name, bus in bench.buses.items():
         other = seen.setdefault(identity_of(bus) or f"{bus.interface} {bus.channel}", name)
@@ -132,7 +132,7 @@ def _of_simulated_memory(bench: BenchFile) -> Iterator[str]:
     tables = {key: t for key, t in bench.device_tables.items() if isinstance(t, RamTable)}
     for key, table in tables.items():
         if table is not ram_of(bench):
-            yield f"{key}.kind = '{table.kind}': the simulated RMCU can be looked at once; leave one out"
+            yield f"{key}.kind = '{table.kind}': the simulated RMCU supports one RAM monitor; remove one"
         if table.bus == _buses_of(bench).get("dyno"):
             yield f"{key}.bus = '{table.bus}': the simulated RMCU is not on the dynos' bus; give it another"
         for name in table.channels:
@@ -194,7 +194,7 @@ def _of_interfaces(bench: BenchFile) -> Iterator[str]:
             yield from adapter_mistakes(name, bus)
         for option in sorted(_OURS & bus.options.keys()):
             ours = "interface, channel, bit_rate, fd, data_bit_rate, timing"
-            yield f"buses.{name}.options.{option}: stands outside of options ({ours})"
+            yield f"buses.{name}.options.{option}: must be set outside of options ({ours})"
 
 
 def _of_simulated_bus(bench: BenchFile, name: str) -> Iterator[str]:

@@ -97,7 +97,7 @@ def adapter_mistakes(name: str, bus: Bus) -> Iterator[str]:
         for option in ("host", "port"):
             if option not in bus.options:
                 where = 'options = { host = "127.0.0.1", port = 29536 }'
-                yield f"{key}.options.{option}: is missing; say where socketcand is: {where}"
+                yield f"{key}.options.{option}: is missing; give the address of socketcand: {where}"
 
 
 def _of_channel(key: str, bus: Bus) -> Iterator[str]:
@@ -113,9 +113,7 @@ def _of_channel(key: str, bus: Bus) -> Iterator[str]:
 def _of_timing(key: str, bus: Bus, timing: Timing) -> Iterator[str]:
     if timing.has_data_phase != bus.fd:
         wanted = (
-            "say it with data_sample_point, or data_tseg1, data_tseg2 and data_sjw"
-            if bus.fd
-            else "add fd = true"
+            "give data_sample_point, or data_tseg1, data_tseg2 and data_sjw" if bus.fd else "add fd = true"
         )
         yield f"{key}: {'is without' if bus.fd else 'has'} a data phase; {wanted}"
     elif bus.fd and bus.data_bit_rate is None:

@@ -92,9 +92,9 @@ class Arming:
         if not self._bench.loop.wait_for(rmcu.is_safe, rmcu.safe_within_s):
             why = "; ".join(rmcu.troubles()) or f"state '{rmcu.state}'"
             raise BenchError(
-                f"the RMCU does not say that it gives no torque: {why}",
+                f"the RMCU does not confirm that its torque is off: {why}",
                 where="RMCU",
-                fix="does another host ask it for torque? Look at its frames with: hil monitor",
+                fix="check whether another host requests torque: hil monitor shows the frames",
             )
 
     def _leave_old_fault(self) -> None:

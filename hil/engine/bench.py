@@ -215,7 +215,7 @@ def _with_stand_ins(connections: Connections, world: SimulatedBench, opened: Exi
 def _refuse_other_pace(name: str, theirs: float, ours: float) -> None:
     if theirs != ours:
         raise BadInputError(
-            f"the bench at the other end runs at {theirs:g} of real time, the bench file says {ours:g}",
+            f"the connected simulated bench runs at {theirs:g} of real time, the bench file says {ours:g}",
             where=f"bus '{name}'",
             fix=f"write time_scale = {theirs:g} at the top of the bench file",
         )
@@ -236,9 +236,9 @@ def _with_devices(file: BenchFile, connections: Connections, model: Model | None
         opened.callback(_close, device)
     rmcu, dyno = devices.pop("rmcu"), devices.pop("dyno")
     if not isinstance(rmcu, MotorControl):
-        raise _wrong_place(file, "rmcu", "makes no motor torque")
+        raise _wrong_place(file, "rmcu", "is not a motor device")
     if not isinstance(dyno, WheelLoad):
-        raise _wrong_place(file, "dyno", "does not turn wheels")
+        raise _wrong_place(file, "dyno", "is not a dyno device")
     further = {key.removeprefix("devices."): device for key, device in devices.items()}
     computed = computed_channels(file, connections.loop)
     return Bench(file, connections.loop, rmcu, dyno, model, further, missing, computed)
@@ -274,7 +274,7 @@ def refuse_needs(bench: Bench, channels: Iterable[str]) -> None:
     unknown = [name for name in channels if name not in given and name not in CHANNELS]
     if bench.missing and unknown:
         raise BenchError(
-            f"the plan needs {printable(', '.join(unknown), 200)}, which nobody gives now",
+            f"the plan needs {printable(', '.join(unknown), 200)}, which no device provides now",
             where=printable(bench.file.source, 200),
             fix=who_is_missing(bench.missing),
         )

@@ -35,7 +35,7 @@ def refuse_channels(file: BenchFile, streams: Sequence[Stream], missing: Mapping
             there = f"there are: {', '.join(given)}"
             raise _refused(
                 file,
-                f"{printable(key, 80)}: no device gives this channel",
+                f"{printable(key, 80)}: no device provides this channel",
                 who_is_missing(missing) or hint or there,
             )
     _refuse_other_units(file, given)
@@ -59,7 +59,7 @@ def _given(streams: Sequence[Stream]) -> dict[str, str]:
                 raise BadInputError(
                     f"channel '{channel}' is also given by {seen[channel]}",
                     where=stream.where,
-                    fix="every channel has one source; leave a device out, or call one otherwise",
+                    fix="every channel has one source; remove a device, or rename one of the channels",
                 )
             seen[channel], units[channel] = stream.where, unit_of(channel, unit)
     return units
@@ -87,8 +87,8 @@ def _refuse_unwatched(file: BenchFile, given: Mapping[str, str]) -> None:
             wanted = ", or ".join(" and ".join(way) for way in ways)
             raise _refused(
                 file,
-                f"limits.{key}: nothing is watched by it, for no device gives {wanted}",
-                "a bench must measure what it limits: add the device, or name its signals in the bench file",
+                f"limits.{key}: the limit has no effect, because no device provides {wanted}",
+                "add the device, or name its signals in the bench file; a limit needs a measured channel",
             )
 
 

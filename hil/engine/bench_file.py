@@ -132,7 +132,7 @@ def _shipped_bench(name: str) -> Path:
     shipped_ones = did_you_mean(name, shipped_benches())
     raise BadInputError(
         f"there is no bench '{printable(name)}'",
-        fix=f"{shipped_ones}; or give a file, whose name ends in .toml",
+        fix=f"{shipped_ones}; or give a file whose name ends in .toml",
     )
 
 

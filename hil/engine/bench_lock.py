@@ -24,13 +24,13 @@ def alone_on(file: BenchFile) -> Iterator[None]:
                 held.enter_context(lock_named(port, shared=shared))
             except HeldError as error:
                 raise BenchError(
-                    f"the bench is in use: {error} drives {port}",
+                    f"the bench is in use: {error} holds {port}",
                     where=f"bus '{name}'",
                     fix="wait until it has ended, or stop it",
                 ) from None
             except OSError as error:
                 raise BenchError(
-                    f"the bench cannot be locked against others: {error.strerror}",
+                    f"the bench cannot be locked: {error.strerror}",
                     where=str(error.filename),
                     fix="make the folder writable",
                 ) from error

@@ -19,7 +19,7 @@ def _date(value: object) -> object:
     if isinstance(value, str) and len(value) == len("2027-06-30"):
         return datetime.date.fromisoformat(value)
     if not isinstance(value, datetime.date) or isinstance(value, datetime.datetime):
-        raise ValueError("is no date; write the last valid day as 2027-06-30")
+        raise ValueError("is not a date; write the last valid day as 2027-06-30")
     return value
 
 
@@ -33,9 +33,9 @@ Deviation = Annotated[float, Field(ge=0, le=1e4)]
 def _channel(value: object) -> object:
     """A name, or a number as the adapter counts."""
     if not isinstance(value, str | int) or isinstance(value, bool) or value == "":
-        raise ValueError('is no channel; write a name such as "can0", or a number such as 0')
+        raise ValueError('is not a channel; write a name such as "can0", or a number such as 0')
     if isinstance(value, int) and not 0 <= value <= _HIGHEST_CHANNEL:
-        raise ValueError(f"is no channel; they count from 0 to {_HIGHEST_CHANNEL}")
+        raise ValueError(f"is not a channel; channels are numbered from 0 to {_HIGHEST_CHANNEL}")
     return value
 
 
@@ -45,7 +45,7 @@ SamplePoint = Annotated[float, Field(ge=50.0, le=100.0, description="%")]
 
 
 class Timing(Table):
-    """How an adapter cuts a bit, where its own choice does not do; by sample points or by segments.
+    """Bit timing of an adapter, if its default does not fit; by sample points or by segments.
 
     Segments count time quanta and have CiA's and python-can's names; those of CAN FD's data phase begin
     with data_.
@@ -75,7 +75,7 @@ class Timing(Table):
         if (self.data_sample_point is None) != (self.sample_point is None) and self.has_data_phase:
             raise ValueError("give both phases by sample points, or both by segments")
         if self.sample_point is None and self.tseg1 is None:
-            raise ValueError("says nothing; give sample_point, or tseg1, tseg2 and sjw")
+            raise ValueError("is empty; give sample_point, or tseg1, tseg2 and sjw")
         return self
 
     @property
@@ -104,13 +104,13 @@ class Vehicle(Table):
     wheel_radius_m: float = Field(0.33, ge=0.01, le=10.0)
     slip: float = Field(0.0, ge=0, lt=1)
     gear_ratio: float | None = Field(
-        None, gt=0, le=100, description="motor speed / wheel speed; else the controller's is taken"
+        None, gt=0, le=100, description="motor speed / wheel speed; default: the controller's"
     )
     wheel_orders: list[Annotated[float, Field(gt=0, le=1000)]] = Field(
         [],
         max_length=12,
-        description="multiples of the wheel's revolutions that joints, tyres or an imbalance excite: "
-        "no oscillation of the control loop",
+        description="orders of the wheel that joints, tyres or an imbalance excite: "
+        "not counted as oscillation of the control loop",
     )
     inertia_kg_m2: float | None = Field(None, gt=0, le=1e6)
     rolling_nm: float | None = Field(None, ge=0, le=1e6)
@@ -118,7 +118,7 @@ class Vehicle(Table):
 
 
 class ZeroLimit(Table):
-    """What a sensor may read at rest, in its channel's unit; what is left out is measured and not judged."""
+    """Limits of a sensor's reading at rest, in its channel's unit; without one it is not evaluated."""
 
     within: Limit | None = Field(None, description="largest magnitude before a run")
     drift: Limit | None = Field(None, description="largest change from before a run to after it")
@@ -126,7 +126,7 @@ class ZeroLimit(Table):
     @model_validator(mode="after")
     def _says_something(self) -> Self:
         if self.within is None and self.drift is None:
-            raise ValueError("limits nothing; give 'within', 'drift' or both")
+            raise ValueError("sets no limit; give 'within', 'drift' or both")
         return self
 
 
@@ -139,14 +139,14 @@ class NoiseTable(Table):
 
 
 class SensorTable(Table):
-    """What is wrong with a simulated sensor: it reads gain times the truth plus offset."""
+    """Errors of a simulated sensor: reading = gain × true value + offset."""
 
     gain: Bound = 1.0
     offset: Bound = 0.0
 
 
 class StatedNoise(Table):
-    """Standard deviations of a sample that the sensors' makers state."""
+    """Standard deviations of a sample, from the sensors' data sheets."""
 
     motor_speed_rad_s: Deviation | None = None
     wheel_speed_rad_s: Deviation | None = None
@@ -159,41 +159,41 @@ class Simulation(Table):
     model: File
     seed: int = Field(1, ge=0, le=2**63 - 1)
     noise: NoiseTable = NoiseTable()
-    sensors: dict[str, SensorTable] = Field({}, description="channel: what is wrong with its sensor")
+    sensors: dict[str, SensorTable] = Field({}, description="errors of a channel's sensor, by channel")
     rmcu: dict[str, Bound] = Field(
-        {}, description="parameters that this RMCU keeps in place of those that are written to it"
+        {}, description="parameters that this RMCU keeps, whatever is written to it"
     )
 
 
 class Supervision(Table):
-    """Two processes that watch each other: the command, and the one that holds the bench for it.
+    """Mutual supervision of the command and of the process that drives the bench for it.
 
     Times are those of a bench in real time; with `time_scale` they are as much longer.
     """
 
     own_process: bool | None = Field(
-        None, description="whether the bench is held by a process of its own; default: if it is hardware"
+        None, description="true: a separate process drives the bench; default: true for hardware"
     )
     hung_after_s: float = Field(
-        2.0, ge=0.5, le=60, description="a process whose loop does not turn for so long is ended"
+        2.0, ge=0.5, le=60, description="the process is ended if its loop stops for this time, s"
     )
     alone_after_s: float = Field(
-        2.0, ge=0.5, le=60, description="a run that hears nothing of its command for so long is ended"
+        2.0, ge=0.5, le=60, description="the run is ended if its command is silent for this time, s"
     )
 
 
 class ReportTable(Table):
-    """What a test report has to say beside the results (ISO/IEC 17025, 7.8); left out: 'not stated'."""
+    """Data of a test report in addition to the results (ISO/IEC 17025, 7.8); default: 'not stated'."""
 
     laboratory: Statement = Field("", description="name and address")
     report_number: Line = ""
     customer: Statement = Field("", description="name and contact")
-    conditions: Statement = Field("", description="of the environment, where they matter for the results")
-    equipment: Statement = Field("", description="what was measured with, by inventory or serial numbers")
+    conditions: Statement = Field("", description="ambient conditions, where they affect the results")
+    equipment: Statement = Field("", description="measuring equipment, with inventory or serial numbers")
     measurement_uncertainty: Statement = Field(
-        "", description="of the results, in their unit, with its coverage"
+        "", description="measurement uncertainty of the results, in their unit, with its coverage factor"
     )
-    decision_rule: Statement = Field("", description="how uncertainty counts in a verdict (ILAC-G8)")
+    decision_rule: Statement = Field("", description="decision rule for uncertainty in a verdict (ILAC-G8)")
 
 
 class BenchFile(Table):
@@ -204,22 +204,23 @@ class BenchFile(Table):
     title: Line = ""
     operator: Annotated[str, Field(max_length=LONGEST_NAME)] = ""
     time_scale: float = Field(
-        1.0, ge=0.001, le=1, description="seconds of bench time in a second; for `hil sim-bench` only"
+        1.0, ge=0.001, le=1, description="bench seconds per real second; for `hil sim-bench` only"
     )
     buses: dict[Name, Bus]
     rmcu: SerializeAsAny[DeviceTable]
     dyno: SerializeAsAny[LoadTable]
     devices: dict[Name, SerializeAsAny[DeviceTable]] = Field({})
     limits: Limits
-    interlocks: dict[Name, Interlock] = Field({}, description="what must hold while a run goes on")
+    interlocks: dict[Name, Interlock] = Field({}, description="conditions that must hold during a run")
     vehicle: Vehicle = Vehicle()
     supervision: Supervision = Supervision()
-    zero: dict[str, ZeroLimit] = Field({}, description="channel: what it may read at rest")
+    zero: dict[str, ZeroLimit] = Field({}, description="limits of the reading at rest, by channel")
     dut: dict[Line, Line] = Field({}, max_length=50)
-    report: ReportTable = Field(ReportTable(), description="what the test report says of the laboratory")
-    calibration: dict[str, Day] = Field({}, description="sensor: valid until")
+    report: ReportTable = Field(ReportTable(), description="data of the laboratory for the test report")
+    calibration: dict[str, Day] = Field({}, description="last valid day of the calibration, by sensor")
     noise: StatedNoise = Field(
-        StatedNoise(), description="as the sensors' makers state it; `hil diagnose` reads it with a recording"
+        StatedNoise(),
+        description="noise by channel, from the sensors' data sheets; read by `hil diagnose`",
     )
     simulation: Simulation | None = None
     text: str = ""

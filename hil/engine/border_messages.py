@@ -118,7 +118,7 @@ class EmergencyAsked(_Data):
         place = f" from {self.origin}" if self.origin and self.origin not in self.by else ""
         how = _WAYS.get(self.way, "")
         return EmergencyStopError(
-            f"{self.by} asked for it{place}{how}", by=self.by, origin=self.origin, way=self.way
+            f"requested by {self.by}{place}{how}", by=self.by, origin=self.origin, way=self.way
         )
 
 

@@ -29,18 +29,18 @@ def accepted_expiry(bench: BenchFile, today: datetime.date, accepted: str) -> Ac
     by, _, reason = (part.strip() for part in accepted.partition(":"))
     if accepted and not (by and reason):
         raise BadInputError(
-            f"'{printable(accepted, 80)}' has no name or no reason",
+            f"'{printable(accepted, 80)}' lacks a name or a reason",
             where="--accept-expired",
-            fix=f"write {_FORM}; both stand in the report",
+            fix=f"write {_FORM}; the report prints both",
         )
     sensors = expired(bench, today)
     if not sensors:
         return None
     if not accepted:
-        told = ", ".join(f"'{printable(name, 60)}' ran out on {until}" for name, until in sensors.items())
+        told = ", ".join(f"'{printable(name, 60)}' expired on {until}" for name, until in sensors.items())
         raise BadInputError(
             f"the calibration of {told}",
             where=printable(bench.source, 200),
-            fix=f"have it calibrated and enter the new date under [calibration]; or answer for it: {_FORM}",
+            fix=f"calibrate it and enter the new date under [calibration]; or accept it by name: {_FORM}",
         )
     return AcceptedExpiry(by=by, reason=reason, sensors=sensors)

@@ -109,9 +109,9 @@ class BenchConductor:
         if not reached:
             raise BenchError(
                 f"the wheels turn at {dyno.wheel_speed_rad_s:.2f} rad/s, "
-                f"{target_rad_s:.2f} rad/s was asked for",
+                f"{target_rad_s:.2f} rad/s was requested",
                 where="dynos",
-                fix="look at the dyno controller's torque limit",
+                fix="check the dyno controller's torque limit",
             )
         return True
 
@@ -123,9 +123,7 @@ class BenchConductor:
         """
         dyno = self._bench.dyno
         if not isinstance(dyno, SetsSlip):
-            raise BenchError(
-                "has no slip that could be set", where="dyno", fix="take set_slip out of the plan"
-            )
+            raise BenchError("does not support wheel slip", where="dyno", fix="remove set_slip from the plan")
         dyno.set_slip(slip)
         self._slip = slip
         self._event("slip", f"the dynos' vehicle slips by {100.0 * slip:g} %")
@@ -145,7 +143,7 @@ class BenchConductor:
                 self._recorder.writer.describe(VEHICLE, self._confirmed)
                 return
         raise BenchError(
-            "no device takes vehicle and road load",
+            "no device accepts vehicle and road load",
             where="set_vehicle",
             fix='give the bench file a panel: [devices.panel] with kind = "rcs-panel"',
         )
@@ -253,7 +251,7 @@ class BenchConductor:
             bench_time_s=0.0,
             safe_state="not_needed",
             segments=tuple(self.segments),
-            reason="the run is still going on",
+            reason="the run is still active",
         )
 
     def _awaited(self, analysis: Analysis) -> Mapping[str, bytes]:
@@ -323,7 +321,7 @@ class BenchConductor:
         if not loop.wait_for(rmcu.is_safe, 0.1):
             rmcu.make_safe()  # one lost frame must not end a run
             if not loop.wait_for(rmcu.is_safe, 0.1):
-                raise BenchError(f"the RMCU does not switch off (state {rmcu.state})", where="RMCU")
+                raise BenchError(f"the RMCU did not switch off (state {rmcu.state})", where="RMCU")
 
     def _event(self, kind: str, text: str) -> None:
         self._recorder.event(self._bench.loop.clock.now_s(), kind, text)

@@ -30,7 +30,7 @@ def device_tables(data: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:
         if isinstance(data.get(key), dict):
             found[key] = _checked(key, data[key], default, mistakes)
     if isinstance(found.get("dyno"), DeviceTable) and not isinstance(found["dyno"], LoadTable):
-        mistakes.append(f"dyno.kind = '{found['dyno'].kind}': does not turn wheels; give it under [devices]")
+        mistakes.append(f"dyno.kind = '{found['dyno'].kind}': is not a dyno device; move it to [devices]")
     if isinstance(data.get("devices"), dict):
         found["devices"] = {
             name: _checked(f"devices.{printable(name, 60)}", table, "", mistakes)
@@ -45,7 +45,7 @@ def _checked(key: str, table: Any, default: str, mistakes: list[str]) -> Any:
         return table  # refused with the whole file
     kind = table.get("kind", default)
     if not isinstance(kind, str) or not kind:
-        wrong = f" = {printable(repr(kind), 60)}: names no kind" if "kind" in table else ": is missing"
+        wrong = f" = {printable(repr(kind), 60)}: is not a kind" if "kind" in table else ": is missing"
         mistakes.append(f"{key}.kind{wrong}; known: {', '.join(KINDS.names())}")
         return table
     try:
@@ -55,7 +55,7 @@ def _checked(key: str, table: Any, default: str, mistakes: list[str]) -> Any:
         return table
     if found is None:
         known = printable(KINDS.suggestion(kind), 300)
-        mistakes.append(f"{key}.kind = '{printable(kind, 60)}': no installed package has it; {known}")
+        mistakes.append(f"{key}.kind = '{printable(kind, 60)}': no installed package provides it; {known}")
         return table
     try:
         return found.model_validate({**table, "kind": kind})

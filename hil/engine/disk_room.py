@@ -35,7 +35,7 @@ def refuse_too_little_room(plans: Sequence[Plan], out: Path, times: int = 1) -> 
         raise BadInputError(
             f"{free / 1e6:.0f} MB are free, {what} may need {needed / 1e6:.0f} MB: {disk_of(out)}",
             where=str(out),
-            fix="make room, or choose another place with --out",
+            fix="free disk space, or choose another place with --out",
         )
 
 

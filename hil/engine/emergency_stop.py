@@ -31,7 +31,7 @@ logger = logging.getLogger(__name__)
 _BY_PORTS = (
     2  # `identity` of stops that name physical ports; earlier ones named interface, channel and options
 )
-_PLACE_FIX = "look at the file; then: {reset}"
+_PLACE_FIX = "check the file; then: {reset}"
 
 
 class LatchedStop(BaseModel):
@@ -131,9 +131,7 @@ def keep_latched(
         if not within_process(file) and not seen_by_all(place):
             error.fix += f"\n  {remark_on(place)}"
     except (HilError, OSError) as failure:
-        error.fix += (
-            f"\n  it could NOT be latched, nothing but you keeps the bench from being armed: {failure}"
-        )
+        error.fix += f"\n  it could NOT be latched, so nothing prevents arming the bench again: {failure}"
         latched = False
     return StoppedInEmergency(
         by=error.by, why=error.what, latched=latched, origin=error.origin, way=error.way
@@ -154,7 +152,7 @@ def refuse_latched(file: BenchFile, owner: Path | None = None) -> None:
         raise BenchError(
             f"emergency stop since {stop.at}, by {stop.by}: {stop.why}",
             where=f"bench '{file.name}'",
-            fix=f"make sure that nobody is in danger and why it was; then: {_how_to_reset(file, owner)}",
+            fix=f"make sure that nobody is in danger, remove the cause; then: {_how_to_reset(file, owner)}",
         )
 
 
@@ -184,7 +182,7 @@ def _how_to_reset(file: BenchFile, owner: Path | None) -> str:
         return f"hil reset {file.source} --by NAME"
     if owner is not None:
         return f"reset it at its service, or: hil reset {file.source} --by NAME --data {owner}"
-    return "begin anew: the bench is simulated in this process, and its stop ends with it"
+    return "start again: the bench is simulated in this process, and its stop ends with the process"
 
 
 def _keep_reset(places: list[Path], name: str, record: bytes) -> None:

@@ -99,7 +99,7 @@ def envelope_of(
         raise BadInputError(
             f"the plan with its own controller would leave the envelope: {beyond}",
             where="--envelope",
-            fix="widen it, or give a plan that asks for less",
+            fix="widen the envelope, or give a plan with lower values",
         )
     if found.bench_time_s < run_s:
         raise BadInputError(

@@ -41,7 +41,7 @@ class Failures:
             self._event(kind, text)
 
     def _with_blame(self, error: HilError) -> HilError:
-        if type(error) is not BenchError or "own loop" in error.what:
+        if type(error) is not BenchError or "the bench loop was delayed" in error.what:
             return error
         pause = self._blame()
         return BenchError(f"{error.what} ({pause})", where=error.where, fix=error.fix) if pause else error

@@ -100,9 +100,9 @@ class _Command:
         for message in self._pipe.fetch():
             self._take(message)
         if self._pipe.gone or is_ending(self._process):
-            return "the command that asked for this run has ended"
+            return "the command of this run has ended"
         silent_s = time.monotonic() - self._heard_s
-        return f"the command stands still since {silent_s:.1f} s" if silent_s > self.alone_after_s else ""
+        return f"the command has been silent for {silent_s:.1f} s" if silent_s > self.alone_after_s else ""
 
     def concluded(self, *, armed: bool, unsafe: Sequence[str]) -> None:
         """Say that the loop has done its part."""

@@ -17,7 +17,7 @@ from hil.engine.ranges import Range
 LONGEST_PAUSE_S = 600.0
 #: What holds a run more often than this would hold it for ever.
 MOST_HOLDS = 5
-_FIX = "see the recording's events; limits and interlocks stand in the bench file"
+_FIX = "see the recording's events; the bench file has the limits and interlocks"
 
 
 @dataclass
@@ -66,7 +66,7 @@ class Holding:
         """Hold the run because a limit or an interlock was reached."""
         self._asked[reached.name] += 1
         if self._asked[reached.name] > MOST_HOLDS:
-            self.end_run(f"{text}; it has held the run {MOST_HOLDS} times already")
+            self.end_run(f"{text}; it has already held the run {MOST_HOLDS} times")
             return
         needs_operator = reached.response == "pause"
         self._causes[reached.name] = _Cause(
@@ -117,19 +117,21 @@ class Holding:
             start_s, end_s = self._recording_time(began_s), self._recording_time(now_s)
             if causes:
                 self.holds.append(Hold(start_s=start_s, end_s=end_s, cause=causes, ended_by=ended_by))
-        self._event("hold", f"goes on after {now_s - began_s:.3g} s: {ended_by}")
+        self._event("hold", f"resumes after {now_s - began_s:.3g} s: {ended_by}")
 
     def _begin(self, causes: str) -> None:
         self._event("hold", f"held, torque off, the dynos hold their speed: {causes}")
         asks = [cause for cause in self._causes.values() if cause.needs_operator]
         if asks and not self._operator.present:
-            what = f"{asks[0].text}: held, and there is no terminal from which to let it go on"
+            what = f"{asks[0].text}: held, and there is no terminal to resume from"
             raise OrderlyEndError(what, where="hold", fix=_FIX)
         self._operator.take_resume()
         self.said = causes
         messages = [cause.message for cause in self._causes.values() if cause.message]
         how = (
-            "r and Enter: go on; q and Enter: end the run" if asks else "goes on by itself once that is well"
+            "r and Enter: resume; q and Enter: end the run"
+            if asks
+            else "resumes by itself when the cause is gone"
         )
         self._operator.tell("\n".join([f"held: {causes}", *messages, how]))
 

@@ -41,7 +41,7 @@ def _wanted(table: DeviceTable, name: str) -> str:
 def told(identity: Identity) -> str:
     """What is wrong with one that does not match."""
     if not identity.value:
-        return f"does not say its {identity.name}, the bench file expects {identity.expected}"
+        return f"does not report its {identity.name}, the bench file expects {identity.expected}"
     return f"{identity.name} is {identity.value}, the bench file expects {identity.expected}"
 
 

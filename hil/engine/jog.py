@@ -121,7 +121,8 @@ def jog_plan(torque_nm: float, bench: BenchFile) -> Plan:
     largest = min(_LARGEST_TORQUE_NM, bench.limits.motor_torque_nm)
     if not 0.5 <= torque_nm <= largest:
         raise BadInputError(
-            f"--torque is {torque_nm:g}", fix=f"give 0.5 to {largest:g} N m at the motor; more is no jogging"
+            f"--torque is {torque_nm:g}",
+            fix=f"give 0.5 to {largest:g} N m at the motor; higher torque is not allowed for jogging",
         )
     return plan_from_text(
         f"""
@@ -237,7 +238,7 @@ def _findings(signs: Sequence[Sign], bench: BenchFile) -> Iterator[SignFinding]:
         if told and all(told.get(name) == "wrong" for name, _, _ in names):
             blamed.add(test)
             what = f"{test}: every sensor says that the axle turned backwards"
-            fix = f"turn the sign of {culprit} round (its factor in the file), or look at phases and wiring"
+            fix = f"invert the sign of {culprit} (its factor in the file), or check phases and wiring"
             yield SignFinding(what, _place(bench, key), fix)
     for channel in dict.fromkeys(sign.channel for sign in signs):
         wrong = [s for s in signs if s.channel == channel and s.verdict == "wrong" and s.test not in blamed]
@@ -245,11 +246,11 @@ def _findings(signs: Sequence[Sign], bench: BenchFile) -> Iterator[SignFinding]:
         where = _described(bench, channel)
         if wrong:
             shown = ", ".join(f"{s.change:.3g} {s.unit} ({s.test})" for s in wrong if s.change is not None)
-            fix = "turn the sign of its factor round there, or the sensor's wiring"
-            yield SignFinding(f"{channel} has the wrong sign: it went by {shown}", where, fix)
+            fix = "invert the sign of its factor there, or correct the sensor's wiring"
+            yield SignFinding(f"{channel} has the wrong sign: it changed by {shown}", where, fix)
         elif unseen:
             tests = " and ".join(s.test for s in unseen)
-            fix = "is the sensor connected, the wheel free? Otherwise try more --torque"
+            fix = "check that the sensor is connected and the wheel is free; else increase --torque"
             yield SignFinding(f"{channel} did not move ({tests})", where, fix)
 
 

@@ -45,9 +45,9 @@ def _devices(file: BenchFile, loop: BusLoop, found: dict[str, str]) -> list[Devi
         if bus in connections.wires:
             devices.append(table.open(key.removeprefix("devices."), connections))
         elif bus is None:
-            found[key] = "was not asked, opening its port would touch it"
+            found[key] = "was not read, because opening its port would affect it"
         else:
-            found[key] = "cannot be heard"
+            found[key] = "sends nothing"
     return devices
 
 
@@ -63,7 +63,7 @@ def _listen(loop: BusLoop, devices: list[Device], found: dict[str, str]) -> None
         waiting = [device for device in waiting if not _is_powerless(device)]
     for device in waiting:
         said = "; ".join(dict.fromkeys(device.troubles()))
-        found[device.name] = f"does not say that it gives no torque{f' ({said})' if said else ''}"
+        found[device.name] = f"does not confirm that its torque is off{f' ({said})' if said else ''}"
 
 
 def _is_powerless(device: Device) -> bool:

@@ -49,7 +49,7 @@ def result_left(recording: Recording, request: RunRequest, safe: SafeState, erro
         result = run_of(recording) or result
         criteria = judge(plan, recording, result.segments)
     except Exception:  # what became of the bench is to be told all the same
-        logger.exception("what was recorded cannot be judged")
+        logger.exception("the recording cannot be evaluated")
     changes = {
         "plan": plan.name,
         "bench": bench.name,

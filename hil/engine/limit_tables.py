@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from drivers import Name
 
 Bound = Annotated[float, Field(ge=-1e6, le=1e6)]
-Limit = Annotated[float, Field(gt=0, le=1e6, description="beyond 1e6 it would limit nothing")]
+Limit = Annotated[float, Field(gt=0, le=1e6, description="a value beyond 1e6 has no effect")]
 Persistence = Annotated[float, Field(ge=0, le=10)]
 
 
@@ -24,24 +24,27 @@ class RangeTable(Table):
 
     below: Bound | None = None
     above: Bound | None = None
-    unit: str = Field("", max_length=20, description="what the device must say that the channel's unit is")
+    unit: str = Field("", max_length=20, description="unit of the channel that the device must report")
     hysteresis: float = Field(
-        0.0, ge=0, le=1e6, description="how far inside the value must be before the limit is left again"
+        0.0, ge=0, le=1e6, description="distance inside the limit at which a violation ends"
     )
     persistence_s: Persistence | None = Field(None, description="default: that of [limits]")
     persistence_samples: int | None = Field(
-        None, ge=0, le=100_000, description="in samples of the channel's own stream; 0: the first one counts"
+        None,
+        ge=0,
+        le=100_000,
+        description="consecutive samples of the channel beyond the limit; 0: the first one counts",
     )
 
     @model_validator(mode="after")
     def _has_an_end(self) -> Self:
         if self.below is None and self.above is None:
-            raise ValueError("limits nothing; give 'below', 'above' or both")
+            raise ValueError("sets no limit; give 'below', 'above' or both")
         if self.below is not None and self.above is not None:
             if not self.below < self.above:
-                raise ValueError("nothing is between 'below' and 'above'; a value trips beneath 'below'")
+                raise ValueError("'below' is not less than 'above'; values less than 'below' trip")
             if not self.below + self.hysteresis < self.above - self.hysteresis:
-                raise ValueError("the hysteresis leaves nothing between 'below' and 'above'; lower it")
+                raise ValueError("the hysteresis leaves no range between 'below' and 'above'; lower it")
         if self.persistence_s is not None and self.persistence_samples is not None:
             raise ValueError("give persistence_s or persistence_samples, not both")
         return self
@@ -52,7 +55,7 @@ class ChannelLimit(RangeTable):
 
     of: Literal["value", "slope"] = "value"
     over_s: float | None = Field(
-        None, ge=0.001, le=1.0, description="time over which a slope is taken, s; default 0.01"
+        None, ge=0.001, le=1.0, description="time over which a slope is computed, s; default: 0.01"
     )
     response: Literal["warn", "pause", "ramp_down", "trip"] = "trip"
 
@@ -71,29 +74,31 @@ class NamedLimit(ChannelLimit):
 
 
 class Interlock(RangeTable):
-    """What must hold while a run goes on, and before it is armed."""
+    """A condition that must hold during a run, and before it is armed."""
 
     channel: str = Field(min_length=1)
     unit: str = Field(min_length=1, max_length=20)
-    message: str = Field(min_length=1, max_length=200, description="what a person is to do")
+    message: str = Field(min_length=1, max_length=200, description="instruction for the operator")
     response: Literal["hold", "emergency_stop"] = "hold"
     well_for_s: float = Field(
-        1.0, ge=0, le=60, description="a hold ends when the value has been inside so long"
+        1.0, ge=0, le=60, description="a hold ends when the value has been inside the limit for this time, s"
     )
-    timeout_s: float = Field(60.0, gt=0, le=3600, description="a hold that lasts longer ends the run")
+    timeout_s: float = Field(
+        60.0, gt=0, le=3600, description="a hold that lasts longer than this, s, ends the run"
+    )
 
 
 class TwistTable(Table):
-    """What the shafts' twist is computed with: motor speed over gear ratio less wheel speed, integrated."""
+    """Computation of the shafts' twist: motor speed over gear ratio less wheel speed, integrated."""
 
     gear_ratio: float = Field(gt=0, le=100, description="motor speed / wheel speed")
     forget_s: float = Field(
-        2.0, ge=0.05, le=60, description="a twist that stands is forgotten with this time constant"
+        2.0, ge=0.05, le=60, description="time constant with which a constant twist decays, s"
     )
 
 
 class Limits(Table):
-    """What the bench never exceeds; magnitudes. They lie below every plan."""
+    """Limits of the bench, magnitudes; a plan cannot raise them."""
 
     motor_torque_nm: Limit
     driving_torque_nm: Limit
@@ -101,7 +106,11 @@ class Limits(Table):
     motor_speed_rad_s: Limit
     wheel_speed_rad_s: Limit
     vehicle_speed_m_s: Limit
-    persistence_s: float = Field(0.005, ge=0, le=10, description="a limit trips when exceeded for longer")
-    channels: dict[str, ChannelLimit] = Field({}, description="limits of further channels, of any device")
-    watch: dict[Name, NamedLimit] = Field({}, description="further limits by name, also several of a channel")
-    twist: TwistTable | None = Field(None, description="gives the channel shaft_twist_rad")
+    persistence_s: float = Field(
+        0.005, ge=0, le=10, description="a limit trips when exceeded for longer than this, s"
+    )
+    channels: dict[str, ChannelLimit] = Field({}, description="limits of additional channels, of any device")
+    watch: dict[Name, NamedLimit] = Field(
+        {}, description="additional limits by name; a channel can have several"
+    )
+    twist: TwistTable | None = Field(None, description="provides the channel shaft_twist_rad")

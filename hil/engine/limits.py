@@ -37,7 +37,7 @@ class OwnPauses:
         """What to say of a failure that comes so soon after a pause that the pause may be its cause."""
         if now_s - self.ended_s > _MAY_BE_BLAMED_S or self.last_s < _MATTERS_S:
             return ""
-        return f"own loop stood still for {self.last_s:.2g} s just before"
+        return f"the bench loop was delayed by {self.last_s:.2g} s just before"
 
 
 class LimitWatch:
@@ -130,7 +130,7 @@ class LimitWatch:
                 raise BenchError(
                     f"{stream.label} has stopped coming{f' ({why})' if why else ''}",
                     where=stream.where,
-                    fix="look at its wiring and its sender" if why else "is the device powered?",
+                    fix="check its wiring and its sender" if why else "is the device powered?",
                 )
 
     def standing_still(self, now_s: float) -> bool:
@@ -145,9 +145,9 @@ class LimitWatch:
         self._seen_s = {stream: min(seen_s + pause_s, now_s) for stream, seen_s in self._seen_s.items()}
         if pause_s > LONGEST_PAUSE_S:
             raise BenchError(
-                f"own loop stood still for {pause_s:.2g} s, more than {LONGEST_PAUSE_S:g} s",
+                f"the bench loop was delayed by {pause_s:.2g} s, more than {LONGEST_PAUSE_S:g} s",
                 where="this computer",
-                fix="let no other program keep it busy, and record to a disk that keeps up",
+                fix="close other programs, and record to a faster disk",
             )
 
 

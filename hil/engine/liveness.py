@@ -134,7 +134,7 @@ class LivenessWatch:
     def _refuse(self, sensor: _Sensor, stream: Stream, run: int, shown: str) -> None:
         raise BenchError(
             f"{sensor.channel} repeats bit for bit for {run * stream.period_s * 1e3:.0f} ms, {shown}: it is "
-            "not measured any more",
+            "no longer measured",
             where=f"{stream.label}, {stream.where}",
-            fix="look at the sensor, at its amplifier and at the end of its range",
+            fix="check the sensor, its amplifier and the end of its range",
         )

@@ -85,9 +85,9 @@ def monitor(request: MonitorRequest) -> View:
     file = request.bench
     if file.simulation is not None:
         raise BadInputError(
-            "is simulated: its buses are there only while a run computes them, there is nothing to listen to",
+            "is simulated: its buses exist only during a run, so there is nothing to monitor",
             where=printable(file.source, 200),
-            fix="'hil sim-bench' serves it in a process of its own; give the bench file that it prints",
+            fix="serve it with 'hil sim-bench', and give the bench file that it prints",
         )
     for name, value in (("--every", request.every_s), ("--for", request.for_s)):
         if not value > 0:
@@ -107,7 +107,7 @@ class _Monitor:
             if getattr(table, "bus", None) in connections.wires:
                 self._devices[key] = table.open(key.removeprefix("devices."), connections)
             elif getattr(table, "bus", None) is None:
-                self._notes.append(f"{key} is not shown: opening its port would touch it")
+                self._notes.append(f"{key} is not shown, because opening its port would affect it")
 
     def watch(self) -> View:
         request, loop = self._request, self._loop

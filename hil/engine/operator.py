@@ -129,14 +129,14 @@ class Operator:
             EmergencyStopError: somebody asked for it.
         """
         if self._confirmed_by:
-            return f"confirmed beforehand by {self._confirmed_by}"
+            return f"confirmed in advance by {self._confirmed_by}"
         if self._terminal is None:
-            return "nobody to ask: a simulated bench goes on"
+            return "no operator: a simulated bench continues"
         self.look()  # a line that was typed before is no answer
         self._answer = None
-        self._terminal.tell(f"{text}\nPress Enter to go on, q and Enter to end the run.")
+        self._terminal.tell(f"{text}\nPress Enter to continue, q and Enter to end the run.")
         if not self.wait_for(lambda: self._answer is not None, timeout_s):
-            raise InterruptError(f"nobody answered '{text}' within {timeout_s:g} s", where="operator prompt")
+            raise InterruptError(f"no answer to '{text}' within {timeout_s:g} s", where="operator prompt")
         self.take_pause()  # at a prompt the run is held already
         return f"confirmed by the operator: {self._answer}" if self._answer else "confirmed by the operator"
 

@@ -32,7 +32,7 @@ def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool
         raise BadInputError(
             f"the operator is asked '{rehearsal.prompts[0]}', and there is no terminal to ask on",
             where=f"plan '{plan.name}'",
-            fix="run it from a terminal, or confirm beforehand with --yes 'your name'; the report prints it",
+            fix="run it from a terminal, or confirm in advance with --yes 'YOUR NAME'; the report prints it",
         )
     refuse_too_little_room([plan], out)
 
@@ -46,7 +46,7 @@ def refuse_unconfirmed(plan: Plan, confirmed_by: str) -> None:
         raise BadInputError(
             f"the plan is hazardous{why}",
             where=f"plan '{plan.name}'",
-            fix="who takes it upon them says so with --confirm 'their name'; the report prints it",
+            fix="authorise it with --confirm 'YOUR NAME'; the report prints the name",
         )
 
 
@@ -98,7 +98,7 @@ class Rehearsal:
         limit = self._bench.limits.vehicle_speed_m_s
         if abs(speed_m_s) > limit:
             raise BadInputError(
-                f"hold_speed asks for {speed_m_s * 3.6:g} km/h, the bench allows {limit * 3.6:g} km/h",
+                f"hold_speed requests {speed_m_s * 3.6:g} km/h, the bench allows {limit * 3.6:g} km/h",
                 where="plan",
                 fix="lower speed_km_h; a bench's limits cannot be raised from a plan",
             )
@@ -111,7 +111,7 @@ class Rehearsal:
         del vehicle
         if not self._bench.devices:
             raise BadInputError(
-                "set_vehicle: the bench has no device that takes vehicle and road load",
+                "set_vehicle: the bench has no device that accepts vehicle and road load",
                 where="plan",
                 fix='give the bench file a panel: [devices.panel] with kind = "rcs-panel"',
             )
@@ -127,13 +127,13 @@ class Rehearsal:
         name = f"plan, segment '{segment.id}'" if segment else "plan"
         if largest > limit:
             raise BadInputError(
-                f"asks for {largest:g} N m of {quantity.replace('_', ' ')}, the bench allows {limit:g} N m",
+                f"requests {largest:g} N m of {quantity.replace('_', ' ')}, the bench allows {limit:g} N m",
                 where=name,
                 fix="lower the amplitude; a bench's limits cannot be raised from a plan",
             )
         if quantity == "driving_torque" and not self._has_controller:
             raise BadInputError(
-                "asks for driving torque before any set_controller step",
+                "requests driving torque before any set_controller step",
                 where=name,
                 fix="set a controller first",
             )

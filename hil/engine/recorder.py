@@ -156,7 +156,7 @@ class Recorder:
         """Write what is left; the whole run's channels, for judging."""
         self._write_rows(everything=True)
         if self._assembler.late and self.start_s is not None:
-            text = f"{self._assembler.late} samples came too late for their row and were left out"
+            text = f"{self._assembler.late} samples arrived too late for their row and were discarded"
             self.event(self.start_s + self._last_row_s, "late", text)
         return self.so_far()
 

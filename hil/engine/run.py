@@ -173,7 +173,9 @@ class _Run:
             loop.stop_requested = True  # a prompt among the end steps is not waited for
         elif not self._unwatched:
             self._unwatched = True
-            raise OrderlyEndError(gone, where="supervision", fix="hil report makes the reports of this run")
+            raise OrderlyEndError(
+                gone, where="supervision", fix="make the reports of this run with hil report"
+            )
 
     def _look_at_drift(self) -> None:
         """The drives are off; what comes from here on is no part of the run's rows."""
@@ -193,12 +195,12 @@ class _Run:
         except (InterruptError, BadInputError, OrderlyEndError) as error:
             self._end_early(error)
         except HilError:
-            self._end_steps = "not carried out: nothing should move on a bench that has failed"
+            self._end_steps = "not carried out: nothing may move on a bench that has failed"
             raise
         except Exception as error:  # a mistake in a step's code: the bench is well
             self._end_early(error)
         self._watch.hold.active = False
-        self._end_steps = "begun, but not carried out whole"
+        self._end_steps = "started, but not completed"
         for step in plan.finally_:
             step.carry_out(conductor)
         self._end_steps = self._read_back()
@@ -246,7 +248,9 @@ class _Run:
         failures = self._failures
         if self._unsafe and not isinstance(failures.error, BenchError):
             failures.error = BenchError(
-                "; ".join(self._unsafe), where="safe state", fix="cut the drives' power before you go near"
+                "; ".join(self._unsafe),
+                where="safe state",
+                fix="cut the drives' power before you approach the bench",
             )
         for wire in loop.wires:
             for remark in wire.remarks:

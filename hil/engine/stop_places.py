@@ -69,7 +69,7 @@ def make_for_all(place: Path) -> None:
         BadInputError: it cannot be made, or leads elsewhere.
     """
     if place.parent in MACHINE_PLACES and place.parent.is_symlink():
-        raise BadInputError("is a link, which any account may have put there", where=str(place.parent))
+        raise BadInputError("is a link, which any account may have created", where=str(place.parent))
     if place == _of_this_process():
         atexit.register(_end_with, os.getpid(), place.parent)
     for folder in (place.parent, place, place / RESET):
@@ -90,8 +90,8 @@ def remark_on_place(file: BenchFile) -> str:
 
 
 _REMARK = (
-    "emergency stops are kept in {place}, where other accounts of this machine may not find them; "
-    f"let an administrator make the place for all: install -d -m 1777 {MACHINE_PLACES[0]}"
+    "emergency stops are kept in {place}, which other accounts of this machine may not see; "
+    f"an administrator can make a common directory: install -d -m 1777 {MACHINE_PLACES[0]}"
 )
 
 

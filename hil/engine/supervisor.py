@@ -49,7 +49,7 @@ _OPENING_S = _CONCLUDING_S = 900.0
 _LEAVING_S = 30.0
 _REAPED_S = 1.0
 _WHERE = "the process that holds the bench"
-_FIX = "cut the drives' power before you go near"
+_FIX = "cut the drives' power before you approach the bench"
 
 logger = logging.getLogger(__name__)
 
@@ -192,16 +192,16 @@ class _Supervisor:
         stopped = _is_stopped(self._process.pid)
         self._stopped_s = self._stopped_s if stopped else now_s
         if stopped and now_s - self._stopped_s > self._hung_after_s:
-            return f"was stopped, and stood still for {now_s - self._stopped_s:.1f} s"
+            return f"was stopped (SIGSTOP) for {now_s - self._stopped_s:.1f} s"
         if self._turning:
-            seen = "was stopped, and stood still" if stopped else "hung: its loop did not turn"
+            seen = "was stopped (SIGSTOP)" if stopped else "hung: its loop was not running"
             return f"{seen} for {silent_s:.1f} s" if silent_s > self._hung_after_s else ""
         if self._concluded is None and self._asked_s is not None:
             # It looks only from its loop; nothing has been commanded before that turns.
             waits_s = now_s - max(self._asked_s, self._heard_s)
             return "was still opening the bench" if waits_s > self._hung_after_s else ""
         longest_s = _OPENING_S if self._concluded is None else _CONCLUDING_S
-        return f"hung: nothing was heard of it for {silent_s:.0f} s" if silent_s > longest_s else ""
+        return f"hung: it sent nothing for {silent_s:.0f} s" if silent_s > longest_s else ""
 
     def _lost(self, why: str) -> RunOutcome:
         """What can be said of a run whose process has been given up, or has ended without a word.
@@ -243,7 +243,7 @@ class _Supervisor:
         out = self._request.out
         fixes = [_FIX] if "not confirmed" in said else []
         if recorded:
-            fixes.append(f"hil recover {out} makes a whole recording of what was measured")
+            fixes.append(f"hil recover {out} recovers the recording of what was measured")
         fix = "; ".join(fixes)
         what = f"{why}; {said}"
         if self._emergency:
@@ -273,9 +273,9 @@ def _is_stopped(number: int) -> bool:
 def _ending(code: int | None) -> str:
     """How a process ended, in words."""
     if code is None:
-        return "does not speak any more"
+        return "no longer responds"
     if code >= 0:
-        return f"ended with code {code} and without a word"
+        return f"ended with code {code} without a message"
     try:
         return f"was ended by {signal.Signals(-code).name}"
     except ValueError:

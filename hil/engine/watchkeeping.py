@@ -80,7 +80,7 @@ class Watchkeeping:
         for device in self._bench.devices:
             troubles = device.troubles()
             if troubles:
-                raise BenchError("; ".join(troubles), where=device.name, fix=f"look at: {device.name}")
+                raise BenchError("; ".join(troubles), where=device.name, fix=f"check {device.name}")
 
     def _take_samples(self) -> None:
         """Whoever measured: all is recorded, all is watched."""
@@ -102,4 +102,4 @@ class Watchkeeping:
             self.limits.look_for_silence(now_s)
         finally:
             if self.limits.pauses.count > pauses:
-                self._event("pause", f"own loop stood still for {self.limits.pauses.last_s:.2g} s")
+                self._event("pause", f"the bench loop was delayed by {self.limits.pauses.last_s:.2g} s")

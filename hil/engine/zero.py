@@ -29,8 +29,8 @@ SENSORS = (
     "shaft_torque_right_nm",
 )
 _FIX = (
-    "balance the sensor's amplifier, look for torque that is locked in the shafts; "
-    "the limit stands under [zero] in the bench file"
+    "zero the sensor's amplifier, and check the shafts for locked-in torque; "
+    "the limit is under [zero] in the bench file"
 )
 
 
@@ -172,5 +172,5 @@ def refuse_drift(zeros: Iterable[Zero]) -> None:
     wrong = [drift_told(zero) for zero in zeros if not zero.drift_fits]
     if wrong:
         raise BenchError(
-            "; ".join(wrong), where="zero check", fix="the figures of this run cannot be trusted; " + _FIX
+            "; ".join(wrong), where="zero check", fix="the results of this run are not reliable; " + _FIX
         )

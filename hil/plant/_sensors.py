@@ -24,7 +24,7 @@ _column = SENSOR.place
 
 GAIN = _column("gain", "1", "of the reading over the truth")
 OFFSET = _column("offset", "channel's", "added after the gain")
-DELAY = _column("delay_s", "s", "how late the channel is")
+DELAY = _column("delay_s", "s", "delay of the channel")
 STEP = _column("step", "channel's", "distance between readings; 0: not rounded")
 LAG = _column("lag_s", "s", "time constant of a first-order low-pass; 0: none")
 COLUMNS = len(SENSOR)

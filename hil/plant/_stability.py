@@ -72,7 +72,7 @@ def refuse_diverged_state(x: Array, time_s: float, source: str, longest_step_s: 
         BadInputError: names the model and when.
     """
     if not all(-_NO_AXLE < x[state] < _NO_AXLE for state in _RATES):  # asked very often
-        _refuse(source, f"by {time_s:.3f} s the axle turns or twists as none does", longest_step_s)
+        _refuse(source, f"by {time_s:.3f} s speed or twist of the axle is not plausible", longest_step_s)
 
 
 def _refuse(source: str, what: str, longest_step_s: float) -> NoReturn:

@@ -45,9 +45,9 @@ class TakenRun(_Data):
 
 
 class Taken(_Data):
-    """What an agent is given to do."""
+    """Tasks of an agent."""
 
-    run: TakenRun | None = Field(description="null if nothing waits for the bench")
+    run: TakenRun | None = Field(description="null if the queue of the bench is empty")
 
 
 class PlanSent(_Data):
@@ -59,21 +59,21 @@ class PlanSent(_Data):
 
 
 class Order(_Data):
-    """What somebody asks of an agent's bench; told again and again until the agent has obeyed."""
+    """A request to an agent's bench; repeated until the agent has carried it out."""
 
     id: str = Field(max_length=40)
     bench: BenchName
     kind: OrderKind
-    run: RunId | None = Field(None, description="of which run; null where it is about the bench")
+    run: RunId | None = Field(None, description="number of the run; null if it concerns the bench")
     by: str = ""
-    origin: str = Field("", description="of an emergency stop: from which address it came")
+    origin: str = Field("", description="source address of an emergency stop")
     way: StopWay = Field("", description="and how")
     text: str = ""
     plan: PlanSent | None = Field(None, description="what is to be predicted")
 
 
 class AgentBench(_Data):
-    """A bench of an agent: what it is, and what it does now."""
+    """A bench of an agent and its state."""
 
     name: BenchName
     title: Line
@@ -82,28 +82,28 @@ class AgentBench(_Data):
     units: dict[Line, Line] = Field(max_length=200)
     state: Literal["free", "running", "ending", "in_use", "emergency_stop"]
     why: Text = ""
-    running: RunId | None = Field(None, description="also while its files are being delivered")
+    running: RunId | None = Field(None, description="also while its files are being uploaded")
     share: Annotated[Number, Field(ge=0, le=1)] | None = None
     doing: Text = ""
     told: Text = ""
 
 
 class AgentReport(_Data):
-    """What an agent says of itself, twice a second."""
+    """Report of an agent, twice per second."""
 
     name: PersonName
     machine: PersonName
     version: Annotated[Line, Field(max_length=40)]
     benches: list[AgentBench] = Field(min_length=1, max_length=50)
     obeyed: list[Annotated[str, Field(max_length=40)]] = Field([], max_length=1000)
-    leaving: bool = Field(False, description="it ends: its benches are away from now on")
+    leaving: bool = Field(False, description="true: the agent ends and its benches are no longer connected")
 
 
 class AgentOrders(_Data):
-    """What an agent has to do."""
+    """Answer to a report of an agent."""
 
     orders: list[Order] = []
-    waiting: list[BenchName] = Field([], description="free benches for which a run waits")
+    waiting: list[BenchName] = Field([], description="free benches that have a queued run")
     refused: dict[str, str] = Field({}, description="benches that are not this agent's, with the reason")
 
 
@@ -114,7 +114,7 @@ class FileThere(_Data):
 
 
 class FileMade(_Data):
-    """A file that a run has left at its agent."""
+    """A file of a run at its agent."""
 
     name: RunFileName
     size: int = Field(ge=0, le=MOST_FILE_BYTES)
@@ -122,7 +122,7 @@ class FileMade(_Data):
 
 
 class RunEnding(_Data):
-    """How a run of an agent ended. `queued`: nothing of it has happened, it waits again."""
+    """How a run of an agent ended. `queued`: it did not start and is queued again."""
 
     state: Literal["ended", "interrupted", "queued"]
     exit_code: int | None = Field(None, ge=0, le=255)
@@ -133,25 +133,25 @@ class RunEnding(_Data):
 
 
 class Delivered(_Data):
-    """Files that the service has not, or has otherwise; without any, the run is over."""
+    """Files that are missing or differ at the service; if none, the run is finished."""
 
     missing: list[str]
 
 
 class AgentsForecast(_Data):
-    """What an agent predicts of a plan, or why it cannot."""
+    """An agent's forecast of a plan, or the reason why there is none."""
 
     forecast: ForecastData | None = None
     problem: Problem | None = None
-    refused: bool = Field(False, description="whether the plan is at fault, and not the agent")
+    refused: bool = Field(False, description="true: the plan is faulty; false: the agent failed")
 
 
 class AgentData(_Data):
-    """An agent, as it is known here."""
+    """An agent."""
 
     name: str
     machine: str
     version: str
     benches: list[str]
     connected: bool
-    heard_at: datetime.datetime = Field(description="when it was last heard of, to within half a minute")
+    heard_at: datetime.datetime = Field(description="time of its last report, to within half a minute")

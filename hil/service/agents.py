@@ -264,7 +264,7 @@ class Agents:
         for run in self._runs.running(bench.agent.id):
             if run.bench == bench.name:
                 folder = folder_of(self._folder, run.id)
-                bench.running = RunningRun(run, folder, AgentsRun(bench), doing="its agent is away")
+                bench.running = RunningRun(run, folder, AgentsRun(bench), doing="its agent is not connected")
 
     def _take_in(self, bench: RemoteBench, told: AgentBench, obeyed: list[str]) -> str:
         """Take what an agent tells of a bench; why it is not the agent's any more, if that is so."""

@@ -28,13 +28,15 @@ class AgentsForecasts:
             BenchError: the agent is away, or cannot predict it.
         """
         if bench.agent.away:
-            raise BenchError(bench.state()[1], where="forecast", fix="it can be queued all the same")
+            raise BenchError(
+                bench.state()[1], where="forecast", fix="the run can be queued without a forecast"
+            )
         order = bench.order("forecast", plan=sent(plan))
         self._asked[order.id] = asyncio.get_running_loop().create_future()
         try:
             answer = await asyncio.wait_for(self._asked[order.id], _WITHIN_S)
         except TimeoutError:
-            raise BenchError("its agent has not predicted it", where="forecast") from None
+            raise BenchError("its agent has not sent a forecast", where="forecast") from None
         finally:
             del self._asked[order.id]
             bench.agent.orders.pop(order.id, None)

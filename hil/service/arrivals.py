@@ -50,15 +50,17 @@ class Arrivals:
             if at != size or not piece:
                 return size
             if size + len(piece) > MOST_FILE_BYTES:
-                raise BenchError(f"a file of more than {MOST_FILE_BYTES} bytes is not taken", where=name)
+                raise BenchError(f"a file of more than {MOST_FILE_BYTES} bytes is not accepted", where=name)
             if not size and len(list(path.parent.iterdir())) > MOST_FILES:
-                raise BenchError(f"more than {MOST_FILES} files of a run are not taken", where=name)
+                raise BenchError(f"more than {MOST_FILES} files of a run are not accepted", where=name)
             with path.open("ab") as file:
                 file.write(piece)
             return size + len(piece)
         except OSError as error:
             raise BenchError(
-                f"cannot be written: {error.strerror}", where=str(path), fix="make room; it is sent again"
+                f"cannot be written: {error.strerror}",
+                where=str(path),
+                fix="free disk space; the agent sends it again",
             ) from error
 
     async def missing(self, run: int, made: list[FileMade]) -> list[str]:

@@ -21,7 +21,7 @@ def problem_of(log: LogStore, folder: Path) -> str:
     """What is wrong with the log; '' if nothing is. Where it ends is kept in the service's folder."""
     found = log.check(_head(folder))
     if found.problem:
-        logger.error("the audit log is NOT as it was written: %s", found.problem)
+        logger.error("the audit log was changed: %s", found.problem)
     elif found.head.id:
         content = {"id": found.head.id, "chain": found.head.chain}
         write_atomically(folder / HEAD, json.dumps(content) + "\n")
@@ -36,7 +36,11 @@ def checked(folder: Path, database: str = "") -> AuditCheck:
         BenchError: its database cannot be used.
     """
     if not is_service_folder(folder):
-        raise BadInputError("is no folder of a service", where=str(folder), fix="give what --data named")
+        raise BadInputError(
+            "is not the directory of a service",
+            where=str(folder),
+            fix="give the --data directory of the service",
+        )
     engine = open_database(database or f"sqlite:///{folder.resolve() / DATABASE}")
     try:
         return LogStore(engine).check(_head(folder))

@@ -52,9 +52,9 @@ class Bench:
         file = load_bench(self._named)
         if file.name != self.name:
             raise BadInputError(
-                f"was '{self.name}' when the service began and is '{file.name}' now",
+                f"was '{self.name}' when the service started and is now '{file.name}'",
                 where=str(file.source),
-                fix="give it its name back, or begin the service anew",
+                fix="restore the name, or restart the service",
             )
         self.file = file
         return file
@@ -85,7 +85,7 @@ class Bench:
         Raises:
             HilError: that cannot be written.
         """
-        why = f"{by} asked for it at the bench service"
+        why = f"requested by {by} at the bench service"
         latch(self.file, by=by, why=why, run=folder, owner=self.stops, origin=origin, way=way)
 
     def reset(self, by: str) -> int:
@@ -111,7 +111,7 @@ def benches_of(names: list[str], stops: Path | None = None) -> dict[str, Bench]:
         bench = Bench(name, stops)
         if bench.name in found:
             raise BadInputError(
-                f"the name '{bench.name}' is given to two benches",
+                f"the name '{bench.name}' is used by two benches",
                 where=str(bench.file.source),
                 fix="rename one of them in its file",
             )

@@ -24,11 +24,9 @@ class _Data(BaseModel):
 
 
 class CampaignWanted(_Data):
-    """A campaign's file, and those beside it that the service has not."""
+    """A campaign's file, and the files it needs that the service lacks."""
 
-    text: str = Field(
-        max_length=200_000, description="YAML as of `hil campaign`; it names files without paths"
-    )
+    text: str = Field(max_length=200_000, description="YAML as for `hil campaign`; file names without paths")
     files: dict[SentName, str] = Field({}, max_length=50, description="plan, model, controllers by name")
 
     @property
@@ -46,35 +44,35 @@ class CampaignExample(_Data):
 
 
 class PassedShare(_Data):
-    """How many simulations of a controller passed so far."""
+    """Number of simulations of a controller that passed so far."""
 
-    controller: str = Field(description="its file's name; '' for the plan's own")
+    controller: str = Field(description="name of its file; '' for the plan's own")
     passed: int
     of: int
     share: float | None = Field(description="null of none")
     interval: tuple[float, float] | None = Field(
-        description="holds the true share with 95 %; null where values were chosen and no cars drawn"
+        description="95 % confidence interval; null if no vehicles were sampled"
     )
 
 
 class CampaignData(Record):
-    """A campaign: wanted, under way, or over."""
+    """A campaign: queued, active or finished."""
 
     name: str
     title: str
     plan: str
     model: str
     state: CampaignState
-    simulations: int = Field(description="how many are wanted")
-    done: int = Field(0, description="how many are on disk")
-    rate_hz: float = Field(0.0, description="how many a second, while it runs")
-    draws: int = Field(description="cars drawn around each model; 0: values are chosen")
+    simulations: int = Field(description="number of simulations requested")
+    done: int = Field(0, description="number of simulations on disk")
+    rate_hz: float = Field(0.0, description="simulations per second, while it runs")
+    draws: int = Field(description="vehicles sampled around each model; 0: values are given")
     controllers: list[PassedShare] = Field([])
     pass_share_wanted: float | None
-    passed: bool | None = Field(None, description="whether each controller passes as often as is wanted")
+    passed: bool | None = Field(None, description="true: each controller reaches the required pass rate")
     requested_by: str
     asked_at: datetime.datetime
     ended_at: datetime.datetime | None = None
-    reason: str = Field("", description="why it did not end as it should")
-    digest: str = Field(description="of what was asked: the same of what says the same")
-    files: list[str] = Field([], description="names of its files, once it is over")
+    reason: str = Field("", description="reason of a failure")
+    digest: str = Field(description="hash of the request; equal for equal content")
+    files: list[str] = Field([], description="names of its files, when it is finished")

@@ -228,7 +228,9 @@ class Campaigns:
 
     def _refuse_too_many(self) -> None:
         if len(self._tasks) >= _MOST_WAITING:
-            raise BadInputError(f"{_MOST_WAITING} wait already", where="campaign", fix="cancel one of them")
+            raise BadInputError(
+                f"{_MOST_WAITING} campaigns are already queued", where="campaign", fix="cancel one of them"
+            )
 
     def _begin(self, number: int) -> None:
         self._tasks[number] = asyncio.create_task(in_turns(self._carried_out(number)))

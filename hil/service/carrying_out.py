@@ -18,8 +18,8 @@ from hil.service.data import RunData
 from hil.service.run_process import RunProcess, result_in
 
 PLAN = "plan.yaml"
-_NOTHING = "the {who} ended before anything was recorded; the run can be queued again"
-_KEPT = "the {who} ended meanwhile; what was measured until then is kept"
+_NOTHING = "the {who} ended before the recording started; the run can be queued again"
+_KEPT = "the {who} ended during the run; data measured before that is kept"
 
 
 class Steered(Protocol):
@@ -118,7 +118,7 @@ class CarriedRun(RunningRun):
             return RunEnd("queued", reason=str(refused))
         reason = "" if result is not None else str(refused or f"its process ended with code {code}")
         if result is None and recorded:
-            reason += f"\n  hil recover {self.folder} makes a whole recording of what was measured"
+            reason += f"\n  hil recover {self.folder} recovers the recording of what was measured"
         dut = bench.file.dut.get("serial", bench.file.dut.get("name", ""))
         return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
 

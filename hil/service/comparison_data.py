@@ -18,7 +18,7 @@ class _Data(BaseModel):
 
 
 class InputDifference(_Data):
-    """A value that was not the same in what the two runs were given; `–` where one has none."""
+    """An input that differs between the two runs; `–` if one has no value."""
 
     kind: Literal["controller", "model", "bench", "plan"]
     name: str
@@ -47,7 +47,7 @@ class ComparedResponse(_Data):
 
 
 class ComparedSegment(_Data):
-    """A segment that both have, on the time from its step; `channels` are those of both recordings."""
+    """A segment of both runs, over the time from its step; `channels` are those of both recordings."""
 
     id: str
     kind: str
@@ -72,7 +72,7 @@ class ComparisonData(_Data):
 
 
 class Envelope(_Data):
-    """Lowest and highest value by bucket; null where nothing was measured."""
+    """Lowest and highest value by bucket; null without data."""
 
     lowest: list[float | None]
     highest: list[float | None]

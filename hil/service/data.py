@@ -39,11 +39,11 @@ class Record(_Data):
     """What is known of something by its number."""
 
     id: RunId
-    place: str = Field("", description="the service whose it is, if that is another than the one asked")
+    place: str = Field("", description="service that owns it, if it is not the one queried")
 
 
 class Problem(_Data):
-    """Why something was refused: what, where, and what to do."""
+    """An error: what, where, and what to do."""
 
     what: str
     where: str = ""
@@ -51,50 +51,55 @@ class Problem(_Data):
 
 
 class Health(_Data):
-    """Whether the service works."""
+    """State of the service."""
 
     status: Literal["ok"]
     version: str
-    up_s: float = Field(description="seconds since the service began")
-    runs_not_stored: int = Field(0, description="runs whose files the store has not all; 0 without a store")
-    results_not_stored: int = Field(0, description="studies and campaigns that are over, likewise")
+    up_s: float = Field(description="seconds since the service started")
+    runs_not_stored: int = Field(
+        0, description="runs with files that are not in the store; 0 without a store"
+    )
+    results_not_stored: int = Field(
+        0, description="finished studies and campaigns with files that are not in the store"
+    )
     store_problem: str = Field("", description="why files do not reach the store; '' if they do")
     stop_url: str = Field(
         "",
-        description="the stop post: takes stops whatever the service is doing; '' if it is away",
+        description="address of the stop post, which is independent of the service; '' if not available",
     )
-    audit_problem: str = Field(
-        "", description="what is wrong with the audit log; '' if it is as it was written"
-    )
+    audit_problem: str = Field("", description="fault of the audit log; '' if it is unchanged")
     kept_apart: int = Field(0, description="files of an earlier version's folder that are not shared")
 
 
 class RunWanted(_Data):
-    """A run to be queued."""
+    """A run to queue."""
 
     plan: PlanName
     bench: BenchName
     values: dict[str, Number] = Field({}, max_length=100, description="variables of the plan by name")
-    priority: int = Field(0, ge=-100, le=100, description="higher ones first; equal ones as they came")
+    priority: int = Field(0, ge=-100, le=100, description="higher ones first; equal ones in order of arrival")
     confirmed_by: str = Field(
-        "", max_length=100, pattern=r"^[^\x00-\x1f\x7f-\x9f]*$", description="who confirms every prompt"
+        "",
+        max_length=100,
+        pattern=r"^[^\x00-\x1f\x7f-\x9f]*$",
+        description="name of the person who confirms all prompts",
     )
     accept_expired: str = Field(
         "",
         max_length=500,
         pattern=r"^[^\x00-\x1f\x7f-\x9f]*$",
-        description="'NAME: reason' of who answers for sensors whose calibration has run out",
+        description="'NAME: reason' of the person who accepts expired sensor calibrations",
     )
     key: str = Field(
         "",
         max_length=100,
         pattern=r"^[A-Za-z0-9_.:-]*$",
-        description="a request that is repeated with the same key queues no second run",
+        description="a repeated request with the same key queues no second run",
     )
 
 
 class RunData(_Data):
-    """A run: wanted, under way, or over."""
+    """A run: queued, active or finished."""
 
     id: RunId
     plan: str
@@ -109,18 +114,18 @@ class RunData(_Data):
     queued_at: datetime.datetime
     started_at: datetime.datetime | None = None
     ended_at: datetime.datetime | None = None
-    share: float | None = Field(None, description="how much is done, 0 to 1, while it is running")
-    doing: str = Field("", description="what is going on, while it is running")
-    told: str = Field("", description="what its operator was told last, while it is running")
-    exit_code: int | None = Field(None, description="as `hil run` would have ended")
+    share: float | None = Field(None, description="progress, 0 to 1, while it is running")
+    doing: str = Field("", description="present activity, while it is running")
+    told: str = Field("", description="last message to the operator, while it is running")
+    exit_code: int | None = Field(None, description="exit code, as of `hil run`")
     verdict: RunVerdict | None = None
     safe_state: Literal["confirmed", "not_confirmed", "not_needed"] | None = None
-    reason: str = Field("", description="what stopped it, or why it waits")
-    files: list[str] = Field([], description="names of its files, once it is over")
+    reason: str = Field("", description="reason of its end, or of waiting")
+    files: list[str] = Field([], description="names of its files, when it is finished")
 
 
 class RunChange(_Data):
-    """What can be changed of a run that waits."""
+    """Change of a queued run."""
 
     priority: int = Field(ge=-100, le=100)
 
@@ -132,25 +137,25 @@ class Answer(_Data):
 
 
 class BenchData(_Data):
-    """A bench and what it does."""
+    """A bench and its state."""
 
     name: str
     title: str
     simulated: bool
     state: BenchState
-    why: str = Field("", description="who uses it, or why nothing may move")
+    why: str = Field("", description="user of the bench, or the reason why it is blocked")
     running: RunId | None = None
     waiting: int = Field(description="runs in its queue")
     limits: dict[str, float] = Field(description="largest magnitude by channel, in the channel's unit")
     units: dict[str, str] = Field(description="unit by channel, of all that is recorded")
-    lease: str = Field("", description="who has it for themselves")
-    machine: str = Field("", description="where its agent is; '' for one of the service's own")
+    lease: str = Field("", description="user who has reserved it")
+    machine: str = Field("", description="machine of its agent; '' for a bench of the service")
     stop_confirmed: bool = Field(True, description="false while an agent has not confirmed an emergency stop")
-    away_since: datetime.datetime | None = Field(None, description="when its agent was last heard of")
+    away_since: datetime.datetime | None = Field(None, description="time of the last report of its agent")
 
 
 class VariableData(_Data):
-    """A number of a plan that a run may choose."""
+    """A variable of a plan."""
 
     default: float
     unit: str = ""
@@ -171,7 +176,7 @@ class PlanData(_Data):
 
 
 class ForecastWanted(_Data):
-    """What is to be known before a run."""
+    """Input of a forecast."""
 
     plan: PlanName
     bench: BenchName
@@ -186,7 +191,7 @@ class PredictedPeak(_Data):
 
 
 class PredictedCriterion(_Data):
-    """A criterion as it is predicted."""
+    """A predicted criterion."""
 
     id: str
     value: float | None
@@ -198,7 +203,7 @@ class PredictedCriterion(_Data):
     margin: float | None = None
     title: str = ""
     reason: str = ""
-    source: str = Field("plan", description="plan, or device: what any device must do")
+    source: str = Field("plan", description="plan, or device: requirements on any device")
 
 
 class LoopData(_Data):
@@ -219,10 +224,8 @@ class ForecastData(_Data):
     duration_s: float
     predicted: dict[str, PredictedPeak]
     criteria: list[PredictedCriterion]
-    bus_loads: dict[str, float] = Field(
-        {}, description="share of each bus that the frames of every millisecond take, at most"
-    )
-    loops: dict[str, LoopData] = Field({}, description="by controller, of those that the plan loads")
+    bus_loads: dict[str, float] = Field({}, description="highest bus load in a millisecond, by bus")
+    loops: dict[str, LoopData] = Field({}, description="by controller of the plan")
 
 
 class TrendPoint(_Data):
@@ -230,7 +233,7 @@ class TrendPoint(_Data):
 
     run: RunId
     ended_at: datetime.datetime
-    dut: str = Field(description="serial number, or name, of what was tested")
+    dut: str = Field(description="serial number or name of the tested device")
     value: float | None
     unit: str
     upper: float | None = None
@@ -239,7 +242,7 @@ class TrendPoint(_Data):
 
 
 class TrendData(_Data):
-    """A criterion from run to run, oldest first; the limits are those of the newest run."""
+    """Trend of a criterion over runs, oldest first; the limits are those of the newest run."""
 
     criterion: str
     unit: str
@@ -251,25 +254,25 @@ class TrendData(_Data):
         None, description="standard deviation from the moving range; null for less than 5 values"
     )
     cpk: float | None = Field(None, description="distance of the mean to the nearer limit, in 3 deviations")
-    count: int = Field(0, description="values that these are of")
+    count: int = Field(0, description="number of values")
     cpk_lower: float | None = Field(None, description="lower end of Cpk's 95 % interval")
     cpk_upper: float | None = Field(None, description="upper end of Cpk's 95 % interval")
 
 
 class Me(_Data):
-    """Who asks, and what they may do."""
+    """The present user and role."""
 
     name: str
     role: Role
-    tokens: bool = Field(description="whether this service asks for tokens")
+    tokens: bool = Field(description="true: this service requires tokens")
 
 
 class TokenWanted(_Data):
-    """A token to be made."""
+    """A token to make."""
 
     name: PersonName
     role: Role
-    for_days: float = Field(365.0, gt=0, le=3650, description="how long it is valid")
+    for_days: float = Field(365.0, gt=0, le=3650, description="validity, days")
 
 
 class TokenData(_Data):
@@ -284,7 +287,7 @@ class TokenData(_Data):
 
 
 class TokenMade(_Data):
-    """A new token; its secret is told this once."""
+    """A new token; its secret is given only once."""
 
     token: TokenData
     secret: str
@@ -297,7 +300,7 @@ class Login(_Data):
 
 
 class AuditEntry(_Data):
-    """Something that somebody did."""
+    """An entry of the audit log."""
 
     id: int
     at: datetime.datetime
@@ -309,13 +312,13 @@ class AuditEntry(_Data):
 
 
 class LeaseWanted(_Data):
-    """A bench for oneself for a while; renewed by asking again."""
+    """A reservation of a bench; repeat the request to extend it."""
 
     for_s: float = Field(60.0, ge=1, le=3600, allow_inf_nan=False)
 
 
 class LeaseData(_Data):
-    """Who has a bench, until when; afterwards it is free by itself."""
+    """Holder of a reserved bench, and the end of the reservation."""
 
     bench: str
     holder: str

@@ -17,13 +17,13 @@ class _Data(BaseModel):
 
 
 class ModelData(_Data):
-    """A model that can be designed for and diagnosed."""
+    """A model for design and diagnosis."""
 
     name: str
     kind: str
     built_in: bool
     effects: list[str]
-    warning: str = Field("", description="what the model's own file says against its use")
+    warning: str = Field("", description="warning in the model's file")
 
 
 class ControllerData(_Data):
@@ -36,13 +36,13 @@ class ControllerData(_Data):
 
 
 class DraftWanted(_Data):
-    """What a designer chooses; defaults are the paper's. Bounds are those of `hil design`."""
+    """Design parameters; defaults are the paper's, bounds those of `hil design`."""
 
     model: FileName
     stabilisation: Literal["phase", "gain"] = "phase"
     pole_rad_s: Number = 0.3
-    lead_deg: Number = Field(36.0, description="P_h of (6)")
-    lead_hz: Number = Field(40.0, description="f_ph of (7)")
+    lead_deg: Number = Field(36.0, description="phase lead P_h (equation 6)")
+    lead_hz: Number = Field(40.0, description="centre frequency of the lead f_ph (equation 7)")
     normalisation: Literal["dc", "centre", "high_frequency"] = "high_frequency"
     notch_hz: Number | None = Field(None, description="null: at the model's resonance")
     notch_width: Number = 2.0
@@ -52,7 +52,7 @@ class DraftWanted(_Data):
 
 
 class MarginData(_Data):
-    """How far a loop is from instability, as the RMCU closes it; null where there is no crossing."""
+    """Stability margins of the loop that the RMCU closes; null without a crossing."""
 
     gain_margin_db: float | None
     gain_margin_hz: float | None
@@ -84,22 +84,22 @@ class DraftStep(_Data):
 
 
 class DraftData(_Data):
-    """A draft of a controller, judged on the model itself."""
+    """A draft of a controller, evaluated on the nominal model."""
 
     frequency_hz: list[float]
     loops: list[DraftLoop]
     margins: MarginData
-    unstable: str = Field(description="why the closed loop grows; '' if it does not")
+    unstable: str = Field(description="reason of instability; '' if the loop is stable")
     resonance_hz: float
     step_nm: float
     time_s: list[float] = Field(description="of the steps, which are at 0")
     steps: list[DraftStep]
-    steps_why_not: str = Field(description="why no step could be simulated")
+    steps_why_not: str = Field(description="reason why no step was simulated")
     notes: list[str]
 
 
 class DesignData(_Data):
-    """A designed controller, judged on every plant that the model's uncertainty allows."""
+    """A designed controller, evaluated on all plants within the model's uncertainty."""
 
     controller: str = Field(description="text of the controller file")
     margins: MarginData
@@ -111,7 +111,7 @@ class DesignData(_Data):
 
 
 class PlanCopyWanted(_Data):
-    """A copy of a plan that loads other controllers."""
+    """A copy of a plan with other controllers."""
 
     name: FileName
     controllers: dict[str, FileName] = Field(

@@ -30,7 +30,7 @@ _NAMES: dict[GivenKind, TypeAdapter[str]] = {
     "controller": TypeAdapter(FileName),
     "plan": TypeAdapter(PlanName),
 }
-_FIX = "give it under another name, or remove the file; it is looked at again when the service begins"
+_FIX = "upload it under another name, or remove the file; the service reads it again at its next start"
 
 logger = logging.getLogger(__name__)
 

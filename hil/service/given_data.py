@@ -10,7 +10,7 @@ GivenKind = Literal["model", "controller", "plan"]
 
 
 class KeptApart(BaseModel):
-    """A file of an earlier version's folder that has not become one that services share."""
+    """A file of an earlier version's folder that is not shared between services."""
 
     model_config = ConfigDict(extra="forbid")
 

@@ -81,7 +81,7 @@ class GivenFiles:
         if not kept or path is None:
             there = self.text(name)
             giver = f", given by {there.given_by}" if there is not None and there.given_by else ""
-            raise NameTakenError(f"stands for another content already{giver}", where=name, fix=fix)
+            raise NameTakenError(f"is already used for other content{giver}", where=name, fix=fix)
         return path
 
     def remove(self, name: str) -> bool:

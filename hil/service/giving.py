@@ -29,7 +29,7 @@ class Giving:
         try:
             return await self._reading.ask(f"{READING}{kind}", name=name, text=text, **more)
         except TooLongError as error:
-            what = f"takes more than {READ_WITHIN_S:g} s of a processor to be read"
+            what = f"needs more than {READ_WITHIN_S:g} s of processor time to read"
             raise BadInputError(what, where=name, fix="make it shorter") from error
 
     async def plan(self, name: str, text: str, by: str) -> PlanData:

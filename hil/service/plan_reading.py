@@ -32,12 +32,12 @@ def read_given(name: str, text: str, folder: Path) -> GivenPlan:
             raise BadInputError(
                 f"loads the file {printable(repr(str(file)), 100)}",
                 where=where,
-                fix="a plan that is given to the service loads controllers that it has, by their names",
+                fix="a plan on the service can only load controllers of the service, by name",
             )
     plan = plan_from_text(text, where, folder, to_carry_out=True)
     if plan.name != name:
         raise BadInputError(
-            f"the plan calls itself '{plan.name}'", where=where, fix="give it under that name"
+            f"the name in the plan is '{plan.name}'", where=where, fix="upload it under that name"
         )
     return given_plan(plan, folder)
 
@@ -74,4 +74,4 @@ def hazard_of(plan: Plan) -> str:
     """Why a plan is hazardous, in its words; '' if it is not."""
     if not plan.hazardous:
         return ""
-    return plan.hazardous if isinstance(plan.hazardous, str) else "the plan says so"
+    return plan.hazardous if isinstance(plan.hazardous, str) else "the plan is marked hazardous"

@@ -113,7 +113,7 @@ class Queue:
         if place.running is not None:
             return "running", place.running.doing
         if place.left:
-            return "ending", f"run {place.left[0].id} of an earlier service is being ended"
+            return "ending", f"run {place.left[0].id} of an earlier service process is being ended"
         if place.held_by:
             return "in_use", place.held_by
         used = self._used_by(place)
@@ -145,7 +145,7 @@ class Queue:
             raise BenchError(
                 f"another service of the same database drives the bench: {place.held_by}",
                 where=place.bench.name,
-                fix="end that one, or leave this bench to it",
+                fix="end that service, or remove this bench here",
             )
 
     def _hold(self, place: _Place) -> None:
@@ -227,7 +227,7 @@ class Queue:
         """Listen to a run until it has ended, and write down how."""
         bench = running.data.bench
         end = await running.ended(place.bench, lambda: self._changed(bench), lambda: self._closing)
-        running.doing = "its end is being written down"
+        running.doing = "its result is being stored"
         try:
             await self._written(lambda: self._write(running.data, end))
         finally:

@@ -119,13 +119,15 @@ class RemoteBench:
         """What it does, as far as is known."""
         agent = self.agent
         since = f"{agent.heard_at:%Y-%m-%d %H:%M:%S} UTC"
-        away = f"its agent {agent.name} on {agent.machine} is away since {since}" if agent.away else ""
+        away = (
+            f"its agent {agent.name} on {agent.machine} is not connected since {since}" if agent.away else ""
+        )
         if self.stop_by:
-            unconfirmed = f"{self.stop_by} asked for it; its agent has not confirmed it"
+            unconfirmed = f"requested by {self.stop_by}; its agent has not confirmed it"
             return "emergency_stop", f"{unconfirmed}; {away}" if away else unconfirmed
         if away:
             if self.running is not None:
-                away += f"; run {self.running.data.id} ends there by itself, and comes with its agent"
+                away += f"; run {self.running.data.id} ends there by itself; its agent uploads it later"
             return "away", away
         if self.told.state == "free" and self.running is not None:
             return "running", self.running.doing

@@ -121,7 +121,11 @@ def make_token(folder: Path, database: str, name: str, role: str, for_days: floa
             f"there is no role '{printable(role)}'", where="--add-token", fix=f"one of {', '.join(ROLES)}"
         )
     if not name.strip() or not name.isprintable() or len(name) > 100:
-        raise BadInputError("names nobody", where="--add-token", fix="write NAME=ROLE")
+        raise BadInputError(
+            "the name of the token is empty, too long or not printable",
+            where="--add-token",
+            fix="write NAME=ROLE, NAME with 1 to 100 printable characters",
+        )
     make_private(folder)
     engine = _database(folder, database)
     try:
@@ -139,7 +143,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
     service.tell_stop_post()
     posting = asyncio.create_task(post.work())
     if not await post.until_up(_STOP_POST_WITHIN_S):
-        logger.error("the stop post is not there yet; stops go by the API alone until it is")
+        logger.error("the stop post is not available yet; until then stops need the API")
     tasks = [
         asyncio.create_task(going_on(lambda: in_turns(service.queue.work()))),
         asyncio.create_task(going_on(lambda: in_turns(service.showing.follow(lambda: service.closing)))),
@@ -246,7 +250,7 @@ def _refuse_open_to_all(host: str, tokens: TokenStore) -> None:
         loopback = False
     if not loopback and not tokens.any():
         raise BadInputError(
-            "whoever reaches this address could drive the benches: there is no token yet",
+            "there is no token yet, so anyone who reaches this address could drive the benches",
             where=f"--host {printable(host)}",
             fix="make one first: hil serve --data DIR --add-token NAME=admin; or leave --host out",
         )
@@ -262,7 +266,7 @@ def _listening(host: str, port: int, option: str) -> Iterator[socket.socket]:
         raise BenchError(
             f"the service cannot listen there: {reason}",
             where=f"{printable(host)}:{port}",
-            fix=f"is another service running? Name another port with {option}, or 0 for a free one",
+            fix=f"check for another service; give another port with {option}, or 0 for a free one",
         ) from error
     with listening:
         yield listening

@@ -57,9 +57,7 @@ class Shelf(Generic[T]):
             BadInputError: it cannot be used.
         """
         if self.is_built_in(name):
-            raise NameTakenError(
-                "stands for another content already: it is built in", where=name, fix="give it another name"
-            )
+            raise NameTakenError("is the name of a built-in one", where=name, fix="give it another name")
         found = self._parse(text, f"{name}.toml")
         self._given.give(name, text, by)
         return found

@@ -47,7 +47,7 @@ class Studies:
         for study in self._records:
             if study.state not in STUDY_OVER:
                 kill_left(self._records.folder_of(study.id), self.results(study.id))
-                self._end(study.id, "interrupted", "the service ended meanwhile; ask for it again")
+                self._end(study.id, "interrupted", "the service ended during the study; start it again")
 
     def all(self, kind: StudyKind | None = None) -> list[StudyData]:
         """Newest first, also those of other services."""
@@ -118,7 +118,9 @@ class Studies:
             BadInputError: too many wait already.
         """
         if len(self._tasks) >= _MOST_WAITING:
-            raise BadInputError(f"{_MOST_WAITING} wait already", where=kind, fix="cancel one of them")
+            raise BadInputError(
+                f"{_MOST_WAITING} studies are already queued", where=kind, fix="cancel one of them"
+            )
         number = self._records.take_number()
         study = StudyData(
             id=number,

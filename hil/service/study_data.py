@@ -21,32 +21,32 @@ class _Data(BaseModel):
 
 
 class IdentificationWanted(_Data):
-    """A model is wanted from runs that played chirps or multisines."""
+    """Identification of a model from runs with chirps or multisines."""
 
     runs: Runs
 
 
 class DiagnosisWanted(_Data):
-    """Why runs and a model differ."""
+    """Diagnosis of the difference between runs and a model."""
 
     model: FileName
     runs: Runs
-    holdout: list[RunId] = Field([], max_length=20, description="runs that the fit does not see")
+    holdout: list[RunId] = Field([], max_length=20, description="runs for validation, not used in the fit")
     at_most_min: float = Field(10.0, gt=0, le=60, allow_inf_nan=False)
 
 
 class StudyData(Record):
-    """An identification or a diagnosis: wanted, under way, or over."""
+    """An identification or a diagnosis: queued, active or finished."""
 
     kind: StudyKind
     state: StudyState
     runs: list[int]
-    model: str = Field("", description="what a diagnosis explains the runs with")
+    model: str = Field("", description="model of a diagnosis")
     requested_by: str
     asked_at: datetime.datetime
     ended_at: datetime.datetime | None = None
-    reason: str = Field("", description="why it did not end as it should")
-    files: list[str] = Field([], description="names of its files, once it is over")
+    reason: str = Field("", description="reason of a failure")
+    files: list[str] = Field([], description="names of its files, when it is finished")
 
 
 class FittedOutput(_Data):
@@ -61,7 +61,7 @@ class FittedOutput(_Data):
 
 
 class FittedParameter(_Data):
-    """A parameter with its 95 % interval; null where the fit does not say it."""
+    """A parameter with its 95 % interval; null if the fit has none."""
 
     name: str
     unit: str
@@ -71,7 +71,7 @@ class FittedParameter(_Data):
 
 
 class IdentificationData(_Data):
-    """What an identification found."""
+    """Result of an identification."""
 
     study: StudyData
     verdict: str
@@ -96,7 +96,7 @@ class FoundEffect(_Data):
 
 
 class FoundAlternative(_Data):
-    """Another name for the same gap; `plan` is the file of the plan that tells them apart."""
+    """An alternative effect for the same gap; `plan` is the file of the test that distinguishes them."""
 
     id: str
     confidence: float
@@ -113,7 +113,7 @@ class FoundGap(_Data):
 
 
 class FoundMap(_Data):
-    """Error over noise, 1 being nothing but noise: for each recording, channel and band; null: no value."""
+    """Error / noise for each recording, channel and band; 1: noise only, null: no value."""
 
     recordings: list[str]
     channels: list[str]
@@ -123,7 +123,7 @@ class FoundMap(_Data):
 
 
 class DiagnosisData(_Data):
-    """What a diagnosis found."""
+    """Result of a diagnosis."""
 
     study: StudyData
     verdict: str

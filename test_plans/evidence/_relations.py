@@ -145,9 +145,7 @@ class Relation:
     def _in_words(self, slope: float, within: tuple[float, float]) -> str:
         neighbours = " and ".join(self.against)
         if abs(slope) < _NOTHING:
-            return (
-                f"{self.channel} reads nothing where {neighbours} demands something ({self.law}): it is dead"
-            )
+            return f"{self.channel} reads zero where {neighbours} demands a signal ({self.law}): it is dead"
         return (
             f"{self.channel} is {slope:.3g} times what {neighbours} demands ({self.law}), "
             f"{within[0]:g} to {within[1]:g} would agree: {self.why}"
@@ -245,7 +243,7 @@ RELATIONS = (
         _own(_REQUEST),
         _TORQUE,
         _LEAST_TORQUE_NM / 8,
-        why="the RMCU does not give what it is asked for, or does not measure it",
+        why="the RMCU does not give the requested torque, or does not measure it",
         shaken=(0.6, 1.8),
     ),
     Relation(
@@ -255,7 +253,7 @@ RELATIONS = (
         _by_gear("motor_torque_nm", up=True),
         _TORQUE,
         _LEAST_TORQUE_NM,
-        why=f"{_SENSOR}, friction takes more than it may, or the gear ratio is wrong",
+        why=f"{_SENSOR}, friction is too large, or the gear ratio is wrong",
         shaken=(0.6, 1.8),
         beside=2 * _LEAST_TORQUE_NM,
     ),

@@ -21,9 +21,9 @@ class WindowMetric(Metric):
     """A metric of one channel from `from_s` to `to_s` after the step."""
 
     channel: ChannelName = Field(description="name of a channel, e.g. shaft_torque_nm")
-    from_s: float = Field(default=0.0, ge=0, description="begin of the window, s after the step")
+    from_s: float = Field(default=0.0, ge=0, description="start of the window, s after the step")
     to_s: float | None = Field(
-        default=None, gt=0, description="end of the window, s after the step; else the segment's"
+        default=None, gt=0, description="end of the window, s after the step; default: the segment's end"
     )
 
     @model_validator(mode="after")

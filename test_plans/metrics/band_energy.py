@@ -66,7 +66,7 @@ class BandEnergyMotorSpeed(BandEnergy):
 
     name: ClassVar[str] = "band_energy_motor_speed"
     channel: ChannelName = "motor_speed_rad_s"
-    from_s: float = Field(default=4.0, ge=0, description="begin of the window, s after the step")
+    from_s: float = Field(default=4.0, ge=0, description="start of the window, s after the step")
     to_s: float | None = Field(default=20.0, gt=0, description="end of the window, s after the step")
     from_hz: float = Field(default=8.0, ge=0, description="lower edge of the band, Hz")
     to_hz: float = Field(default=20.0, gt=0, description="upper edge of the band, Hz")

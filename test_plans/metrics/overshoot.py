@@ -21,7 +21,7 @@ class Overshoot(Extreme):
     never_negative: ClassVar[bool] = True
     reference: float | None = Field(
         default=None,
-        description="value that the channel should reach, in its unit; else the step's value after",
+        description="reference value of the channel, in its unit; default: the step's value after",
     )
 
     @property
@@ -54,7 +54,7 @@ class Overshoot(Extreme):
 
 
 class OvershootShaftTorque(Overshoot):
-    """Overshoot of T_s over the driving torque asked for."""
+    """Overshoot of T_s over the requested driving torque."""
 
     name: ClassVar[str] = "overshoot_shaft_torque"
     channel: ChannelName = "shaft_torque_nm"
@@ -65,7 +65,7 @@ class OvershootPercent(Overshoot):
 
     name: ClassVar[str] = "overshoot_percent"
     step_size: float | None = Field(
-        default=None, gt=0, description="what is 100 %, in the channel's unit; else the step's magnitude"
+        default=None, gt=0, description="value of 100 %, in the channel's unit; default: the step's magnitude"
     )
 
     @property

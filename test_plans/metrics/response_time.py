@@ -81,7 +81,7 @@ class ResponseTimeShaftTorque(ResponseTime):
 
 
 class Arrival(_Following):
-    """How far the end of a response lies from what was asked, in percent of the step's size."""
+    """Deviation of the end of a response from the request, in percent of the step's size."""
 
     name: ClassVar[str] = "arrival"
     mean_s: float = Field(default=2.0, gt=0, description="length of the mean at the window's end, s")
@@ -145,7 +145,7 @@ def _integral(time: Array, values: Array) -> Array:
 
 
 class Holding(_Following):
-    """How far a response leaves what was asked once it should have arrived, whatever it does then."""
+    """Largest deviation of a response from the request, after the time in which it should have settled."""
 
     name: ClassVar[str] = "holding"
     never_negative: ClassVar[bool] = True

@@ -22,7 +22,7 @@ _TRANSITION_HZ, _TRANSITION_Q = 2.0, 0.63
 
 
 class RideComfort(WindowMetric):
-    """Weighted r.m.s. acceleration of the vehicle along its way, W_d of ISO 2631-1: less is better."""
+    """Weighted r.m.s. longitudinal acceleration of the vehicle, W_d of ISO 2631-1; lower is better."""
 
     name: ClassVar[str] = "ride_comfort"
     never_negative: ClassVar[bool] = True

@@ -32,7 +32,7 @@ class SettlingTime(WindowMetric):
     mean_s: float = Field(default=2.0, gt=0, description="length of the mean at the window's end, s")
     low_pass_hz: float = Field(default=50.0, gt=0, description="corner frequency of the low-pass filter, Hz")
     step_size: float | None = Field(
-        default=None, gt=0, description="what is 100 %, in the channel's unit; else the step's magnitude"
+        default=None, gt=0, description="value of 100 %, in the channel's unit; default: the step's magnitude"
     )
 
     @property

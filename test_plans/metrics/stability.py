@@ -31,12 +31,14 @@ _MOST_OF_IT = 0.2  # of the second half: a stable loop has left its limit by the
 
 
 class StabilityTorqueRequest(Metric):
-    """Share of a window's second half in which T_m* lies at its limit, or against what was asked for."""
+    """Share of a window's second half in which T_m* is at its limit, or opposite to the request."""
 
     name: ClassVar[str] = "stability_torque_request"
     never_negative: ClassVar[bool] = True
     limit_nm: float | None = Field(
-        default=None, gt=0, description="torque limit of the controller, N m; else that of the segment's"
+        default=None,
+        gt=0,
+        description="torque limit of the controller, N m; default: that of the segment's controller",
     )
 
     @property
@@ -74,7 +76,7 @@ class StabilityTorqueRequest(Metric):
 
 
 class StabilityOscillation(WindowMetric):
-    """Amplitude of the strongest line that lasts, and is no declared order of the wheel."""
+    """Amplitude of the strongest sustained line that is not a declared order of the wheel."""
 
     name: ClassVar[str] = "stability_oscillation"
     never_negative: ClassVar[bool] = True
@@ -154,7 +156,7 @@ def instability(recording: Recording, segment: Segment) -> str:
     except (NoValueError, HilError):
         return ""
     if segment.end_s - segment.step_s >= _LEAST_S and share >= _MOST_OF_IT:
-        return f"T_m* lies at its limit, or against what was asked, for {100 * share:.0f} % of the time"
+        return f"T_m* is at its limit, or opposite to the request, for {100 * share:.0f} % of the time"
     spacing_s, even = evenly(time, values)
     found = _lines.swings(even, spacing_s)
     size = abs(segment.reference_after - segment.reference_before)

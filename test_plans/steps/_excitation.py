@@ -18,12 +18,12 @@ class Excitation(Step):
     """Plays `samples` once or several times; each time is a segment of its own."""
 
     segment: Name | None = Field(
-        default=None, description="name of the recorded stretch; without it: not judged"
+        default=None, description="name of the recorded segment; without it the step is not evaluated"
     )
     quantity: Quantity = Field(description="driving_torque (wheel side) or motor_torque")
     load: Literal["vehicle", "speed"] = Field(
         default="vehicle",
-        description="what the dynos do meanwhile: simulate the vehicle, or go on holding the speed",
+        description="load by the dynos: vehicle simulates the vehicle, speed holds the speed",
     )
 
     @abstractmethod

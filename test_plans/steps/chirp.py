@@ -16,16 +16,14 @@ class Chirp(Excitation):
     """A swept sine around a bias, faded in and out."""
 
     kind: ClassVar[str] = "chirp"
-    segment: Name = Field(description="name of the recorded stretch")
-    from_hz: float = Field(ge=0, lt=NYQUIST_HZ, description="frequency at the beginning, Hz")
-    to_hz: float = Field(gt=0, lt=NYQUIST_HZ, description="frequency at the end, Hz, below 500")
+    segment: Name = Field(description="name of the recorded segment")
+    from_hz: float = Field(ge=0, lt=NYQUIST_HZ, description="start frequency, Hz")
+    to_hz: float = Field(gt=0, lt=NYQUIST_HZ, description="end frequency, Hz, below 500")
     sweep_s: Duration = Field(alias="duration_s", description="duration of one sweep, s, at least 0.1")
     amplitude_nm: float = Field(gt=0, le=10_000, description="amplitude of the sine, N m")
-    bias_nm: Torque = Field(default=0.0, description="torque around which the sine swings, N m")
+    bias_nm: Torque = Field(default=0.0, description="bias torque of the sine, N m")
     sweep: stimuli.Sweep = Field(default="logarithmic", description="linear or logarithmic")
-    fade_s: Seconds = Field(
-        default=1.0, description="time in which torque fades in, and out, s; part of duration_s"
-    )
+    fade_s: Seconds = Field(default=1.0, description="fade-in and fade-out time, s; part of duration_s")
     repeats: int = Field(default=1, ge=1, le=100, description="number of sweeps, each a segment")
 
     @model_validator(mode="after")

@@ -19,8 +19,8 @@ class Multisine(Excitation):
     """
 
     kind: ClassVar[str] = "multisine"
-    segment: Name = Field(description="name of the recorded stretch")
-    seed: int = Field(ge=0, le=2**31, description="a whole number: the same phases every time")
+    segment: Name = Field(description="name of the recorded segment")
+    seed: int = Field(ge=0, le=2**31, description="random seed of the phases, a whole number")
     from_hz: float = Field(ge=0, lt=NYQUIST_HZ, description="lowest frequency, Hz")
     to_hz: float = Field(gt=0, lt=NYQUIST_HZ, description="highest frequency, Hz, below 500")
     period_s: Duration = Field(description="duration of one period, s: lines lie 1/period_s apart")
@@ -31,17 +31,17 @@ class Multisine(Excitation):
     amplitude_nm: float | None = Field(
         default=None, gt=0, le=10_000, description="largest magnitude without bias, N m"
     )
-    bias_nm: Torque = Field(default=0.0, description="torque around which the multisine swings, N m")
+    bias_nm: Torque = Field(default=0.0, description="bias torque of the multisine, N m")
     odd_only: bool = Field(default=False, description="true: odd lines only, to see even-order nonlinearity")
     realisations: int = Field(default=1, ge=1, le=100, description="number of phase draws, each a segment")
     fade_s: Seconds = Field(
-        default=1.0, description="time in which torque fades in, and out, s; beside the periods"
+        default=1.0, description="fade-in and fade-out time, s; in addition to the periods"
     )
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
         if (self.rms_nm is None) == (self.amplitude_nm is None):
-            raise ValueError("give rms_nm or amplitude_nm, one of them")
+            raise ValueError("give either rms_nm or amplitude_nm")
         if not self.from_hz < self.to_hz:
             raise ValueError(f"from_hz = {self.from_hz:g} is not below to_hz = {self.to_hz:g}")
         samples = self.period_s / SAMPLE_TIME_S

@@ -12,15 +12,15 @@ from test_plans.steps._step import Step
 
 
 class OperatorPrompt(Step):
-    """Show a text and wait for the answer, but not for ever."""
+    """Show a text to the operator and wait for the answer, up to a time limit."""
 
     kind: ClassVar[str] = "operator_prompt"
-    text: str = Field(min_length=1, max_length=1000, description="what the operator reads")
+    text: str = Field(min_length=1, max_length=1000, description="message to the operator")
     timeout_s: float = Field(
         default=PROMPT_TIMEOUT_S,
         gt=0,
         le=24 * 3600,
-        description="without an answer by then the run is ended, s; default 600",
+        description="time for an answer, s; without one the run ends; default: 600",
     )
 
     def carry_out(self, conductor: Conductor) -> None:

@@ -12,10 +12,10 @@ from test_plans.steps._step import Duration, Step
 
 
 class RampDown(Step):
-    """Come to rest within a time."""
+    """Ramp to rest within a time."""
 
     kind: ClassVar[str] = "ramp_down"
-    down_s: Duration = Field(alias="duration_s", description="time to come to rest in, s, at least 0.1")
+    down_s: Duration = Field(alias="duration_s", description="duration of the ramp to rest, s, at least 0.1")
 
     def carry_out(self, conductor: Conductor) -> None:
         """Ramp down."""

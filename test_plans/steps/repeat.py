@@ -15,19 +15,19 @@ LARGEST_COUNT = 10_000
 
 
 class Repeat(Step):
-    """Steps carried out `times` times; in pass n the ids of their segments end in _n."""
+    """Repeat steps `times` times; in pass n the ids of their segments end in _n."""
 
     kind: ClassVar[str] = "repeat"
     nested: ClassVar[tuple[str, ...]] = ("steps",)
-    times: int = Field(ge=1, le=LARGEST_COUNT, description="how often, a whole number")
+    times: int = Field(ge=1, le=LARGEST_COUNT, description="number of repetitions")
     steps: Annotated[tuple[Step, ...], WithJsonSchema({"type": "array", "minItems": 1})] = Field(
-        min_length=1, description="what to repeat: a list of steps"
+        min_length=1, description="list of the steps to repeat"
     )
 
     @model_validator(mode="after")
     def _finite(self) -> Self:
         if self.count > LARGEST_COUNT:
-            raise ValueError(f"{self.count} steps altogether, at most {LARGEST_COUNT} are carried out")
+            raise ValueError(f"{self.count} steps in total, at most {LARGEST_COUNT} are allowed")
         return self
 
     @property

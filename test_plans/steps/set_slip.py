@@ -20,7 +20,7 @@ class SetSlip(Step):
     slip_percent: float = Field(
         ge=0,
         le=LARGEST_PERCENT,
-        description="how much slower the vehicle is than its wheels, %, from 0 to 50",
+        description="slip between wheels and vehicle, %, from 0 to 50",
     )
 
     def carry_out(self, conductor: Conductor) -> None:

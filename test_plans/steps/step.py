@@ -13,10 +13,10 @@ from test_plans.steps._step import Duration, Name, Seconds, Torque
 
 
 class TorqueStep(Excitation):
-    """A torque for a while, then suddenly another one."""
+    """A step of torque from one constant level to another."""
 
     kind: ClassVar[str] = "step"
-    segment: Name = Field(description="name of the recorded stretch")
+    segment: Name = Field(description="name of the recorded segment")
     from_nm: Torque = Field(description="torque before the step, N m")
     to_nm: Torque = Field(description="torque after the step, N m")
     before_s: Seconds = Field(description="time before the step, s")

@@ -12,7 +12,7 @@ from test_plans.steps._step import Seconds, Step
 
 
 class Wait(Step):
-    """Let time pass."""
+    """Wait for a time."""
 
     kind: ClassVar[str] = "wait"
     wait_s: Seconds = Field(alias="duration_s", description="time to wait, s")

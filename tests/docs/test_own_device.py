@@ -202,8 +202,8 @@ def test_a_port_that_is_not_there_is_named(tmp_path: Path) -> None:
         ("[devices.oil]\nkind = 'oil-unit'\nport = 'x'\npart = 1", "devices.oil.part: unknown key"),
         ("[devices]\noil = 3", "devices.oil = 3"),
         ("[devices.'a/b']\nkind = 'oil-unit'\nport = 'x'", "is a path"),
-        ("[limits.channels]\noil_temperature_k = {}", "limits nothing"),
-        ("[limits.channels]\noil_temperature_k = {below = 2.0, above = 1.0}", "nothing is between"),
+        ("[limits.channels]\noil_temperature_k = {}", "sets no limit"),
+        ("[limits.channels]\noil_temperature_k = {below = 2.0, above = 1.0}", "'below' is not less than"),
         ("[limits.channels]\noil_temperature_k = {above = nan}", "limits.channels.oil_temperature_k.above"),
     ],
 )
@@ -235,7 +235,7 @@ def test_channels_that_do_not_go_together_are_refused_before_anything_moves(
 
 
 @pytest.mark.parametrize(("key", "said"), [("rmcu", "the simulated bench has only 'rmcu-can'"),
-                                           ("dyno", "does not turn wheels")])  # fmt: skip
+                                           ("dyno", "is not a dyno device")])  # fmt: skip
 def test_a_device_does_not_stand_in_another_ones_place(
     key: str, said: str, oil_unit: ModuleType, tmp_path: Path
 ) -> None:

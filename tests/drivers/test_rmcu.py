@@ -255,7 +255,7 @@ def test_damaged_frames_are_counted_and_named_with_their_bus():
         attached("damaged").tamper = Damaging()
         bench.loop.run_for(0.3)
         said = re.fullmatch(
-            r"bus 'rmcu': \d+ of \d+ frames RMCU_Status, (\d+) of (\d+) frames RMCU_Control came damaged "
+            r"bus 'rmcu': \d+ of \d+ frames RMCU_Status, (\d+) of (\d+) frames RMCU_Control are damaged "
             r"\(wrong checksum\)",
             bench.rmcu.damage,
         )

@@ -27,7 +27,10 @@ from tests.faults.sensor_rows import SENSORS
 from tests.faults.stage import Injection
 from tests.faults.third_party import Oil
 
-SILENT, NO_ANSWER = "stopped coming", "no answer|no heartbeat|sends no|heartbeat lost|did not bring"
+SILENT, NO_ANSWER = (
+    "stopped coming",
+    "no answer|no heartbeat|sends no|heartbeat lost|did not change the state",
+)
 RMCU_FAULT = "the RMCU went to fault"
 KEPT_S = 0.3  # a disk is heard of when it is written to
 
@@ -295,7 +298,7 @@ _OF_THE_COMPUTER = (
         "stall",
         "the loop stands still for 1 s",
         lambda: I.Does(I.stalls(1.0)),
-        "own loop stood still",
+        "the bench loop was delayed",
         other=dict.fromkeys(LIVE[:2], GOES_ON),
     ),
     row(

@@ -12,9 +12,9 @@ TORQUE_S = 0.1
 NOTICED_S = 2.0
 _SAYS: dict[tuple[str, int], str] = {
     ("holder", signal.SIGKILL): "was ended by SIGKILL",
-    ("holder", signal.SIGSTOP): "did not turn|stood still",
-    ("command", signal.SIGKILL): "the command that asked for this run has ended",
-    ("command", signal.SIGSTOP): "the command stands still",
+    ("holder", signal.SIGSTOP): "was not running|was stopped",
+    ("command", signal.SIGKILL): "the command of this run has ended",
+    ("command", signal.SIGSTOP): "the command has been silent",
     ("bench", signal.SIGKILL): "error: ",
     ("bench", signal.SIGSTOP): "error: ",
 }

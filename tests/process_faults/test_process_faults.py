@@ -60,9 +60,9 @@ def test_what_is_wrong_is_seen(changes: dict[str, object], said: str) -> None:
 
 
 def test_a_frozen_command_may_take_until_it_is_noticed_and_a_killed_one_may_not() -> None:
-    late = replace(WELL, said="the command stands still since 2.0 s", torque_s=2.05)
+    late = replace(WELL, said="the command has been silent for 2.0 s", torque_s=2.05)
     assert wrong(COMMAND_FROZEN, "stepping", late) == []
-    late = replace(WELL, said="the command that asked for this run has ended", torque_s=2.05, code=-9)
+    late = replace(WELL, said="the command of this run has ended", torque_s=2.05, code=-9)
     assert wrong(COMMAND_KILLED, "stepping", late) == ["torque for 2.050 s"]
 
 

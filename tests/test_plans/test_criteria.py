@@ -62,7 +62,11 @@ def test_a_generic_metric_takes_its_parameters() -> None:
         ({"metric": "peak_shaft_torque", "uper": 3}, "uper", "did you mean 'upper'?"),
         ({"metric": "peak_shaft_torque", "segment": "upp"}, "segment", "did you mean 'up'?"),
         ({"metric": "peak_shaft_torque", "segment": "up", "below": "upp"}, "below", "did you mean 'up'?"),
-        ({"metric": "peak_shaft_torque", "segment": "up", "below": "up"}, "below", "below itself"),
+        (
+            {"metric": "peak_shaft_torque", "segment": "up", "below": "up"},
+            "below",
+            "names the criterion's own segment",
+        ),
         (
             {"metric": "peak_shaft_torque", "segment": "up", "below": "short", "upper": 3},
             "upper",

@@ -64,13 +64,13 @@ def test_below_means_lower_not_equal(mine: float, verdict: str) -> None:
 def test_a_segment_that_was_not_carried_out() -> None:
     judged = result(constant(1.0), upper=2)
     assert (judged.verdict, judged.value) == ("not_judged", None)
-    assert judged.reason == "segment 'up' was not carried out"
+    assert judged.reason == "segment 'up' was not run"
 
 
 def test_the_value_stays_when_the_other_segment_is_missing() -> None:
     judged = result(constant(1.0), UP, below="other")
     assert (judged.verdict, judged.value, judged.upper) == ("not_judged", 1.0, None)
-    assert "'other' was not carried out" in judged.reason
+    assert "'other' was not run" in judged.reason
 
 
 def test_nothing_is_judged_in_a_segment_that_was_stopped() -> None:

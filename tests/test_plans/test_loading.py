@@ -58,22 +58,22 @@ def test_unreadable_files(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("", "plan.yaml: line 1: nothing stands where"),
-        ("- a", "plan.yaml: line 1: a list stands where"),
+        ("", "plan.yaml: line 1: nothing is given where"),
+        ("- a", "plan.yaml: line 1: a list is given where"),
         ("name: p", "at least one step"),
         ("name: p\nsteps: []", "line 2, key 'steps': a plan needs at least one step"),
-        ("name: p\nsteps: 3", "line 2, key 'steps': 3 stands where a list is needed"),
+        ("name: p\nsteps: 3", "line 2, key 'steps': 3 is given where a list is needed"),
         ("name: p\nstep: []", "line 2, key 'step': unknown key 'step'\n  did you mean 'steps'?"),
         ("name: p q\nsteps: [wait: {duration_s: 1}]", "line 1, key 'name'"),
         ("steps: [wait: {duration_s: 1}]", "the key 'name' is missing"),
-        ("name: p\nsteps: [wait]", "line 2, key 'steps[1]': 'wait' stands where"),
+        ("name: p\nsteps: [wait]", "line 2, key 'steps[1]': 'wait' is given where"),
         ("name: p\nsteps: [{wait: {}, coast: {}}]", "a step has one key, its kind; this has 2"),
         ("name: p\nsteps:\n - wait:\n   duration_s: 1", "indent the step's own keys"),
         (
             "name: p\nsteps: [wiat: {}]",
             "key 'steps[1].wiat': unknown kind of step 'wiat'\n  did you mean 'wait'",
         ),
-        ("name: p\nsteps: [wait: 3]", "key 'steps[1].wait': 3 stands where keys"),
+        ("name: p\nsteps: [wait: 3]", "key 'steps[1].wait': 3 is given where keys"),
         ("name: p\nsteps: [wait: ]", "the key 'duration_s' is missing\n  duration_s: time to wait, s"),
         ("name: p\nsteps: [wait: {duration_s: -1}]", "-1 must be at least 0"),
         ("name: p\nsteps: [wait: {duration_s: '1'}]", "'1' must be a number"),
@@ -84,8 +84,8 @@ def test_unreadable_files(tmp_path: Path) -> None:
             "line 6, key 'steps[1].repeat.steps[1].wait.durations': unknown key 'durations'\n  did you mean",
         ),
         ("name: p\nsteps: [repeat: {times: 2}]", "the key 'steps' is missing"),
-        ("name: p\nsteps: [wait: {duration_s: 1}]\nfinally: 0", "line 3, key 'finally': 0 stands where"),
-        ("name: p\nsteps: [wait: {duration_s: 1}]\ncriteria: no", "key 'criteria': 'no' stands where"),
+        ("name: p\nsteps: [wait: {duration_s: 1}]\nfinally: 0", "line 3, key 'finally': 0 is given where"),
+        ("name: p\nsteps: [wait: {duration_s: 1}]\ncriteria: no", "key 'criteria': 'no' is given where"),
     ],
 )
 def test_messages_name_line_and_key(text: str, says: str) -> None:
@@ -100,7 +100,7 @@ def test_segments_have_names_of_their_own() -> None:
 
 def test_the_end_is_for_coming_to_rest() -> None:
     text = text_of({"wait": {"duration_s": 1}}, **{"finally": [{"step": STEP}]})
-    assert "key 'finally[1]': the segment 'up' would not be judged" in refused(text)
+    assert "key 'finally[1]': the segment 'up' is not evaluated" in refused(text)
 
 
 def test_a_plan_is_not_longer_than_a_day() -> None:
@@ -110,7 +110,7 @@ def test_a_plan_is_not_longer_than_a_day() -> None:
 
 def test_criteria_have_ids_of_their_own() -> None:
     peak = {"segment": "up", "metric": "peak_shaft_torque"}
-    assert "key 'criteria[2]': the criterion 'up.peak_shaft_torque' stands twice" in refused(
+    assert "key 'criteria[2]': the criterion 'up.peak_shaft_torque' occurs twice" in refused(
         text_of({"step": STEP}, criteria=[peak, peak])
     )
     plan = plan_of({"step": STEP}, criteria=[peak, peak | {"id": "again", "to_s": 2}])
@@ -235,7 +235,7 @@ LOADED = "set_controller: {file: phase_stabilization.toml}"
 def test_driving_torque_before_any_controller_is_refused_where_it_stands(
     steps: str, end: str, line: str
 ) -> None:
-    with pytest.raises(BadInputError, match="asks for driving torque before any set_controller") as caught:
+    with pytest.raises(BadInputError, match="requests driving torque before any set_controller") as caught:
         plan_from_text(f"name: x\nsteps: {steps}\nfinally: {end}\n", "p.yaml", Path(), to_carry_out=True)
     assert line in caught.value.where
     assert "set_controller: {file:" in caught.value.fix
@@ -255,7 +255,7 @@ def test_a_controller_that_comes_before_is_enough(steps: str) -> None:
 
 def test_a_plan_has_no_more_steps_than_repeat_allows() -> None:
     step = "\n  - wait: {duration_s: 0.1}"
-    with pytest.raises(BadInputError, match="line 2, key 'steps': 10001 steps altogether, at most 10000"):
+    with pytest.raises(BadInputError, match="line 2, key 'steps': 10001 steps in total, at most 10000"):
         plan_from_text(f"name: p\nsteps:{step * 10_001}", "p.yaml", Path())
 
 

@@ -80,7 +80,7 @@ def test_every_value_within_the_bounds_is_what_the_step_gets(value: float) -> No
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"torque_nm": 301.0}, "301 N m is above the largest that may be chosen, 300.5 N m"),
+        ({"torque_nm": 301.0}, "301 N m is above the largest allowed value, 300.5 N m"),
         ({"torque_nm": -101.0}, "-101 N m is below the smallest"),
         ({"torque": 1.0}, "has no variable 'torque'\n  did you mean 'torque_nm'?"),
         ({"times": 2.5}, "2.5 must be a whole number"),
@@ -105,7 +105,11 @@ def test_what_may_not_be_chosen_is_refused(values, said, tmp_path) -> None:
         ("default: 250", "default: 999", "default = 999 N m is above the largest"),
         ("default: 250", "default: much", "key 'variables.torque_nm.default'"),
         ("lower: -100", "least: -100", "unknown key 'least'"),
-        ("variables:\n", "variables:\n  2nd: {default: 1}\n", "key 'variables.2nd': '2nd' is no name"),
+        (
+            "variables:\n",
+            "variables:\n  2nd: {default: 1}\n",
+            "key 'variables.2nd': '2nd' is not a valid name",
+        ),
     ],
 )
 def test_mistakes_are_told_with_their_place(old, new, said) -> None:

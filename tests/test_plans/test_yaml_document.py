@@ -53,7 +53,7 @@ def test_places() -> None:
         ("a: !!map {}", 1, "tags"),
         ("a: [1,\nb: 2", 2, "not YAML"),
         ("a: 1\n---\nb: 2", 2, "not YAML"),
-        ("? [a]\n: b", 1, "a key must be a word"),
+        ("? [a]\n: b", 1, "a key must be a text"),
         ('a: 1\nb: "\\ud800"', 2, "surrogate"),
     ],
 )

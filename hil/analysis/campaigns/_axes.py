@@ -26,8 +26,10 @@ class Span(Strict):
 
     from_: float = Field(alias="from", description="first value")
     to: float = Field(description="last value")
-    count: int = Field(ge=2, le=MOST_VALUES, description="how many values, both ends included")
-    scale: Literal["linear", "log"] = Field(default="linear", description="what is spaced evenly")
+    count: int = Field(ge=2, le=MOST_VALUES, description="number of values, both ends included")
+    scale: Literal["linear", "log"] = Field(
+        default="linear", description="even spacing of the values or of their logarithms"
+    )
 
     def __len__(self) -> int:
         return self.count
@@ -43,7 +45,7 @@ class Span(Strict):
             found = tuple(float(f"{value:.12g}") for value in space(self.from_, self.to, self.count))
         what = ""
         if not all(map(math.isfinite, found)):
-            what = f"{self.from_:g} to {self.to:g} is wider than numbers are, 1.8e308"
+            what = f"{self.from_:g} to {self.to:g} exceeds the range of numbers, 1.8e308"
         elif len(set(found)) < len(found):
             what = f"{self.count} values from {self.from_:g} to {self.to:g} do not differ in 12 digits"
         if what:
@@ -91,9 +93,9 @@ def _listed(entry: object, document: Document, path: KeyPath) -> tuple[float, ..
         plain = isinstance(number, int | float) and not isinstance(number, bool)
         if not plain or not math.isfinite(number):
             where = document.place((*path, index))
-            raise BadInputError(f"{brief(number)} is no number", where=where, fix=f"write: {_EXAMPLE}")
+            raise BadInputError(f"{brief(number)} is not a number", where=where, fix=f"write: {_EXAMPLE}")
     if not 0 < len(set(numbers)) == len(numbers):
-        what = "a value stands twice" if numbers else "there are no values"
+        what = "a value is given twice" if numbers else "there are no values"
         raise BadInputError(what, where=document.place(path), fix=f"write: {_EXAMPLE}")
     return tuple(float(number) for number in numbers)
 
@@ -116,5 +118,5 @@ def refuse_too_many(
         raise BadInputError(
             f"{shown} simulations ({of}), at most {MOST_SIMULATIONS} are made",
             where=document.place(()) if not spans else document.place(("vary",)),
-            fix="vary less, or draw fewer cars: draws alone cover many dimensions at once",
+            fix="vary fewer values, or draw fewer vehicles; draws alone cover many dimensions",
         )

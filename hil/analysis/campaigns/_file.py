@@ -30,30 +30,33 @@ class CampaignKeys(Strict):
     format: FormatNumber = FORMAT
     name: str = Field(
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$",
-        description="letters, digits, _, - and ., at most 64: what results are filed under",
+        description="name of the results; letters, digits, _, - and ., at most 64",
     )
-    title: str = Field(default="", max_length=200, description="what the report is headed with")
-    description: str = Field(default="", max_length=10_000, description="what it is for")
+    title: str = Field(default="", max_length=200, description="title of the report")
+    description: str = Field(default="", max_length=10_000, description="purpose")
     plan: str = Field(min_length=1, description="plan file beside this one, or the name of a built-in plan")
     bench: str = Field(
         default="sim", min_length=1, description="simulated bench: file beside this one, or a shipped one"
     )
     model: str = Field(default="", description="model file beside this one; '' for the bench's own")
     controller: str = Field(
-        default="", description="which of the plan's controllers is replaced or varied; '' for the last"
+        default="", description="file name of the plan's controller to replace or vary; '' for the last"
     )
     controllers: list[str] = Field(
-        default=[], description="files that take its place, one after the other; none for the plan's own"
+        default=[], description="controller files to compare in its place; none for the plan's own"
     )
     draws: int = Field(
-        default=0, ge=0, le=MOST_SIMULATIONS, description="cars drawn around each model; 0: the model alone"
+        default=0,
+        ge=0,
+        le=MOST_SIMULATIONS,
+        description="vehicles sampled around each model; 0: the model alone",
     )
-    seed: int = Field(default=0, ge=0, le=2**31, description="of the draws and of their sensors' noise")
+    seed: int = Field(default=0, ge=0, le=2**31, description="random seed of the draws and of sensor noise")
     criteria: list[str] = Field(
-        default=[], description="ids of the plan's criteria that count; none for all of them"
+        default=[], description="ids of the plan's criteria to evaluate; none for all of them"
     )
     pass_share: float | None = Field(
-        default=None, ge=0, le=1, description="share of each controller's simulations that is to pass"
+        default=None, ge=0, le=1, description="required pass rate of each controller, 0 to 1"
     )
 
 
@@ -141,8 +144,8 @@ def _tolerance_at(value: object, document: Document) -> Tolerance:
                 fix = did_you_mean(name, Tolerance.names())
                 raise BadInputError(f"unknown key {name!r}", where=where, fix=fix)
             if name in shares and not _is_share(value):
-                fix = "it is a share of the number: from 0 to below 1, 0.1 for 10 %"
-                raise BadInputError(f"{brief(value)} is no half width", where=where, fix=fix)
+                fix = "give a relative half width from 0 to below 1: 0.1 for 10 %"
+                raise BadInputError(f"{brief(value)} is not a half width", where=where, fix=fix)
     mistakes.refuse()
     return build(Tolerance, Tolerance.apart(table), document, path)
 
@@ -169,7 +172,7 @@ def campaign_schema() -> dict[str, Any]:
         },
         "tolerance": {
             "type": ["object", "null"],
-            "description": "what differs from car to car",
+            "description": "parameters that vary between vehicles",
             "properties": {name: tolerance.get(name, share) for name in Tolerance.names()},
             "additionalProperties": False,
         },

@@ -33,7 +33,7 @@ def axes_of(file: CampaignFile, plan: Plan, model: Model, *, controlled: bool) -
             group, _, name = column.partition(".")
             if group not in GROUPS or not name:
                 raise BadInputError(
-                    f"nobody knows what '{column}' is of",
+                    f"'{column}' does not start with a known group",
                     where=where,
                     fix=did_you_mean(f"{group}.", _shown()),
                 )
@@ -79,7 +79,7 @@ def _of_group(
         if not controlled:
             raise BadInputError(f"no controller drives a segment of plan '{plan.name}'", where=where)
         known = PARAMETERS[_known(name, PARAMETERS, "a controller has no parameter", where)]
-        allowed = f"it lies from {known.least:g} to {known.most:g} {known.unit}".strip()
+        allowed = f"give a value from {known.least:g} to {known.most:g} {known.unit}".strip()
         return known.unit, lambda value: _refuse("" if known.least <= value <= known.most else allowed)
     if group == "model":
         _known(name, model.parameters, f"a '{model.kind}' model has no parameter", where)
@@ -89,7 +89,7 @@ def _of_group(
     numbers = {one.name: one for one in effect.parameters}
     unit = numbers[_known(parameter, numbers, f"effect '{id_}' has no number", where)].unit
     if sum(use.id == id_ for use in model.effects) > 1:
-        raise BadInputError(f"effect '{id_}' stands several times in the model", where=where)
+        raise BadInputError(f"effect '{id_}' occurs several times in the model", where=where)
     return unit, lambda value: checked(varied(model, {}, {**firsts, name: value}), where)
 
 

@@ -41,7 +41,7 @@ def refuse_other_plans(runs: Sequence[ComparedRun]) -> None:
         different = [part for part in _PARTS if other[part] != first[part]]
         if different:
             raise BadInputError(
-                f"carried out another plan than {runs[0].recording.source}: "
+                f"ran a different plan from {runs[0].recording.source}: "
                 f"'{run.result.plan}', not '{runs[0].result.plan}' ({' and '.join(different)} differ)",
                 where=str(run.recording.source),
                 fix="compare runs of one plan",

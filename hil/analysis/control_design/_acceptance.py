@@ -70,13 +70,13 @@ def _change(spec: DesignSpec) -> str:
             f"change --lead-deg, --lead-hz or --normalisation (they are {spec.lead_deg:g} degrees, "
             f"{spec.lead_hz:g} Hz, {spec.normalisation}), or let --optimize search"
         )
-    return f"{lower}, {part}; if the numbers are meant, check the model's dead time and units"
+    return f"{lower}, {part}; if these values are intended, check the model's dead time and units"
 
 
 def warnings_of(found: Margins, worst: Robustness) -> tuple[str, ...]:
     """Plain sentences on what a stable loop lacks, on the model itself and in the worst draw."""
     warnings = _poor(
-        "on the model itself", found.sensitivity_peak, found.phase_margin_deg, found.gain_margin_db
+        "on the nominal model", found.sensitivity_peak, found.phase_margin_deg, found.gain_margin_db
     )
     if worst.stable_share < 1.0:
         warnings.append(
@@ -126,5 +126,5 @@ def beyond_the_data(model: Model, found: Margins) -> list[str]:
         return []
     return [
         f"outside of the data ({low_hz:.3g}-{high_hz:.3g} Hz) that the model was identified from: "
-        f"{', '.join(beyond)}: no measurement says that it is so there"
+        f"{', '.join(beyond)}: no measurement supports them there"
     ]

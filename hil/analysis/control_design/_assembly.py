@@ -31,14 +31,14 @@ def refuse_resonance(spec: DesignSpec, resonance_hz: float, where: str) -> None:
     half_rate = 0.5 / spec.sample_time_s
     if resonance_hz < SLOWEST_HZ:
         raise BadInputError(
-            f"the model's resonance at {resonance_hz:.4g} Hz lies below {SLOWEST_HZ:g} Hz: no axle swings so",
+            f"the model's resonance at {resonance_hz:.4g} Hz is below {SLOWEST_HZ:g} Hz: no axle has this",
             where=where,
             fix="check the model's units: a stiffness, an inertia, or coefficients of its functions",
         )
     if not resonance_hz < half_rate:
         raise BadInputError(
             f"the model's resonance at {resonance_hz:.4g} Hz lies above {half_rate:g} Hz, half the RMCU's "
-            "sampling rate: no control can act on it",
+            "sampling rate: the controller cannot act on it",
             where=where,
             fix="check the model's units: a stiffness, an inertia, or coefficients of its functions",
         )
@@ -57,8 +57,7 @@ def usable() -> Iterator[None]:
         first = error.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
         raise BadInputError(
-            f"this model gives no controller that the RMCU can use: {key} = {first['input']!r}: "
-            f"{needed(first)}",
+            f"the RMCU cannot use the controller for this model: {key} = {first['input']!r}: {needed(first)}",
             fix="check the units of the model's numbers",
         ) from error
 
@@ -129,7 +128,7 @@ def wheel_inertia_of(model: Model, spec: DesignSpec, plant: DesignPlant, notes: 
         return given
     if model.kind != "transfer_function":
         raise BadInputError(
-            f"a '{model.kind}' model does not tell the wheels' inertia apart from the vehicle's",
+            f"a '{model.kind}' model does not separate the inertia of the wheels from that of the vehicle",
             fix="give --wheel-inertia (wheels and dyno rotors, kg m2)",
         )
     value = chain_of(plant).parameters["wheel_inertia"]

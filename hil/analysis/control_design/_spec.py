@@ -67,10 +67,10 @@ class DesignSpec:
         if not SAMPLE_TIMES_S[0] <= self.sample_time_s <= SAMPLE_TIMES_S[1]:
             raise BadInputError(
                 f"sample_time_s is {self.sample_time_s:g}",
-                fix=f"it lies from {SAMPLE_TIMES_S[0]:g} to {SAMPLE_TIMES_S[1]:g} s: the RMCU takes no other",
+                fix=f"it lies from {SAMPLE_TIMES_S[0]:g} to {SAMPLE_TIMES_S[1]:g} s: the range of the RMCU",
             )
         _within(
-            "--torque-limit", self.torque_limit_nm, (0.0, LARGEST_TORQUE_NM), "N m: the RMCU takes no more"
+            "--torque-limit", self.torque_limit_nm, (0.0, LARGEST_TORQUE_NM), "N m: the limit of the RMCU"
         )
         half_rate = 0.5 / self.sample_time_s
         _within("--pole", self.pole_rad_s, (0.0, 2 * np.pi * half_rate), "rad/s")
@@ -110,7 +110,7 @@ class DesignSpec:
         if not 1.0 < limits.sensitivity_peak <= LARGEST_SIZE:
             raise BadInputError(
                 f"--largest-sensitivity is {limits.sensitivity_peak:g}",
-                fix="it lies above 1: |S| is at least 1 somewhere in every loop; 1.5 to 2 is usual",
+                fix="give a value above 1; |S| reaches at least 1 in every loop, and 1.5 to 2 is usual",
             )
         _within("gain_margin_db", limits.gain_margin_db, (0.0, LARGEST_SIZE), "dB")
         _within("phase_margin_deg", limits.phase_margin_deg, (0.0, 180.0), "degrees")

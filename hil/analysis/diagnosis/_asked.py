@@ -36,7 +36,9 @@ class Asked:
         """
         if not at_most_s > 0.0:
             raise BadInputError(
-                f"{at_most_s / 60.0:g} is no time to search in", where="--at-most", fix="give minutes above 0"
+                f"a search time of {at_most_s / 60.0:g} min is not possible",
+                where="--at-most",
+                fix="give minutes above 0",
             )
         _refuse(noise, OUTPUTS, ("--noise", "channel", "standard deviation"))
         _refuse(least, tuple(EFFECTS), ("--least", "effect", "size"))

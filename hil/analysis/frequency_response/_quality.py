@@ -197,7 +197,7 @@ def check_coherence(
                 "low_coherence",
                 f"{text} ({np.mean(low):.0%} of the frequencies)",
                 where=where,
-                fix="excite harder or longer, average more repeats, or leave these frequencies out",
+                fix="excite more strongly or longer, average more repetitions, or omit these frequencies",
             )
         notes.append(text)
     return tuple(notes)

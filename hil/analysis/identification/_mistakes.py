@@ -39,7 +39,7 @@ _INERTIAS_KG_M2 = (1e-5, 1e3)
 _SMALL_ROTOR_KG_M2 = 0.004
 _SMALL_TOTAL_KG_M2 = 0.02
 _TORQUE_INPUTS = (INPUT, "motor_torque_nm")
-_SIGN, _TO_RAD_S, _TO_NM = "turn the sign of the channel", "multiply it by 2π/60", "multiply it by 1000"
+_SIGN, _TO_RAD_S, _TO_NM = "invert the sign of the channel", "multiply it by 2π/60", "multiply it by 1000"
 
 
 def refuse_mistakes(
@@ -66,8 +66,8 @@ def refuse_mistakes(
     if speeds is not None and law.ratio is not None and not _near(abs(speeds), abs(law.ratio)):
         doubts = (
             *doubts,
-            f"motor over wheel speed is {speeds:.3g}, the torques say {law.ratio:.3g}: is a channel in "
-            "another unit, or does the inverter give less torque than asked?",
+            f"motor over wheel speed is {speeds:.3g}, the torques say {law.ratio:.3g}: check the "
+            "units of the channels, and that the inverter gives the requested torque",
         )
     if speeds is not None and speeds < _FEW and law.ratio is None and gear_ratio is None:
         doubts = (*doubts, f"motor over wheel speed is {speeds:.3g}: is '{_WHEEL}' in rpm?")
@@ -134,7 +134,7 @@ def _wrong_sign(
     if motor == -1 and shaft is None and together == 1:
         return f"{INPUT} looks inverted: both speeds fall when torque pushes", _SIGN
     if motor == -1 and together == 1:
-        return f"{_MOTOR} and {_WHEEL} look inverted: they fall when torque pushes", "turn the sign of both"
+        return f"{_MOTOR} and {_WHEEL} look inverted: they fall when torque pushes", "invert the sign of both"
     if motor == -1:
         return f"{_MOTOR} looks inverted: it falls when torque pushes", f"{_SIGN}, or of {INPUT}"
     if shaft == -1:
@@ -155,15 +155,17 @@ def _motor_sign(frf: FrequencyResponse, law: RotorLaw) -> float | None:
 def _doubts(frf: FrequencyResponse, law: RotorLaw) -> tuple[str, ...]:
     """What an axle might just do, and more likely a wrong unit or sign does."""
     doubts = []
-    ask = "are all speeds in rpm, or all torques in kN m?"
+    ask = "check whether all speeds are in rpm, or all torques in kN m"
     slow = None if _MOTOR not in frf.outputs else slow_inertia(frf, _MOTOR)
     total = None if slow is None else slow[1]
     if total is not None and not _INERTIAS_KG_M2[0] < total < _INERTIAS_KG_M2[1]:
-        doubts.append(f"all that turns has {total:.2g} kg m² at the rotor, which no axle has: {ask}")
+        doubts.append(
+            f"the total inertia is {total:.2g} kg m² at the rotor, not plausible for an axle: {ask}"
+        )
     elif law.inertia_kg_m2 is not None and 0.0 < law.inertia_kg_m2 < _SMALL_ROTOR_KG_M2:
-        doubts.append(f"the rotor has {law.inertia_kg_m2:.2g} kg m², little for an axle's: {ask}")
+        doubts.append(f"the rotor has {law.inertia_kg_m2:.2g} kg m², low for an axle: {ask}")
     elif total is not None and total < _SMALL_TOTAL_KG_M2:
-        doubts.append(f"all that turns has {total:.2g} kg m² at the rotor, little for an axle: {ask}")
+        doubts.append(f"the total inertia is {total:.2g} kg m² at the rotor, low for an axle: {ask}")
     wheel = None if _MOTOR in frf.outputs or _WHEEL not in frf.outputs else slow_inertia(frf, _WHEEL)
     if wheel is not None and wheel[0] < 0.0:
         doubts.append(f"'{_WHEEL}' falls when torque pushes: its sign, or the input's, looks inverted")

@@ -131,7 +131,7 @@ def _unseen(frf: FrequencyResponse) -> tuple[str, ...]:
 
 
 def _refuse_hopeless(misfit: dict[str, float], distortion: dict[str, float] | None) -> None:
-    fix = "find out why first: `hil diagnose` names nonlinear effects; or excite at another amplitude"
+    fix = "find the cause first: `hil diagnose` identifies nonlinear effects; or excite at another amplitude"
     if min(misfit.values()) > HOPELESS_MISFIT:
         raise BadInputError(
             f"no linear model explains these data: the best fit misses the response by {_shares(misfit)}, "

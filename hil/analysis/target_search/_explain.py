@@ -85,13 +85,13 @@ class Explanation:
     def verdict(self) -> str:
         """In one sentence."""
         if not self.rivals:
-            return "Nothing was carried out."
+            return "No run was predicted."
         best = self.rivals[0]
         if self.reached:
             held = sum(not rival.missed for rival in self.rivals)
-            return f"{held} of {len(self.rivals)} rivals hold every condition; the best is {best.name}."
+            return f"{held} of {len(self.rivals)} rivals meet every condition; the best is {best.name}."
         missed = "; ".join(_told(condition) for condition in best.missed)
-        return f"Nothing holds every condition. The closest, {best.name}, misses {missed}."
+        return f"No rival meets every condition. The closest, {best.name}, misses {missed}."
 
 
 def _told(condition: Condition) -> str:
@@ -108,7 +108,7 @@ def _shaft_torque_nm(trial: Trial) -> float:
         largest = float(np.max(np.abs(predicted["shaft_torque_nm"]), initial=0.0))
     if not largest:
         raise BadInputError(
-            "the plan brings no torque to the shaft: no effect could be seen",
+            "the plan applies no torque to the shaft, so no effect is visible",
             where=trial.plan.name,
             fix="name a plan with steps or a chirp",
         )
@@ -143,7 +143,7 @@ def explain(
     known = {candidate.id: candidate for candidate in every}
     for name in among:
         if name not in known:
-            raise BadInputError(f"no candidate is called '{name}'", fix=did_you_mean(name, known))
+            raise BadInputError(f"there is no candidate '{name}'", fix=did_you_mean(name, known))
     every = tuple(known[name] for name in dict.fromkeys(among)) or every
     search = Search(trial, evaluations, seed, show, stopped)
     search.carry_out(every)
@@ -152,7 +152,7 @@ def explain(
     rivals.sort(key=lambda rival: (len(rival.missed), rival.cost))
     test = None
     if len(rivals) > 1:
-        show("looking for the test that tells them apart", None)
+        show("searching for a test that distinguishes them", None)
         test = separating(rivals[0].guess, rivals[1].guess, trial, (rivals[0].name, rivals[1].name))
     start = _rival(("model as it came",), Guess({}, {}), trial)
     searched = tuple(candidate.id for candidate in every)

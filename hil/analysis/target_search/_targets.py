@@ -97,7 +97,7 @@ def read_targets(path: Path | None, plan: str | None, further: Mapping[str, floa
     for name in keys.settles:
         if name not in steps:
             fix = f"name a step: {', '.join(steps) or 'this plan has none'}"
-            raise BadInputError(f"settles.{name}: that segment is no step", where=where, fix=fix)
+            raise BadInputError(f"settles.{name}: that segment is not a step", where=where, fix=fix)
     for name, value in values.items():
         if not value > 0:
             raise BadInputError(f"target '{name}' is {value:g}", where=where, fix="give a positive figure")
@@ -144,4 +144,6 @@ def _refuse_unknown(names: Iterable[str], known: Iterable[str], what: str, where
     choices = list(known)
     for name in names:
         if name not in choices:
-            raise BadInputError(f"no {what} is called '{name}'", where=where, fix=did_you_mean(name, choices))
+            raise BadInputError(
+                f"no {what} has the name '{name}'", where=where, fix=did_you_mean(name, choices)
+            )

@@ -32,7 +32,7 @@ def driven_by(plan: Plan, name: str = "") -> Driven:
     files = list(dict.fromkeys(file for file in walk.driver.values() if file.is_absolute()))
     if not files:
         raise BadInputError(
-            "no criterion can depend on a controller: none of its files drives a segment",
+            "no criterion depends on a controller, because no controller drives a segment",
             where=f"plan '{plan.name}'",
             fix="name a plan with set_controller and steps of driving_torque, such as acceptance",
         )

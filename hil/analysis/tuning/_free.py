@@ -34,7 +34,7 @@ class HardLimits(_Table):
     delay_margin_s: float | None = Field(0.001, gt=0, lt=1)
     motor_torque_nm: float | None = Field(None, gt=0, description="largest |T_m*| in a driven segment")
     motor_energy_j: float | None = Field(None, gt=0, description="positive work in a driven segment")
-    no_worse_than_start: bool = Field(False, description="no criterion may lose margin, on any car")
+    no_worse_than_start: bool = Field(False, description="no criterion may lose margin, on any vehicle")
 
 
 class Tolerance(_Table):
@@ -87,7 +87,7 @@ def read_free(path: Path | None) -> Free:
         BadInputError: names every key that is unknown, out of range or contradictory.
     """
     if path is None:
-        return free_from_toml(shipped_free(), "free.toml, as shipped")
+        return free_from_toml(shipped_free(), "free.toml, built in")
     return free_from_toml(toml_text(path), str(path))
 
 

@@ -154,7 +154,7 @@ class _Refining:
         nothing = Correction(start, np.zeros(len(names)), np.zeros((len(names), start.size)))
         first = self._step.promise(start, nothing)
         if first is None:
-            return Refinement((), None, "the start is beyond a hard limit on the model itself")
+            return Refinement((), None, "the start exceeds a hard limit on the nominal model")
         ended = self._carried_out(first, self._first_decided) or self._first_agrees()
         while not ended:
             ended = self._next()
@@ -165,18 +165,18 @@ class _Refining:
         allowed = self._patience.stop_beyond
         if allowed is None or self._runs[0].beside_prediction(allowed).agrees:
             return ""
-        return f"the first run is not as predicted, by more than {100 * allowed:g} % of a limit"
+        return f"the first run deviates from its prediction by more than {100 * allowed:g} % of a limit"
 
     def _next(self) -> str:
         """One more run; why there is none, or no other after it."""
         if self._stopped():
             return "stopped"
         if len(self._runs) >= self._patience.runs:
-            return "all runs were made"
-        self._show(f"run {len(self._runs) + 1}: where to", len(self._runs) / self._patience.runs)
+            return "all runs are complete"
+        self._show(f"run {len(self._runs) + 1}: choosing parameters", len(self._runs) / self._patience.runs)
         correction = correction_of(self._points, self._apart, self._best)
         centre = self._step.promise(self._points[self._best], correction)
-        assert centre is not None, "it was promised before"
+        assert centre is not None, "the same gain was predicted before"
         found = self._step.best(centre, correction, self._radius)
         if self._stopped():
             return "stopped"
@@ -207,7 +207,7 @@ class _Refining:
             came = self._bench.run(controller, number)
             run = replace(run, measured=self._trial.margins_of(came.criteria), criteria=came.criteria)
             if came.trouble or len(run.measured) < len(run.expected):
-                why = came.trouble or "not all that depends on the controller was judged"
+                why = came.trouble or "some criteria that depend on the controller were not evaluated"
                 run = replace(run, measured={}, decision="failed", reason=why)
         if not run.measured:
             self._runs.append(run)
@@ -219,8 +219,8 @@ class _Refining:
         if decision != "left":
             self._best = len(self._points) - 1
         if self._radius < LEAST_RADIUS:
-            return "the trust region is as small as is worth a run"
-        return "two runs in a row gained nothing" if self._in_vain > 1 else ""
+            return "the trust region has reached its minimum size"
+        return "two consecutive runs gave no improvement" if self._in_vain > 1 else ""
 
     def _first_decided(self, run: RefinedRun) -> tuple[Decision, str]:
         return "first", f"the prediction; worst margin {percent(run.worst, 2)}"

@@ -175,13 +175,13 @@ def refuse_model(model: Model, where: str) -> None:
         raise BadInputError(
             f"the model does not explain its recordings: {doubt}",
             where=where,
-            fix="find out why (hil diagnose) and tune on the model that it writes",
+            fix="find the cause with hil diagnose, and tune on the model that it writes",
         )
     if model.meta.get("explains_the_data") is False:
         raise BadInputError(
             "the chain does not explain the data that it was identified from",
             where=where,
-            fix="find out why (hil diagnose) and tune on the model that it writes",
+            fix="find the cause with hil diagnose, and tune on the model that it writes",
         )
     if model.kind == "transfer_function":
         raise BadInputError(

@@ -64,7 +64,7 @@ Controllers = Annotated[
     list[str] | None,
     typer.Option(
         metavar="[NAME=]FILE",
-        help="controller file in place of the one that the plan loads; of several, in place of NAME's",
+        help="controller file to use instead of the plan's; NAME selects which one if the plan has several",
     ),
 ]
-Operator = Annotated[str, typer.Option(help="who runs the bench; stands in the report")]
+Operator = Annotated[str, typer.Option(help="name of the person who runs the bench; printed in the report")]

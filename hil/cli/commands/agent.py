@@ -15,29 +15,38 @@ SEVERAL = ("--bench", "--server")
 def command(
     server: Annotated[
         list[str],
-        typer.Option(metavar="URL", help="the service, or several with one database"),
+        typer.Option(
+            metavar="URL", help="address of the service; repeat it for several services with one database"
+        ),
     ],
-    data: Annotated[Path, typer.Option(metavar="DIR", help="where runs are kept until the service has them")],
+    data: Annotated[
+        Path, typer.Option(metavar="DIR", help="directory that keeps runs until the service has them")
+    ],
     bench: Annotated[
         list[str] | None, typer.Option(help="bench files, or names of shipped benches; default: sim")
     ] = None,
-    name: Annotated[str, typer.Option(help="what people call this agent; default: this machine's name")] = "",
+    name: Annotated[
+        str, typer.Option(help="name of this agent in the service; default: this machine's name")
+    ] = "",
     keep_local: Annotated[
         float,
-        typer.Option(min=0, metavar="DAYS", help="how long files stay in DIR that the service has"),
+        typer.Option(
+            min=0, metavar="DAYS", help="days to keep files in DIR after their upload to the service"
+        ),
     ] = 30.0,
     for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
+        float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")
     ] = None,
     as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else there")
+        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Drive benches of this machine for a bench service elsewhere, which has their queue and their page.
+    """Drive benches of this machine for a bench service on another machine.
 
-    Works until Ctrl-C or SIGTERM; runs under way are ended then, with their end steps. While the service is
-    away a run goes on, and is delivered later. HIL_TOKEN is a token with the role agent. Exit code: 2 bad
-    input, 3 a bench's name is another's there, 130 ended by a signal; 0 its time (--for) is over.
+    The service holds the queue and the page. The agent works until Ctrl-C or SIGTERM; it then ends runs
+    under way with their end steps. When the service is out of reach, a run continues and is uploaded later.
+    HIL_TOKEN holds a token with the role agent. Exit code: 0 the time of --for is over, 2 bad input, 3 the
+    service has another bench of that name, 130 ended by a signal.
     """
     import_python_can()
     from hil.cli.agent import carry_out

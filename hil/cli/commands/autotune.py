@@ -19,7 +19,7 @@ def command(
         Path,
         typer.Option(
             "--model",
-            help="model file of the axle (a chain) to begin with, or the name of a shipped model",
+            help="initial model file of the axle (a chain), or the name of a shipped model",
             callback=found_model,
             autocompletion=shipped_model(),
         ),
@@ -35,20 +35,21 @@ def command(
         list[str] | None,
         typer.Option(
             metavar="CHANNEL=VALUE",
-            help="largest magnitude that a run may reach, or bench_time_s for all of them; default: 1.3 "
-            "times what is predicted of both plans as they are",
+            help="largest magnitude allowed in a run, or bench_time_s for all runs; default: 1.3 times "
+            "the values predicted for both plans",
         ),
     ] = None,
     confirm: Annotated[
-        str, typer.Option(metavar="NAME", help="who takes all runs upon them, within the envelope")
+        str,
+        typer.Option(metavar="NAME", help="name of the person who authorises all runs within the envelope"),
     ] = "",
     operator: Operator = "",
     processes: Annotated[
-        int | None, typer.Option(min=1, max=256, help="predictions at once; default: one for each core")
+        int | None, typer.Option(min=1, max=256, help="parallel predictions; default: one per core")
     ] = None,
     resume: Annotated[
         bool,
-        typer.Option("--resume", help="go on in --out: what was run there before the first round is kept"),
+        typer.Option("--resume", help="continue in --out; keep the runs made there before the first round"),
     ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier result in --out")
@@ -57,16 +58,16 @@ def command(
         bool, typer.Option("--json", help="print autotune.json on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Identify, diagnose, add, tune, confirm on a bench, and again, unattended.
+    """Identify, diagnose, tune and confirm on a bench, in rounds, unattended.
 
-    A sequence file names the plans and says when it is enough. What the model lacks is named from recordings
-    and added; a controller is tuned on the better model, confirmed and refined on the bench; a run that is
-    not as predicted is explained in another round. It ends when prediction and run agree and the worst margin
-    no longer grows. One consent before the first run stands for all of them, within an envelope.
+    A sequence file names the plans and the end conditions. Each round identifies the effects that the model
+    lacks and adds them, tunes a controller on the improved model, and confirms and refines it on the bench. A
+    run that deviates from its prediction starts another round. The rounds end when prediction and run agree
+    and the worst margin no longer grows. One consent before the first run covers all runs within an envelope.
 
-    Writes controller.toml (the best that was measured), model.toml, autotune.json with every decision and its
-    reason, report.html, report.pdf, and a folder for each stage. Ctrl-C keeps what is known. Exit code: 0
-    prediction and run agree and every criterion that depends on the controller passes, 1 not so, 3 a run
+    Writes controller.toml (the best one measured), model.toml, autotune.json with every decision and its
+    reason, report.html, report.pdf, and a folder for each stage. Ctrl-C keeps the results so far. Exit code:
+    0 prediction and run agree and every criterion that depends on the controller passes, 1 otherwise, 3 a run
     failed.
     """
     import_python_can()

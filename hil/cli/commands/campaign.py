@@ -26,24 +26,25 @@ def command(
         typer.Option(
             min=0,
             max=1024,
-            help="processes of this machine; 0: this one alone; default: one for each core",
+            help="worker processes on this machine; 0: none, simulate in this process; default: one per core",
         ),
     ] = None,
     scheduler: Annotated[
         str,
-        typer.Option(metavar="ADDRESS", help="of dask.distributed, whose workers are used in their place"),
+        typer.Option(
+            metavar="ADDRESS", help="address of a dask.distributed scheduler; use its workers instead"
+        ),
     ] = "",
     server: Annotated[
         str,
-        typer.Option(
-            metavar="URL", help="have a bench service carry it out (hil serve); the token is in HIL_TOKEN"
-        ),
+        typer.Option(metavar="URL", help="run it on a bench service (hil serve); HIL_TOKEN holds the token"),
     ] = "",
     resume: Annotated[
-        bool, typer.Option("--resume", help="go on in --out: only what is missing is simulated")
+        bool, typer.Option("--resume", help="continue in --out; simulate only what is missing")
     ] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="say how many simulations and how long, and write nothing")
+        bool,
+        typer.Option("--dry-run", help="print the number of simulations and the duration; write nothing"),
     ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier result in --out")
@@ -52,14 +53,15 @@ def command(
         bool, typer.Option("--json", help="print campaign.json on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Simulate a plan many times: parameters varied, cars drawn around the model, controllers compared.
+    """Simulate a plan many times: vary parameters, sample vehicles around the model, compare controllers.
 
-    Writes simulations/ (Parquet, one row for each), campaign.json, report.html and report.pdf. Ctrl-C awaits
-    what is under way, a few seconds, and keeps it; a second one does not. --resume goes on, also after a kill
-    of this command, of a worker or of the scheduler: nothing is lost, nothing stands twice.
+    Writes simulations/ (Parquet, one row per simulation), campaign.json, report.html and report.pdf. Ctrl-C
+    waits a few seconds for simulations under way and keeps them; a second Ctrl-C does not wait. --resume
+    continues, also after a kill of this command, of a worker or of the scheduler. No simulation is lost or
+    stored twice.
 
-    Exit code: 0 done, and each controller passes as often as the file's pass_share wants, 1 one does not, 3
-    nobody could carry it out: what was done is kept.
+    Exit code: 0 done, each controller reaches the file's pass_share, 1 one does not, 3 no worker could
+    continue; finished simulations are kept.
     """
     import_python_can()
     from hil.cli.campaign import carry_out

@@ -20,7 +20,7 @@ def command(
         typer.Option(
             "--set",
             metavar="NAME=VALUE",
-            help="a variable of the plan",
+            help="value of a variable of the plan",
         ),
     ] = None,
     controller: Controllers = None,
@@ -28,10 +28,10 @@ def command(
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Validate a plan, estimate its duration, predict its peaks and criteria, compare with the limits.
+    """Validate a plan; predict its duration, peaks and criteria; compare them with the limits.
 
-    Exit code: 0 it fits the bench, 1 a predicted peak is beyond a limit, 2 it cannot be run at all. A
-    criterion that is predicted to fail is said and changes no exit code: the axle is what the run is for.
+    Exit code: 0 the plan fits the bench, 1 a predicted peak exceeds a limit, 2 the plan cannot be run. A
+    criterion that is predicted to fail is reported and does not change the exit code.
     """
     import_python_can()
     from hil.cli.check import carry_out

@@ -11,7 +11,7 @@ import typer
 def command(
     runs: Annotated[
         list[Path],
-        typer.Argument(metavar="DIR...", help="run directories or recordings; the first is what others meet"),
+        typer.Argument(metavar="DIR...", help="run directories or recordings; the first is the reference"),
     ],
     out: Annotated[
         Path | None, typer.Option(help="directory for the results; default: out/compare-NNN")
@@ -23,11 +23,11 @@ def command(
         bool, typer.Option("--json", help="print comparison.json on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Lay runs of one plan side by side: criteria, responses overlaid at the step, spectra.
+    """Compare runs of one plan: criteria, step responses overlaid, spectra.
 
-    Writes comparison.json, report.html and report.pdf, all or none. Everything is told against the first
-    run: name the measured bench first, then the base model, then the augmented one, and it is seen where
-    the gap has shrunk. Criteria are computed anew from the recordings.
+    Writes comparison.json, report.html and report.pdf, all or none. The first run is the reference. To see
+    where an augmented model improves, give the measured run first, then the base model, then the augmented
+    one. Criteria are computed again from the recordings.
     """
     from hil.cli.compare import carry_out
 

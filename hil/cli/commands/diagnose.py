@@ -16,26 +16,26 @@ SEVERAL = ("--holdout",)
 
 def command(
     recordings: Annotated[
-        list[Path], typer.Argument(help="Recordings to explain (.mcap, .csv, .parquet, .mf4, .mat).")
+        list[Path], typer.Argument(help="recordings to explain (.mcap, .csv, .parquet, .mf4, .mat)")
     ],
     model: Annotated[
         Path,
         typer.Option(
             "--model",
-            help="Model file to start from, or the name of a shipped model.",
+            help="model file to start from, or the name of a shipped model",
             callback=found_model,
             autocompletion=shipped_model(),
         ),
     ],
     out: Annotated[
         Path | None,
-        typer.Option("--out", help="Directory for the results; default: out/diagnose-001 and so on."),
+        typer.Option("--out", help="directory for the results; default: out/diagnose-001 and so on"),
     ] = None,
     holdout: Annotated[
         list[Path] | None,
         typer.Option(
             "--holdout",
-            help="Recordings that no fit sees, only the final figures: all files up to the next option.",
+            help="recordings for validation, not used in any fit; all files up to the next option",
         ),
     ] = None,
     noise: Annotated[
@@ -43,7 +43,7 @@ def command(
         typer.Option(
             "--noise",
             metavar="CHANNEL=VALUE",
-            help="Standard deviation of a sample of a channel, as its sensor's data sheet says; repeatable.",
+            help="standard deviation of a channel's samples, from its sensor's data sheet; repeatable",
         ),
     ] = None,
     least: Annotated[
@@ -51,7 +51,7 @@ def command(
         typer.Option(
             "--least",
             metavar="EFFECT=SIZE",
-            help="Smallest size of an effect that is worth a name, in its own unit; repeatable.",
+            help="smallest relevant size of an effect, in its own unit; repeatable",
         ),
     ] = None,
     at_most: Annotated[
@@ -59,15 +59,17 @@ def command(
         typer.Option(
             "--at-most",
             metavar="MINUTES",
-            help="Processor time of the search; then what is known so far is told, as unfinished.",
+            help="processor time of the search; then the result so far is reported as unfinished",
         ),
     ] = 10.0,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace an earlier diagnosis in --out.")
+        bool, typer.Option("--overwrite", help="replace an earlier diagnosis in --out")
     ] = False,
-    json_: Annotated[bool, typer.Option("--json", help="Print diagnosis.json and nothing else.")] = False,
+    json_: Annotated[
+        bool, typer.Option("--json", help="print diagnosis.json on stdout, nothing else")
+    ] = False,
 ) -> int:
-    """Find where a model and recordings disagree, name the missing effect, add it to the model.
+    """Find where a model and recordings disagree, identify the missing effect and add it to the model.
 
     Writes model.toml, diagnosis.json, report.html and report.pdf, all or none.
     """

@@ -13,16 +13,17 @@ from hil.cli.commands._options import DefaultBenchArgument
 def command(
     bench: DefaultBenchArgument = "",
     for_s: Annotated[
-        float, typer.Option("--for", metavar="SECONDS", help="how long to listen before anybody is asked")
+        float, typer.Option("--for", metavar="SECONDS", help="time to listen before the devices are read")
     ] = 2.0,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Find out what is connected, what answers, and what is wrong, with what to do about it.
+    """Check which devices are connected and answer; report faults and remedies.
 
-    Listens first, then reads from every device; writes nothing, moves nothing. Exit code: 0 no fault (hints
-    change nothing), 1 faults were found, 2 the bench file cannot be used, 3 neither RMCU nor dynos answer.
+    Listens first, then reads from every device. Writes nothing to a device and moves nothing. Exit code: 0 no
+    fault (hints do not count), 1 faults were found, 2 the bench file cannot be used, 3 neither RMCU nor dynos
+    answer.
     """
     import_python_can()
     from hil.cli.doctor import carry_out

@@ -21,7 +21,7 @@ def command(
     ] = None,
     target: Annotated[
         list[str] | None,
-        typer.Option("--target", metavar="ID=VALUE", help="figure of a criterion; may be repeated"),
+        typer.Option("--target", metavar="ID=VALUE", help="target value of a criterion; may be repeated"),
     ] = None,
     plan: Annotated[
         str | None, typer.Option(help="plan file or name; default: the targets file's, or acceptance")
@@ -40,11 +40,11 @@ def command(
         typer.Option(
             "--among",
             metavar="ID",
-            help="look at this effect, or 'controller', and at no other; may be repeated",
+            help="search only this effect, or 'controller'; may be repeated",
         ),
     ] = None,
-    evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="predicted runs to spend")] = 2000,
-    seed: Annotated[int, typer.Option(min=0, help="of the scattered guesses")] = 0,
+    evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="number of predicted runs")] = 2000,
+    seed: Annotated[int, typer.Option(min=0, help="random seed of the starting points")] = 0,
     out: Annotated[
         Path | None, typer.Option(help="directory for the results; default: out/explain-NNN")
     ] = None,
@@ -55,10 +55,11 @@ def command(
         bool, typer.Option("--json", help="print targets.json on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Search for effects, alone or in pairs, that bring a predicted run of a plan to target figures.
+    """Search for model changes, one effect or two, with which a predicted run reproduces target values.
 
     Writes targets.json, rival_1.toml and further models, separating_plan.yaml, report.html and report.pdf.
-    Ctrl-C ends the search and keeps what is known. Exit code: 0 a rival holds every condition, 1 none does.
+    Ctrl-C ends the search and keeps the results so far. Exit code: 0 a rival meets every condition, 1 none
+    does.
     """
     import_python_can()
     from hil.cli.explain import carry_out

@@ -17,7 +17,7 @@ def command(
         ),
     ],
     frames: Annotated[
-        bool, typer.Option("--frames", help="raw frames instead of channels also to .mf4 (ASAM bus logging)")
+        bool, typer.Option("--frames", help="write raw frames, not channels, to .mf4 (ASAM bus logging)")
     ] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
     as_json: Annotated[

@@ -20,16 +20,16 @@ def command(
             autocompletion=shipped_model(),
         ),
     ],
-    out: Annotated[Path, typer.Option(help="unit to write: NAME.fmu")],
+    out: Annotated[Path, typer.Option(help="FMU to write: NAME.fmu")],
     controller: Annotated[
-        Path | None, typer.Option(help="controller file; without it motor torque is asked for")
+        Path | None, typer.Option(help="controller file; without it the FMU's input is motor torque")
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Write a model, with its controller, as an FMI 2 co-simulation unit.
+    """Export a model, with its controller, as an FMI 2 co-simulation unit (FMU).
 
     The unit computes with this package: where it is used, Python with eaxle-hil has to be installed.
     """

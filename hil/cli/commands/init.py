@@ -14,7 +14,7 @@ def command(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="a new folder, or an empty one")],
     samples: Annotated[
         bool,
-        typer.Option("--samples", help="recordings of an axle with backlash too, to try a diagnosis on"),
+        typer.Option("--samples", help="add recordings of an axle with backlash, to try a diagnosis"),
     ] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
@@ -22,8 +22,8 @@ def command(
 ) -> int:
     """Make a folder with a plan, a simulated bench, its model and a controller.
 
-    `hil check`, `hil run` and `pytest` work there as it stands; README.md in it says how. --samples adds what
-    the how-to of diagnoses begins with: axle.toml, chirp_high.csv, chirp_low.csv, steps.csv, multisine.csv.
+    `hil check`, `hil run` and `pytest` work in it at once; its README.md says how. --samples adds the files
+    for the how-to on diagnosis: axle.toml, chirp_high.csv, chirp_low.csv, steps.csv, multisine.csv.
     """
     import_python_can()
     from hil.cli.init import carry_out

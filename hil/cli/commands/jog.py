@@ -13,14 +13,17 @@ from hil.cli.commands._options import BenchArgument
 
 def command(
     bench: BenchArgument,
-    torque: Annotated[float, typer.Option(metavar="NM", help="at the motor, N m")] = 10.0,
+    torque: Annotated[float, typer.Option(metavar="NM", help="motor torque, N m")] = 10.0,
     out: Annotated[
         Path | None,
         typer.Option(help="directory for recording and jog.json; default: out/jog-001 and so on"),
     ] = None,
-    operator: Annotated[str, typer.Option(help="who runs the bench")] = "",
+    operator: Annotated[str, typer.Option(help="name of the person who runs the bench")] = "",
     yes: Annotated[
-        str, typer.Option("--yes", metavar="NAME", help="who confirms every operator prompt beforehand")
+        str,
+        typer.Option(
+            "--yes", metavar="NAME", help="name of the person who confirms all operator prompts in advance"
+        ),
     ] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier jog in --out")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="print jog.json on stdout, nothing else")] = False,

@@ -22,7 +22,7 @@ def command(
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """List built-in plans, benches and models, effects of models, or what plans and bench files may use.
+    """List built-in plans, benches, models and effects, or the steps, metrics and devices for files.
 
     Steps, metrics and devices of installed packages stand there too.
     """

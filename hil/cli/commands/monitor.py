@@ -13,22 +13,22 @@ from hil.cli.commands._options import BenchArgument
 def command(
     bench: BenchArgument,
     for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
+        float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")
     ] = None,
     every_s: Annotated[
         float | None,
         typer.Option(
-            "--every", metavar="SECONDS", help="between two looks; default 0.2 on a terminal, else 1"
+            "--every", metavar="SECONDS", help="time between two updates; default: 0.2 on a terminal, else 1"
         ),
     ] = None,
     as_json: Annotated[
         bool,
-        typer.Option("--json", help="print one JSON object of the whole time, nothing else"),
+        typer.Option("--json", help="print one JSON object for the whole time, nothing else"),
     ] = False,
 ) -> int:
     """Show decoded channels and bus load live; no frame is sent, not even a heartbeat.
 
-    On a terminal a table that renews itself, else a line at each look. Exit code: 0 its time (--for) is over,
+    Prints a table that updates on a terminal, else a line per update. Exit code: 0 the time of --for is over,
     2 bad input or a simulated bench, 3 no bus can be opened or one fails, 130 ended by Ctrl-C.
     """
     import_python_can()

@@ -20,7 +20,7 @@ def command(
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Write a whole recording from what a crash, a power cut or a bad disk left, and say what is missing.
+    """Recover a recording after a crash, a power cut or a disk fault, and list what is missing.
 
     The input is never written over. A recording that is whole is left as it is. `hil report` makes the report
     of the recovered recording; it says that the run was cut.

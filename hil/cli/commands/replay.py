@@ -27,23 +27,25 @@ def command(
         list[str] | None,
         typer.Option(
             metavar="[CHANNEL=]FILE",
-            help="in place of --bench: each signal of a DBC becomes a channel; of the log's CHANNEL, or all",
+            help="instead of --bench: DBC whose signals become channels; CHANNEL of the log, default: all",
         ),
     ] = None,
     bus: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="BUS=CHANNEL", help="which of the log's channels is which bus, where that is not clear"
+            metavar="BUS=CHANNEL", help="assign a channel of the log to a bus, where it is ambiguous"
         ),
     ] = None,
     plan: Annotated[
-        str | None, typer.Option(help="plan whose criteria are judged; needs to know where its segments lie")
+        str | None, typer.Option(help="plan whose criteria are evaluated; needs the times of its segments")
     ] = None,
     segments: Annotated[
         Path | None,
-        typer.Option(help="the run's recording.mcap, or JSON with segments; default: of a .mcap LOG its own"),
+        typer.Option(help="the run's recording.mcap, or JSON with segments; default: those of a .mcap LOG"),
     ] = None,
-    operator: Annotated[str, typer.Option(help="who ran the bench; stands in the report")] = "",
+    operator: Annotated[
+        str, typer.Option(help="name of the person who ran the bench; printed in the report")
+    ] = "",
     out: Annotated[
         Path | None, typer.Option(help="directory; default: a new one, out/replay-001 and so on")
     ] = None,

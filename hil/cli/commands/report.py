@@ -18,7 +18,7 @@ def command(
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="print the result on stdout, nothing else")] = False,
 ) -> int:
-    """Make the report again from a recording; the criteria are computed anew from its channels.
+    """Renew a report from its recording; compute the criteria again from the channels.
 
     Beside its own recording a report is renewed in place. A recording that another tool made gets a report
     of its channels, without verdict.

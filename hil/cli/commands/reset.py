@@ -13,10 +13,19 @@ from hil.cli.commands._options import BenchArgument
 
 def command(
     bench: BenchArgument,
-    by: Annotated[str, typer.Option("--by", metavar="NAME", help="who has made sure that it is safe; kept")],
+    by: Annotated[
+        str,
+        typer.Option(
+            "--by", metavar="NAME", help="name of the person who checked that it is safe; kept in the record"
+        ),
+    ],
     data: Annotated[
         Path | None,
-        typer.Option("--data", metavar="DIR", help="of the service or agent whose simulated bench it is"),
+        typer.Option(
+            "--data",
+            metavar="DIR",
+            help="data directory of the service or agent that drives this simulated bench",
+        ),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
@@ -24,7 +33,7 @@ def command(
 ) -> int:
     """Reset an emergency stop, so that the bench can be armed again. Nothing moves.
 
-    Before: make sure that nobody is in danger, and that its cause is gone.
+    First make sure that nobody is in danger and that the cause of the stop is removed.
     """
     import_python_can()
     from hil.cli.reset import carry_out

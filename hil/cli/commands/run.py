@@ -34,42 +34,44 @@ def command(
         typer.Option(
             "--set",
             metavar="NAME=VALUE",
-            help="a variable of the plan; NAME=VALUE,VALUE,… carries it out for each",
+            help="value of a variable of the plan; NAME=VALUE,VALUE,… runs the plan for each value",
         ),
     ] = None,
     repeat: Annotated[
-        int, typer.Option(min=1, max=1000, help="how often; each in a folder of its own, with the spread")
+        int, typer.Option(min=1, max=1000, help="number of runs, each in its own folder, with the spread")
     ] = 1,
     controller: Controllers = None,
     operator: Operator = "",
     yes: Annotated[
         str,
         typer.Option(
-            "--yes", metavar="NAME", help="who confirms every operator prompt; stands in the report"
+            "--yes",
+            metavar="NAME",
+            help="name of the person who confirms all operator prompts; printed in the report",
         ),
     ] = "",
     confirm: Annotated[
         str,
         typer.Option(
-            "--confirm", metavar="NAME", help="who takes a hazardous plan upon them; stands in the report"
+            "--confirm",
+            metavar="NAME",
+            help="name of the person who authorises a hazardous plan; printed in the report",
         ),
     ] = "",
     accept_expired: Annotated[
         str,
         typer.Option(
             metavar="'NAME: reason'",
-            help="who answers for sensors whose calibration has run out, and why; stands in the report",
+            help="person who accepts expired sensor calibrations, and why; printed in the report",
         ),
     ] = "",
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
     server: Annotated[
         str,
-        typer.Option(
-            metavar="URL", help="have a bench service carry it out (hil serve); the token is in HIL_TOKEN"
-        ),
+        typer.Option(metavar="URL", help="run it on a bench service (hil serve); HIL_TOKEN holds the token"),
     ] = "",
     show: Annotated[
-        bool, typer.Option("--open", help="show the report of a single run in a browser, if there is one")
+        bool, typer.Option("--open", help="open the report of a single run in a browser, if one is installed")
     ] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print result.json on stdout, nothing else")

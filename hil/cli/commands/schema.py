@@ -14,7 +14,7 @@ def command(
     kind: Annotated[
         str,
         typer.Argument(
-            help="what the schema is for: plan, bench, model, controller or campaign",
+            help="kind of file: plan, bench, model, controller or campaign",
             autocompletion=one_of("plan", "bench", "model", "controller", "campaign"),
         ),
     ] = "plan",

@@ -13,15 +13,15 @@ SEVERAL = ("--bench", "--allow-host", "--trusted-proxy")
 
 
 def command(
-    data: Annotated[Path, typer.Option(metavar="DIR", help="where runs, plans and the database are kept")],
+    data: Annotated[Path, typer.Option(metavar="DIR", help="directory for runs, plans and the database")],
     bench: Annotated[
         list[str] | None, typer.Option(help="bench files, or names of shipped benches; default: sim")
     ] = None,
     no_bench: Annotated[
-        bool, typer.Option("--no-bench", help="serve no bench of this machine, only those of agents")
+        bool, typer.Option("--no-bench", help="serve only benches of agents, none of this machine")
     ] = False,
     host: Annotated[
-        str, typer.Option(help="address to listen at; another than this machine's needs tokens")
+        str, typer.Option(help="address to listen on; any other than the loopback needs tokens")
     ] = ("127.0.0.1"),
     port: Annotated[int, typer.Option(min=0, max=65535, help="port; 0 takes a free one")] = 8080,
     stop_port: Annotated[
@@ -32,76 +32,78 @@ def command(
     ] = None,
     stop_url: Annotated[
         str,
-        typer.Option(metavar="URL", help="where browsers reach the stop post, if a proxy stands before it"),
+        typer.Option(metavar="URL", help="address of the stop post for browsers, if it is behind a proxy"),
     ] = "",
     trusted_proxy: Annotated[
         list[str] | None,
         typer.Option(
             metavar="ADDRESS",
-            help="a proxy before the service: who asks, and whether by TLS, is what it says",
+            help="address of a proxy whose headers for client address and TLS are trusted",
         ),
     ] = None,
     allow_host: Annotated[
         list[str] | None,
-        typer.Option(metavar="NAME", help="further names by which browsers may call the service"),
+        typer.Option(metavar="NAME", help="additional host name that browsers may use for the service"),
     ] = None,
     database: Annotated[
         str,
         typer.Option(
             metavar="URL",
             envvar="HIL_DATABASE",
-            help="in place of SQLite in DIR: postgresql://user@host/name",
+            help="database instead of SQLite in DIR: postgresql://user@host/name",
         ),
     ] = "",
     store: Annotated[
         str,
         typer.Option(
             metavar="URL",
-            help="keep files of runs there, too: s3://bucket/prefix, or a folder of another disk",
+            help="second place for files of runs: s3://bucket/prefix, or a folder on another disk",
         ),
     ] = "",
     keep_local: Annotated[
         float,
-        typer.Option(min=0, metavar="DAYS", help="how long files stay in DIR that the store has"),
+        typer.Option(min=0, metavar="DAYS", help="days to keep files in DIR after they are in the store"),
     ] = 30.0,
     workers: Annotated[
         int | None,
-        typer.Option(
-            min=0, max=1024, help="processes that simulate campaigns; default: all processors but one"
-        ),
+        typer.Option(min=0, max=1024, help="worker processes for campaigns; default: all processors but one"),
     ] = None,
     scheduler: Annotated[
         str,
-        typer.Option(metavar="ADDRESS", help="of dask.distributed, whose workers simulate in their place"),
+        typer.Option(
+            metavar="ADDRESS", help="address of a dask.distributed scheduler; use its workers instead"
+        ),
     ] = "",
     rate: Annotated[
         float,
         typer.Option(
-            min=1, metavar="N", help="requests that an address may send a second; behind a proxy all have one"
+            min=1,
+            metavar="N",
+            help="requests per second allowed for a client address; a proxy counts as one client",
         ),
     ] = 40.0,
     for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
+        float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")
     ] = None,
     add_token: Annotated[
         str,
         typer.Option(
             metavar="NAME=ROLE",
-            help="make a token, print it, and end; roles: viewer, operator, engineer, admin, agent",
+            help="make a token, print it and exit; roles: viewer, operator, engineer, admin, agent",
         ),
     ] = "",
     token_days: Annotated[
-        float, typer.Option(min=0.01, max=3650, metavar="DAYS", help="how long that token is valid")
+        float, typer.Option(min=0.01, max=3650, metavar="DAYS", help="validity of that token, days")
     ] = 365.0,
     as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else there")
+        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Make benches a shared instrument: a queue of runs, an API, a page that shows what they do.
+    """Run the bench service, which shares benches: a run queue, a REST API and a live page.
 
-    Serves until Ctrl-C or SIGTERM; runs under way are ended then, with their end steps. Without tokens it
-    listens to this machine only. Exit code: 2 bad input, 3 the port is taken or the database cannot be used,
-    130 ended by a signal; 0 its time (--for) is over.
+    Serves until Ctrl-C or SIGTERM; it then ends runs under way with their end steps. Without tokens it
+    accepts connections from this machine only. Exit code: 0 the time of --for is over, 2 bad input, 3 the
+    port is in use or the database cannot be used, 130 ended by a signal.
     """
     import_python_can()
     from hil.cli.serve import carry_out

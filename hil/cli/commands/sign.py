@@ -14,7 +14,9 @@ def command(
         Path,
         typer.Option(help="your Ed25519 private key, of OpenSSH or PEM; 'ssh-keygen -t ed25519' makes one"),
     ],
-    by: Annotated[str, typer.Option(metavar="NAME", help="who signs; default: the user's name")] = "",
+    by: Annotated[
+        str, typer.Option(metavar="NAME", help="name of the person who signs; default: the user's name")
+    ] = "",
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier signature of this key")
     ] = False,
@@ -22,9 +24,9 @@ def command(
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Sign every file of a run's directory, in two files beside them; hil verify --by checks it.
+    """Sign every file of a run's directory; write two files there, which hil verify --by checks.
 
-    What does not verify is not signed (exit code 1). Several persons can sign.
+    A directory that does not verify is not signed (exit code 1). Several persons can sign.
     """
     from hil.cli.sign import carry_out
 

@@ -22,17 +22,19 @@ def command(
     ],
     time_scale: Annotated[
         float,
-        typer.Option(help="seconds of bench time in a second; less than 1 where full rate cannot be held"),
+        typer.Option(help="bench seconds per real second; below 1 if the machine is too slow for real time"),
     ] = 1.0,
     seed: Annotated[
-        int | None, typer.Option(help="of the sensors' noise, in place of the bench file's")
+        int | None, typer.Option(help="random seed of sensor noise; default: the bench file's")
     ] = None,
     hide: Annotated[
         list[str] | None,
-        typer.Option(metavar="EFFECT=VALUE", help="effects in the bench beside its model's: backlash=0.01"),
+        typer.Option(
+            metavar="EFFECT=VALUE", help="additional effect of the bench that its model lacks: backlash=0.01"
+        ),
     ] = None,
     for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="end by itself after this time")
+        float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")
     ] = None,
     transport: Annotated[
         str, typer.Option(help="udp, slcan (pseudo-terminals), socketcand or socketcan")
@@ -42,21 +44,21 @@ def command(
         list[str] | None,
         typer.Option(
             metavar="NAME[:HOSTS]",
-            help="of SocketCAN, of the RMCU's bus and then the dynos': vcan0, or can1:can0 for hosts at can0",
+            help="SocketCAN interface: first RMCU bus, then dyno bus; vcan0, or can1:can0 (hosts on can0)",
         ),
     ] = None,
     bench_file: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="write the bench file that connects to it here, too"),
+        typer.Option(metavar="FILE", help="also write the bench file that connects to it to FILE"),
     ] = None,
     as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else there")
+        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Serve the simulated RMCU and dynos in wall-clock time, for `hil run` and others in other processes.
+    """Serve the simulated RMCU and dynos in real time to `hil run` and other processes.
 
-    Prints the bench file that connects to it, and serves until Ctrl-C or SIGTERM. Exit code: 0 its time
-    (--for) is over, 2 bad input, 3 a port is taken, 130 ended by a signal.
+    Prints the bench file that connects to it, and serves until Ctrl-C or SIGTERM. Exit code: 0 the
+    time of --for is over, 2 bad input, 3 a port is in use, 130 ended by a signal.
     """
     import_python_can()
     from hil.cli.sim_bench import carry_out

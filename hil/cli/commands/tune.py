@@ -28,32 +28,36 @@ def command(
     out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/tune-NNN")] = None,
     free: Annotated[
         Path | None,
-        typer.Option(help="what is free, weights, hard limits, tolerances (TOML); default: as shipped"),
+        typer.Option(
+            help="TOML with free parameters, weights, hard limits and tolerances; default: the built-in one"
+        ),
     ] = None,
     controller: Annotated[
         str,
-        typer.Option(help="which of the plan's controllers is tuned, by its file's name; default: the last"),
+        typer.Option(help="file name of the plan's controller to tune; default: the last one"),
     ] = "",
-    start: Annotated[
-        Path | None, typer.Option(help="controller file to begin with; default: the plan's own")
-    ] = None,
+    start: Annotated[Path | None, typer.Option(help="initial controller file; default: the plan's")] = None,
     draws: Annotated[
         int,
-        typer.Option(min=0, max=5000, help="cars drawn from uncertainty and tolerances; 0: the model alone"),
+        typer.Option(
+            min=0,
+            max=5000,
+            help="vehicles sampled from uncertainty and tolerances; 0: the nominal model only",
+        ),
     ] = 0,
-    seed: Annotated[int, typer.Option(min=0, help="of draws and search")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="random seed of sampling and search")] = 0,
     starts: Annotated[
         int,
-        typer.Option(
-            min=0, max=1000, help="points from which it goes uphill on the model itself, beside the start"
-        ),
+        typer.Option(min=0, max=1000, help="number of additional starting points of the optimiser"),
     ] = 6,
     at_most: Annotated[
         float | None,
-        typer.Option(metavar="MINUTES", min=0.01, help="end the search then, with the best so far"),
+        typer.Option(
+            metavar="MINUTES", min=0.01, help="stop the search after this time; keep the best so far"
+        ),
     ] = None,
     processes: Annotated[
-        int | None, typer.Option(min=1, max=256, help="predictions at once; default: one for each core")
+        int | None, typer.Option(min=1, max=256, help="parallel predictions; default: one per core")
     ] = None,
     bench: Annotated[
         str,
@@ -65,7 +69,9 @@ def command(
     ] = "",
     then_run: Annotated[
         bool,
-        typer.Option("--then-run", help="run the plan with it on the bench at once; beside the prediction"),
+        typer.Option(
+            "--then-run", help="then run the plan with the tuned controller; compare with the prediction"
+        ),
     ] = False,
     differ: Annotated[
         float,
@@ -73,7 +79,7 @@ def command(
             metavar="PERCENT",
             min=0.01,
             max=1000,
-            help="of a criterion's limit: a run that differs by more from its prediction is diagnosed",
+            help="deviation from the prediction, % of a criterion's limit, above which a run is diagnosed",
         ),
     ] = 5.0,
     on_bench: Annotated[
@@ -81,25 +87,26 @@ def command(
         typer.Option(
             "--on-bench",
             metavar="BENCH",
-            help="refine there by runs of the plan, within a trust region around the prediction",
+            help="refine the controller by runs on BENCH, within a trust region around the prediction",
             autocompletion=shipped_bench(),
         ),
     ] = "",
     runs: Annotated[
-        int | None, typer.Option(min=1, max=200, help="with --on-bench: at most so many; default: 20")
+        int | None, typer.Option(min=1, max=200, help="with --on-bench: largest number of runs; default: 20")
     ] = None,
     envelope: Annotated[
         list[str] | None,
         typer.Option(
             metavar="CHANNEL=VALUE",
-            help="with --on-bench: largest magnitude that a run may reach, or bench_time_s for all of them; "
-            "default: 1.3 times what is predicted of the plan as it is",
+            help="with --on-bench: largest magnitude allowed in a run, or bench_time_s for all runs; "
+            "default: 1.3 times the values predicted for the plan",
         ),
     ] = None,
     confirm: Annotated[
         str,
         typer.Option(
-            metavar="NAME", help="with --on-bench: who takes all its runs upon them, within the envelope"
+            metavar="NAME",
+            help="with --on-bench: name of the person who authorises all runs within the envelope",
         ),
     ] = "",
     operator: Operator = "",
@@ -108,18 +115,21 @@ def command(
     ] = False,
     json_: Annotated[bool, typer.Option("--json", help="print tune.json on stdout, nothing else")] = False,
 ) -> int:
-    """Search a controller's parameters for the largest worst margin over a plan's criteria.
+    """Optimise a controller's parameters for the largest worst margin over a plan's criteria.
 
-    Every candidate is a whole predicted run of the plan, on the model and on cars drawn around it. Writes
-    controller.toml, free.toml, tune.json, report.html, report.pdf and a figure. Ctrl-C ends the search and
-    keeps the best so far. With --then-run the plan is run with it on the bench at once: run/ has the run, and
-    where it is not as predicted diagnosis/ says why. Exit code: 0 every criterion that depends on the
-    controller passes (on every car; with --then-run: in the run, and as predicted; with --on-bench: in the
-    best run), 1 one does not, 3 a run failed.
+    Each candidate is evaluated by predicted runs of the whole plan, on the nominal model and on vehicles
+    sampled around it. Writes controller.toml, free.toml, tune.json, report.html, report.pdf and a figure.
+    Ctrl-C ends the search and keeps the best so far.
 
-    With --on-bench the controller is refined on that bench: at most --runs runs of the plan, one consent
-    before the first for all of them within an envelope, each predicted first and refused beyond it; bench/
-    has the runs, controller.toml the best that was measured.
+    --then-run then runs the plan with the tuned controller: run/ holds the run. If it deviates from the
+    prediction, diagnosis/ holds the reason.
+
+    --on-bench refines the controller on that bench with at most --runs runs. One consent before the first
+    run covers all runs within an envelope. Each run is predicted first and refused if it would leave the
+    envelope. bench/ holds the runs; controller.toml is the best one measured.
+
+    Exit code: 0 every criterion that depends on the controller passes (on every vehicle; with --then-run: in
+    the run, and as predicted; with --on-bench: in the best run), 1 one does not, 3 a run failed.
     """
     import_python_can()
     from hil.cli.tune import carry_out

@@ -12,24 +12,24 @@ def command(
     sources: Annotated[
         list[Path],
         typer.Argument(
-            metavar="DIR|REPORT|RECORDING...", help="what belongs together; or a service's folder"
+            metavar="DIR|REPORT|RECORDING...", help="files that belong together; or a service's directory"
         ),
     ],
     by: Annotated[
         Path | None,
-        typer.Option(metavar="PUBLIC_KEY", help="who must have signed the folder: NAME.pub, or PEM"),
+        typer.Option(metavar="PUBLIC_KEY", help="public key of the required signer: NAME.pub, or PEM"),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
     ] = False,
 ) -> int:
-    """Prove that reports belong to their recording and that nothing changed; check who signed.
+    """Verify that reports match their recording and that no file changed; check signatures.
 
-    Of the folder of a bench service (`hil serve --data`) it is the audit log that is read: whether a row was
-    changed, put in or taken out.
+    In the directory of a bench service (`hil serve --data`) it verifies the audit log: no row was changed,
+    inserted or removed.
 
-    A report is held against the recordings that are named, or else against the one beside it. Exit code: 0
-    all of it is proven, 1 something does not match or cannot be proven.
+    A report is compared with the recordings given, or else with the one beside it. Exit code: 0 everything
+    is verified, 1 something does not match or cannot be verified.
     """
     from hil.cli.verify import carry_out
 

@@ -17,7 +17,7 @@ one file, `hil/core/effects/<id>.py`, and yours can be one more: [own-effect](..
 |---|---|---|
 """
 _TAIL = """
-## What cannot be told apart
+## Effects that cannot be distinguished
 Dead time and lag (the separation is in high-frequency amplitude), Coulomb friction and running resistance
 when the axle always turns one way, Coulomb and Stribeck, bush mode and cubic stiffness at one amplitude,
 viscous drag and running resistance at one speed, tyre slip and a softer tyre at one speed, torque gain and a

@@ -25,7 +25,7 @@ EFFECT = Effect(
     summary="A channel is recorded late.",
     signature="Phase lag in proportion to frequency on one channel only.",
     shown_by="A chirp up to 30 Hz.",
-    parameters=(Parameter("delay_s", "s", -0.5, 0.5, "how late the channel is", typical=1e-3),),
+    parameters=(Parameter("delay_s", "s", -0.5, 0.5, "delay of the channel", typical=1e-3),),
     text_parameters=("channel",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
     least=Least(0.05, "samples"),

@@ -38,9 +38,7 @@ EFFECT = Effect(
     id="dyno_lag",
     title="Dynamometer lag",
     stage=Stage.LOAD,
-    summary=(
-        "The dynamometer follows its vehicle model late: the load's inertia is right only for slow motion."
-    ),
+    summary=("The dynamometer lags its vehicle model: the load's inertia is correct only for slow motion."),
     signature="The wheel swings less, as if the load were heavier the faster it moves; slow motion fits.",
     shown_by="A chirp over 0.05 to 30 Hz and a slow ramp of torque.",
     parameters=(
@@ -50,7 +48,7 @@ EFFECT = Effect(
     ),
     needs=("three_inertia",),
     law=Law(tyre=_tyre, tyre_rate=_tyre_rate, remember=_remember),
-    memory=Memory("rad/s", "how far the dynamometer is behind its vehicle model"),
+    memory=Memory("rad/s", "lag of the dynamometer behind its vehicle model"),
     probes=_probes,
     kin=("tyre_slip",),
 )

@@ -1,4 +1,4 @@
-"""Nothing is missing: a parameter of the model has the wrong value."""
+"""No effect is missing: a parameter of the model has the wrong value."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ EFFECT = Effect(
     id="parameter_mismatch",
     title="Parameter mismatch",
     stage=Stage.MODEL,
-    summary="Nothing is missing: a parameter of the model has the wrong value.",
+    summary="No effect is missing: a parameter of the model has the wrong value.",
     signature="The gap follows the model's own sensitivity to that parameter.",
     shown_by="The test that identified the parameter.",
-    parameters=(Parameter("value", "parameter's", -1e12, 1e12, "the right value", fitted=False),),
+    parameters=(Parameter("value", "parameter's", -1e12, 1e12, "the correct value", fitted=False),),
     text_parameters=("parameter",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
     law=Law(chain=_correct),

@@ -1,4 +1,4 @@
-"""A channel reads gain times the truth."""
+"""A channel reads gain times the true value."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ EFFECT = Effect(
     id="sensor_gain",
     title="Sensor gain",
     stage=Stage.SENSOR,
-    summary="A channel reads gain times the truth.",
+    summary="A channel reads gain times the true value.",
     signature="One channel off by the same factor at all frequencies and speeds.",
     shown_by="Any test that moves the channel.",
-    parameters=(Parameter("gain", "", -100.0, 100.0, "reading per truth", typical=0.01),),
+    parameters=(Parameter("gain", "", -100.0, 100.0, "reading / true value", typical=0.01),),
     text_parameters=("channel",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
     off=1.0,

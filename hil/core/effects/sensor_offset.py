@@ -1,4 +1,4 @@
-"""A channel reads the truth plus an offset."""
+"""A channel reads the true value plus an offset."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ EFFECT = Effect(
     id="sensor_offset",
     title="Sensor offset",
     stage=Stage.SENSOR,
-    summary="A channel reads the truth plus an offset.",
+    summary="A channel reads the true value plus an offset.",
     signature="One channel off by a constant.",
-    shown_by="Any test, best with a stretch at standstill.",
-    parameters=(Parameter("offset", "channel's", -1e6, 1e6, "added to the truth", typical=0.1),),
+    shown_by="Any test, best with a period of standstill.",
+    parameters=(Parameter("offset", "channel's", -1e6, 1e6, "added to the true value", typical=0.1),),
     text_parameters=("channel",),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
     least=Least(5e-4, "rms reading"),

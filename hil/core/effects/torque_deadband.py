@@ -1,4 +1,4 @@
-"""Requests smaller than the half width do nothing, larger ones lose it."""
+"""Requests smaller than the half width have no effect, larger ones are reduced by it."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ EFFECT = Effect(
     id="torque_deadband",
     title="Torque dead band",
     stage=Stage.TORQUE_PATH,
-    summary="Requests smaller than the half width do nothing, larger ones lose it.",
+    summary="Requests smaller than the half width have no effect, larger ones are reduced by it.",
     signature="Small amplitudes give too little response; odd harmonics.",
     shown_by="Chirp at two amplitudes around zero torque.",
     parameters=(Parameter("half_width_nm", "N m", 0.0, 1e4, "half of the dead band's width"),),

@@ -26,7 +26,9 @@ EFFECT = Effect(
     signature="All outputs off by one factor at all frequencies and amplitudes, from the motor on.",
     shown_by="Any chirp with shaft torque measured.",
     parameters=(
-        Parameter("gain", "", 0.01, 100.0, "acting per requested torque", typical=0.01, within=(0.2, 5.0)),
+        Parameter(
+            "gain", "", 0.01, 100.0, "acting torque / requested torque", typical=0.01, within=(0.2, 5.0)
+        ),
     ),
     needs=("rigid", "two_inertia", "three_inertia", "transfer_function"),
     off=1.0,

@@ -24,7 +24,7 @@ EFFECT = Effect(
     title="Torque rate limit",
     stage=Stage.TORQUE_PATH,
     summary="The acting torque's slope is clipped.",
-    signature="Steps arrive as ramps; large amplitudes at high frequency are small and late.",
+    signature="Steps become ramps; large amplitudes at high frequency are reduced and delayed.",
     shown_by="Steps, and a chirp at two amplitudes.",
     parameters=(
         Parameter("limit_nm_s", "N m/s", 1e-6, 1e9, "largest magnitude of the acting torque's slope"),

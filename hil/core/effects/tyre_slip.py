@@ -40,7 +40,7 @@ EFFECT = Effect(
     title="Tyre slip",
     stage=Stage.TYRE,
     summary=(
-        "The tyre passes torque by slipping: force follows slip over a relaxation length, "
+        "The tyre transmits torque by slip: force follows slip over a relaxation length, "
         "so its damping depends on speed. It takes the place of the tyre's stiffness."
     ),
     signature="The wheel's resonance is damped more the faster the axle turns; at rest it is a spring.",
@@ -48,7 +48,7 @@ EFFECT = Effect(
     source="H. B. Pacejka, Tire and Vehicle Dynamics, ch. 7",
     parameters=(
         Parameter("slip_stiffness_nm", "N m", 1e-3, 1e9, "torque over slip, both wheels"),
-        Parameter("relaxation_length_m", "m", 1e-3, 100.0, "way over which torque follows slip"),
+        Parameter("relaxation_length_m", "m", 1e-3, 100.0, "relaxation length of torque after slip"),
     ),
     needs=("three_inertia",),
     law=Law(chain=_spring, tyre_rate=_relaxed),

@@ -97,7 +97,7 @@ def _refuse_huge(recording: Recording, first: int, block: dict[str, Array]) -> N
         if huge.any():
             row = int(huge.argmax())
             raise BadInputError(
-                f"{values[row]:g} is no measurement: at most {LARGEST_MAGNITUDE:g} can be used",
+                f"{values[row]:g} is not a plausible measurement: at most {LARGEST_MAGNITUDE:g} can be used",
                 where=f"{recording.place(first + row)}, column '{name}'",
                 fix="correct the cell, or leave it empty",
             )

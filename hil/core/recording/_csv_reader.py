@@ -46,7 +46,7 @@ def read_csv(path: Path) -> Recording:
         try:
             recording = _Table(path).read(as_utf8(file))
         except UnicodeError as error:
-            raise BadInputError("begins as UTF-16 and goes on otherwise", where=str(path)) from error
+            raise BadInputError("is not valid UTF-16", where=str(path)) from error
         except OSError as error:
             raise BadInputError(f"cannot be read: {error.strerror or error}", where=str(path)) from error
     _take_sidecar(recording, path)
@@ -187,7 +187,7 @@ class _Table:
                 f"samples are {apart_s:g} s apart",
                 self._line - 1,
                 TIME,
-                fix="is it in milliseconds? Name the column time_ms (or time_us), and it is converted",
+                fix="if it is in milliseconds, name the column time_ms (or time_us) to have it converted",
             )
         if apart_s >= _SLOW_S:
             self._notes.append(f"samples are {apart_s:g} s apart; a column in ms is to be named time_ms")
@@ -266,7 +266,7 @@ class _Table:
     def _wrong_number_of_cells(self, cells: list[str], line: int) -> BadInputError:
         names = len(self._header)
         many = self._layout.separator == "," and len(cells) > names
-        fix = "is the comma the decimal sign? Separate columns by semicolons" if many else ""
+        fix = "if the comma is the decimal sign, separate columns by semicolons" if many else ""
         return self._error(f"has {len(cells)} cells, the header line names {names}", line, fix=fix)
 
     def _leave_out(self, column: int) -> None:

@@ -107,7 +107,7 @@ def take_evidence(recording: Recording, text: str | bytes, where: str, table_sha
         found = _Evidence.model_validate_json(text)
         contents = {name: attachment.content() for name, attachment in found.attachments.items()}
     except (ValidationError, ValueError):
-        recording.damage.append(f"{where} is broken: run and segments are not known")
+        recording.damage.append(f"{where} is damaged: run and segments are not known")
         return
     if not _is_of(found, recording):
         recording.damage.append(

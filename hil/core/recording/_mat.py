@@ -56,12 +56,12 @@ def read_mat(path: Path) -> Recording:
             channels[name] = column
         elif name in CHANNELS:
             raise BadInputError(
-                "is no vector of real numbers",
+                "is not a vector of real numbers",
                 where=f"{path}: variable '{name}'",
                 fix="save it as a vector of doubles in the unit of its name",
             )
         else:
-            notes.append(f"variable '{name}' is no vector of real numbers and was left out")
+            notes.append(f"variable '{name}' is not a vector of real numbers and was left out")
     channels = _of_one_length(channels, path, notes)
     recording = Recording(channels, path, notes=notes)
     if evidence is not None:

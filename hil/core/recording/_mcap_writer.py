@@ -185,5 +185,5 @@ class RecordingWriter:
         return BenchError(
             f"the recording cannot be written: {full_disk_in_words(error, self.path)}",
             where=str(self.path),
-            fix="make room on the disk, or choose another place with --out",
+            fix="free disk space, or choose another place with --out",
         )

@@ -36,7 +36,7 @@ def run_of(recording: Recording) -> RunResult | None:
         return _as_far_as_recorded(recording)
     except (ValueError, KeyError) as error:
         raise BadInputError(
-            "what it says of its run (run.json) is broken",
+            "its data of the run (run.json) are damaged",
             where=str(recording.source),
             fix="use another copy",
         ) from error
@@ -67,7 +67,7 @@ def _as_far_as_recorded(recording: Recording) -> RunResult:
         safe_state="not_confirmed",
         segments=tuple(_cut(segment, last_s) for segment in segments if segment.start_s < last_s),
         accepted_expired=accepted_expiry_of(recording),
-        reason="the recording was cut off before the run had ended; nothing is known of its safe state",
+        reason="the recording was cut off before the run had ended; its safe state is not known",
     )
 
 

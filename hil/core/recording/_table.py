@@ -35,7 +35,7 @@ def refuse_too_large(rows: int, columns: int, where: str) -> None:
         raise BadInputError(
             f"has {columns} columns, at most {MOST_COLUMNS} are read",
             where=where,
-            fix="leave out what is no channel",
+            fix="omit columns that are not channels",
         )
     if rows * columns > LARGEST_VALUES:
         raise BadInputError(

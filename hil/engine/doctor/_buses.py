@@ -25,22 +25,20 @@ def findings_of_bus(
     where = f"bus '{name}'"
     if tally.frames == 0 and (expected or tally.errors):
         errors = f" but {tally.errors} error frames" if tally.errors else ""
-        what = f"not one frame came{errors}; the bench file says {facts.bit_rate} bit/s"
+        what = f"no frame received{errors}; the bench file says {facts.bit_rate} bit/s"
         yield Finding("fault", what, where, _RATE_FIX)
     elif tally.errors:
-        yield Finding("fault", f"{tally.errors} error frames came", where, _RATE_FIX)
+        yield Finding("fault", f"{tally.errors} error frames received", where, _RATE_FIX)
     if facts.load is not None and facts.load > _FULL:
-        fix = "take other traffic off this bus, or raise its bit rate"
-        yield Finding(
-            "hint", f"it is busy {facts.load:.0%} of the time: frames wait for each other", where, fix
-        )
+        fix = "reduce the traffic on this bus, or raise its bit rate"
+        yield Finding("hint", f"bus load is {facts.load:.0%}: frames are delayed", where, fix)
     if facts.unknown and tally.frames:
         shown = ", ".join(
             f"{number} ({rate:g}/s)" for number, rate in list(facts.unknown.items())[:_MANY_UNKNOWN]
         )
         more = f" and {len(facts.unknown) - _MANY_UNKNOWN} more" if len(facts.unknown) > _MANY_UNKNOWN else ""
-        fix = "if a device of the bench should have sent them, correct its DBC, EDS or node id"
-        yield Finding("hint", f"frames that no device of the bench file has: {shown}{more}", where, fix)
+        fix = "if they are from a device of the bench, correct its DBC, EDS or node id"
+        yield Finding("hint", f"frames of no device in the bench file: {shown}{more}", where, fix)
     for remark in wire.remarks:
         if "error frames" not in remark:
             yield Finding("hint", remark, where, "see docs/reference/transports.md")
@@ -62,7 +60,7 @@ def judged(name: str, bus: Bus, link: Link) -> Iterator[Finding]:
     where = f"bus '{name}' (socketcan {bus.channel})"
     up = f"ip link set {bus.channel} up type can bitrate {bus.bit_rate}"
     if not link.up:
-        yield Finding("fault", "the network interface is down", where, f"'{up}' brings it up")
+        yield Finding("fault", "the network interface is down", where, f"bring it up with '{up}'")
     elif link.bit_rate is not None and link.bit_rate != bus.bit_rate:
         what = f"the interface runs at {link.bit_rate} bit/s, the bench file says {bus.bit_rate}"
         fix = f"'ip link set {bus.channel} down', then '{up}'; or correct bit_rate in the bench file"

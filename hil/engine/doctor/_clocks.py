@@ -104,8 +104,8 @@ def _late(clocks: Iterable[StreamClock]) -> Iterator[Finding]:
     for clock in clocks:
         if clock.lost:
             fix = "check the adapter's receive buffer and the load of this machine"
-            yield Finding("fault", f"{clock.lost} samples of {clock.stream} never came", clock.where, fix)
+            yield Finding("fault", f"{clock.lost} samples of {clock.stream} are lost", clock.where, fix)
         if clock.latest_s > _LATE_S:
-            what = f"{clock.stream} came up to {clock.latest_s * 1e3:.0f} ms late"
+            what = f"{clock.stream} arrived up to {clock.latest_s * 1e3:.0f} ms late"
             fix = "close other programs, use another USB port; see docs/explanation/time.md"
             yield Finding("hint", what, clock.where, fix)

@@ -16,11 +16,11 @@ def findings_of_dates(file: BenchFile, today: datetime.date) -> Iterator[Finding
     where = f"{file.source}, [calibration]"
     for sensor, until in file.calibration.items():
         if until < today:
-            fix = "have it calibrated and enter the new date; until then every run is refused"
-            yield Finding("fault", f"the calibration of '{sensor}' ran out on {until}", where, fix)
+            fix = "have it calibrated and enter the new date; runs are refused until then"
+            yield Finding("fault", f"the calibration of '{sensor}' expired on {until}", where, fix)
         elif until - today <= _SOON:
-            what = f"the calibration of '{sensor}' runs out in {(until - today).days} days, on {until}"
-            yield Finding("hint", what, where, "make an appointment; a run after that day is refused")
+            what = f"the calibration of '{sensor}' expires in {(until - today).days} days, on {until}"
+            yield Finding("hint", what, where, "have it calibrated before that day; later runs are refused")
     if not file.calibration and file.simulation is None:
-        fix = "enter each sensor with the last day on which its calibration is valid"
+        fix = "enter the last valid day of the calibration for each sensor"
         yield Finding("hint", "no calibration dates are stated", str(file.source), fix)

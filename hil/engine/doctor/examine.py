@@ -81,7 +81,7 @@ class _Visit:
             granted = opened.enter_context(undisturbed(collections=True))
             if not granted:
                 fix = "allow it: '@hil - rtprio 1' in /etc/security/limits.conf, or CAP_SYS_NICE"
-                what = "this system grants no real-time priority: other programs can hold a run up"
+                what = "this system grants no real-time priority: other programs can delay a run"
                 found.findings.append(Finding("hint", what, "this machine", fix))
         devices = self._open_devices(connections_of(self._file, loop, opened))
         listener = Listener([source for device in devices.values() for source in device.sources])
@@ -186,8 +186,8 @@ class _Visit:
                 self._found.asked = False
                 words = table.identifiers()
                 shown = ", ".join(words.get(number, f"0x{number:03X}") for number in asked)
-                what = f"another host drives this bench: it sends {shown}. Nothing was asked, only listened"
-                fix = "wait until it is done, or end it; two hosts on one bench trip the RMCU"
+                what = f"another host drives this bench: it sends {shown}. The devices were not read"
+                fix = "wait until it has finished, or end it; two hosts on one bench trip the RMCU"
                 self._add(Finding("fault", what, f"bus '{bus}'", fix))
 
     def _look_at_zero(self, readings: dict[str, float]) -> None:
@@ -208,7 +208,7 @@ class _Visit:
 
     def _ask(self, devices: dict[str, Device], readings: dict[str, float]) -> None:
         for key, device in devices.items():
-            self._request.progress(0.9, f"looking at {device.name}")
+            self._request.progress(0.9, f"reading {device.name}")
             facts = self._found.devices[key]
             if not isinstance(device, Examinable):
                 facts.answers = None

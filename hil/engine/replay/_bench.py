@@ -38,7 +38,7 @@ class BenchDecoder:
         for key, table in file.device_tables.items():
             bus = getattr(table, "bus", None)
             if bus is None:
-                self.remarks.append(f"{key} is on no CAN bus: a log of frames has nothing of it")
+                self.remarks.append(f"{key} is not on a CAN bus, so a CAN log has no data of it")
             elif bus in frames:
                 self._devices[key] = table.open(key.removeprefix("devices."), connections)
                 for path in table.files():
@@ -58,7 +58,7 @@ class BenchDecoder:
         if not given or not given.issuperset(counted):
             missing = counted[0] if counted else self._streams[0]
             raise BadInputError(
-                f"the log has no {missing.label} of {missing.where}: rows are counted by it",
+                f"the log has no {missing.label} of {missing.where}, which gives the time base",
                 fix="give a log of that bus with all its frames, or decode by --dbc in place of --bench",
             )
         recorder = Recorder(path, streams, list(self._frames), TICK_S, clock_0_ns=began_ns)

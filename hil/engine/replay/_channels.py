@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError
 from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
 from hil.core.printable import printable
 
-_PICK = "say which it is with --bus BUS=CHANNEL"
+_PICK = "select it with --bus BUS=CHANNEL"
 
 
 @dataclass(frozen=True)
@@ -55,9 +55,9 @@ def merged(logs: Sequence[CanLog]) -> Frames:
             raise BadInputError("is given twice", where=str(log.path), fix="name each log once")
         if len(logs) > 1 and log.began_ns is None:
             raise BadInputError(
-                "its stamps do not count from 1970: nothing says how it lies to the other logs",
+                "its time stamps are not absolute, so it cannot be aligned with the other logs",
                 where=str(log.path),
-                fix="replay each log by itself, or give logs with absolute stamps",
+                fix="replay each log separately, or give logs with absolute time stamps",
             )
     first_ns = min(
         (log.began_ns or 0) + round(1e9 * float(block["time_s"][0]))
@@ -116,7 +116,7 @@ def chosen_buses(
         )
     if not found:
         raise BadInputError(
-            "none of the frames is one that the bench's devices send or hear",
+            "no frame in the log belongs to a device of the bench",
             fix=f"give the bench file of these logs, or --dbc; there is: {listed(frames, known)}",
         )
     return found, told

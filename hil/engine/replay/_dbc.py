@@ -58,7 +58,7 @@ class DbcDecoder:
         if not found:
             names = ", ".join(str(path) for path in dbcs.values())
             raise BadInputError(
-                f"none of the frames is one that {names} describes",
+                f"no frame in the log is described by {names}",
                 fix=f"give the DBC of these logs; there is: {listed(frames, {})}",
             )
         self._found = found
@@ -82,9 +82,9 @@ class DbcDecoder:
             self.units[name] = samples.layout.layout.signals[signal].unit
         if beside:
             self.remarks.append(
-                f"{beside} samples stand in no row: another of their channel is nearer, or none is near"
+                f"{beside} samples were discarded: none of the rows is near, or another sample is nearer"
             )
-        self.remarks.append(f"rows are the frames of '{base.layout.layout.name}'")
+        self.remarks.append(f"the time base is the frames of '{base.layout.layout.name}'")
         writer = RecordingWriter(path, list(columns), list(self._frames), clock_0_ns=began_ns)
         writer.row_0_s = float(rows_s[0])
         self._fill(writer, columns, rows_s)

@@ -24,8 +24,8 @@ from hil.engine.replay._dbc import DbcDecoder
 from hil.engine.replay._segments import Segments, segments_from
 from test_plans import Plan, judge, not_checked
 
-_NO_SEGMENTS = "nothing says where the plan's segments lie in the log, so none of its criteria is judged"
-_NO_PLAN = "nothing is judged: metrics are computed in the segments of a plan, and none was given"
+_NO_SEGMENTS = "the times of the plan's segments in the log are not known, so no criterion is evaluated"
+_NO_PLAN = "no criterion is evaluated: metrics need the segments of a plan, and no plan was given"
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
         written = _write(decoder, temporary, frames.began_ns or 0)
         remarks += [f"{log.path.name}: {remark}" for log in logs for remark in _remarks_of(log)]
         if frames.began_ns is None:
-            remarks.append("the log does not say when it was made")
+            remarks.append("the log has no date")
         found = segments.on(written.row_0_ns) if segments else ()
         remarks += decoder.remarks if request.plan else [*decoder.remarks, _NO_PLAN]
         result = _judged(request, written.recording, found, time.perf_counter() - began)
@@ -93,7 +93,7 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
 def _segments(request: ReplayRequest) -> Segments | None:
     if request.plan is None:
         if request.segments is not None:
-            raise BadInputError("--segments goes with --plan", fix="give the plan that is to be judged")
+            raise BadInputError("--segments goes with --plan", fix="give the plan to evaluate with --plan")
         return None
     if request.segments is not None:
         return segments_from(request.segments)
@@ -138,7 +138,7 @@ def _write(decoder: BenchDecoder | DbcDecoder, path: Path, began_ns: int) -> _Wr
         }
     if not len(recording.time_s):
         raise BadInputError(
-            "the log is too short: it gives no row",
+            "the log is too short: it has no complete sample",
             where=path.name,
             fix="give a longer log",
         )

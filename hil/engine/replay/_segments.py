@@ -63,7 +63,7 @@ def segments_from(path: Path) -> Segments:
     for segment in found:
         if not segment.start_s <= segment.step_s <= segment.end_s:
             raise BadInputError(
-                f"segment '{segment.id}' does not go from start_s over step_s to end_s",
+                f"segment '{segment.id}' does not satisfy start_s <= step_s < end_s",
                 where=str(path),
                 fix=_FIX,
             )
@@ -74,13 +74,13 @@ def _of_recording(path: Path) -> Segments:
     recording = read_as_written(path)
     run = run_of(recording)
     if run is None or not run.segments:
-        raise BadInputError("has no segments: it is not of a run", where=str(path), fix=_FIX)
+        raise BadInputError("has no segments: it is not the recording of a run", where=str(path), fix=_FIX)
     table = recording.metadata.get("time", {})
     try:
         began_ns = moment_ns(table["bench_clock_0_at"])
         row_0_ns = began_ns + round(1e9 * float(table["bench_clock_at_row_0_s"]))
     except (KeyError, ValueError) as error:
-        raise BadInputError("does not say when it was made", where=str(path), fix=_FIX) from error
+        raise BadInputError("has no date", where=str(path), fix=_FIX) from error
     return Segments(run.segments, row_0_ns)
 
 

@@ -54,7 +54,9 @@ def who(
 def _needs(role: Role) -> Callable[[Me], Me]:
     def check(me: Annotated[Me, Depends(who)]) -> Me:
         if me.role not in LADDER or LADDER.index(me.role) < LADDER.index(role):
-            raise RefusedError(403, f"{me.name} is {me.role}; {role} is needed", fix="ask who may")
+            raise RefusedError(
+                403, f"{me.name} is {me.role}; {role} is needed", fix="ask an administrator for the role"
+            )
         return me
 
     return check
@@ -81,7 +83,9 @@ def _agent(
             raise
         return known
     if me.role not in ("agent", "admin"):
-        raise RefusedError(403, f"{me.name} is {me.role}; agent is needed", fix="ask who may")
+        raise RefusedError(
+            403, f"{me.name} is {me.role}; agent is needed", fix="ask an administrator for the role"
+        )
     service.known_agents = {**service.known_agents, secret: me} if len(service.known_agents) < _MOST else {}
     return me
 

@@ -39,7 +39,7 @@ _PIECE: dict[str, Any] = {
 
 @router.get("/agents", name="list_agents")
 async def list_agents(service: TheService, me: Viewer) -> list[AgentData]:
-    """Agents that have benches here, and when they were last heard of."""
+    """Agents with benches at this service, and the times of their last reports."""
     del me
     return service.agents.all()
 
@@ -48,7 +48,7 @@ async def list_agents(service: TheService, me: Viewer) -> list[AgentData]:
 async def report_of_agent(
     agent: AgentId, report: Annotated[AgentReport, Body()], service: TheService, me: AgentItself
 ) -> AgentOrders:
-    """Register an agent's benches, tell what they do, and hear within half a second what there is to do."""
+    """Register an agent's benches and report their state; the answer, within 0.5 s, has its tasks."""
     new, refused = service.agents.heard(agent, report)
     for bench in new:
         service.log.add(
@@ -63,10 +63,10 @@ async def report_of_agent(
 
 @router.post("/agents/{agent}/benches/{bench}/take", name="take_run")
 async def take_run(agent: AgentId, bench: BenchName, service: TheService, me: AgentItself) -> Taken:
-    """The run whose turn it is on a bench; it is the agent's from then on, whatever becomes of either."""
+    """Take the next run of a bench; the agent owns it from then on."""
     place = service.agents.benches.get(bench)
     if place is None or place.agent.id != agent:
-        raise RefusedError(409, f"'{bench}' is no bench of this agent")
+        raise RefusedError(409, f"'{bench}' does not belong to this agent")
     try:
         taken = service.agents.take(agent, bench)
     except HilError as error:
@@ -89,11 +89,11 @@ async def send_run_file(
     me: AgentItself,
     at: Annotated[int, Query(ge=0, le=MOST_FILE_BYTES)] = 0,
 ) -> FileThere:
-    """A piece of a run's file, taken if it begins where the file ends here; how much of it is here."""
+    """Append a piece to a run's file, if it starts at the file's present end; returns the size."""
     del me
     _of_agent(service, run, agent)
     if name == LOCK:
-        raise RefusedError(422, "is no file that a run leaves", where=name)
+        raise RefusedError(422, "is not a file of a run", where=name)
     return FileThere(size=service.arrivals.add(run, name, at, await request.body()))
 
 
@@ -101,7 +101,7 @@ async def send_run_file(
 async def deliver_run(
     agent: AgentId, run: RunId, ending: Annotated[RunEnding, Body()], service: TheService, me: AgentItself
 ) -> Delivered:
-    """How a run ended; once all of its files are here as they were made, it is over here too."""
+    """Report the end of a run; the run is finished when all of its files are uploaded."""
     if service.arrivals.run_of(run, agent) is None and service.arrivals.are_those(run, ending.files):
         return Delivered(missing=[])  # the answer to the first time went astray
     found = _of_agent(service, run, agent)
@@ -121,7 +121,7 @@ async def answer_forecast(
     service: TheService,
     me: AgentItself,
 ) -> None:
-    """What an agent predicts of a plan that it was asked about."""
+    """Report an agent's forecast of a plan."""
     del agent, me
     if not service.agents_forecasts.answer(order, answer):
         raise missing("forecast that is waited for", order)
@@ -129,12 +129,12 @@ async def answer_forecast(
 
 @router.delete("/benches/{bench}/agent", name="let_agent_go", status_code=204)
 async def let_agent_go(bench: BenchName, service: TheService, me: Engineer) -> None:
-    """Let another agent have the bench of one that is away; its run is interrupted, nothing of it is lost."""
+    """Release the bench of an agent that is not connected; its run is interrupted, its data are kept."""
     place = service.benches.get(bench)
     if not isinstance(place, RemoteBench):
         raise missing("bench of an agent", bench)
     if not place.agent.away:
-        raise RefusedError(409, "its agent is there", where=bench, fix="end that one (Ctrl-C) first")
+        raise RefusedError(409, "its agent is connected", where=bench, fix="end that one (Ctrl-C) first")
     service.agents.let_go(bench, me.name)
     service.log.add(me.name, me.role, "agent let go", bench, place.agent.name)
 
@@ -142,5 +142,5 @@ async def let_agent_go(bench: BenchName, service: TheService, me: Engineer) -> N
 def _of_agent(service: Service, run: int, agent: str) -> RunData:
     found = service.arrivals.run_of(run, agent)
     if found is None:
-        raise RefusedError(409, f"run {run} is none of this agent, or is over")
+        raise RefusedError(409, f"run {run} does not belong to this agent, or is finished")
     return found

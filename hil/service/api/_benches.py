@@ -28,21 +28,21 @@ def known(service: Service, bench: str) -> str:
 
 @router.get("/benches", name="list_benches")
 async def list_benches(service: TheService, me: Viewer) -> list[BenchData]:
-    """All benches and what they do."""
+    """All benches and their states."""
     del me
     return [service.bench_data(name) for name in service.benches]
 
 
 @router.get("/benches/{bench}", name="get_bench")
 async def get_bench(bench: BenchName, service: TheService, me: Viewer) -> BenchData:
-    """A bench and what it does."""
+    """A bench and its state."""
     del me
     return service.bench_data(known(service, bench))
 
 
 @router.post("/benches/{bench}/emergency-stop", name="stop_in_emergency")
 async def stop_in_emergency(bench: BenchName, service: TheService, request: Request) -> BenchData:
-    """Have a bench safe at once, and keep it so until it is reset. Everybody may; no token is asked for."""
+    """Make a bench safe at once, until it is reset. Allowed for everyone, without a token."""
     asked, role = _asked(service, request)
     await service.stops.stop(known(service, bench), asked, role)
     return service.bench_data(bench, ask=False)
@@ -50,7 +50,7 @@ async def stop_in_emergency(bench: BenchName, service: TheService, request: Requ
 
 @router.post("/emergency-stop", name="stop_all_in_emergency")
 async def stop_all_in_emergency(service: TheService, request: Request) -> list[BenchData]:
-    """Have all benches safe at once, and keep them so. Everybody may; no token is asked for."""
+    """Make all benches safe at once, until they are reset. Allowed for everyone, without a token."""
     asked, role = _asked(service, request)
     for bench in list(service.benches):
         service.stops.tell_run(bench, asked)
@@ -72,13 +72,15 @@ def _asked(service: Service, request: Request) -> tuple[EmergencyAsked, str]:
 
 @router.post("/benches/{bench}/reset", name="reset_bench")
 async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> BenchData:
-    """Let a bench be armed again after an emergency stop."""
+    """Reset an emergency stop, so that the bench can be armed again."""
     known(service, bench)
     if service.running(bench) is not None:
-        raise RefusedError(409, "a run is still being ended", where=bench, fix="wait until it is over")
+        raise RefusedError(409, "a run is still being ended", where=bench, fix="wait for its end")
     count = await service.reset(bench, me.name)
     if count is None:
-        raise RefusedError(409, "its agent does not answer", where=bench, fix="look whether it runs")
+        raise RefusedError(
+            409, "its agent does not answer", where=bench, fix="check that the agent is running"
+        )
     service.log.add(me.name, me.role, "reset", bench, f"{count} stops")
     service.wake(bench)
     service.changed(bench)
@@ -87,10 +89,10 @@ async def reset_bench(bench: BenchName, service: TheService, me: Engineer) -> Be
 
 @router.put("/benches/{bench}/lease", name="take_lease")
 async def take_lease(bench: BenchName, wanted: LeaseWanted, service: TheService, me: Operator) -> LeaseData:
-    """Have a bench for oneself for a while: runs of others wait. Ask again before it is over to go on."""
+    """Reserve a bench for a time: runs of others wait. Repeat the request to extend it."""
     lease = service.leases.take(known(service, bench), me.name, wanted.for_s)
     if lease is None:
-        raise RefusedError(409, "somebody else has it", where=bench, fix="wait until it is given back")
+        raise RefusedError(409, "another user holds the bench", where=bench, fix="wait until it is released")
     service.log.add(me.name, me.role, "lease", bench, f"{wanted.for_s:g} s")
     service.changed(bench)
     return lease
@@ -98,10 +100,10 @@ async def take_lease(bench: BenchName, wanted: LeaseWanted, service: TheService,
 
 @router.delete("/benches/{bench}/lease", name="give_lease_back")
 async def give_lease_back(bench: BenchName, service: TheService, me: Operator) -> BenchData:
-    """Give a bench back; an engineer may do so for somebody else."""
+    """Release a reserved bench; an engineer can release it for another user."""
     lease = service.leases.of(known(service, bench))
     if lease is not None and lease.holder != me.name and me.role not in ("engineer", "admin"):
-        raise RefusedError(403, f"{lease.holder} has it", where=bench)
+        raise RefusedError(403, f"{lease.holder} holds the bench", where=bench)
     service.leases.give_back(bench)
     service.log.add(me.name, me.role, "lease given back", bench)
     service.wake(bench)

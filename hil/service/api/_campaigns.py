@@ -23,7 +23,7 @@ _TABLES = "application/vnd.apache.parquet"
 async def add_campaign(
     wanted: Annotated[CampaignWanted, Body()], service: TheService, me: Engineer
 ) -> CampaignData:
-    """Have a campaign carried out in its turn, as `hil campaign` does; it needs no bench."""
+    """Queue a campaign, as `hil campaign`; it needs no bench."""
     found = await service.campaigns.add(wanted, service.places(), me.name)
     told = f"{found.name}: {found.simulations} simulations"
     service.log.add(me.name, me.role, "campaign", f"campaign {found.id}", told)
@@ -32,7 +32,7 @@ async def add_campaign(
 
 @router.get("/campaigns", name="list_campaigns")
 async def list_campaigns(service: TheService, me: Viewer) -> list[CampaignData]:
-    """Campaigns of all services with their progress and the shares that pass so far, newest first."""
+    """Campaigns of all services with their progress and pass rates so far, newest first."""
     del me
     return service.campaigns.all()
 
@@ -46,24 +46,24 @@ async def list_campaign_examples(service: TheService, me: Viewer) -> list[Campai
 
 @router.get("/campaigns/{campaign}", name="get_campaign")
 async def get_campaign(campaign: RunId, service: TheService, me: Viewer) -> CampaignData:
-    """One of them."""
+    """A campaign."""
     del me
     return _there(service, campaign)
 
 
 @router.post("/campaigns/{campaign}/cancel", name="cancel_campaign")
 async def cancel_campaign(campaign: RunId, service: TheService, me: Engineer) -> CampaignData:
-    """End one: what is under way is awaited, a few seconds, and kept; asked twice, it is not awaited."""
+    """End a campaign and keep active simulations, in a few seconds; a second request does not wait."""
     refuse_elsewhere("campaign", _there(service, campaign))
     if not await service.campaigns.cancel(campaign):
-        raise RefusedError(409, f"campaign {campaign} is over")
+        raise RefusedError(409, f"campaign {campaign} is finished")
     service.log.add(me.name, me.role, "campaign cancelled", str(campaign))
     return _there(service, campaign)
 
 
 @router.post("/campaigns/{campaign}/resume", name="resume_campaign")
 async def resume_campaign(campaign: RunId, service: TheService, me: Engineer) -> CampaignData:
-    """Go on with one that was cancelled or has failed: only what is missing is simulated."""
+    """Resume a cancelled or failed campaign; simulate only what is missing."""
     found = refuse_elsewhere("campaign", _there(service, campaign))
     if not service.campaigns.resume(campaign):
         raise RefusedError(409, f"campaign {campaign} is {found.state}")
@@ -73,7 +73,7 @@ async def resume_campaign(campaign: RunId, service: TheService, me: Engineer) ->
 
 @router.delete("/campaigns/{campaign}", name="remove_campaign", status_code=204)
 async def remove_campaign(campaign: RunId, service: TheService, me: Engineer) -> None:
-    """Remove one that is over, with its files."""
+    """Remove a finished campaign with its files."""
     found = refuse_elsewhere("campaign", _there(service, campaign))
     if not service.campaigns.remove(campaign):
         raise RefusedError(409, f"campaign {campaign} is {found.state}", fix="cancel it first")
@@ -83,7 +83,7 @@ async def remove_campaign(campaign: RunId, service: TheService, me: Engineer) ->
 
 @router.get("/campaigns/{campaign}/files/{name}", name="get_campaign_file", response_class=Response)
 async def get_campaign_file(campaign: RunId, name: str, service: TheService, me: Viewer) -> FileResponse:
-    """A file of one that is over: report, `campaign.json`, the table as `simulations.parquet`."""
+    """A file of a finished campaign: report, `campaign.json`, the table as `simulations.parquet`."""
     del me
     if name not in _there(service, campaign).files:
         raise missing("file", name)

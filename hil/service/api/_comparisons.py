@@ -21,7 +21,7 @@ _Seconds = Annotated[float | None, Query(ge=-1e6, le=1e6, allow_inf_nan=False)]
 async def compare_runs(
     service: TheService, me: Viewer, first: Annotated[RunId, Query()], other: Annotated[RunId, Query()]
 ) -> ComparisonData:
-    """Criteria of two runs of one plan with their differences, and what they were given differently."""
+    """Criteria of two runs of one plan with their differences, and the inputs that differ."""
     del me
     one, two = _over(service, first), _over(service, other)
     found = await service.desk.ask(
@@ -42,7 +42,7 @@ async def compare_traces(
     end_s: _Seconds = None,
     most: Annotated[int, Query(ge=10, le=4000)] = 600,
 ) -> TracesData:
-    """A channel of a segment of both, as the lowest and the highest value in each of `most` buckets."""
+    """A channel of a segment of both runs, as lowest and highest value in each of `most` buckets."""
     del me
     runs: dict[str, Any] = {
         name: await _named(service, _over(service, run)) for name, run in (("first", first), ("other", other))
@@ -58,12 +58,12 @@ def _over(service: Service, run: int) -> RunData:
     if found is None:
         raise missing("run", run)
     if found.state not in OVER:
-        raise RefusedError(409, f"run {run} is not over", fix="wait for its end")
+        raise RefusedError(409, f"run {run} is not finished", fix="wait for its end")
     return service.with_progress(found)
 
 
 async def _named(service: Service, run: RunData) -> tuple[str, str]:
     """The run's name in a comparison, and its recording."""
     if RECORDING not in run.files:
-        raise RefusedError(409, f"run {run.id} left no recording", fix="compare runs that measured")
+        raise RefusedError(409, f"run {run.id} has no recording", fix="compare runs that have a recording")
     return f"run {run.id}", str((await service.file_of(run.id, RECORDING)).resolve())

@@ -37,7 +37,7 @@ _GIVEN: dict[str, Any] = {
 
 @router.get("/models", name="list_models")
 async def list_models(service: TheService, me: Viewer) -> list[ModelData]:
-    """All models, built-in and given."""
+    """All models, built-in and uploaded."""
     del me
     return list(_readable(service.models, model_data))
 
@@ -51,7 +51,7 @@ async def get_model_text(model: FileName, service: TheService, me: Viewer) -> Re
 
 @router.put("/models/{model}", name="give_model", openapi_extra=_GIVEN)
 async def give_model(model: FileName, request: Request, service: TheService, me: Engineer) -> ModelData:
-    """Give a model file (TOML); a name stands for one content."""
+    """Upload a model file (TOML); the content of a name cannot be changed."""
     text = await _body(request, model)
     await service.giving.read("model", model, text)
     service.models.give(model, text, me.name)
@@ -61,7 +61,7 @@ async def give_model(model: FileName, request: Request, service: TheService, me:
 
 @router.delete("/models/{model}", name="remove_model", status_code=204)
 async def remove_model(model: FileName, service: TheService, me: Engineer) -> None:
-    """Remove a model that was given."""
+    """Remove an uploaded model."""
     if not service.models.remove(model):
         raise missing("given model", model)
     service.log.add(me.name, me.role, "model removed", model)
@@ -69,7 +69,7 @@ async def remove_model(model: FileName, service: TheService, me: Engineer) -> No
 
 @router.get("/controllers", name="list_controllers")
 async def list_controllers(service: TheService, me: Viewer) -> list[ControllerData]:
-    """All controllers, built-in and given."""
+    """All controllers, built-in and uploaded."""
     del me
     return list(_readable(service.controllers, controller_data))
 
@@ -85,7 +85,7 @@ async def get_controller_text(controller: FileName, service: TheService, me: Vie
 async def give_controller(
     controller: FileName, request: Request, service: TheService, me: Engineer
 ) -> ControllerData:
-    """Give a controller file (TOML); plans that are given may load it by its name."""
+    """Upload a controller file (TOML); uploaded plans can load it by name."""
     text = await _body(request, controller)
     await service.giving.read("controller", controller, text)
     service.controllers.give(controller, text, me.name)
@@ -95,7 +95,7 @@ async def give_controller(
 
 @router.delete("/controllers/{controller}", name="remove_controller", status_code=204)
 async def remove_controller(controller: FileName, service: TheService, me: Engineer) -> None:
-    """Remove a controller that was given, if no plan loads it."""
+    """Remove an uploaded controller, if no plan loads it."""
     using = service.plans.loading(f"{controller}.toml")
     if using:
         raise RefusedError(
@@ -110,7 +110,7 @@ async def remove_controller(controller: FileName, service: TheService, me: Engin
 async def copy_plan(
     plan: PlanName, wanted: Annotated[PlanCopyWanted, Body()], service: TheService, me: Engineer
 ) -> PlanData:
-    """Give a copy of a plan that loads other controllers, and is the same in all else."""
+    """Copy a plan and replace its controllers."""
     for name in wanted.controllers.values():
         if service.controllers.path(name) is None:
             raise missing("controller", name)
@@ -124,7 +124,7 @@ async def copy_plan(
 
 @router.post("/drafts", name="draft", response_model=DraftData)
 async def draft(wanted: Annotated[DraftWanted, Body()], service: TheService, me: Engineer) -> Response:
-    """Loops, margins and steps of a controller on a model, in milliseconds once a model has been read."""
+    """Loops, margins and steps of a controller on a model."""
     del me
     # As the desk wrote it: who moves a slider waits for it.
     found = await service.drawing.ask_text("draft", **_chosen(service, wanted))
@@ -133,7 +133,7 @@ async def draft(wanted: Annotated[DraftWanted, Body()], service: TheService, me:
 
 @router.post("/designs", name="design")
 async def design(wanted: Annotated[DraftWanted, Body()], service: TheService, me: Engineer) -> DesignData:
-    """The whole of `hil design`: the controller's file, and the worst over all possible plants."""
+    """Complete design, as `hil design`: the controller's file and the worst case of all plants."""
     del me
     return DesignData(**await service.drawing.ask("design", **_chosen(service, wanted)))
 

@@ -96,12 +96,12 @@ class Guard:
     def _refusal(self, scope: Scope, headers: Headers) -> tuple[int, str] | None:
         host = headers.get("host", "")
         if "*" not in self._hosts and _name(host) not in self._hosts:
-            return 421, "the service is not called by this name; say --allow-host when it is begun"
+            return 421, "unknown host name; start the service with --allow-host NAME"
         origin = headers.get("origin")
         if origin is not None and scope["method"] not in _SAFE and urlsplit(origin).netloc != host:
             return 403, "the request comes from another site's page"
         if not _fits(headers.get("content-length", "0"), _most(scope)):
-            return 413, f"at most {_most(scope)} bytes are taken"
+            return 413, f"at most {_most(scope)} bytes are accepted"
         client = scope.get("client")
         if not scope["path"].endswith(_EMERGENCY) and not self._may(client[0] if client else ""):
             return 429, "too many requests; wait a second"

@@ -16,7 +16,7 @@ router = APIRouter(tags=["service"])
 
 @router.get("/health", name="health")
 async def health(service: TheService, request: Request) -> Health:
-    """Whether the service and its store work, and where its stop post is; asks for no token."""
+    """State of the service and its store, and the address of its stop post; needs no token."""
     stop: StopAddress = request.app.state.stop_address
     up = service.stops.post is not None and service.stops.post.up
     service.tokens.any()
@@ -37,7 +37,7 @@ async def health(service: TheService, request: Request) -> Health:
 
 @router.get("/metrics", name="metrics", response_class=Response)
 async def metrics(service: TheService, me: Viewer) -> Response:
-    """What Prometheus asks for."""
+    """Metrics for Prometheus."""
     del me
     lines = ["# HELP hil_runs Runs by bench and state.", "# TYPE hil_runs gauge"]
     for (bench, state), count in sorted(service.runs.counts().items()):
@@ -49,14 +49,14 @@ async def metrics(service: TheService, me: Viewer) -> Response:
     lines += [
         f'hil_viewers{{bench="{name}"}} {len(service.showing.viewers[name])}' for name in service.benches
     ]
-    lines += ["# HELP hil_agents_connected Agents that are heard of.", "# TYPE hil_agents_connected gauge"]
+    lines += ["# HELP hil_agents_connected Connected agents.", "# TYPE hil_agents_connected gauge"]
     lines.append(f"hil_agents_connected {sum(one.connected for one in service.agents.all())}")
     if service.keeper is not None:
-        lines += ["# HELP hil_runs_not_stored Runs whose files the store has not all."]
+        lines += ["# HELP hil_runs_not_stored Runs with files that are not in the store."]
         lines += ["# TYPE hil_runs_not_stored gauge", f"hil_runs_not_stored {service.keeper.waiting()}"]
         count = service.studies.not_stored + service.campaigns.not_stored
-        lines += ["# HELP hil_results_not_stored Studies and campaigns that are over, likewise."]
+        lines += ["# HELP hil_results_not_stored Finished studies and campaigns with files not in the store."]
         lines += ["# TYPE hil_results_not_stored gauge", f"hil_results_not_stored {count}"]
-    lines += ["# HELP hil_up_seconds Seconds since the service began.", "# TYPE hil_up_seconds counter"]
+    lines += ["# HELP hil_up_seconds Seconds since the service started.", "# TYPE hil_up_seconds counter"]
     lines.append(f"hil_up_seconds {time.monotonic() - service.began_s:.1f}")
     return Response("\n".join(lines) + "\n", media_type="text/plain; version=0.0.4")

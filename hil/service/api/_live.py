@@ -49,7 +49,7 @@ async def live(bench: BenchName, service: TheService, me: Viewer) -> StreamingRe
     del me
     known(service, bench)
     if len(service.showing.viewers[bench]) >= _MOST_VIEWERS:
-        raise RefusedError(429, f"{_MOST_VIEWERS} watch already")
+        raise RefusedError(429, f"the limit of {_MOST_VIEWERS} viewers is reached")
     return StreamingResponse(_Watching(service, bench).events(), media_type="text/event-stream")
 
 

@@ -19,16 +19,16 @@ _LAST = 2**31 - 1
 
 @router.get("/me", name="me")
 async def get_me(me: Viewer) -> Me:
-    """Who asks, and what they may do."""
+    """The present user and role."""
     return me
 
 
 @router.post("/session", name="log_in", status_code=204)
 async def log_in(login: Login, service: TheService, request: Request, response: Response) -> None:
-    """Open a session with a token, for the page: its cookie is no token, and no script can read it."""
+    """Open a session of the page with a token; its cookie is not a token, and scripts cannot read it."""
     owner = service.tokens.owner_of(login.secret)
     if owner is None:
-        raise RefusedError(401, "is no valid token")
+        raise RefusedError(401, "is not a valid token")
     session, by_tls = service.tokens.open_session(owner), request.url.scheme == "https"
     response.set_cookie(
         COOKIE, session, httponly=True, samesite="strict", secure=by_tls, max_age=int(SESSION_S)
@@ -39,7 +39,7 @@ async def log_in(login: Login, service: TheService, request: Request, response: 
 
 @router.delete("/session", name="log_out", status_code=204)
 async def log_out(service: TheService, request: Request, response: Response) -> None:
-    """Close the session: its cookie is worth nothing from then on."""
+    """Close the session; its cookie is no longer valid."""
     session = request.cookies.get(COOKIE)
     if session:
         service.tokens.close_session(session)
@@ -56,10 +56,10 @@ async def list_tokens(service: TheService, me: Admin) -> list[TokenData]:
 
 @router.post("/tokens", name="make_token", status_code=201)
 async def make_token(wanted: TokenWanted, service: TheService, me: Admin) -> TokenMade:
-    """Make a token. The first is made where the service runs: `hil serve --add-token`."""
+    """Make a token. Make the first one on the service's machine: `hil serve --add-token`."""
     if not me.tokens:
         raise RefusedError(
-            403, "the first token is made on the service's machine", fix="hil serve --add-token NAME=admin"
+            403, "make the first token on the service's machine", fix="hil serve --add-token NAME=admin"
         )
     made = service.tokens.make(wanted.name, wanted.role, wanted.for_days)
     service.owners.changed()
@@ -69,7 +69,7 @@ async def make_token(wanted: TokenWanted, service: TheService, me: Admin) -> Tok
 
 @router.delete("/tokens/{token}", name="revoke_token", status_code=204)
 async def revoke_token(token: RunId, service: TheService, me: Admin) -> None:
-    """Make a token worthless; the last administrator's stays."""
+    """Revoke a token; the last administrator's cannot be revoked."""
     moment = datetime.datetime.now(datetime.UTC)
     valid = [
         one
@@ -91,6 +91,6 @@ async def audit(
     before: Annotated[int, Query(ge=1, le=_LAST)] = _LAST,
     most: Annotated[int, Query(ge=1, le=1000)] = 100,
 ) -> list[AuditEntry]:
-    """What was done by whom, newest first."""
+    """Audit log: actions and users, newest first."""
     del me
     return service.log.newest(before, most)

@@ -49,7 +49,7 @@ async def get_plan_text(plan: PlanName, service: TheService, me: Viewer) -> Resp
     openapi_extra={"requestBody": {"required": True, "content": {_YAML: {"schema": {"type": "string"}}}}},
 )
 async def give_plan(plan: PlanName, request: Request, service: TheService, me: Engineer) -> PlanData:
-    """Give a plan (YAML), or replace one that was given."""
+    """Upload a plan (YAML), or replace an uploaded one."""
     try:
         text = (await request.body()).decode("utf-8")
     except UnicodeDecodeError as error:
@@ -61,7 +61,7 @@ async def give_plan(plan: PlanName, request: Request, service: TheService, me: E
 
 @router.delete("/plans/{plan}", name="remove_plan", status_code=204)
 async def remove_plan(plan: PlanName, service: TheService, me: Engineer) -> None:
-    """Remove a plan that was given; its runs stay."""
+    """Remove an uploaded plan; its runs stay."""
     if not service.plans.remove(plan):
         raise missing("given plan", plan)
     service.log.add(me.name, me.role, "plan removed", plan)
@@ -69,7 +69,7 @@ async def remove_plan(plan: PlanName, service: TheService, me: Engineer) -> None
 
 @router.get("/kept-apart", name="list_kept_apart")
 async def list_kept_apart(service: TheService, me: Viewer) -> list[KeptApart]:
-    """Plans, controllers and models of an earlier version's folder that the database has otherwise."""
+    """Plans, controllers and models of an earlier version's folder with other content in the database."""
     del me
     return service.kept_apart
 
@@ -78,7 +78,7 @@ async def list_kept_apart(service: TheService, me: Viewer) -> list[KeptApart]:
 async def forecast(
     wanted: Annotated[ForecastWanted, Body()], service: TheService, me: Operator
 ) -> ForecastData:
-    """Duration, peaks and criteria as predicted; takes seconds, moves nothing."""
+    """Predicted duration, peaks and criteria; takes seconds, moves nothing."""
     del me
     bench = known(service, wanted.bench)
     plan = service.plans.chosen(wanted.plan, wanted.values)

@@ -17,17 +17,17 @@ from hil.service.store import DatabaseAwayError
 
 R = TypeVar("R", bound=Record)
 _MEANINGS = {
-    400: "the body cannot be read as what its type says",
-    401: "a token is needed, or the one given is not valid",
-    403: "the token's role may not do this",
-    404: "there is no such thing",
-    405: "not with this method",
-    409: "not in the state that it is in, or the name stands for another content",
-    413: "more than is taken",
-    416: "the file has no such bytes",
-    421: "the service is not called by this name",
-    422: "what was given cannot be used",
-    429: "too many requests; Retry-After says when to go on",
+    400: "the body does not match its content type",
+    401: "the token is missing or not valid",
+    403: "the token's role does not permit this",
+    404: "not found",
+    405: "method not allowed",
+    409: "not possible in the present state, or the name has other content",
+    413: "too large",
+    416: "the range is outside of the file",
+    421: "unknown host name",
+    422: "invalid input",
+    429: "too many requests; retry after the time in Retry-After",
     503: "the bench, the store or a process of the service failed",
 }
 RESPONSES: dict[int | str, dict[str, Any]] = {
@@ -55,7 +55,7 @@ def refuse_elsewhere(kind: str, found: R) -> R:
         RefusedError: it is another service's.
     """
     if found.place:
-        raise RefusedError(409, f"{kind} {found.id} is another service's", fix=f"ask {found.place}")
+        raise RefusedError(409, f"{kind} {found.id} belongs to another service", fix=f"ask {found.place}")
     return found
 
 
@@ -107,4 +107,4 @@ async def _of_http(request: Request, error: Exception) -> JSONResponse:
 async def _of_the_store(request: Request, error: Exception) -> JSONResponse:
     del request
     what = f"the store failed: {type(error).__name__}"
-    return _answer(503, Problem(what=what, fix="look at the service's log, and at its disk"))
+    return _answer(503, Problem(what=what, fix="check the service's log and its disk"))

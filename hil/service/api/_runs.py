@@ -43,7 +43,7 @@ async def list_runs(
 
 @router.post("", name="queue_run", status_code=201)
 async def queue_run(wanted: RunWanted, service: TheService, me: Operator) -> RunData:
-    """Queue a run; of a hazardous plan it waits until a second person has approved it."""
+    """Queue a run; a run of a hazardous plan waits for the approval of a second person."""
     plan = service.plans.chosen(wanted.plan, wanted.values)
     if plan is None:
         raise missing("plan", wanted.plan)
@@ -89,13 +89,13 @@ async def change_run(run: RunId, change: RunChange, service: TheService, me: Eng
     """Change the place of a run in its queue."""
     found = _there(service, run)
     if not service.runs.set_priority(run, change.priority):
-        raise RefusedError(409, f"run {run} does not wait any more")
+        raise RefusedError(409, f"run {run} is no longer queued")
     return _done(service, me, found, "priority", str(change.priority))
 
 
 @router.post("/{run}/approve", name="approve_run")
 async def approve_run(run: RunId, service: TheService, me: Engineer) -> RunData:
-    """Approve a run of a hazardous plan; who wanted it cannot."""
+    """Approve a run of a hazardous plan; not possible for the person who queued it."""
     found = _there(service, run)
     if found.requested_by == me.name:
         raise RefusedError(403, "a second person approves it", where=f"run {run}")
@@ -113,7 +113,7 @@ async def pause_run(run: RunId, service: TheService, me: Operator) -> RunData:
 
 @router.post("/{run}/resume", name="resume_run")
 async def resume_run(run: RunId, service: TheService, me: Operator) -> RunData:
-    """Let a run go on that is held."""
+    """Resume a held run."""
     _running(service, run).process.resume()
     return _done(service, me, _there(service, run), "resume")
 
@@ -127,13 +127,13 @@ async def answer_run(run: RunId, answer: Answer, service: TheService, me: Operat
 
 @router.post("/{run}/abort", name="abort_run")
 async def abort_run(run: RunId, service: TheService, me: Operator) -> RunData:
-    """End a run: one that waits is cancelled, one under way goes to its end steps and keeps what it has."""
+    """End a run: a queued run is cancelled; an active run does its end steps and keeps its data."""
     found = _there(service, run)
     running = service.running_run(run)
     if running is not None:
         running.process.end()
     elif not service.runs.cancel(run, f"cancelled by {me.name}"):
-        raise RefusedError(409, f"run {run} is over")
+        raise RefusedError(409, f"run {run} is finished")
     return _done(service, me, found, "abort")
 
 
@@ -145,7 +145,7 @@ async def get_run_file(
     me: Viewer,
     wanted: Annotated[str | None, Header(alias="range")] = None,
 ) -> Response:
-    """A file of a run that is over, or the `range` of it; from the store if it is not here any more."""
+    """A file of a finished run, or the `range` of it; from the store if the service no longer has it."""
     del me
     if name not in service.with_progress(_there(service, run)).files:
         raise missing("file", name)
@@ -168,13 +168,15 @@ def _there(service: Service, run: int) -> RunData:
 def _running(service: Service, run: int) -> RunningRun:
     there, found = _there(service, run), service.running_run(run)
     if found is None and there.bench not in service.benches:
-        raise RefusedError(409, f"run {run} is another service's", fix=f"ask the one of {there.bench}")
+        raise RefusedError(
+            409, f"run {run} belongs to another service", fix=f"use the service of {there.bench}"
+        )
     if found is None:
-        raise RefusedError(409, f"run {run} is not under way")
+        raise RefusedError(409, f"run {run} is not active")
     bench = service.benches[there.bench]
     if isinstance(bench, RemoteBench) and bench.agent.away:
         raise RefusedError(
-            409, bench.state()[1], fix="it can be ended, and is told so when its agent is back"
+            409, bench.state()[1], fix="it can be ended; its agent gets the order when it reconnects"
         )
     return found
 

@@ -35,7 +35,7 @@ _WRITTEN_WITHIN_S = 180.0  # a diagnosis, after the time that it may search
 async def identify(
     wanted: Annotated[IdentificationWanted, Body()], service: TheService, me: Engineer
 ) -> StudyData:
-    """Have a model identified from runs, as `hil identify` does; it takes seconds to minutes."""
+    """Identify a model from runs, as `hil identify`; takes seconds to minutes."""
     arguments = ["identify", *await _recordings(service, wanted.runs)]
     found = service.studies.begin("identification", wanted.runs, "", me.name, arguments, _IDENTIFIED_WITHIN_S)
     return _begun(service, me, found)
@@ -45,7 +45,7 @@ async def identify(
 async def diagnose(
     wanted: Annotated[DiagnosisWanted, Body()], service: TheService, me: Engineer
 ) -> StudyData:
-    """Have it found out why runs and a model differ, as `hil diagnose` does; it takes minutes."""
+    """Diagnose why runs and a model differ, as `hil diagnose`; takes minutes."""
     model = service.models.path(wanted.model)
     if model is None:
         raise missing("model", wanted.model)
@@ -70,24 +70,24 @@ async def list_studies(
 
 @router.get("/studies/{study}", name="get_study")
 async def get_study(study: RunId, service: TheService, me: Viewer) -> StudyData:
-    """One of them."""
+    """A study."""
     del me
     return _there(service, study)
 
 
 @router.post("/studies/{study}/cancel", name="cancel_study")
 async def cancel_study(study: RunId, service: TheService, me: Engineer) -> StudyData:
-    """End one; a diagnosis writes what it knows by then."""
+    """End a study; a diagnosis writes its result so far."""
     refuse_elsewhere("study", _there(service, study))
     if not await service.studies.cancel(study):
-        raise RefusedError(409, f"study {study} is over")
+        raise RefusedError(409, f"study {study} is finished")
     service.log.add(me.name, me.role, "study cancelled", str(study))
     return _there(service, study)
 
 
 @router.delete("/studies/{study}", name="remove_study", status_code=204)
 async def remove_study(study: RunId, service: TheService, me: Engineer) -> None:
-    """Remove one that is over, with its files; runs, and models that were saved from it, stay."""
+    """Remove a finished study with its files; runs and saved models stay."""
     found = refuse_elsewhere("study", _there(service, study))
     if not service.studies.remove(study):
         raise RefusedError(409, f"study {study} is {found.state}", fix="cancel it first")
@@ -96,7 +96,7 @@ async def remove_study(study: RunId, service: TheService, me: Engineer) -> None:
 
 @router.get("/studies/{study}/files/{name}", name="get_study_file", response_class=Response)
 async def get_study_file(study: RunId, name: str, service: TheService, me: Viewer) -> FileResponse:
-    """A file of one that is over: report, model, plan of a separating test."""
+    """A file of a finished study: report, model, plan of a separating test."""
     del me
     if name not in _there(service, study).files:
         raise missing("file", name)
@@ -107,7 +107,7 @@ async def get_study_file(study: RunId, name: str, service: TheService, me: Viewe
 
 @router.get("/identifications/{study}", name="get_identification")
 async def get_identification(study: RunId, service: TheService, me: Viewer) -> IdentificationData:
-    """What an identification found: responses with coherence, the fit, parameters with intervals."""
+    """Result of an identification: responses with coherence, fit, parameters with intervals."""
     del me
     of = _with(service, study, "identification", "identification.json")
     folder = await service.studies.files(study)
@@ -117,7 +117,7 @@ async def get_identification(study: RunId, service: TheService, me: Viewer) -> I
 
 @router.get("/diagnoses/{study}", name="get_diagnosis")
 async def get_diagnosis(study: RunId, service: TheService, me: Viewer) -> DiagnosisData:
-    """What a diagnosis found: names, alternatives with the tests that tell them apart, the map."""
+    """Result of a diagnosis: effects, alternatives with the tests that distinguish them, the map."""
     del me
     of = _with(service, study, "diagnosis", "diagnosis.json")
     content = json.loads(read_text(await service.studies.file(study, "diagnosis.json")))
@@ -148,7 +148,7 @@ async def _recordings(service: Service, runs: list[int]) -> list[str]:
         if run is None:
             raise missing("run", number)
         if run.state not in OVER or RECORDING not in service.with_progress(run).files:
-            raise RefusedError(409, f"run {number} has no recording", fix="take runs that measured")
+            raise RefusedError(409, f"run {number} has no recording", fix="choose runs that have a recording")
         found.append(str((await service.file_of(number, RECORDING)).resolve()))
     return found
 
@@ -172,5 +172,5 @@ def _with(service: Service, study: int, kind: StudyKind, file: str) -> StudyData
     if file not in found.files and found.place and found.state in STUDY_OVER:
         raise RefusedError(409, f"files of {kind} {study} are not in a store", fix=f"ask {found.place}")
     if file not in found.files:
-        raise RefusedError(409, f"{kind} {study} has found nothing: {found.reason or found.state}")
+        raise RefusedError(409, f"{kind} {study} has no result: {found.reason or found.state}")
     return found

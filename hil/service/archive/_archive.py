@@ -62,7 +62,7 @@ class Archive:
     def __init__(self, url: str) -> None:
         if urlsplit(url).username is not None and url.startswith("s3"):
             raise BadInputError(
-                "has a key in it, which others could read",
+                "contains a key, which others could read",
                 where="--store",
                 fix="set AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY, or a profile",
             )
@@ -101,7 +101,9 @@ class Archive:
         self._asked(bring, name)
         if self._read_back(name, wanted.size) != wanted:
             raise ArchiveAwayError(
-                "the store gave back another file than it was given", where=self._where(name), fix=_LATER
+                "the store returned a different file from the one written",
+                where=self._where(name),
+                fix=_LATER,
             )
         return wanted
 
@@ -131,7 +133,7 @@ class Archive:
                 for at in range(0, wanted.size, PIECE_BYTES):
                     file.write(self.read(name, at, min(wanted.size, at + PIECE_BYTES)))
             if sha256_of(temporary) != wanted.sha256:
-                raise ArchiveAwayError("the store's file is not what was given to it", where=name)
+                raise ArchiveAwayError("the store's file differs from the one written", where=name)
 
     def remove(self, name: str) -> None:
         """Remove a file; one that is not there is no mistake.
@@ -165,8 +167,8 @@ class Archive:
         except Exception as error:  # each kind of store has errors of its own
             said = (str(error).strip() or type(error).__name__).splitlines()[0][:_LONGEST]
             raise ArchiveAwayError(
-                f"the store is away: {said}", where=self._where(name), fix=_LATER
+                f"the store cannot be reached: {said}", where=self._where(name), fix=_LATER
             ) from error
 
 
-_LATER = "it is tried again; files that it has not are kept here"
+_LATER = "the service retries; files that are not in the store stay here"

@@ -112,7 +112,7 @@ def _bring(file: CampaignFile, place: Path, plans: Path, models: Mapping[str, st
     for path, name in named:
         if not _PLAIN.fullmatch(name) or name == CAMPAIGN:
             raise BadInputError(
-                f"{printable(repr(name), 100)} is no plain name",
+                f"{printable(repr(name), 100)} is not a plain file name",
                 where=file.document.place(path),
                 fix="a campaign of a service names files by letters, digits, _, - and ., without paths",
             )
@@ -129,7 +129,7 @@ def _bring(file: CampaignFile, place: Path, plans: Path, models: Mapping[str, st
         raise BadInputError(
             f"there is no plan '{file.plan}'",
             where=file.document.place(("plan",)),
-            fix="send it with the campaign, or give it to the service before",
+            fix="send it with the campaign, or upload it to the service first",
         )
 
 

@@ -96,7 +96,7 @@ def traces(
     from_s = max(start_s if start_s is not None else -np.inf, min(time[0] for time, _ in found))
     to_s = min(end_s if end_s is not None else np.inf, max(time[-1] for time, _ in found))
     if not from_s < to_s:
-        raise BadInputError("nothing was measured then", where=segment)
+        raise BadInputError("no data were measured in this period", where=segment)
     finest_s = min(float(np.median(np.diff(time))) for time, _ in found)
     width_s = max((to_s - from_s) / most, finest_s)
     count = int(np.ceil((to_s - from_s) / width_s * (1 - 1e-9)))
@@ -116,7 +116,7 @@ def _run(name: str, path: str) -> ComparedRun:
     recording = read_recording(Path(path), allow_missing=True)
     result = rejudged(recording)
     if result is None:
-        raise BadInputError("is no run of a plan", where=name)
+        raise BadInputError("is not a run of a plan", where=name)
     return ComparedRun(name, recording, result)
 
 

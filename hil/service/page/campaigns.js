@@ -19,7 +19,7 @@ export function beginCampaigns(act, may) {
   async function begin() {
     const beside = await Promise.all([...at("campaign-beside").files].map(async (file) => [file.name, await file.text()]));
     const campaign = await post("/campaigns", { text: at("campaign-text").value, files: Object.fromEntries(beside) });
-    at("campaign-told").textContent = `Campaign ${campaign.id} waits for its turn: ${campaign.simulations} simulations.`;
+    at("campaign-told").textContent = `Campaign ${campaign.id} is queued: ${campaign.simulations} simulations.`;
     await look();
   }
 
@@ -44,7 +44,7 @@ export function beginCampaigns(act, may) {
 
   function actions({ id, state }) {
     const made = document.createElement("span"), over = OVER.includes(state);
-    const [text, what] = over ? ["Go on", "resume"] : [state === "stopping" ? "End at once" : "Cancel", "cancel"];
+    const [text, what] = over ? ["Resume", "resume"] : [state === "stopping" ? "End now" : "Cancel", "cancel"];
     if (state !== "ended") made.append(button(id, "do", text, () => post(`/campaigns/${id}/${what}`)));
     if (over) made.append(button(id, "remove", "Remove", () => confirm(`Remove campaign ${id} with its files?`) && ask("DELETE", `/campaigns/${id}`)));
     return made;
@@ -60,7 +60,7 @@ export function beginCampaigns(act, may) {
 
 async function offerExamples() {
   examples = await get("/campaign-examples");
-  offer(at("campaign-example"), [...examples.map((one) => [one.name, one.title || one.name]), ["own file", "of my own"]]);
+  offer(at("campaign-example"), [...examples.map((one) => [one.name, one.title || one.name]), ["own file", "own file"]]);
   showExample();
 }
 
@@ -73,7 +73,7 @@ function showExample() {
 function progress({ id, state, done, simulations, rate_hz: rate }) {
   const made = document.createElement("div"), bar = document.createElement("progress");
   Object.assign(bar, { max: simulations, value: done });
-  bar.setAttribute("aria-label", `Share of campaign ${id} that is done`);
+  bar.setAttribute("aria-label", `Progress of campaign ${id}`);
   const left = rate > 0 ? (simulations - done) / rate : 0;
   const still = state === "running" && left ? `, ${rate.toFixed(1)} a second, ${left < 90 ? `${Math.ceil(left)} s` : `${Math.ceil(left / 60)} min`} left` : "";
   made.append(...(OVER.includes(state) && done === simulations ? [] : [bar]), said(`${done} of ${simulations}${still}`, "quiet"));

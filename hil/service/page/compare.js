@@ -59,7 +59,7 @@ async function compare() {
 
 function show() {
   const { first, other, distance, differences, notes } = found;
-  const far = distance === null ? "No criterion has a value in both." : `The criteria of run ${other.id} are ${(100 * distance).toPrecision(2)} % from those of run ${first.id} in the mean.`;
+  const far = distance === null ? "No criterion has a value in both runs." : `Mean difference of the criteria of run ${other.id} from run ${first.id}: ${(100 * distance).toPrecision(2)} %.`;
   at("compare-lead").textContent = far;
   at("compare-notes").replaceChildren(...notes.map((note) => said(note, "quiet")));
   at("compare-same").hidden = differences.length > 0;

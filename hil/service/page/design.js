@@ -142,7 +142,7 @@ async function save() {
   await ask("PUT", `/controllers/${name}`, controller);
   await listControllers();
   at("design-controller").value = name;
-  at("design-told").textContent = `Saved as ${name}: plans can load it.`;
+  at("design-told").textContent = `Saved as ${name}; plans can load it.`;
 }
 
 async function download() {
@@ -155,6 +155,6 @@ async function download() {
 async function use(planMade) {
   const plan = at("design-plan").value, controller = at("design-controller").value;
   const made = await post(`/plans/${plan}/copies`, { name: at("design-copy").value || `${plan}-${controller}`.slice(0, 64), controllers: { [at("design-file").value]: controller } });
-  at("design-told").textContent = `The plan ${made.name} is there: it is chosen above under 'Start a plan'.`;
+  at("design-told").textContent = `The plan ${made.name} is saved and selected under 'Start a plan'.`;
   await planMade(made.name);
 }

@@ -56,7 +56,7 @@ function show(answer) {
 
 function alternative(one) {
   const made = document.createElement("li"), text = document.createElement("span");
-  text.textContent = `${one.id.replaceAll("_", " ")} (${percent(one.confidence)}); to tell: ${one.separating_test}`;
+  text.textContent = `${one.id.replaceAll("_", " ")} (${percent(one.confidence)}); test to distinguish them: ${one.separating_test}`;
   made.append(text);
   if (one.plan && engineer && found.study.files.includes(one.plan)) {
     const button = Object.assign(document.createElement("button"), { type: "button", textContent: "Run the separating test" });

@@ -22,18 +22,18 @@ export function beginIdentification(bench, act, may) {
 async function save() {
   const name = at("identify-name").value;
   await saveModel(found.study, found.chain ? "physical.toml" : "model.toml", name);
-  at("identify-told").textContent = `Saved as ${name}: it can be designed for and diagnosed.`;
+  at("identify-told").textContent = `Saved as ${name}: available for design and diagnosis.`;
   await listModels();
 }
 
 function show(answer) {
   found = answer;
   const { verdict, warnings, resonance_hz: resonance, chain, parameters } = found;
-  at("identify-verdict").replaceChildren(badge(verdict), ` ${chain ? `a ${chain.replaceAll("_", " ")} chain explains it` : "no chain explains it"}${resonance ? `, resonance ${number(resonance)} Hz` : ""}`);
+  at("identify-verdict").replaceChildren(badge(verdict), ` ${chain ? `a ${chain.replaceAll("_", " ")} chain fits the data` : "no chain fits the data"}${resonance ? `, resonance ${number(resonance)} Hz` : ""}`);
   at("identify-warnings").replaceChildren(...warnings.map((one) => said(one, "bad")));
   const digits = (value) => (value === null ? "–" : Number(value.toPrecision(5)).toString().replace("-", "−"));
   at("identify-parameters").tBodies[0].replaceChildren(...parameters.map((one) => {
-    const interval = one.lower === null ? "not told" : `${digits(one.lower)} to ${digits(one.upper)}`;
+    const interval = one.lower === null ? "not known" : `${digits(one.lower)} to ${digits(one.upper)}`;
     return row(cell(one.name.replaceAll("_", " "), "", "th"), cell(digits(one.value), "number"), cell(interval, "number"), cell(one.unit));
   }));
   draw();

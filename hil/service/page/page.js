@@ -12,7 +12,7 @@ import { beginIdentification } from "./identify.js";
 import { begin, choosePlan, predictAgain } from "./start.js";
 import { drawTrend, showTrends } from "./trends.js";
 
-const STATES = { free: "Free", running: "Running", ending: "A lost run is being ended", in_use: "In use", emergency_stop: "Emergency stop", away: "Its agent is away" };
+const STATES = { free: "Free", running: "Running", ending: "Ending a lost run", in_use: "In use", emergency_stop: "Emergency stop", away: "Agent not connected" };
 const ROLES = ["viewer", "operator", "engineer", "admin"];
 const KINDS = { "report.html": "report", "report.pdf": "PDF", "recording.mcap": "recording", "result.json": "result", "log.txt": "log" };
 const LOST_MS = 15000, BENCHES_MS = 5000;
@@ -213,7 +213,7 @@ at("resume").onclick = () => act(() => post(`/runs/${running.id}/resume`));
 at("end").onclick = () => act(() => post(`/runs/${running.id}/abort`));
 at("reset").onclick = () => act(() => post(`/benches/${encodeURIComponent(bench)}/reset`));
 at("let-go").onclick = () => {
-  if (confirm(`Does nothing drive ${bench} any more? Then another agent may have it; a run that its agent has is interrupted.`))
+  if (confirm(`Is ${bench} no longer driven by its agent? It can then be driven by another agent. A run of this agent is marked as interrupted.`))
     act(() => ask("DELETE", `/benches/${encodeURIComponent(bench)}/agent`));
 };
 at("answer").onsubmit = (event) => {

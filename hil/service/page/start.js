@@ -109,7 +109,7 @@ function table(found) {
   scroll.className = "scroll";
   scroll.append(made);
   const time = `About ${Math.round(found.duration_s)} s of bench time.`;
-  const verdict = found.fits ? said(`${time} Fits the bench.`) : said(`${time} Beyond what the bench allows: it cannot be queued.`, "bad");
+  const verdict = found.fits ? said(`${time} Fits the bench.`) : said(`${time} It exceeds the limits of the bench and cannot be queued.`, "bad");
   const loads = Object.entries(found.bus_loads).map(([bus, load]) => `${bus} at most ${Math.round(100 * load)} %`);
   const overloaded = Object.values(found.bus_loads).some((load) => load > 1);
   const buses = loads.length ? [said(`Load of the buses: ${loads.join(", ")}.`, overloaded ? "bad" : "")] : [];

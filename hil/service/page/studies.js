@@ -13,7 +13,7 @@ export async function offerRuns(field, bench) {
   const runs = all.filter((run) => run.files.includes("recording.mcap")).slice(0, MOST_RUNS);
   const ticked = chosenRuns(field);
   field.querySelectorAll("label, p").forEach((one) => one.remove());
-  if (!runs.length) field.append(said("No run has measured yet.", "quiet"));
+  if (!runs.length) field.append(said("There is no recording yet.", "quiet"));
   field.append(...runs.map((run) => {
     const label = document.createElement("label");
     const box = Object.assign(document.createElement("input"), { type: "checkbox", value: run.id, checked: ticked.includes(run.id) });

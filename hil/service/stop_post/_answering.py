@@ -67,7 +67,7 @@ class Answering:
         self._refuse_other_sites(headers)
         one = _ONE.fullmatch(path)
         if one is None and path != ALL:
-            raise RefusedError(HTTPStatus.NOT_FOUND, "here is nothing but emergency stops")
+            raise RefusedError(HTTPStatus.NOT_FOUND, "this address accepts emergency stops only")
         if method in ("OPTIONS", "GET", "HEAD"):
             return None
         if method != "POST":
@@ -91,7 +91,7 @@ class Answering:
     def _refuse_other_sites(self, headers: Mapping[str, str]) -> None:
         host = _name(f"//{headers.get('host', '')}")
         if "*" not in self.hosts and host not in self.hosts:
-            raise RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "the service is not called by this name")
+            raise RefusedError(HTTPStatus.MISDIRECTED_REQUEST, "unknown host name")
         if "origin" in headers and (_name(headers["origin"]) or None) not in self.hosts | {host}:
             raise RefusedError(HTTPStatus.FORBIDDEN, "the request comes from another site's page")
 

@@ -23,7 +23,7 @@ from hil.service.store._tables import AuditRow
 _LONGEST_DETAIL = 2000
 _ADDING = 0x61756469  # of two who add at once, one waits
 _AT_ONCE = 1000
-_BROKEN = "was changed, removed or put in"
+_BROKEN = "was changed, removed or inserted"
 
 
 @dataclass(frozen=True)

@@ -78,7 +78,7 @@ def open_database(url: str, locked_s: float = _LOCKED_S) -> Engine:
         raise BenchError(
             f"the database cannot be used: {in_words(error.__cause__ or error)}",
             where=shown,
-            fix="look whether it is there, and whether it may be written",
+            fix="check that it exists and is writable",
         ) from error
     finally:
         migrating.dispose()
@@ -122,7 +122,7 @@ def _for_driver(url: URL) -> tuple[URL, dict[str, Any]]:
 
 def _cannot(error: Exception) -> str:
     """Why, without what may be a password."""
-    kinds = {ImportError: "its driver is not installed", ArgumentError: "it is no URL"}
+    kinds = {ImportError: "its driver is not installed", ArgumentError: "it is not a URL"}
     known = next((said for kind, said in kinds.items() if isinstance(error, kind)), "")
     if isinstance(error, OSError):
         return f"sslrootcert cannot be read: {error.strerror}"

@@ -47,7 +47,7 @@ class Presence:
     @property
     def away(self) -> str:
         """Why and since when it is away; '' if it is not."""
-        return f"the database is away since {self._since}: {self._why}" if self._why else ""
+        return f"the database cannot be reached since {self._since}: {self._why}" if self._why else ""
 
     def ask(self) -> bool:
         """Whether it answers now. May take as long as the network does: for a thread of its own."""
@@ -72,7 +72,7 @@ class Presence:
         return DatabaseAwayError(
             self.away,
             where=self._shown,
-            fix="runs under way go on, emergency stops work; look whether its server runs, then try again",
+            fix="active runs continue, emergency stops work; check its server, then try again",
         )
 
     def _connect(

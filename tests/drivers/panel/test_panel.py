@@ -123,8 +123,8 @@ def test_a_busy_panel_is_asked_again_for_a_while() -> None:
 @pytest.mark.parametrize(
     ("answer", "what"),
     [
-        (b"\x02 EMAS 1 OF\x03", "is not remote"),
-        (b"\x02 EMAS 1 DF\x03", "does not take the value"),
+        (b"\x02 EMAS 1 OF\x03", "is not in remote mode"),
+        (b"\x02 EMAS 1 DF\x03", "refuses the value"),
         (b"\x02 EMAS 1 XX\x03", "says XX"),
         (b"\x02 ???? 1 SE\x03", "does not know it"),
     ],
@@ -145,10 +145,10 @@ def test_beats_ask_and_silence_local_and_alarms_are_troubles() -> None:
     )
     device.beat()
     device._loop.run_for(3.5)
-    assert device.troubles() == ["the panel has said nothing for 3.5 s"]
+    assert device.troubles() == ["the panel has sent nothing for 3.5 s"]
     device.beat()
     device._loop.run_for(0.1)
-    assert device.troubles() == ["alarm 3", "alarm 4", "somebody took the panel to local"]
+    assert device.troubles() == ["alarm 3", "alarm 4", "the panel was switched to local"]
     line.close()
 
 

@@ -182,7 +182,7 @@ def test_nothing_found_is_said():
     found = explain(BASE, carry_out, targets(430.0), evaluations=60, stopped=lambda: True)
     assert found.rivals == ()
     assert not found.reached
-    assert found.verdict == "Nothing was carried out."
+    assert found.verdict == "No run was predicted."
     assert "Not reached" in explanation_html(found)
 
 
@@ -221,7 +221,7 @@ def test_the_bench_of_the_papers_car_holds_every_condition():
         ("", {}, "no target is given"),
         ("tolerence = 0.1", {}, "did you mean 'tolerance'?"),
         ("tolerance = 'a'", {}, "tolerance: "),
-        ("[targets]\n'x' = 1.0", {}, "no criterion is called 'x'"),
+        ("[targets]\n'x' = 1.0", {}, "no criterion has the name 'x'"),
         (
             "[targets]\n'gain_0kmh.peak_shaft_torque' = 1.0\n[open]\nsigma = [2.0, 1.0]",
             {},
@@ -250,7 +250,7 @@ def test_a_plan_without_steps_can_be_explained_and_one_without_torque_says_so():
     found = explain(BASE, carry_out, aimed, evaluations=20, among=("dead_time",))
     assert found.rivals
     still = BASE.with_effects(EffectUse("torque_deadband", {"half_width_nm": 50.0}))
-    with pytest.raises(BadInputError, match="brings no torque"):
+    with pytest.raises(BadInputError, match="applies no torque"):
         explain(still, carry_out, aimed, evaluations=20)
 
 

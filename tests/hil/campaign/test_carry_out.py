@@ -80,7 +80,7 @@ def test_another_campaign_is_not_gone_on_with(tmp_path, changed):
     setting = load_setting(written(tmp_path))
     write_begun(tmp_path, setting, 3)
     (tmp_path / changed).write_text((tmp_path / changed).read_text() + "# changed\n")
-    with pytest.raises(BadInputError, match=f"begun with other files.*{changed}"):
+    with pytest.raises(BadInputError, match=f"started with other files.*{changed}"):
         begun_batch(tmp_path, load_setting(tmp_path / "campaign.yaml"))
 
 

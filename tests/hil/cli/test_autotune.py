@@ -100,7 +100,7 @@ def test_what_the_diagnosis_does_not_know_ends_it_with_that_reason(tmp_path, seq
     options = ["--model", MODEL, "--bench", bench, "--processes", "1", "--out", str(out)]
     assert guarded(["autotune", sequence, *options]) == 1
     told = json.loads((out / "autotune.json").read_text())
-    assert told["ended"].startswith("the diagnosis does not know what is missing: ")
+    assert told["ended"].startswith("the diagnosis cannot identify what is missing: ")
     assert told["decisions"][-1]["decided"] == "end"
     assert "processor time" in told["decisions"][-1]["why"]
     assert told["worst_margin"]["measured"] is None
@@ -124,10 +124,10 @@ def test_a_run_that_is_not_as_predicted_is_explained_in_another_round(tmp_path, 
     options = ["--model", MODEL, "--bench", bench, "--processes", "1", "--out", str(out)]
     assert guarded(["autotune", sequence, *options]) == 1
     told = json.loads((out / "autotune.json").read_text())
-    assert told["ended"] == "all 2 rounds were made"
+    assert told["ended"] == "all 2 rounds are complete"
     assert not told["agrees"]
     confirmed = [one for one in told["decisions"] if one["stage"] == "confirm"]
-    assert [one["decided"] for one in confirmed] == ["let the diagnosis explain that run, too", "end"]
+    assert [one["decided"] for one in confirmed] == ["diagnose that run, too", "end"]
     assert (out / "round-1/diagnosis-2/diagnosis.json").is_file()
     explained = (out / "round-2/diagnosis/report.html").read_text()
     assert explained.count("recording.mcap") >= 3
@@ -161,7 +161,7 @@ def test_whoever_ends_it_what_is_known_is_kept(tmp_path, sequence, kind):
     [
         (["nowhere.yaml"], "nowhere.yaml"),
         (["autotun"], "no sequence 'autotun'"),
-        (["--bench", HARDWARE], "somebody's consent"),
+        (["--bench", HARDWARE], "a person's consent"),
         (["--model", "benches/paper_functions.toml"], "no shaft to load"),
         (["--envelope", "motor_torque_nm=1"], "would leave the envelope"),
         (["--envelope", "bench_time_s=1"], "one run takes"),
@@ -186,12 +186,12 @@ def test_wrong_input_is_one_message_and_leaves_nothing(tmp_path, arguments, said
             "sequence.yaml",
             "accept: short.yaml",
             "accept: chirp.yaml",
-            "no criterion can depend on a controller",
+            "no criterion depends on a controller",
         ),
         ("sequence.yaml", "identify: chirp.yaml", "identify: none.yaml", "none.yaml"),
         ("sequence.yaml", "free: free.toml", "free: none.toml", "none.toml"),
         ("sequence.yaml", "free: free.toml", "controller: other", "driven by a controller 'other'"),
-        ("chirp.yaml", CHIRP_STEP, "wait: {duration_s: 1}", "no segment to explain"),
+        ("chirp.yaml", CHIRP_STEP, "wait: {duration_s: 1}", "the plan for identification has no segment"),
     ],
 )
 def test_a_sequence_that_cannot_be_carried_out_is_refused(tmp_path, sequence, file, old, new, said, capsys):

@@ -61,7 +61,7 @@ def test_what_it_writes_and_says_and_goes_on_with(tmp_path, capsys):
     assert first[1].stat().st_mtime_ns == kept
     (tmp_path / "short.yaml").write_text((tmp_path / "short.yaml").read_text() + "# changed\n")
     assert campaign(file, "--workers", 0, "--out", out, "--resume") == 2
-    assert "begun with other files: plan short.yaml" in capsys.readouterr().err
+    assert "started with other files: plan short.yaml" in capsys.readouterr().err
     assert campaign(file, "--workers", 0, "--out", out, "--overwrite") == 0
     assert len(table_of(out)) == 16
 
@@ -166,7 +166,9 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path):
         said, err = process.communicate(timeout=60)
     assert (process.returncode, said) == (130, "")
     kept = len(table_of(out))
-    assert f"{kept} of 1500 simulations are kept; go on with: hil campaign {file} --out {out} --resume" in err
+    assert (
+        f"{kept} of 1500 simulations are kept; continue with: hil campaign {file} --out {out} --resume" in err
+    )
     assert err.count("\n") == 2
     assert 0 < kept < 1500
     assert not workers_of(process)
@@ -244,7 +246,7 @@ def test_a_scheduler_that_is_killed_is_exit_code_3_and_gone_on_with(tmp_path):
                 one.kill()
                 one.wait()
     assert process.returncode == 3
-    assert "the scheduler is gone" in err
+    assert "the connection to the scheduler is lost" in err
     assert "--resume" in err
     assert campaign(file, "--workers", 0, "--out", out, "--resume") == 0
     refuse_loss(out, 1500)

@@ -51,7 +51,7 @@ def test_runs_with_other_controllers_share_a_heading_that_names_neither(runs):
 @pytest.mark.parametrize(
     ("names", "message"),
     [
-        (("one", "other"), "carried out another plan than"),
+        (("one", "other"), "ran a different plan from"),
         (("one",), "one run cannot be compared"),
         (("one", "one"), "is given twice"),
         (("one", "nowhere"), "there is no such file"),

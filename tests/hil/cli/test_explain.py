@@ -49,7 +49,7 @@ def test_rivals_are_ranked_and_their_models_written(tmp_path, plan, capsys):
     [
         ([], "no target is given"),
         (["--target", "s.peak_shaft_torqe=1"], "did you mean 's.peak_shaft_torque'?"),
-        (["--target", TARGET, "--bench", "rear_axle_socketcan"], "is no simulated bench"),
+        (["--target", TARGET, "--bench", "rear_axle_socketcan"], "is not a simulated bench"),
         (["--target", TARGET, "--evaluations", "1"], "--evaluations"),
         (["nowhere.toml"], "nowhere.toml"),
         (["--target", TARGET, "--among", "backlach"], "did you mean 'backlash'?"),

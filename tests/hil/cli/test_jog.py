@@ -34,7 +34,7 @@ def test_on_hardware_without_a_terminal_nothing_moves(tmp_path):
     text = hil("sim-bench", "sim", "--port", "0", "--for", "0.1", "--json").stdout
     (tmp_path / "net.toml").write_text(json.loads(text)["bench_file"])
     done = hil("jog", tmp_path / "net.toml", "--out", tmp_path / "jog", code=2)
-    assert "--yes 'your name'" in done.stderr
+    assert "--yes 'YOUR NAME'" in done.stderr
 
 
 @pytest.mark.slow

@@ -156,11 +156,11 @@ def readable(folder: Path) -> Recording:
 def assert_verify_tells_a_cut_off_run_from_a_changed_one(out: Path) -> None:
     said = hil("verify", out, code=1).stdout
     assert "was changed" not in said
-    assert "agrees with what was recorded until the run was cut off" in said
+    assert "agrees with what was recorded before the run was cut off" in said
     result = out / "result.json"
     text = result.read_text()
     result.write_text(text.replace('"complete": false', '"complete": true'))
-    assert "result.json: was changed: what was recorded" in hil("verify", out, code=1).stdout
+    assert "result.json: was changed: it contradicts" in hil("verify", out, code=1).stdout
     result.write_text(text)
 
 
@@ -244,7 +244,7 @@ def test_a_run_that_stands_still_says_so_and_leaves_the_bench_safe(
     assert_went_to_zero_by_itself(observer)
     os.kill(holder, signal.SIGCONT)
     result = result_of(run, 3)
-    assert "own loop stood still" in result["said"]
+    assert "the bench loop was delayed" in result["said"]
     assert (result["verdict"], result["safe_state"]) == ("error", "confirmed")
     assert result["timing"]["longest_pause_s"] >= 0.25
     assert any(event.kind == "pause" for event in readable(tmp_path).events)
@@ -289,7 +289,7 @@ def test_a_command_that_is_killed_or_frozen_leaves_a_bench_that_its_process_make
     assert stored is not None
     assert (stored.verdict, stored.safe_state) == ("error", "confirmed")
     assert stored.end_steps.startswith("carried out: ramp_down")
-    words = "the command that asked for this run has ended" if number == signal.SIGKILL else "stands still"
+    words = "the command of this run has ended" if number == signal.SIGKILL else "has been silent for"
     assert words in stored.reason
     if number == signal.SIGSTOP:
         os.kill(run.pid, signal.SIGCONT)

@@ -50,7 +50,7 @@ def test_a_log_has_the_command_its_steps_and_its_end_and_may_be_written_again(re
 def test_nothing_but_a_log_is_written_over(recording, capsys):
     assert guarded(["schema", "--log", str(recording)]) == 2
     assert recording.read_text() == RECORDING
-    assert "is no log" in capsys.readouterr().err
+    assert "is not a log file" in capsys.readouterr().err
     assert guarded(["schema", "--log", str(recording.parent)]) == 2
     assert guarded(["schema", "--log", str(recording.parent / "nowhere" / "log")]) == 2
 

@@ -14,7 +14,7 @@ from tests.hil.cli.test_sim_bench import serving
 
 
 def test_a_simulated_bench_is_told_plainly():
-    assert "'hil sim-bench' serves it" in hil("monitor", "sim", code=2).stderr
+    assert "serve it with 'hil sim-bench'" in hil("monitor", "sim", code=2).stderr
 
 
 @pytest.mark.slow

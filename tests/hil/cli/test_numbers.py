@@ -61,4 +61,4 @@ def test_autotune_says_by_how_much_a_prediction_is_off_and_in_what() -> None:
     assert _off(one) == "off by up to 5.00 % of its limit (a peak: +30 N m)"
     both = confirmation(predicted, [_result("a.peak", 330.0, 600.0), _result("b.energy", 0.4)], 0.02)
     assert _off(both) == "off by up to 100.00 % of the larger value, without a limit (b energy: +0.4 N m)"
-    assert _off(confirmation(predicted[:1], predicted[:1], 0.02)) == "not off at all"
+    assert _off(confirmation(predicted[:1], predicted[:1], 0.02)) == "exact"

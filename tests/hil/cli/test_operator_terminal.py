@@ -97,7 +97,7 @@ def test_a_prompt_is_answered_and_what_is_typed_is_kept(tmp_path: Path) -> None:
 def test_a_prompt_without_an_answer_ends_the_run_like_an_operators_stop(tmp_path: Path) -> None:
     code, result = Operator(tmp_path, plan(timeout_s=0.5)).ended()
     assert (code, result["safe_state"]) == (130, "confirmed")
-    assert "nobody answered 'Is the cage shut?' within 0.5 s" in result["reason"]
+    assert "no answer to 'Is the cage shut?' within 0.5 s" in result["reason"]
     assert result["end_steps"].startswith("carried out: ramp_down")
 
 
@@ -200,7 +200,7 @@ def test_a_run_on_a_bench_in_another_process_is_paused_and_goes_on(tmp_path: Pat
     for _ in range(MOST_REPEATS):
         with serving(tmp_path, "--time-scale", "0.25") as (_, file):
             operator = Operator(tmp_path, text, "--bench", file)
-            operator.wait_for("p + Enter pauses")
+            operator.wait_for("p + Enter: pause")
             operator.type("p")
             operator.wait_for("held: paused by the operator")
             operator.type("r")

@@ -48,13 +48,13 @@ def test_a_log_and_a_dbc_give_a_recording_that_reports_and_exports(folder: Path,
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("a.log",), "--bench or by --dbc"),
-        (("a.log", "--bench", "sim", "--dbc", "a.dbc"), "--bench or by --dbc"),
+        (("a.log",), "either --bench or --dbc"),
+        (("a.log", "--bench", "sim", "--dbc", "a.dbc"), "either --bench or --dbc"),
         (("a.log", "--dbc", "a.dbc", "--bus", "rmcu=can0"), "--bus goes with --bench"),
         (("a.log", "--bench", "sim", "--bus", "rmcu"), "write --bus NAME=VALUE"),
         (("a.log", "--dbc", "a.dbc", "--dbc", "b.dbc"), "given twice for all channels"),
         (("a.log", "a.log", "--dbc", "a.dbc"), "is given twice"),
-        (("a.log", "--bench", "sim"), "none of the frames is one that the bench's devices"),
+        (("a.log", "--bench", "sim"), "no frame in the log belongs to a device"),
         (("a.dbc", "--dbc", "a.dbc"), "logs of frames end in"),
     ],
 )

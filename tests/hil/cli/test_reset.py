@@ -58,7 +58,7 @@ def test_nobody_arms_the_bench_until_it_is_reset(tmp_path: Path, monkeypatch: py
         assert "emergency stop since" in again.stderr
         assert "hil reset" in again.stderr
         hil("run", tmp_path / "quick.yaml", "--out", tmp_path / "simulated")  # another bench
-        assert "--by names nobody" in hil("reset", second, "--by", " ", code=2).stderr
+        assert "--by is empty" in hil("reset", second, "--by", " ", code=2).stderr
         done = hil("reset", second, "--by", "A. Tester")
         assert done.stdout.startswith("reset by A. Tester: emergency stop of 20")
         assert "no emergency stop is latched" in hil("reset", second, "--by", "A. Tester").stdout
@@ -74,8 +74,8 @@ def test_a_simulated_bench_of_another_process_is_another_bench(bench: Path, tmp_
         arguments = ("run", tmp_path / "moving.yaml", "--bench", bench, "--out", tmp_path / str(number))
         stopped = hil(*arguments, code=3)
         assert "emergency stop: motor_speed_rad_s reached" in stopped.stderr
-        assert "ends with it" in stopped.stderr
-    assert "with its service" in hil("reset", bench, "--by", "A. Tester").stdout
+        assert "its stop ends with the process" in stopped.stderr
+    assert "its service keeps" in hil("reset", bench, "--by", "A. Tester").stdout
 
 
 @pytest.mark.slow

@@ -25,7 +25,7 @@ def test_a_bench_in_wall_clock_time_has_a_line_for_each_request() -> None:
         "RMCU torque request: 5000 every 1 ms, sent p50 0.05 p99 0.4 largest 2.2 ms late; on the"
     )
     assert line.endswith("3 cycles missed, by the loop or while the machine stood still")
-    assert pause == "own loop stood still once, the longest 0.3 s"
+    assert pause == "the bench loop was delayed once, at most 0.3 s"
 
 
 @pytest.mark.parametrize(

@@ -98,7 +98,7 @@ def test_a_bench_of_hardware_wants_a_name_and_then_goes_on_unasked(tmp_path, inp
         (["--on-bench", "sim", "--then-run"], "--then-run does not go with --on-bench"),
         (["--on-bench", "sim", "--bench", "sim"], "--bench does not go with --on-bench"),
         (["--on-bench", "nowhere"], "nowhere"),
-        (["--on-bench", HARDWARE], "somebody's consent"),
+        (["--on-bench", HARDWARE], "a person's consent"),
         (["--on-bench", "sim", "--envelope", "motor_torque_nm"], "has no '='"),
         (["--on-bench", "sim", "--envelope", "motor_torque_nm=1"], "would leave the envelope"),
         (["--on-bench", "sim", "--envelope", "motor_torque_nm=1000"], "up to the bench's 150"),

@@ -108,19 +108,19 @@ def test_a_signed_run_and_what_changes_later(run: Path, tmp_path: Path, capsys) 
     assert "report.pdf" in verified(capsys, run)
     capsys.readouterr()
     assert guarded([*sign, "--overwrite"]) == 1  # what does not match is not signed
-    assert "nothing was signed" in capsys.readouterr().err
+    assert "not signed, because" in capsys.readouterr().err
 
 
 def test_bad_input_is_one_message(run: Path, tmp_path: Path, capsys) -> None:
     (tmp_path / "key.txt").write_text("no key")
     for arguments, said in (
         (["verify", tmp_path / "nothing"], "no such file"),
-        (["verify", tmp_path / "key.txt"], "is no folder and ends in none of"),
+        (["verify", tmp_path / "key.txt"], "is not a folder, and its name ends in none of"),
         (["verify", run / "report.pdf", "--by", tmp_path / "key.txt"], "--by goes with a folder"),
-        (["verify", run, "--by", tmp_path / "key.txt"], "is no public key"),
-        (["sign", run, "--key", tmp_path / "key.txt"], "is no private key"),
+        (["verify", run, "--by", tmp_path / "key.txt"], "is not a public key"),
+        (["sign", run, "--key", tmp_path / "key.txt"], "is not a private key"),
         (["sign", run / "report.pdf", "--key", tmp_path / "key.txt"], "is not a directory"),
-        (["sign", run, "--key", run / "key"], "the key lies in the folder"),
+        (["sign", run, "--key", run / "key"], "the private key is in the folder"),
     ):
         assert guarded([str(a) for a in arguments]) == 2
         assert said in capsys.readouterr().err

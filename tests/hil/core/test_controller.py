@@ -73,7 +73,7 @@ def test_values_have_limits(key: str, refused: tuple[Any, ...], taken: tuple[Any
     ("written", "instead", "said"),
     [
         ("alpha = ", "alpha = 1e-12", "it lies from 0.0019 to 1: (6) gives 0.0019 for 85 degrees"),
-        ("sample_time_s = ", "sample_time_s = 0.05", "it lies from 0.0001 to 0.01: the RMCU takes no other"),
+        ("sample_time_s = ", "sample_time_s = 0.05", "it lies from 0.0001 to 0.01: the range of the RMCU"),
         ("wheel_speed = ", "wheel_speed = [1.0]", "the filter (17) would be improper"),
         (
             "time_constant_s = 0.0078",

@@ -29,7 +29,7 @@ CONTROLLER = ROOT / "test_plans" / "library" / "controllers" / "phase_stabilizat
 def test_it_says_what_it_is_and_what_was_needed(read, file: Path, is_a: str, needed: str) -> None:
     with pytest.raises(BadInputError) as caught:
         read(file)
-    assert caught.value.what == f"this is a {is_a}, where a {needed} is needed"
+    assert caught.value.what == f"this is a {is_a}; a {needed} is needed"
     assert caught.value.fix.startswith("give it as --")
 
 

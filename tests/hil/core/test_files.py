@@ -72,7 +72,7 @@ def test_what_is_no_regular_file_is_not_replaced(tmp_path: Path) -> None:
     for path, said in (
         (tmp_path, "is a directory"),
         (Path("/dev/null"), "is not a regular file"),
-        (tmp_path / "link", "is a link to nothing"),
+        (tmp_path / "link", "is a link to a missing file"),
     ):
         with pytest.raises(BadInputError, match=said):
             refuse_special(path)

@@ -56,7 +56,7 @@ def test_what_was_signed_is_proven_and_signatures_of_others_leave_it_so(tmp_path
     sign_folder(folder, OTHER, by="B. Tester", at="later")
     assert wrong(folder) == []
     assert len(signatures_in(folder)) == 2
-    with pytest.raises(BadInputError, match="is signed with this key already"):
+    with pytest.raises(BadInputError, match="is already signed with this key"):
         sign_folder(folder, KEY, by="A. Tester", at="again")
     third = Ed25519PrivateKey.from_private_bytes(bytes(32)).public_key().public_bytes_raw()
     assert wrong(folder, third) == [f".: has no valid signature of the key {fingerprint(third)}"]
@@ -84,8 +84,8 @@ def test_files_that_come_or_go_are_named(tmp_path: Path) -> None:
     (folder / "more.txt").write_text("added")
     (folder / "report.pdf").unlink()
     assert wrong(folder, None) == [
-        "more.txt: was added after A. Tester had signed",
-        "report.pdf: was removed after A. Tester had signed",
+        "more.txt: was added after A. Tester signed",
+        "report.pdf: was removed after A. Tester signed",
     ]
     next(folder.glob("*.sig")).unlink()
     assert "is missing" in wrong(folder, None)[0]
@@ -110,10 +110,10 @@ def test_keys_of_openssh_and_pem_are_read_and_others_refused(tmp_path: Path) -> 
     curve = generate_private_key(SECP256R1()).private_bytes(*forms["pem"])
     (tmp_path / "curve").write_bytes(curve)
     (tmp_path / "rubbish").write_bytes(b"rubbish")
-    for name, said in {"curve": "is no Ed25519 key", "rubbish": "is no private key"}.items():
+    for name, said in {"curve": "is not an Ed25519 key", "rubbish": "is not a private key"}.items():
         with pytest.raises(BadInputError, match=said):
             private_key(tmp_path / name, no_passphrase)
-    for name, said in {"ssh": "is a private key", "rubbish": "is no public key"}.items():
+    for name, said in {"ssh": "is a private key", "rubbish": "is not a public key"}.items():
         with pytest.raises(BadInputError, match=said):
             public_key(tmp_path / name)
 

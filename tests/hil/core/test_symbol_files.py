@@ -93,9 +93,9 @@ def test_a_table_gives_the_same(tmp_path: Path) -> None:
         (CSV.replace("0x2000", "here"), ".csv", "line 2: address 'here' is none"),
         (CSV.replace("UWORD", "WORD"), ".csv", "line 2: type 'WORD' is none"),
         (CSV.replace("0.5", "0"), ".csv", "line 2: scale is 0"),
-        (CSV.replace("0.5", "nan"), ".csv", "line 2: scale 'nan' is no number"),
+        (CSV.replace("0.5", "nan"), ".csv", "line 2: scale 'nan' is not a number"),
         (CSV.replace("raw", "speed"), ".csv", "line 4: symbol 'speed' stands twice"),
-        (CSV, ".map", "is no table of symbols"),
+        (CSV, ".map", "is not a table of symbols"),
     ],
 )
 def test_a_file_that_is_none_is_told_with_its_line(tmp_path: Path, text: str, suffix: str, said: str) -> None:

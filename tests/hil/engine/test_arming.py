@@ -167,7 +167,7 @@ def test_a_device_that_fell_silent_after_its_first_word_keeps_it_from_being_arme
 def test_no_drive_is_enabled_before_the_rmcu_says_that_it_is_off(tmp_path: Path) -> None:
     with stage(tmp_path, "on") as at:
         at.bench.rmcu.is_safe = lambda: False  # what it says cannot be believed
-        with pytest.raises(BenchError, match="does not say that it gives no torque: state 'off'"):
+        with pytest.raises(BenchError, match="does not confirm that its torque is off: state 'off'"):
             at.arming.come_up()
         assert at.arming.armed
         assert not any(node.power.state.name == "OPERATION_ENABLED" for node in attached("on").dynos)

@@ -89,7 +89,7 @@ def test_a_limit_needs_a_device_that_gives_its_channel() -> None:
     with running("limited") as bench:
         bench.file = bench.file.model_copy(update={"limits": limits})
         with pytest.raises(
-            BadInputError, match=r"limits.channels.oil_k: no device gives this channel"
+            BadInputError, match=r"limits.channels.oil_k: no device provides this channel"
         ) as caught:
             refuse_channels(bench.file, bench.streams, bench.missing)
         assert "motor_speed_rad_s" in caught.value.fix

@@ -40,14 +40,14 @@ def test_control_characters_are_told_with_their_keys_and_a_dut_may_have_lines() 
 @pytest.mark.parametrize(
     ("bus", "changes", "said"),
     [
-        ("third", {"channel": "sim/third"}, "buses.third: is used by nothing"),
+        ("third", {"channel": "sim/third"}, "buses.third: no device uses it"),
         ("dyno", {}, "is also buses.rmcu"),
         ("rmcu", {"interface": "sockatcan"}, "did you mean 'socketcan'?"),
         ("rmcu", {"interface": "zzzz"}, "python-can has no such interface; known: "),
         ("rmcu", {"interface": "socketcan"}, "hardware with [simulation]"),
         ("rmcu", {"channel": "elsewhere/rmcu"}, "with name = 'sim' this simulated bus is 'sim/rmcu'"),
         ("rmcu", {"options": {"fd": True}}, "buses.rmcu.options: the simulated bench takes none"),
-        ("rmcu", {"options": {"bitrate": 1}}, "buses.rmcu.options.bitrate: stands outside of options"),
+        ("rmcu", {"options": {"bitrate": 1}}, "buses.rmcu.options.bitrate: must be set outside of options"),
     ],
 )
 def test_buses_that_contradict_the_rest(bus: str, changes: dict[str, Any], said: str) -> None:

@@ -114,11 +114,11 @@ CHANNEL = 'channel = "can0"'
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("channel = true", "line 8: buses.rmcu.channel = True: is no channel"),
-        ("channel = 1.5", "line 8: buses.rmcu.channel = 1.5: is no channel"),
-        ('channel = ""', "line 8: buses.rmcu.channel = '': is no channel"),
-        ("channel = 256", "line 8: buses.rmcu.channel = 256: is no channel; they count from 0 to 255"),
-        (f"{CHANNEL}\ntiming = {{ f_clock = 8000000 }}", "line 9: buses.rmcu.timing = a table: says nothing"),
+        ("channel = true", "line 8: buses.rmcu.channel = True: is not a channel"),
+        ("channel = 1.5", "line 8: buses.rmcu.channel = 1.5: is not a channel"),
+        ('channel = ""', "line 8: buses.rmcu.channel = '': is not a channel"),
+        ("channel = 256", "line 8: buses.rmcu.channel = 256: is not a channel; channels are numbered"),
+        (f"{CHANNEL}\ntiming = {{ f_clock = 8000000 }}", "line 9: buses.rmcu.timing = a table: is empty"),
         (f"{CHANNEL}\ntiming = {{ f_clock = 8000000, tseg1 = 5 }}", "give tseg1, tseg2 and sjw together"),
     ],
 )  # fmt: skip

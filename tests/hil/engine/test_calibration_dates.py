@@ -24,7 +24,7 @@ WHO = "A. Tester: laboratory closed until Monday"
 def test_it_is_valid_on_its_last_day_and_refused_after() -> None:
     assert accepted_expiry(SIM, TODAY, "") is None
     assert accepted_expiry(SIM, TODAY, WHO) is None
-    with pytest.raises(BadInputError, match=r"'shaft_torque' ran out on 2026-03-03") as refused:
+    with pytest.raises(BadInputError, match=r"'shaft_torque' expired on 2026-03-03") as refused:
         accepted_expiry(BENCH, TODAY, "")
     assert "--accept-expired 'NAME: reason'" in str(refused.value)
     assert "'speed'" not in str(refused.value)
@@ -36,9 +36,9 @@ def test_it_is_valid_on_its_last_day_and_refused_after() -> None:
 
 @pytest.mark.parametrize("text", ["A. Tester", "A. Tester:", ": because", ":", " : "])
 def test_a_name_and_a_reason_are_needed(text: str) -> None:
-    with pytest.raises(BadInputError, match="has no name or no reason"):
+    with pytest.raises(BadInputError, match="lacks a name or a reason"):
         accepted_expiry(BENCH, TODAY, text)
-    with pytest.raises(BadInputError, match="has no name or no reason"):
+    with pytest.raises(BadInputError, match="lacks a name or a reason"):
         accepted_expiry(SIM, TODAY, text)
 
 

@@ -92,9 +92,9 @@ def test_the_load_of_a_bus_is_limited_and_recorded(tmp_path: Path) -> None:
     [
         (limit("motor_speed_rad_s", "rpm", 9.0), r"motor_speed_rad_s is in rad/s"),
         (limit("motor_speed_rad_s", "rad/s", 9.0, of="slope"), r"motor_speed_rad_s is in rad/s2"),
-        (limit("oil_temperature_k", "K", 9.0), r"limits.watch.t: no device gives this channel"),
-        (limit("shaft_twist_rad", "rad", 9.0), r"no device gives this channel"),
-        (limit("bus_load_nowhere", "1", 9.0), r"no device gives this channel"),
+        (limit("oil_temperature_k", "K", 9.0), r"limits.watch.t: no device provides this channel"),
+        (limit("shaft_twist_rad", "rad", 9.0), r"no device provides this channel"),
+        (limit("bus_load_nowhere", "1", 9.0), r"no device provides this channel"),
     ],
 )
 def test_a_limit_of_nothing_or_in_another_unit_is_refused(named: NamedLimit, said: str) -> None:
@@ -107,7 +107,7 @@ def test_a_magnitude_that_nobody_measures_is_no_limit_and_refused() -> None:
 
     with open_bench(sim_bench("unwatched")) as opened:
         streams = [s for s in opened.streams if "shaft_torque_right_nm" not in s.channels]
-        with pytest.raises(BadInputError, match="limits.wheel_speed_rad_s: nothing is watched by it"):
+        with pytest.raises(BadInputError, match="limits.wheel_speed_rad_s: the limit has no effect"):
             refuse_channels(opened.file, streams, {})
 
 

@@ -35,9 +35,13 @@ def test_kinds_have_defaults_and_can_be_named() -> None:
 @pytest.mark.parametrize(
     ("key", "change", "said"),
     [
-        ("rmcu", {"kind": 7}, "rmcu.kind = 7: names no kind; known: "),
-        ("rmcu", {"kind": ""}, "rmcu.kind = '': names no kind; known: "),
-        ("rmcu", {"kind": "rmcu-cam"}, "rmcu.kind = 'rmcu-cam': no installed package has it; did you mean"),
+        ("rmcu", {"kind": 7}, "rmcu.kind = 7: is not a kind; known: "),
+        ("rmcu", {"kind": ""}, "rmcu.kind = '': is not a kind; known: "),
+        (
+            "rmcu",
+            {"kind": "rmcu-cam"},
+            "rmcu.kind = 'rmcu-cam': no installed package provides it; did you mean",
+        ),
         ("dyno", {"kind": "rmcu-can", "eds": None}, "dyno"),
         ("rmcu", {"colour": 1}, "rmcu.colour: unknown key"),
         ("rmcu", {"bus": 7}, "rmcu.bus = 7: "),
@@ -55,7 +59,7 @@ def test_what_turns_no_wheels_is_no_dyno() -> None:
     data = tables()
     data["dyno"] = dict(data["rmcu"], kind="rmcu-can")
     _, mistakes = device_tables(data)
-    assert mistakes == ["dyno.kind = 'rmcu-can': does not turn wheels; give it under [devices]"]
+    assert mistakes == ["dyno.kind = 'rmcu-can': is not a dyno device; move it to [devices]"]
 
 
 def test_further_devices_must_name_their_kind() -> None:

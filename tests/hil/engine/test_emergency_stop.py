@@ -31,7 +31,7 @@ def test_it_stays_until_a_person_resets_it(tmp_path: Path) -> None:
     latch(bench, by="the operator", why="smoke", run=tmp_path)
     with pytest.raises(BenchError, match="by the operator: smoke") as caught:
         refuse_latched(bench)
-    assert "ends with it" in caught.value.fix
+    assert "its stop ends with the process" in caught.value.fix
     (stop,) = reset(bench, "A. Tester")
     assert (stop.why, stop.reset_by) == ("smoke", "A. Tester")
     refuse_latched(bench)
@@ -82,7 +82,7 @@ def test_one_in_the_end_steps_counts_more_than_what_ended_the_run(tmp_path: Path
     request.progress = lambda share, text: operator.waiting.append(next(typed, "")) if share > 0.2 else None
     outcome = run_plan(request)
     assert isinstance(outcome.error, EmergencyStopError)
-    assert outcome.result.end_steps == "begun, but not carried out whole"
+    assert outcome.result.end_steps == "started, but not completed"
     with pytest.raises(BenchError, match="emergency stop since"):
         refuse_latched(sim_bench("late"))
 

@@ -48,7 +48,7 @@ def test_which_one_is_told(errors: list[Exception], said: str, kinds: list[str])
     ("error", "blamed"),
     [
         (BenchError("the dynos fault"), True),
-        (BenchError("own loop stood still for 0.7 s"), False),  # says so itself
+        (BenchError("the bench loop was delayed by 0.7 s"), False),  # says so itself
         (OrderlyEndError("too hot"), False),
         (InterruptError("q"), False),
         (EmergencyStopError("e", by="me"), False),
@@ -57,7 +57,7 @@ def test_which_one_is_told(errors: list[Exception], said: str, kinds: list[str])
 def test_a_loop_that_stood_still_is_named_as_what_may_have_been_the_cause(
     error: HilError, blamed: bool
 ) -> None:
-    kept, _ = failures("own loop stood still for 0.06 s just before")
+    kept, _ = failures("the bench loop was delayed by 0.06 s just before")
     kept.take(error)
     assert kept.error is not None
     assert ("just before" in kept.error.what) is blamed

@@ -292,7 +292,7 @@ def test_a_model_without_a_shaft_is_refused():
 
 def test_wheels_that_the_dynos_cannot_bring_to_speed_end_the_prediction():
     heavy = dataclasses.replace(MODEL, parameters={**MODEL.parameters, "wheel_inertia": 4000.0})
-    with pytest.raises(BenchError, match="rad/s was asked for"):
+    with pytest.raises(BenchError, match="rad/s was requested"):
         predict(plan("[{hold_speed: {speed_km_h: 300, duration_s: 0}}]"), _without_speed_limit(), heavy)
 
 

@@ -163,7 +163,7 @@ def test_a_command_that_is_gone_or_frozen_ends_the_run_in_the_normal_way(how: st
     assert result is not None
     assert (result.verdict, result.safe_state) == ("error", "confirmed")
     assert result.end_steps.startswith("carried out: ramp_down")
-    words = "the command that asked for this run has ended" if how == "gone" else "the command stands still"
+    words = "the command of this run has ended" if how == "gone" else "the command has been silent for"
     assert words in result.reason
     assert b"Traceback" not in said
     if how == "gone":

@@ -107,7 +107,7 @@ def test_what_opens_again_and_again_does_not_hold_for_ever(tmp_path: Path) -> No
 
     outcome = held(tmp_path, "flaps", flaps, interlocks=shut(well_for_s=0.1))
     assert isinstance(outcome.error, OrderlyEndError)
-    assert "it has held the run 5 times already" in outcome.error.what
+    assert "it has already held the run 5 times" in outcome.error.what
 
 
 def test_an_open_interlock_keeps_the_bench_from_being_armed(tmp_path: Path) -> None:

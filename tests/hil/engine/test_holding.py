@@ -135,11 +135,11 @@ def test_a_pause_that_nobody_ends_is_ended_after_ten_minutes() -> None:
 def test_who_is_held_reads_why_and_what_to_do() -> None:
     floor = Floor(until(0.1, CAGE))
     floor.held_s(CAGE)
-    assert floor.terminal.told == ["held: cage is wrong\nshut it\ngoes on by itself once that is well"]
+    assert floor.terminal.told == ["held: cage is wrong\nshut it\nresumes by itself when the cause is gone"]
     floor = Floor(until(0.4, HEAT), {0.2: "r", 0.6: "r"})
     floor.held_s(HEAT)
     asked, refused = floor.terminal.told
-    assert asked.endswith("r and Enter: go on; q and Enter: end the run")
+    assert asked.endswith("r and Enter: resume; q and Enter: end the run")
     assert refused == "not yet: oil is wrong"
 
 
@@ -168,7 +168,7 @@ def test_what_holds_a_run_for_the_sixth_time_ends_it() -> None:
     floor.hold.refuse_end()
     floor.hold.ask(HEAT, "hot")  # counted by its own name
     floor.hold.ask(CAGE, "open")
-    with pytest.raises(OrderlyEndError, match="it has held the run 5 times already"):
+    with pytest.raises(OrderlyEndError, match="it has already held the run 5 times"):
         floor.hold.refuse_end()
 
 

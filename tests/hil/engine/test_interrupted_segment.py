@@ -125,7 +125,7 @@ def test_a_prompt_is_answered_by_the_operator_or_by_name(tmp_path: Path) -> None
     named = RunRequest(plan(PROMPT), sim_bench("p2"), tmp_path / "b", confirmed_by="A. Tester")
     recording = read_recording(run_plan(named).recording)
     assert recording.metadata["run"]["prompts_confirmed_by"] == "A. Tester"
-    assert "confirmed beforehand by A. Tester" in [e.text for e in recording.events if e.kind == "prompt"]
+    assert "confirmed in advance by A. Tester" in [e.text for e in recording.events if e.kind == "prompt"]
 
 
 def test_on_hardware_a_prompt_that_nobody_can_answer_is_refused(tmp_path: Path) -> None:

@@ -41,7 +41,7 @@ def test_a_sensor_with_the_wrong_sign_is_found_with_its_place(tmp_path):
     assert outcome.run.result.safe_state == "confirmed"
     assert not outcome.signs.right
     shaft, wheel = outcome.signs.findings
-    assert shaft.what.startswith("shaft_torque_left_nm has the wrong sign: it went by -4")
+    assert shaft.what.startswith("shaft_torque_left_nm has the wrong sign: it changed by -4")
     assert shaft.where.endswith("(dyno.eds): 'Shaft torque' of node 3")
     assert f"{SIM.source}, line 22" in shaft.where
     assert SIM.text.splitlines()[21].startswith("eds")

@@ -95,8 +95,8 @@ def test_a_magnitude_that_is_missing_is_an_error_and_never_no_limit(key: str) ->
 @pytest.mark.parametrize(
     ("table", "change", "said"),
     [
-        (WARM, ("above = 90.0", ""), "limits nothing; give 'below', 'above' or both"),
-        (WARM, ("above = 90.0", "above = 90.0\nbelow = 88.0"), "the hysteresis leaves nothing"),
+        (WARM, ("above = 90.0", ""), "sets no limit; give 'below', 'above' or both"),
+        (WARM, ("above = 90.0", "above = 90.0\nbelow = 88.0"), "the hysteresis leaves no range"),
         (WARM, ("above = 90.0", "above = 90.0\npersistence_s = 0.1"), "not both"),
         (WARM, ("above = 90.0", "above = 90.0\nover_s = 0.1"), "over_s goes with of = 'slope'"),
         (WARM, ('"pause"', '"hope"'), "limits.watch.warm.response"),

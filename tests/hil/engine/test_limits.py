@@ -118,7 +118,7 @@ def test_a_pause_of_the_own_loop_is_no_silence_of_a_device() -> None:
     listen(watched, 1.0, 1.05)
     watched.look_for_silence(1.35)
     assert (watched.pauses.count, round(watched.pauses.longest_s, 1)) == (1, 0.3)
-    assert watched.pauses.blamed_at(1.4) == "own loop stood still for 0.3 s just before"
+    assert watched.pauses.blamed_at(1.4) == "the bench loop was delayed by 0.3 s just before"
     assert watched.pauses.blamed_at(2.0) == ""
     listen(watched, 1.36, 1.4)
     with pytest.raises(BenchError, match="status has stopped coming"):  # what was silent before goes on to be
@@ -127,7 +127,9 @@ def test_a_pause_of_the_own_loop_is_no_silence_of_a_device() -> None:
 
 def test_a_pause_beyond_the_bound_is_a_fault_of_this_computer() -> None:
     watched = heard()
-    with pytest.raises(BenchError, match=r"this computer: own loop stood still for 0.7 s, more than 0.5 s"):
+    with pytest.raises(
+        BenchError, match=r"this computer: the bench loop was delayed by 0.7 s, more than 0.5 s"
+    ):
         watched.look_for_silence(1.7)
 
 

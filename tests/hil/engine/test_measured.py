@@ -30,7 +30,7 @@ def test_check_doctor_and_run_refuse_the_same_limit_in_the_same_words(tmp_path, 
     file = load_bench(written(tmp_path, "sim", LIMIT))
     said = []
     for asked in (refuse_unmeasured, lambda file: open_bench(file).__enter__()):
-        with pytest.raises(BadInputError, match="no device gives this channel") as refused:
+        with pytest.raises(BadInputError, match="no device provides this channel") as refused:
             asked(file)
         said.append(str(refused.value))
     (fault,) = (one for one in examine_bench(DoctorRequest(file, 0.2)).findings if one.severity == "fault")
@@ -40,7 +40,7 @@ def test_check_doctor_and_run_refuse_the_same_limit_in_the_same_words(tmp_path, 
 
 
 def test_hardware_is_asked_without_being_touched(tmp_path):
-    with pytest.raises(BadInputError, match="no device gives this channel"):
+    with pytest.raises(BadInputError, match="no device provides this channel"):
         refuse_unmeasured(load_bench(written(tmp_path, "rear_axle_socketcan", LIMIT)))
 
 

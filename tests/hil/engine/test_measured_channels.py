@@ -45,7 +45,7 @@ def test_with_sound_sensors_it_passes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("faults", "doubted"),
     [
-        ({LEFT: SensorFault(gain=0.0), RIGHT: SensorFault(gain=0.0)}, "shaft_torque_nm reads nothing"),
+        ({LEFT: SensorFault(gain=0.0), RIGHT: SensorFault(gain=0.0)}, "shaft_torque_nm reads zero"),
         ({LEFT: SensorFault(gain=0.5), RIGHT: SensorFault(gain=0.5)}, "shaft_torque_nm is 0.49"),
         ({LEFT: SensorFault(gain=0.0)}, "shaft_torque"),
         ({RIGHT: SensorFault(gain=-1.0)}, "shaft_torque"),
@@ -114,7 +114,7 @@ def test_damaged_frames_are_left_out_and_named(tmp_path: Path) -> None:
     outcome = run_plan(RunRequest(plan(STEPS, CRITERIA), sim_bench("damaged-frames"), tmp_path / "damaged"))
     sound = ran("undamaged", tmp_path / "sound", {})
     assert outcome.result.verdict == sound.result.verdict == "pass"
-    assert any("came damaged (wrong checksum)" in text for text in outcome.result.missing)
+    assert any("are damaged (wrong checksum)" in text for text in outcome.result.missing)
     recording = read_recording(outcome.recording)
     limits = read_recording(sound.recording)
     for name in ("motor_speed_rad_s", "motor_torque_ref_nm", "motor_torque_nm"):

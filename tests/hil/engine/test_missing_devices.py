@@ -40,7 +40,7 @@ def test_what_limits_it_cannot_be_watched():
     limits = SIM.limits.model_copy(update={"channels": {"oil_temperature_k": ChannelLimit(above=363.0)}})
     with pytest.raises(BadInputError) as caught, open_bench(bench(limits=limits)):
         pass
-    assert caught.value.what == "limits.channels.oil_temperature_k: no device gives this channel"
+    assert caught.value.what == "limits.channels.oil_temperature_k: no device provides this channel"
     assert "devices.oil is missing" in caught.value.fix
 
 

@@ -58,7 +58,7 @@ def test_an_emergency_stop_of_another_way_says_who_from_where_and_how_and_counts
     terminal = Silent()
     operator, _ = at(terminal)
     terminal.waiting = [EmergencyAsked(by="anna", origin="10.0.0.7", way="page")]
-    with pytest.raises(EmergencyStopError, match="anna asked for it from 10.0.0.7 on the") as found:
+    with pytest.raises(EmergencyStopError, match="requested by anna from 10.0.0.7 on the") as found:
         operator.look()
     assert (found.value.by, found.value.origin, found.value.way) == ("anna", "10.0.0.7", "page")
     terminal.waiting = ["e"]
@@ -76,7 +76,7 @@ def test_what_was_typed_before_the_prompt_is_no_answer() -> None:
     terminal = Silent()
     operator, _ = at(terminal)
     terminal.waiting = [""]
-    with pytest.raises(InterruptError, match="nobody answered 'ready' within 0.3 s"):
+    with pytest.raises(InterruptError, match="no answer to 'ready' within 0.3 s"):
         operator.confirm("ready", 0.3)
 
 
@@ -103,8 +103,8 @@ def test_nobody_there() -> None:
     assert not operator.present
     operator.tell("anything")
     operator.look()
-    assert operator.confirm("ready", 5.0) == "nobody to ask: a simulated bench goes on"
-    assert at(None, "A. Tester")[0].confirm("ready", 5.0) == "confirmed beforehand by A. Tester"
+    assert operator.confirm("ready", 5.0) == "no operator: a simulated bench continues"
+    assert at(None, "A. Tester")[0].confirm("ready", 5.0) == "confirmed in advance by A. Tester"
     began_s = loop.clock.now_s()
     operator.pass_time()
     assert 0.0 < loop.clock.now_s() - began_s < 0.002

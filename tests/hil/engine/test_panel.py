@@ -55,7 +55,7 @@ def test_what_the_panel_confirmed_is_recorded_and_acts(tmp_path: Path) -> None:
 
 
 def test_a_bench_without_a_panel_is_told_before_the_run(tmp_path: Path) -> None:
-    with pytest.raises(BadInputError, match="no device that takes vehicle and road load"):
+    with pytest.raises(BadInputError, match="no device that accepts vehicle and road load"):
         run_plan(RunRequest(plan(STEPS.replace("MASS", "1500")), sim_bench("no-panel"), tmp_path))
 
 
@@ -92,11 +92,11 @@ def local(panel, data, whole) -> bytes:
 @pytest.mark.parametrize(
     ("change", "until_s", "said"),
     [
-        (silent, 1e9, "the panel has said nothing for 1"),
+        (silent, 1e9, "the panel has sent nothing for 1"),
         (silent, 2.5, ""),
         (garbled, 1e9, ""),
         (alarmed, 1e9, "alarm 17"),
-        (local, 1e9, "somebody took the panel to local"),
+        (local, 1e9, "the panel was switched to local"),
     ],
     ids=["silent", "silent for a moment", "garbage, echo and halves", "an alarm", "taken to local"],
 )

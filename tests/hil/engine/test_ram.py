@@ -94,7 +94,7 @@ def test_every_fifth_sample_fits_beside_the_rmcus_own_frames(tmp_path: Path) -> 
     ("keys", "said"),
     [
         ({"bus": "rmcu"}, "devices.ram.bus = 'rmcu': its frames take up to 665 kbit/s, those of others 540"),
-        ({"symbols": "rmcu.dbc"}, "devices.ram.symbols = 'rmcu.dbc': is no table of symbols"),
+        ({"symbols": "rmcu.dbc"}, "devices.ram.symbols = 'rmcu.dbc': is not a table of symbols"),
         ({"channels": {"dfc_torque_nm": "Tm_DFC"}}, "has no symbol 'Tm_DFC'; did you mean 'Tm_DFC_ref'?"),
         ({"channels": {"dfc_torque": "Tm_DFC_ref"}}, "the simulated RMCU has no such variable; did you mean"),
         ({"answer_id": 0x550}, "request_id and answer_id are both 0x550"),
@@ -259,7 +259,7 @@ def refusing(command: int, answer: bytes, times: int = 1000) -> Callable[[Simula
         (0xD4, b"\xfe\x10", 5, ""),
         (0xE1, b"\xfe\x10", 1000, "WRITE_DAQ: the slave is busy"),
         (0xD7, b"\xff\x04\xff\x00\x05\x06\x00", 1000, "comes every 5 ms, the bench file says 1 ms"),
-        (0xD9, b"\xff\x01\x07\x01\x07\xf2\x01\x00", 1000, "says of itself what cannot be"),
+        (0xD9, b"\xff\x01\x07\x01\x07\xf2\x01\x00", 1000, "reports invalid properties"),
         (0xDD, b"\xff", 1000, "its list does not run though it was started"),
         (0xFD, b"\xff\x00\x04\x00\x00\x00", 1000, "locked by seed and key"),
     ],

@@ -123,7 +123,7 @@ def test_what_comes_too_late_for_its_row_is_counted(recorder: Recorder) -> None:
     recorder.take(samples(SLOW, 5.01))
     whole = recorder.finish_rows()
     assert [e.kind for e in whole.events] == ["late"]
-    assert whole.events[0].text == "1 samples came too late for their row and were left out"
+    assert whole.events[0].text == "1 samples arrived too late for their row and were discarded"
     assert whole.events[0].time_s == pytest.approx(1.999, abs=1e-6)
 
 

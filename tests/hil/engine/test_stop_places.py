@@ -94,7 +94,7 @@ def test_where_nobody_else_finds_it_says_so_and_holds_for_who_can_see_it(
     assert list(findings_of_stops(hardware())) == []
     nobody_else_writes(machine, monkeypatch)
     (finding,) = findings_of_stops(hardware())
-    assert "other accounts of this machine may not find them" in finding.what
+    assert "other accounts of this machine may not see" in finding.what
     place = latch(hardware(), by="anna", why="smoke", run=machine)
     assert place == machine / "anna/.local/state/hil/emergency-stops"
     assert "other accounts" in caplog.text
@@ -137,7 +137,7 @@ def test_a_simulated_bench_of_another_process_or_service_is_another_bench(machin
     bench = sim_bench("mine")
     latch(bench, by="x", why="y", run=machine)
     latch(SIM, by="x", why="y", run=machine, owner=machine / "service")
-    with pytest.raises(BenchError, match="begin anew"):
+    with pytest.raises(BenchError, match="start again"):
         refuse_latched(bench)
     with pytest.raises(BenchError, match="--data"):
         refuse_latched(SIM, machine / "service")

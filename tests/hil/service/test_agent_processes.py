@@ -211,8 +211,8 @@ def test_what_an_agent_cannot_use_is_said(tmp_path: Path) -> None:
     usual: dict[str, Any] = {"server": ["http://127.0.0.1:9"], "keep_local": 30.0, "as_json": True}
     for bench, name, for_s, said in (
         (["none"], "", None, "none"),
-        (["sim"], "a\nb", None, "names nobody"),
-        (["sim", "sim"], "", None, "given to two benches"),
+        (["sim"], "a\nb", None, "is not a valid name"),
+        (["sim", "sim"], "", None, "used by two benches"),
         (["sim"], "", 0.0, "--for is 0"),
     ):
         with pytest.raises(BadInputError, match=said):

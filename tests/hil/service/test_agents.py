@@ -220,7 +220,7 @@ def test_an_emergency_stop_is_told_until_the_agent_has_obeyed_also_by_the_next_s
     there.agents = there.begun()
     state, why = there.agents.benches["far"].state()
     assert state == "emergency_stop"
-    assert "anna asked for it; its agent has not confirmed it" in why
+    assert "requested by anna; its agent has not confirmed it" in why
     there.agents.heard(ONE, _report())
     orders = there.agents.orders(ONE, {}).orders
     assert [(one.kind, one.by) for one in orders] == [("emergency_stop", "anna")]

@@ -51,7 +51,7 @@ def test_a_row_that_was_changed_past_the_guards_is_seen(change: str, tmp_path: P
     _past_the_guards(data, change)
     done = _verified(data)
     assert done.returncode == 1
-    assert "was changed, removed or put in" in done.stdout
+    assert "was changed, removed or inserted" in done.stdout
 
 
 @pytest.mark.slow

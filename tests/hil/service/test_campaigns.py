@@ -101,10 +101,10 @@ def test_what_the_service_has_is_found_by_name_and_kept_as_it_was(there: Served)
     [
         ("name: own\nplan: none\n", {}, "there is no plan 'none'"),
         ("name: own\nplan: none.yaml\n", {}, "there is no plan 'none.yaml'"),
-        ("name: own\nplan: ../../secret.yaml\n", {}, "is no plain name"),
-        ("name: own\nplan: acceptance\nmodel: /etc/passwd\n", {}, "is no plain name"),
+        ("name: own\nplan: ../../secret.yaml\n", {}, "is not a plain file name"),
+        ("name: own\nplan: acceptance\nmodel: /etc/passwd\n", {}, "is not a plain file name"),
         ("name: own\nplan: acceptance\nbench: /etc/passwd\n", {}, "there is no bench"),
-        ("name: own\nplan: acceptance\ncontrollers: [../a.toml]\n", {}, "is no plain name"),
+        ("name: own\nplan: acceptance\ncontrollers: [../a.toml]\n", {}, "is not a plain file name"),
         (
             "name: own\nplan: mine.yaml\n",
             {"mine.yaml": PLAN.replace("phase_stab", "/etc/phase_stab")},

@@ -91,8 +91,8 @@ def test_files_that_a_plan_names_travel_with_it(service: Served, tmp_path: Path)
         (("run", "none"), "there is no plan 'none'"),
         (("run", "acceptance", "--bench", "none"), "there is no bench 'none'"),
         (("run", "acceptance", "--repeat", "2"), "does not go with --server"),
-        (("check", "acceptance"), "a service carries out 'run' and 'campaign'"),
-        (("run", "acceptance", "--bench", "../x"), "the service cannot take it"),
+        (("check", "acceptance"), "a service accepts the commands 'run' and 'campaign'"),
+        (("run", "acceptance", "--bench", "../x"), "the service rejects it"),
     ],
 )
 @pytest.mark.slow

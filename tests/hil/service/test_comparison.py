@@ -59,13 +59,13 @@ def test_what_cannot_be_compared_is_said_in_the_names_of_runs(service: Served, t
         client.comparison(two[0], 99999)
     with pytest.raises(RefusedError, match="has no 'nothing' in a segment 's'"):
         client.traces(*two, "s", "nothing")
-    with pytest.raises(RefusedError, match="nothing was measured then"):
+    with pytest.raises(RefusedError, match="no data were measured in this period"):
         client.traces(*two, "s", "shaft_torque_nm", within_s=(50.0, 60.0))
     text = service.get("/plans/short/text").decode().replace("name: short", "name: longer")
     service.give("longer", text.replace("duration_s: 0.2}\n  - step", "duration_s: 0.3}\n  - step"))
     longer = service.queue("longer")
     service.over(longer)
-    with pytest.raises(RefusedError, match=f"run {longer}: carried out another plan than run {two[0]}"):
+    with pytest.raises(RefusedError, match=f"run {longer}: ran a different plan from run {two[0]}"):
         client.comparison(two[0], longer)
 
 

@@ -96,9 +96,9 @@ def test_a_name_stands_for_one_content(client: Client, service: Served) -> None:
     text = shipped("three_inertia.toml").read_text("utf-8")
     assert client.give_model("mine", text).kind == "three_inertia"
     client.give_model("mine", text)
-    with pytest.raises(RefusedError, match="stands for another content"):
+    with pytest.raises(RefusedError, match="is already used for other content"):
         client.give_model("mine", text + "\n# other\n")
-    with pytest.raises(RefusedError, match="stands for another content"):
+    with pytest.raises(RefusedError, match="is the name of a built-in one"):
         client.give_model("three_inertia", text)
     with pytest.raises(RefusedError, match="unknown key"):
         client.give_model("other", "nonsense = 1\n")

@@ -140,7 +140,7 @@ def test_who_replaces_a_plan_replaces_what_they_looked_at(one: _Here, other: _He
     one.plans.give("short", SHORT + "# again\n", "anna")
     looked = other.files.text("short")
     one.plans.give("short", SHORT + "# once more\n", "anna")
-    with pytest.raises(NameTakenError, match="stands for another content already, given by anna") as refused:
+    with pytest.raises(NameTakenError, match="is already used for other content, given by anna") as refused:
         other.files.give("short", SHORT + "# other\n", "bert", instead_of=looked)
     assert refused.value.where == "short"
     assert other.plans.text("short") == SHORT + "# once more\n"

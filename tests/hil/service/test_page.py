@@ -119,7 +119,7 @@ def test_who_has_no_token_can_stop_and_see_nothing(tmp_path: Path, page: playwri
     made = make_token(tmp_path / "data", database, "anna", "viewer")
     with served(tmp_path / "data", state=tmp_path / "state", token=made.secret) as service:
         page.goto(service.url)
-        playwright.expect(page.get_by_role("heading", name="Who are you?")).to_be_visible()
+        playwright.expect(page.get_by_role("heading", name="Log in")).to_be_visible()
         page.get_by_role("button", name="Emergency stop", exact=True).click()
         page.get_by_label("Token").fill(made.secret)
         page.get_by_role("button", name="Log in").click()

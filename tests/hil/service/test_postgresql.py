@@ -63,7 +63,7 @@ def test_a_run_goes_on_while_the_database_is_away_and_is_written_down_afterwards
             lambda: service.get("/health"),
         ):
             problem = _refused(ask)
-            assert "the database is away since" in problem["what"]
+            assert "the database cannot be reached since" in problem["what"]
         result = tmp_path / f"data/runs/{run:06d}/result.json"
         assert not result.exists()
         _until(result.exists)

@@ -120,7 +120,7 @@ def test_a_killed_service_loses_nothing_and_runs_nothing_twice(tmp_path: Path) -
     with served(data, state=state) as service:
         over = service.over(cut)
         assert (over["state"], over["safe_state"]) == ("interrupted", "confirmed")
-        assert "the service ended meanwhile" in over["reason"]
+        assert "the service ended during the study" in over["reason"]
         assert "recording.mcap" in over["files"]
         assert service.over(waiting)["exit_code"] == 0
         assert len(service.get("/runs")) == 2
@@ -150,7 +150,7 @@ def test_a_second_service_and_an_open_one_without_tokens_are_refused(service: Se
     with pytest.raises(BadInputError, match="cannot be made a directory") as refused:
         serve(_wanted(tmp_path / "file"))
     assert "--data" in refused.value.fix
-    with pytest.raises(BadInputError, match="given to two benches"):
+    with pytest.raises(BadInputError, match="used by two benches"):
         serve(_wanted(tmp_path, benches=("sim", "sim")))
     with pytest.raises(BadInputError, match="there is no role"):
         make_token(tmp_path, "", "me", "king")

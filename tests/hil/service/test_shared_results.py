@@ -115,7 +115,7 @@ def test_what_one_service_has_others_list_and_read(one: _Here, two: _Here, archi
     (archive / "studies/000001/report.txt").write_text("SEEN")
     assert two.brought(1, "report.txt") == "seen", "what was brought is as it was kept"
     two.begin()
-    with pytest.raises(ArchiveAwayError, match="not what was given"):
+    with pytest.raises(ArchiveAwayError, match="differs from the one written"):
         two.brought(1, "report.txt")
 
 
@@ -142,7 +142,7 @@ def test_what_is_under_way_is_told_and_its_files_are_kept_once_it_is_over(one: _
 
 def test_a_service_that_was_killed_goes_on_where_it_was(one: _Here, two: _Here, archive: Path) -> None:
     number = one.ended(report="seen")
-    archive.write_text("no folder: the store is away")
+    archive.write_text("no folder: the store cannot be reached")
     with pytest.raises(ArchiveAwayError):
         one.share()
     assert (one.shared.waiting, two.other(number).files) == (1, [])

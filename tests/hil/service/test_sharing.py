@@ -69,7 +69,7 @@ def _one_is_first(first: Served, second: Served) -> None:
         won = [text for text, one in zip(texts, asked, strict=True) if one.result() is None]
         lost = [one.result() for one in asked if one.result() is not None]
         assert [(one.status, one.where, one.fix) for one in lost] == [(409, name, "give it another name")]
-        assert "stands for another content already, given by local" in lost[0].what
+        assert "is already used for other content, given by local" in lost[0].what
         path = f"/controllers/{name}/text"
         assert [first.get(path).decode(), second.get(path).decode()] == 2 * won
 

@@ -114,7 +114,7 @@ def test_what_cannot_be_studied_is_said(there: tuple[Served, int]) -> None:
         client.study(99999)
     study = over(client, client.identify(IdentificationWanted(runs=[run, run])))
     assert (study.state, "twice" in study.reason or "same" in study.reason) == ("failed", True), study.reason
-    with pytest.raises(RefusedError, match="has found nothing"):
+    with pytest.raises(RefusedError, match="has no result"):
         client.identification(study.id)
 
 

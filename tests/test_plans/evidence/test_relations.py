@@ -111,7 +111,7 @@ DEAD = {"shaft_torque_left_nm": NOISE, "shaft_torque_right_nm": NOISE[::-1]}
 def test_without_a_controller_the_speeds_tell_the_gear_ratio() -> None:
     unknown = SEGMENT.model_copy(update={"gear_ratio": None})
     assert objections(axle(), unknown) == {}
-    assert "reads nothing" in objections(axle(**DEAD), unknown)["shaft_torque_nm"]
+    assert "reads zero" in objections(axle(**DEAD), unknown)["shaft_torque_nm"]
 
 
 def test_a_short_segment_is_looked_at_with_what_came_before_it() -> None:
@@ -127,7 +127,7 @@ def test_under_a_multisine_a_dead_sensor_is_found() -> None:
     torque = 0.5 * GEAR * tones + NOISE
     alive = {"shaft_torque_left_nm": torque, "shaft_torque_right_nm": torque + NOISE[::-1]}
     assert objections(axle(**motor, **alive), excited) == {}
-    assert "reads nothing" in objections(axle(**motor, **DEAD), excited)["shaft_torque_nm"]
+    assert "reads zero" in objections(axle(**motor, **DEAD), excited)["shaft_torque_nm"]
     mirrored = {name: -values for name, values in alive.items()}
     assert "shaft_torque_nm" in objections(axle(**motor, **mirrored), excited)
 

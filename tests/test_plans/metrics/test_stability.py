@@ -113,7 +113,7 @@ def test_a_declared_order_is_no_cycle_in_short_segments_either(after_s: float) -
         (40.0 + 10.0 * np.sin(2 * np.pi * 45 * TIME), 0.0),
         (np.where(AFTER < 5.0, 150.0, 40.0), 0.0),  # a stable loop may lie at its limit at first
     ],
-    ids=["steady", "at its limit", "bangs", "against what was asked", "ripples", "at first"],
+    ids=["steady", "at its limit", "bangs", "opposite to the request", "ripples", "at first"],
 )
 def test_a_request_at_its_limit_or_against_what_was_asked_counts(request_nm: Array, share: float) -> None:
     recording = recording_of(TIME, motor_torque_ref_nm=request_nm)

@@ -47,8 +47,8 @@ def test_the_second_realisation_is_the_first_of_the_next_seed() -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"amplitude_nm": 5}, "one of them"),
-        ({"rms_nm": None}, "one of them"),
+        ({"amplitude_nm": 5}, "give either"),
+        ({"rms_nm": None}, "give either"),
         ({"from_hz": 40}, "not below to_hz"),
         ({"to_hz": 501}, "less than 500"),
         ({"period_s": 0.1005}, "milliseconds"),

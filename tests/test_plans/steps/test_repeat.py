@@ -27,7 +27,7 @@ def test_the_estimate_takes_speed_from_pass_to_pass() -> None:
     assert repeat.outlook(5.0, Pace(speed_ramp_m_s2=1.0)) == Outlook(5 + 10 + 4 * 10, 0.0)
 
 
-@pytest.mark.parametrize(("times", "says"), [(0, "times"), (1.5, "times"), (101, "10100 steps altogether")])
+@pytest.mark.parametrize(("times", "says"), [(0, "times"), (1.5, "times"), (101, "10100 steps in total")])
 def test_refused(times: float, says: str) -> None:
     inner = {"repeat": {"times": 100, "steps": [{"wait": {"duration_s": 0}}]}}
     with pytest.raises(BadInputError, match=says):

@@ -48,16 +48,16 @@ def refuse_broken_channels(traces: list[Trace], noise: Array, beside: Sequence[T
     for trace, moves in zip(traces, moved, strict=True):
         if float(np.ptp(trace.torque)) == 0.0 and moves and not _slows_down(trace, noise):
             raise BadInputError(
-                f"{INPUT} looks dead: it reads {trace.torque[0]:g} throughout, and yet the axle speeds up",
+                f"{INPUT} looks dead: it reads {trace.torque[0]:g} throughout, but the axle accelerates",
                 where=trace.source,
-                fix="mend the channel, or leave the recording out",
+                fix="repair the channel, or omit the recording",
             )
     if not any(moved):
         raise BadInputError(
-            "nothing moves in any recording: there is nothing to explain", fix="record a chirp or steps"
+            "no recording shows motion, so there is nothing to diagnose", fix="record a chirp or steps"
         )
     still = [t.name for t, moves in zip(traces, moved, strict=True) if not moves]
-    return [f"{name}: nothing moves, it tells nothing" for name in still]
+    return [f"{name}: no motion, not used" for name in still]
 
 
 def _dead(trace: Trace, column: int, traces: list[Trace]) -> None:
@@ -69,7 +69,7 @@ def _dead(trace: Trace, column: int, traces: list[Trace]) -> None:
     raise BadInputError(
         f"{OUTPUTS[column]} looks dead: it reads {values[0] + 0.0:g} throughout",
         where=trace.source,
-        fix="mend the channel, or leave it out of the recording",
+        fix="repair the channel, or omit it from the recording",
     )
 
 
@@ -117,7 +117,7 @@ def _frozen(trace: Trace, column: int) -> None:
         f"{OUTPUTS[column]} looks frozen: it reads {values[begin]:g} from {begin * trace.dt:.4g} s "
         f"to {end * trace.dt:.4g} s",
         where=trace.source,
-        fix="mend the channel, or cut this stretch out of the recording",
+        fix="repair the channel, or cut this part out of the recording",
     )
 
 

@@ -74,7 +74,7 @@ def refuse_frozen(trace: Trace, noise: Array, model: Model) -> None:
                         f"{float(np.mean(trace.measured[inside, column])):.4g} from {begin * step:.4g} s "
                         f"to {end * step:.4g} s, as {other} moves on",
                         where=trace.source,
-                        fix="mend the channel, or cut this stretch out of the recording",
+                        fix="repair the channel, or cut this part out of the recording",
                     )
 
 

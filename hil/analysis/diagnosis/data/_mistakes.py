@@ -66,11 +66,11 @@ def _outputs(column: int, factor: float) -> tuple[float, float, float]:
     return factors[0], factors[1], factors[2]
 
 
-_SIGN, _RPM, _KNM = "turn the sign of the channel", "multiply it by 2π/60", "multiply it by 1000"
+_SIGN, _RPM, _KNM = "invert the sign of the channel", "multiply it by 2π/60", "multiply it by 1000"
 _MISTAKES = (
     *(_Mistake(f"{name} looks inverted", _SIGN, 1.0, _outputs(c, -1.0)) for c, name in enumerate(OUTPUTS)),
     _Mistake(f"{INPUT} looks inverted: the axle does the opposite", _SIGN, -1.0),
-    _Mistake(f"{_MOTOR} and {_WHEEL} look inverted", "turn the sign of both", 1.0, (-1.0, -1.0, 1.0)),
+    _Mistake(f"{_MOTOR} and {_WHEEL} look inverted", "invert the sign of both", 1.0, (-1.0, -1.0, 1.0)),
     _Mistake(f"{_MOTOR} and {_WHEEL} look swapped", "exchange the two columns", exchanged=True),
     _Mistake(f"{_MOTOR} looks like rpm", _RPM, 1.0, _outputs(0, _PER_RPM)),
     _Mistake(f"{_WHEEL} looks like rpm", _RPM, 1.0, _outputs(1, _PER_RPM)),
@@ -108,8 +108,8 @@ def mistaken(model: Model, traces: Sequence[Trace], noise: Array) -> BadInputErr
         return None
     best = min(found, key=lambda one: one[0])[1]
     return BadInputError(
-        f"{best.what}: as it stands the model explains next to nothing, and so mended nearly all",
-        fix=f"{best.fix}; or is it the model of another axle?",
+        f"{best.what}: the model explains almost nothing of the data, and almost all after this correction",
+        fix=f"{best.fix}; or check that the model belongs to this axle",
     )
 
 

@@ -49,7 +49,7 @@ Array = npt.NDArray[np.float64]
 
 _MOTOR, _WHEEL, _SHAFT = OUTPUTS
 _RPM = 60.0 / (2 * np.pi)
-_UNRELATED = f"{_MOTOR} and {_WHEEL} have nothing to do with each other"
+_UNRELATED = f"{_MOTOR} and {_WHEEL} are not related to each other"
 
 
 def check(model: Model, traces: list[Trace], noise: Array, beside: Sequence[Trace] = ()) -> list[str]:
@@ -180,7 +180,7 @@ def _speeds(
     if all(p.correlation < INVERTED for p in seen) and plain.correlation < 0.0:
         return _inverted(pushes)
     if all(abs(p.correlation) < RELATED for p in (*seen, plain)):
-        return BadInputError(_UNRELATED, fix="are both from one axle, and in step?")
+        return BadInputError(_UNRELATED, fix="check that both are from one axle and synchronous")
     factors = [p.factor for p in seen]
     if even.count == 0 and max(uneven.sizes) < TURNED_RAD:
         return None
@@ -194,7 +194,7 @@ def _inverted(pushes: dict[str, list[Pair]]) -> BadInputError:
     channel = f"either {_MOTOR} or {_WHEEL}"
     if any(pushes.values()):
         channel = min((_MOTOR, _WHEEL), key=lambda c: min((p.correlation for p in pushes[c]), default=0.0))
-    return BadInputError(f"{channel} looks inverted", fix="turn the sign of the channel")
+    return BadInputError(f"{channel} looks inverted", fix="invert the sign of the channel")
 
 
 def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
@@ -206,12 +206,12 @@ def _wrong_ratio(factor: float, ratio: float) -> BadInputError:
             return BadInputError(
                 f"{channel} looks like rpm: motor over wheel speed is {factor * ratio:.3g}, "
                 f"the model's gear ratio is {ratio:.3g}",
-                fix="multiply it by 2π/60; or is it the model of another axle?",
+                fix="multiply it by 2π/60; or check that the model belongs to this axle",
             )
     return BadInputError(
         f"the gear ratio looks wrong: motor over wheel speed is {factor * ratio:.3g}, "
         f"the model has {ratio:.3g}",
-        fix="is it the model of another axle, or a speed in another unit?",
+        fix="check that the model belongs to this axle, and the units of the speeds",
     )
 
 
@@ -242,7 +242,7 @@ def _shaft(traces: list[Trace], slow: SlowMotion, noise: Array) -> BadInputError
     if alone and _moves(traces, noise):
         return _dead(_SHAFT)
     if pair.correlation < INVERTED and 1 / TOO_FAST < pair.factor < TOO_FAST:
-        return BadInputError(f"{_SHAFT} looks inverted", fix="turn the sign of the channel")
+        return BadInputError(f"{_SHAFT} looks inverted", fix="invert the sign of the channel")
     factors = [p.factor for p in (pair, even) if p.count]
     off = all(f < share / TORQUE_OFF for f in factors) or all(f > TORQUE_OFF for f in factors)
     if abs(pair.correlation) > RELATED and off:
@@ -250,7 +250,7 @@ def _shaft(traces: list[Trace], slow: SlowMotion, noise: Array) -> BadInputError
         return BadInputError(
             f"{_SHAFT} is {slope * ratio:.3g} times the motor torque at low frequency, the model has "
             f"{share * ratio:.3g}",
-            fix="is the channel in another unit, or on the motor side of the gear?",
+            fix="check the unit of the channel, and that it is on the wheel side of the gear",
         )
     return None
 
@@ -266,6 +266,6 @@ def _moves(traces: list[Trace], noise: Array) -> bool:
 
 def _dead(channel: str) -> BadInputError:
     return BadInputError(
-        f"{channel} looks dead: it reads nothing but noise while the axle moves",
-        fix="mend the channel, or leave it out of the recordings",
+        f"{channel} looks dead: it shows only noise while the axle moves",
+        fix="repair the channel, or omit it from the recordings",
     )

@@ -31,4 +31,4 @@ def without_spikes(values: Array, channel: str, dt: float) -> tuple[Array, str]:
         if at.size == 1
         else f"{at.size} single readings, the first of {first},"
     )
-    return mended, f"{said} in {channel} left out: no axle jumps so far and back within a sample"
+    return mended, f"{said} in {channel} omitted: no axle can move so far and back in a sample"

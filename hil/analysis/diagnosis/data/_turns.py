@@ -68,18 +68,19 @@ def refused_push(pushes: dict[str, list[Pair]], fine: list[str]) -> BadInputErro
     ]
     if len(against) == len(OUTPUTS[:2]):
         return BadInputError(
-            f"{INPUT} looks inverted: both speeds fall when torque pushes", fix="turn the sign of the channel"
+            f"{INPUT} looks inverted: both speeds fall when torque pushes",
+            fix="invert the sign of the channel",
         )
     if against:
         return BadInputError(
             f"{against[0]} looks inverted: it falls when torque pushes",
-            fix=f"turn the sign of the channel, or of {INPUT}",
+            fix=f"invert the sign of the channel, or of {INPUT}",
         )
     for channel, pairs in told.items():
         if channel in fine and all(p.correlation > -AGAINST and p.factor > TOO_FAST for p in pairs):
             return BadInputError(
                 f"{channel} changes {multiple(pairs[0].factor)} as fast as the torque can make it",
-                fix="is it in rpm, or the model of another axle?",
+                fix="check its unit, and that the model belongs to this axle",
             )
     return None
 

@@ -103,7 +103,7 @@ class _Numbers:
 
 
 def _identified(near: Found, rounded: Sequence[EffectUse], show: Callable[[str], None]) -> Found:
-    show("identifying the base model anew: its numbers may be far off")
+    show("identifying the parameters of the base model again")
     problem, start = identified(near.evidence.problem, near.base.hypothesis)
     found = begun(problem, start, rounded)
     found.given = near.base
@@ -145,7 +145,7 @@ def _better(near: Found, far: Found, tried: Found | None, show: Callable[[str], 
         if near.settled:
             return near
     if near.steps and not far.settled:
-        show("looking for an effect beside other numbers of the base model")
+        show("searching for an effect with other parameters of the base model")
         numbers = {"parameter_mismatch"} | ({"dead_time"} if delay_is_free(far.base) else set())
         promising = [f for f in near.steps[0].fits if not numbers & {*f.hypothesis.ids}]
         if tried is None or _leads_elsewhere(tried, promising):

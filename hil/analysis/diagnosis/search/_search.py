@@ -111,7 +111,7 @@ def finished(found: Found, show: Callable[[str], None]) -> Found:
         found.needed = found.best = _needed(found.evidence, found.best)
     if not found.evidence.problem.partial or found.best.hypothesis.remembers_place:
         return found
-    show("looking at all of the recordings after all")
+    show("using all parts of the recordings")
     found.everywhere = True
     return finished(_begin_again(found, found.evidence.problem.judging_all()), show)
 
@@ -159,9 +159,9 @@ def raced(
     if not parents:
         return []
     if number:
-        show(f"looking for effect {number + 1} beside {' or '.join(f.hypothesis.ids[-1] for f in parents)}")
+        show(f"searching for effect {number + 1} beside {' or '.join(f.hypothesis.ids[-1] for f in parents)}")
     else:
-        show(f"looking for effect 1 of at most {MOST_EFFECTS}")
+        show(f"searching for effect 1 of at most {MOST_EFFECTS}")
     before: list[Step] = list(found.steps)
     steps: list[Step] = []
     rivals: list[Fit] = []
@@ -219,7 +219,7 @@ def _advanced_where_foretold(found: Found, step: Step, show: Callable[[str], Non
     """`advanced` anew, where alone an effect of `step` foretells the motion."""
     assert step.foretold is not None
     problem, one = step.foretold
-    show("looking at what can be foretold alone")
+    show("using only parts that can be predicted")
     beside = [] if step.parent.hypothesis.terms else [one]
     return advanced(_begin_again(found, problem), show, beside=beside)
 

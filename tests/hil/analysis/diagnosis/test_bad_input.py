@@ -95,8 +95,8 @@ def swapped(t: pd.DataFrame) -> None:
         (scaled(MOTOR, 60 / (2 * np.pi)), "motor_speed_rad_s looks like rpm"),
         (scaled(SHAFT, 1e-3), "shaft_torque_nm is 0.00"),
         (scaled(WHEEL, 0.0), "wheel_speed_rad_s looks dead: it reads 0 throughout"),
-        (noise_only(MOTOR, 0.15), "motor_speed_rad_s looks dead: it reads nothing but noise"),
-        (noise_only(SHAFT, 1.5), "shaft_torque_nm looks dead: it reads nothing but noise"),
+        (noise_only(MOTOR, 0.15), "motor_speed_rad_s looks dead: it shows only noise"),
+        (noise_only(SHAFT, 1.5), "shaft_torque_nm looks dead: it shows only noise"),
         (scaled(TORQUE, 0.0), "motor_torque_ref_nm looks dead"),
         (frozen(MOTOR), "motor_speed_rad_s looks frozen"),
         (cut(SHAFT, -100.0, 100.0), "shaft_torque_nm looks clipped at 100"),
@@ -135,7 +135,7 @@ def test_a_file_that_is_no_recording_is_refused_with_its_place(tables, run) -> N
     bad = {
         "head": (steps.iloc[:0], "has 0 samples"),
         "short": (steps.iloc[:150], "150 samples"),
-        "slow": (steps.assign(time_s=1000 * steps.time_s), "is it in milliseconds?"),
+        "slow": (steps.assign(time_s=1000 * steps.time_s), "if it is in milliseconds"),
         "back": (steps.assign(time_s=steps.time_s.where(steps.index != 500, 0.1)), "line 502"),
         "nan": (steps.assign(**{WHEEL: np.nan}), f"100.0% of '{WHEEL}' is NaN"),
         "no_input": (steps.drop(columns=TORQUE), f"no channel '{TORQUE}'"),
@@ -156,7 +156,7 @@ def test_without_any_motion_there_is_nothing_to_explain(tables, run) -> None:
     rng = np.random.default_rng(0)
     still = {c: rng.normal(0, level, 4000) for c, level in zip(CHANNELS, (0.15, 0.02, 1.5), strict=True)}
     pd.DataFrame({"time_s": np.arange(4000) * 1e-3, TORQUE: 0.0, **still}).to_csv("still.csv", index=False)
-    assert "nothing moves in any recording" in refused(run, "still.csv")
+    assert "no recording shows motion" in refused(run, "still.csv")
 
 
 def test_a_file_counts_once(tables, run) -> None:

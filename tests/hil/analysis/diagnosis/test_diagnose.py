@@ -152,7 +152,7 @@ def wheel_misfit_db(model: Model) -> float:
 
 def test_an_interrupted_search_tells_what_is_known() -> None:
     def interrupted(doing: str) -> None:
-        if doing.startswith("looking for effect"):
+        if doing.startswith("searching for effect"):
             raise KeyboardInterrupt
 
     data = recordings(Truth({"torque_delay": 0.011}), 2, short=True, only=SOME)

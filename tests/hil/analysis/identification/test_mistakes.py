@@ -70,9 +70,9 @@ def checked(channels: Channels, gear_ratio: float | None = None) -> tuple[str, .
 
 MISTAKES = [
     (swapped, f"{MOTOR} and {WHEEL} look swapped", "exchange the two columns"),
-    (times(-1.0, INPUT), f"{INPUT} looks inverted", "turn the sign"),
-    *((times(-1.0, n), f"{n} looks inverted", "turn the sign") for n in OUTPUTS),
-    (times(-1.0, MOTOR, WHEEL), f"{MOTOR} and {WHEEL} look inverted", "turn the sign of both"),
+    (times(-1.0, INPUT), f"{INPUT} looks inverted", "invert the sign"),
+    *((times(-1.0, n), f"{n} looks inverted", "invert the sign") for n in OUTPUTS),
+    (times(-1.0, MOTOR, WHEEL), f"{MOTOR} and {WHEEL} look inverted", "invert the sign of both"),
     (times(RPM, MOTOR), f"{MOTOR} looks like rpm", "2π/60"),
     (times(RPM, WHEEL), f"{WHEEL} looks like rpm", "2π/60"),
     (times(1e-3, SHAFT), f"{SHAFT} looks like kN m", "1000"),
@@ -108,7 +108,7 @@ def test_a_good_recording_is_taken_without_a_doubt(recording: str) -> None:
 def test_a_factor_in_all_speeds_or_all_torques_is_doubted(recording: str, change: Change) -> None:
     """It leaves every ratio and every resonance as it was."""
     (doubt,) = checked(change(RECORDINGS[recording]))
-    assert "are all speeds in rpm, or all torques in kN m?" in doubt
+    assert "whether all speeds are in rpm, or all torques in kN m" in doubt
 
 
 @pytest.mark.parametrize(
@@ -176,7 +176,7 @@ def test_a_doubt_is_said_on_standard_error_and_kept(tmp_path, monkeypatch, capsy
     assert code == 0
     assert said.err.startswith("warning: the rotor has 0.0021 kg m²")
     notes = json.loads(said.out)["notes"]
-    assert any("are all speeds in rpm" in note for note in notes)
+    assert any("whether all speeds are in rpm" in note for note in notes)
 
 
 def test_the_paper_plant_is_taken_without_a_doubt() -> None:
@@ -188,4 +188,4 @@ def test_an_inverter_that_gives_less_than_asked_is_doubted_and_not_taken_for_ano
     asked = paper_plant.chirp(60.0)
     recording = paper_plant.recording(np.clip(asked, -8.0, 8.0))
     doubts = checked({**recording.channels, INPUT: asked})
-    assert "does the inverter give less torque than asked?" in doubts[-1]
+    assert "that the inverter gives the requested torque" in doubts[-1]

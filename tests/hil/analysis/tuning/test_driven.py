@@ -42,7 +42,7 @@ LIMITS = "criteria:\n  - {segment: phase, metric: peak_shaft_torque"
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (PLAN.replace("driving_torque", "motor_torque").partition("criteria")[0], "no criterion can depend"),
+        (PLAN.replace("driving_torque", "motor_torque").partition("criteria")[0], "no criterion depends"),
         (PLAN.partition("criteria")[0], "no criterion with a limit depends"),
         (
             PLAN.partition("criteria")[0]
@@ -51,7 +51,7 @@ LIMITS = "criteria:\n  - {segment: phase, metric: peak_shaft_torque"
         ),
         (
             f"name: n\nsteps:\n  - step: {{segment: s, {STEP.replace('driving', 'motor')}}}\n",
-            "no criterion can depend",
+            "no criterion depends",
         ),
     ],
 )

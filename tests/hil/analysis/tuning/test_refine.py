@@ -70,7 +70,7 @@ def test_what_a_run_has_shown_is_expected_of_the_next_one(trial):
     apart = {name: first.measured[name] - first.predicted.margins[name] for name in first.measured}
     for name, more in apart.items():
         assert second.expected[name] == pytest.approx(second.predicted.margins[name] + more)
-    assert found.ended == "all runs were made"
+    assert found.ended == "all runs are complete"
 
 
 def test_on_the_model_itself_nothing_is_gained_after_a_search(trial):

@@ -67,8 +67,14 @@ def test_every_way_to_end_lines_and_to_quote_gives_the_same_table(text, tmp_path
         (ROWS.encode("utf-16-le"), "line 1"),
         ("\ufeff".encode("utf-16-le") + ROWS.encode(), "line 1: the header line has no 'time_s'"),
         ("\x00" * 50, "line 1"),
-        (HEADER + "0,1,2\n0.001,1e308,2\n", "line 3, column 'motor_torque_ref_nm': 1e+308 is no measurement"),
-        (HEADER + "0,1,2\n0.001,1,-2e15\n", "line 3, column 'motor_speed_rad_s': -2e+15 is no measurement"),
+        (
+            HEADER + "0,1,2\n0.001,1e308,2\n",
+            "line 3, column 'motor_torque_ref_nm': 1e+308 is not a plausible measurement",
+        ),
+        (
+            HEADER + "0,1,2\n0.001,1,-2e15\n",
+            "line 3, column 'motor_speed_rad_s': -2e+15 is not a plausible measurement",
+        ),
         (HEADER + "0,1,2\n0.001,1e999,2\n", "line 3, column 'motor_torque_ref_nm': '1e999' is beyond"),
         (HEADER + "0,1,2\n1e16,1,2\n", "line 3, column 'time_s'"),
     ],

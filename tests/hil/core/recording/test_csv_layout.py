@@ -123,8 +123,8 @@ def test_latin_1_is_read_and_said(tmp_path):
     [
         (text(names=("time", *NAMES[1:])), "its 'time' has no unit"),
         (text(names=("t", *NAMES[1:])), "its 't' has no unit"),
-        (text(comma=True), "has 6 cells, the header line names 3\n  is the comma the decimal sign?"),
-        (text(per_s=1e3), "samples are 1 s apart\n  is it in milliseconds? Name the column time_ms"),
+        (text(comma=True), "has 6 cells, the header line names 3\n  if the comma is the decimal sign"),
+        (text(per_s=1e3), "samples are 1 s apart\n  if it is in milliseconds, name the column time_ms"),
         (text(names=("time_s [ms]", *NAMES[1:]), per_s=1e3), "is in s by its name and in 'ms' beside it"),
         (text(second="ms,Nm,rad/s", per_s=1e3), "is in s by its name and in 'ms' beside it"),
         (

@@ -100,7 +100,7 @@ def test_a_broken_text_beside_a_table_is_said_and_no_traceback(text, tmp_path):
     path = tmp_path / "r.csv"
     write_recording(recording(tmp_path), path)
     (tmp_path / "r.csv.json").write_text(text)
-    assert "r.csv.json is broken: run and segments are not known" in read_recording(path).damage
+    assert "r.csv.json is damaged: run and segments are not known" in read_recording(path).damage
 
 
 def test_an_attachment_that_was_changed_is_not_handed_out(tmp_path):

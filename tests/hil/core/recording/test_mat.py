@@ -48,9 +48,9 @@ def test_what_is_no_vector_or_of_another_length_is_left_out_and_said(tmp_path: P
 @pytest.mark.parametrize(
     ("changed", "says"),
     [
-        ({"motor_speed_rad_s": 1j * TIME}, "no vector of real numbers"),
+        ({"motor_speed_rad_s": 1j * TIME}, "not a vector of real numbers"),
         ({"motor_speed_rad_s": np.zeros(5)}, "has 5 values, time_s has 100"),
-        ({"time_s": "now"}, "no vector of real numbers"),
+        ({"time_s": "now"}, "not a vector of real numbers"),
     ],
 )
 def test_a_channel_that_is_none_is_refused_by_name(

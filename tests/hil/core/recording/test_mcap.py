@@ -194,7 +194,7 @@ def test_a_full_disk_is_a_bench_failure_with_advice(tmp_path):
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (50_000, limits[1]))
     try:
-        with pytest.raises(BenchError, match="make room"):
+        with pytest.raises(BenchError, match="free disk space"):
             write(tmp_path / "r.mcap", samples=100_000)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)

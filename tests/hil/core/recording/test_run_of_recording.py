@@ -50,10 +50,10 @@ def test_what_the_dynos_did_in_between_is_no_part_of_a_cut_recording_either() ->
 
 @pytest.mark.parametrize("broken", [b"", b"{", b"[]", json.dumps({"verdict": "pass"}).encode(), b"\xff"])
 def test_a_broken_result_is_said(broken: bytes) -> None:
-    with pytest.raises(BadInputError, match="broken"):
+    with pytest.raises(BadInputError, match="damaged"):
         run_of(recording({RUN: broken}))
     table = {SEGMENT + "a": {"json": broken.decode(errors="replace")}, "run": {"plan": "p"}}
     cut = recording({"plan.yaml": b""})
     cut.metadata = table
-    with pytest.raises(BadInputError, match="broken"):
+    with pytest.raises(BadInputError, match="damaged"):
         run_of(cut)

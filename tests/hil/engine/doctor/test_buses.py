@@ -25,7 +25,7 @@ def test_an_interface_that_is_well():
 def test_one_that_is_down():
     (finding,) = findings(up=False, state="STOPPED")
     assert finding.what == "the network interface is down"
-    assert finding.fix == "'ip link set can0 up type can bitrate 1000000' brings it up"
+    assert finding.fix == "bring it up with 'ip link set can0 up type can bitrate 1000000'"
     assert finding.where == "bus 'rmcu' (socketcan can0)"
 
 
@@ -62,10 +62,10 @@ def of_bus(
     [
         (100, 0, True, ""),
         (0, 0, False, ""),  # nobody sends unasked
-        (0, 0, True, "not one frame came; the bench file says 500000 bit/s"),
-        (0, 3, True, "not one frame came but 3 error frames; the bench file says 500000 bit/s"),
-        (0, 3, False, "not one frame came but 3 error frames; the bench file says 500000 bit/s"),
-        (100, 3, True, "3 error frames came"),
+        (0, 0, True, "no frame received; the bench file says 500000 bit/s"),
+        (0, 3, True, "no frame received but 3 error frames; the bench file says 500000 bit/s"),
+        (0, 3, False, "no frame received but 3 error frames; the bench file says 500000 bit/s"),
+        (100, 3, True, "3 error frames received"),
     ],
 )
 def test_a_bus_without_frames_or_with_errors_is_a_fault(
@@ -76,14 +76,14 @@ def test_a_bus_without_frames_or_with_errors_is_a_fault(
 
 def test_a_bus_is_busy_above_four_fifths_of_the_time() -> None:
     assert of_bus(load=0.8) == []
-    assert of_bus(load=0.81) == [("hint", "it is busy 81% of the time: frames wait for each other")]
+    assert of_bus(load=0.81) == [("hint", "bus load is 81%: frames are delayed")]
 
 
 def test_eight_unknown_identifiers_are_shown_and_the_rest_counted() -> None:
     rates = {f"0x{number:03X}": 10.0 for number in range(1, 12)}
     eight = dict(list(rates.items())[:8])
     shown = ", ".join(f"{number} (10/s)" for number in eight)
-    text = "frames that no device of the bench file has: "
+    text = "frames of no device in the bench file: "
     assert of_bus(unknown=eight) == [("hint", text + shown)]
     assert of_bus(unknown=rates) == [("hint", f"{text}{shown} and 3 more")]
     assert of_bus(0, expected=False, unknown=rates) == []

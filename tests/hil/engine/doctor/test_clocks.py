@@ -48,7 +48,7 @@ def test_drift_is_told():
 def test_lost_samples_are_a_fault():
     (clock,), (finding,) = heard(lost={400, 401}).clocks()
     assert clock.lost == 2
-    assert (finding.severity, finding.what) == ("fault", "2 samples of status never came")
+    assert (finding.severity, finding.what) == ("fault", "2 samples of status are lost")
 
 
 def test_another_rate_is_a_fault():

@@ -20,9 +20,9 @@ def test_what_has_run_out_and_what_soon_will():
         "wheel_speed": datetime.date(2027, 12, 1),
     }
     assert found(calibration=dates) == [
-        ("fault", "the calibration of 'shaft_torque_left' ran out on 2026-11-21"),
-        ("hint", "the calibration of 'shaft_torque_right' runs out in 9 days, on 2026-12-01"),
-        ("hint", "the calibration of 'motor_speed' runs out in 0 days, on 2026-11-22"),
+        ("fault", "the calibration of 'shaft_torque_left' expired on 2026-11-21"),
+        ("hint", "the calibration of 'shaft_torque_right' expires in 9 days, on 2026-12-01"),
+        ("hint", "the calibration of 'motor_speed' expires in 0 days, on 2026-11-22"),
     ]
 
 

@@ -100,7 +100,7 @@ def test_a_bus_without_a_frame_and_one_with_errors():
         found = examine_bench(DoctorRequest(with_slcan(rmcu.path, dyno.path), 0.2, TODAY, progress=speak))
     said = {(finding.where, finding.what) for finding in found.findings}
     assert found.verdict == "not_there"
-    assert ("bus 'rmcu'", "not one frame came; the bench file says 1000000 bit/s") in said
+    assert ("bus 'rmcu'", "no frame received; the bench file says 1000000 bit/s") in said
     assert any(where == "bus 'dyno'" and "error-passive" in what for where, what in said)
     assert any(where == "bus 'dyno'" and "error frames" in what for where, what in said)
 

@@ -61,5 +61,5 @@ def test_only_devices_of_the_buses_that_are_there_give_channels(tmp_path: Path) 
 
 
 def test_without_the_frames_that_count_there_are_no_rows(tmp_path: Path) -> None:
-    with pytest.raises(BadInputError, match="rows are counted by it"):
+    with pytest.raises(BadInputError, match="which gives the time base"):
         BenchDecoder(SIM, {"rmcu": status(10)}).write(tmp_path / "a.mcap", 0)

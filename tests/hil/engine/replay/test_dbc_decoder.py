@@ -39,5 +39,5 @@ def test_a_sample_stands_once_in_the_row_nearest_to_it(tmp_path: Path) -> None:
     np.testing.assert_allclose(recording.time_s, [0.0, 0.1, 0.2, 0.3])
     np.testing.assert_array_equal(recording["Slow_Value"], [np.nan, 7.0, 8.0, np.nan])
     assert decoder.units == {"Fast_Value": "", "Slow_Value": "m"}
-    assert decoder.remarks[0].startswith("2 samples stand in no row")
-    assert decoder.remarks[1] == "rows are the frames of 'Fast'"
+    assert decoder.remarks[0].startswith("2 samples were discarded")
+    assert decoder.remarks[1] == "the time base is the frames of 'Fast'"

@@ -34,7 +34,7 @@ def test_times_of_another_moment_are_moved(tmp_path: Path) -> None:
         ("{}", "has no segments"),
         ("hello", "has no segments"),
         ('[{"id": "a"}]', "0.start_s"),
-        (f"[{ONE.replace('2.0', '9.0')}]", "does not go from start_s over step_s"),
+        (f"[{ONE.replace('2.0', '9.0')}]", "does not satisfy start_s <= step_s"),
     ],
 )
 def test_what_says_nothing_is_refused(tmp_path: Path, text: str, what: str) -> None:

@@ -116,7 +116,7 @@ def _limited(unit: float, model: Model = MODEL, limit_nm: float = 25.0) -> Recor
 
 def test_a_torque_that_its_limit_holds_is_in_no_other_unit() -> None:
     assert examined(MODEL, [_limited(1.0)]).traces
-    with pytest.raises(BadInputError, match="in another unit, or on the motor side"):
+    with pytest.raises(BadInputError, match="check the unit of the channel"):
         examined(MODEL, [_limited(1.0 / MODEL.parameters["gear_ratio"])])
 
 
@@ -126,5 +126,5 @@ def test_a_rotor_that_takes_most_of_its_torque_itself_leaves_the_shaft_little() 
     light = {"wheel_inertia": 0.1, "vehicle_inertia": 0.2 * MODEL.parameters["motor_inertia"] * ratio**2}
     small = MODEL.with_parameters(**light)
     assert examined(small, [_limited(1.0, small, 1000.0)]).traces
-    with pytest.raises(BadInputError, match="in another unit, or on the motor side"):
+    with pytest.raises(BadInputError, match="check the unit of the channel"):
         examined(small, [_limited(1e-3, small, 1000.0)])

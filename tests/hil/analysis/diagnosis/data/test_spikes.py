@@ -20,7 +20,7 @@ def test_a_glitch_is_replaced_and_told_with_its_place() -> None:
     recording.channels[WHEEL][2000] = 5000.0
     mended = trace_of(recording)
     assert mended.notes == (
-        f"a single reading of 5000 at 2 s in {WHEEL} left out: no axle jumps so far and back within a sample",
+        f"a single reading of 5000 at 2 s in {WHEEL} omitted: no axle can move so far and back in a sample",
     )
     assert mended.samples[2000, 1] == pytest.approx(clean.samples[[1999, 2001], 1].mean())
     others = np.arange(len(clean.samples)) != 2000

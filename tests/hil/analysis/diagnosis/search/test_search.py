@@ -123,6 +123,6 @@ def test_what_was_left_out_for_an_effect_that_is_not_found_is_judged_after_all()
     assert found.settled  # with nothing named: this would be the answer
     told: list[str] = []
     after = finished(found, told.append)
-    assert told[0] == "looking at all of the recordings after all"
+    assert told[0] == "using all parts of the recordings"
     assert after.evidence.problem.rows == whole.rows
     assert not after.evidence.closed(after.base)
