@@ -133,6 +133,7 @@ def _runs(found: Comparison) -> Table:
         rows.append(
             (
                 run.name,
+                ", ".join(map(str, run.result.variables)),
                 run.result.bench,
                 "simulated" if simulated else "measured",
                 about.get("started_at", "")[:19].replace("T", " "),
@@ -140,7 +141,7 @@ def _runs(found: Comparison) -> Table:
                 share,
             )
         )
-    return Table(("run", "bench", "kind", "started", "verdict", "mean distance"), tuple(rows), 5)
+    return Table(("run", "variables", "bench", "kind", "started", "verdict", "mean distance"), tuple(rows), 6)
 
 
 _INPUTS = "Parameters of controllers, model, bench and plan that are not the same."

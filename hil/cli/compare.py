@@ -86,6 +86,8 @@ def _summary(found: Comparison, runs: list[Path]) -> dict[str, Any]:
                 "name": run.name,
                 "path": str(path),
                 "bench": run.result.bench,
+                "variables": {one.name: one.value for one in run.result.variables},
+                "started_at": run.recording.metadata.get("run", {}).get("started_at", ""),
                 "verdict": run.result.verdict,
                 "mean_distance": distance,
             }
@@ -120,6 +122,10 @@ def _tell(found: Comparison, page: Path) -> None:
         table.add_row(row.id, *cells, row.unit)
     out = console()
     out.print(table)
+    for run in found.runs:
+        if run.result.variables:
+            values = ", ".join(map(str, run.result.variables))
+            out.print(f"{run.name}: {values}", highlight=False, markup=False, soft_wrap=True)
     out.print(f"\n{lead(found)}", highlight=False, markup=False)
     for note in found.notes:
         out.print(f"note: {note}", highlight=False, markup=False)

@@ -64,3 +64,20 @@ def test_what_cannot_be_compared_is_one_message(runs, names, message, capsys):
     assert message in shown.err
     assert shown.out == ""
     assert not out.exists()
+
+
+def test_variables_and_start_of_each_run_are_shown(runs, capsys):
+    text = PLAN.replace("LIMIT", "400").replace("to_nm: 200", "to_nm: $torque_nm")
+    assert "$torque_nm" in text
+    varied = runs / "varied.yaml"
+    varied.write_text(f"{text}\nvariables: {{torque_nm: {{default: 150, unit: N m, upper: 300}}}}\n")
+    for name in ("low", "low_again"):
+        assert guarded(["run", str(varied), "--set", "torque_nm=120", "--out", str(runs / name)]) == 0
+    out = runs / "compared_varied"
+    capsys.readouterr()
+    assert guarded(["compare", str(runs / "low"), str(runs / "low_again"), "--out", str(out)]) == 0
+    assert "low_again: torque_nm = 120 N m" in capsys.readouterr().out
+    told = json.loads((out / "comparison.json").read_text())
+    assert [run["variables"] for run in told["runs"]] == [{"torque_nm": 120.0}] * 2
+    assert all(run["started_at"] for run in told["runs"])
+    assert "torque_nm = 120 N m" in (out / "report.html").read_text("utf-8")
