@@ -90,7 +90,6 @@ def _contradictions() -> Iterator[Case]:
 
 def _of_hil() -> Iterator[Case]:
     for tried, arguments in (
-        ("nothing", ()),
         ("a misspelt command", ("rum", "plan.yaml")),
         ("an unknown command", ("fly",)),
         ("an empty command", ("",)),

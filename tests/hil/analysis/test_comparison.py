@@ -87,7 +87,7 @@ def test_a_segment_that_a_run_lacks_has_no_gap():
 
 def test_other_limits_are_another_plan():
     other = PLAN.replace(b"criteria: []", b"criteria: [{segment: s, metric: peak, upper: 1}]")
-    with pytest.raises(BadInputError, match="another plan.*criteria differ"):
+    with pytest.raises(BadInputError, match="a different plan.*criteria differ"):
         compare([run("one"), run("two", plan=other)])
 
 

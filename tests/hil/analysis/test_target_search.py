@@ -259,7 +259,7 @@ def test_what_is_no_step_does_not_settle(tmp_path):
     text += "duration_s: 2, amplitude_nm: 10}\ncriteria: [{segment: c, metric: peak_shaft_torque}]\n"
     (tmp_path / "p.yaml").write_text(text)
     (tmp_path / "t.toml").write_text("[targets]\n'c.peak_shaft_torque' = 1.0\n[settles]\nc = 1.0")
-    with pytest.raises(BadInputError, match="is no step"):
+    with pytest.raises(BadInputError, match="is not a step"):
         read_targets(tmp_path / "t.toml", str(tmp_path / "p.yaml"), {})
 
 

@@ -105,7 +105,7 @@ def test_physical_chain_is_accepted() -> None:
 
 
 def test_two_inertias_need_the_wheels_inertia() -> None:
-    with pytest.raises(BadInputError, match="wheels' inertia"):
+    with pytest.raises(BadInputError, match="inertia of the wheels"):
         design(Model("two_inertia", TWO), DesignSpec())
     found = design(Model("two_inertia", TWO), DesignSpec(wheel_inertia_kg_m2=4.0))
     assert found.controller.dfo.wheel_inertia_kg_m2 == 4.0

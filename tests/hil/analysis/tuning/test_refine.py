@@ -98,7 +98,7 @@ def test_hard_limits_hold_on_every_car():
 def test_a_first_run_that_is_not_as_predicted_is_the_last_where_that_is_asked_for(trial):
     found = refined(trial, ComputedBench(trial, OTHER), patience=Patience(stop_beyond=0.001))
     assert len(found.runs) == 1
-    assert "not as predicted" in found.ended
+    assert "deviates from its prediction" in found.ended
     assert found.best is found.runs[0]
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from hil.pytest_folders import Folders, folder_name, leave_if_empty
+from hil.pytest_plugin._folders import Folders, folder_name, leave_if_empty
 
 if TYPE_CHECKING:
     from hil.core.recording import Recording
