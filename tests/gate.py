@@ -9,7 +9,7 @@ from __future__ import annotations
 
 #: Modules below tests/ whose slow tests gate, and what they prove. A name behind `::` takes single tests.
 GATE = {
-    "test_wheel.py": "the wheel installs and runs a plan away from the source",
+    "test_wheel.py": "the wheel installs and runs; plans are tests of a user's own repository",
     "transports/test_run_ends.py": "a run over each transport ends safely when its wire fails",
     "hil/cli/test_run_to_the_end.py": "results, overwriting, signals, pipes of whole runs",
     "hil/cli/test_commands.py::ctrl_c": "Ctrl-C leaves a safe bench and the data",
@@ -38,8 +38,6 @@ GATE = {
     "hil/service/test_client.py::travel": "files that a plan names go with it",
     "hil/service/test_stop_post.py": "who may stop, and what repeated stops leave",
     "hil/test_base_install.py": "a base install runs plans, and names the extra of what it leaves out",
-    "hil/test_pytest_plugin.py": "plans as tests",
-    "hil/test_notebook.py": "a run from a notebook",
     "faults/test_faults.py": "each fault of the matrix, in one phase of a run",
     "wrong_controllers/test_wrong_controllers.py": "wrong controllers do not pass",
     "formats/test_formats.py": "files of earlier versions are read",

@@ -49,7 +49,7 @@ def test_a_run_that_was_killed_is_recovered_and_reported(run: Path, tmp_path: Pa
 @pytest.mark.slow
 def test_a_whole_recording_is_left_alone(run: Path) -> None:
     before = sorted(run.iterdir())
-    assert "is whole" in hil("recover", run).stdout
+    assert "is complete" in hil("recover", run).stdout
     assert json.loads(hil("recover", run / "recording.mcap", "--json").stdout)["recovered"] is None
     assert sorted(run.iterdir()) == before
 

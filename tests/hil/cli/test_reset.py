@@ -57,7 +57,9 @@ def test_nobody_arms_the_bench_until_it_is_reset(tmp_path: Path, monkeypatch: py
         again = hil("run", tmp_path / "quick.yaml", "--bench", second, "--out", tmp_path / "b", code=3)
         assert "emergency stop since" in again.stderr
         assert "hil reset" in again.stderr
-        hil("run", tmp_path / "quick.yaml", "--out", tmp_path / "simulated")  # another bench
+        hil(
+            "run", tmp_path / "quick.yaml", "--bench", "sim", "--out", tmp_path / "simulated"
+        )  # another bench
         assert "--by is empty" in hil("reset", second, "--by", " ", code=2).stderr
         done = hil("reset", second, "--by", "A. Tester")
         assert done.stdout.startswith("reset by A. Tester: emergency stop of 20")

@@ -120,7 +120,7 @@ def test_a_killed_service_loses_nothing_and_runs_nothing_twice(tmp_path: Path) -
     with served(data, state=state) as service:
         over = service.over(cut)
         assert (over["state"], over["safe_state"]) == ("interrupted", "confirmed")
-        assert "the service ended during the study" in over["reason"]
+        assert "the service ended during the run" in over["reason"]
         assert "recording.mcap" in over["files"]
         assert service.over(waiting)["exit_code"] == 0
         assert len(service.get("/runs")) == 2
