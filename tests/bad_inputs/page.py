@@ -36,7 +36,8 @@ _BOUNDS_INTRODUCTION = """\
 Made by `python -m tests.bad_inputs --write`: every argument that names a file, given one that must not be
 read whole. Each command has 4 GB of addresses (`ulimit -v`), 60 s, and 700 MB of memory that it may use;
 `hil --version` alone needs some 160 MB. Each refuses the file in a message with its name; seconds are of a
-machine with two busy processors.
+machine with two busy processors. A process begins as a copy of the program that tries it, so that 281 MB are
+the least that can be read here.
 
 What is read at most: 500 kB of a plan, a campaign or a sequence (YAML), 5 MB of a bench, model or
 controller file (TOML, keys of up to 32 parts), 20 MB of a DBC or EDS, 200 MB of an A2L, 64 MB of a result
