@@ -29,7 +29,8 @@ _WORDS = {"": None, "~": None, "null": None, "Null": None, "NULL": None} | {
     "FALSE": False,
 }
 _INTEGER = re.compile(r"[-+]?[0-9]{1,300}")
-_FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+#: Python's `1_00`, `inf` and digits of other scripts are text.
+FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _NOT_FINITE = re.compile(r"([-+]?)\.(inf|nan)", re.IGNORECASE)
 
 
@@ -152,7 +153,7 @@ def _scalar(node: yaml.Node, where: str) -> object:
         return _WORDS[text]
     if _INTEGER.fullmatch(text):
         return int(text)
-    if _FLOAT.fullmatch(text):
+    if FLOAT.fullmatch(text):
         return float(text)
     special = _NOT_FINITE.fullmatch(text)
     return float(f"{special[1]}{special[2]}") if special else text

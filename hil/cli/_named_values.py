@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterable
 
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
-
-#: As in a plan's YAML: Python's `1_00`, `inf` and digits of other scripts are text there.
-_NUMBER = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
+from test_plans.yaml_document import FLOAT
 
 
 def named_values(given: Iterable[str], option: str, *, form: str = "NAME=VALUE") -> dict[str, str]:
@@ -57,5 +54,5 @@ def named_numbers(given: Iterable[str], option: str) -> dict[str, float]:
 
 def number_of(text: str) -> float | None:
     """A finite number as a plan would write it; None of anything else."""
-    number = float(text) if _NUMBER.fullmatch(text) else math.inf
+    number = float(text) if FLOAT.fullmatch(text) else math.inf
     return number if math.isfinite(number) else None

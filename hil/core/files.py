@@ -58,17 +58,17 @@ def refuse_unless_regular(path: Path, fix: str = "") -> None:
         raise BadInputError(f"is {kind}, not a file", where=str(path), fix=fix or "give a regular file")
 
 
-def open_regular(path: Path) -> BufferedReader:
+def open_regular(path: Path, fix: str = "") -> BufferedReader:
     """The file, opened for reading.
 
     Raises:
-        BadInputError: there is none, it may not be read, or it is not a regular file.
+        BadInputError: there is none, it may not be read, or it is not a regular file; with `fix`.
     """
-    refuse_unless_regular(path)
+    refuse_unless_regular(path, fix)
     try:
         return path.open("rb")
     except OSError as error:
-        raise BadInputError(_reason(error), where=str(path), fix=_CHECK_PATH) from error
+        raise BadInputError(_reason(error), where=str(path), fix=fix or _CHECK_PATH) from error
 
 
 def read_bytes(path: Path, at_most: int = LARGEST_BYTES, fix: str = "") -> bytes:
@@ -77,9 +77,8 @@ def read_bytes(path: Path, at_most: int = LARGEST_BYTES, fix: str = "") -> bytes
     Raises:
         BadInputError: it cannot be read, is no regular file, or is larger; with `fix`.
     """
-    refuse_unless_regular(path, fix)
     try:
-        with path.open("rb") as file:
+        with open_regular(path, fix) as file:
             content = file.read(at_most + 1)
     except OSError as error:
         raise BadInputError(_reason(error), where=str(path), fix=fix or _CHECK_PATH) from error

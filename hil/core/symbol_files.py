@@ -17,7 +17,8 @@ from hil.core.symbols import TYPES, Symbol, Symbols
 
 _COLUMNS = ("symbol", "address", "type")
 _MORE_COLUMNS = ("unit", "scale", "offset")
-_LARGEST_BYTES = 200_000_000  # an A2L of an engine's control unit has a quarter of this
+#: An A2L of an engine's control unit, the largest file that describes a device, has a quarter of this.
+LARGEST_BYTES = 200_000_000
 _HIGHEST_ADDRESS = 0xFFFF_FFFF
 
 
@@ -27,7 +28,7 @@ def read_symbols(path: Path) -> Symbols:
     Raises:
         BadInputError: it cannot be read, or is neither.
     """
-    data = read_bytes(path, _LARGEST_BYTES)
+    data = read_bytes(path, LARGEST_BYTES)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:

@@ -45,7 +45,7 @@ class PredictedLoop:
     def __init__(self, closed: ClosedLoop) -> None:
         self.closed = closed
         self.clock = self
-        #: Called after each block of a wait.
+        #: Called after each block of a wait, and after what is played.
         self.after_block: Callable[[], None] = lambda: None
         self._seen = 0  # samples that have been looked at
 

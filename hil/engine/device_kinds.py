@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from drivers import OWN_KINDS, DeviceTable, LoadTable
 from hil.core.errors import BadInputError
+from hil.core.files import read_bytes
 from hil.core.printable import printable
+from hil.core.recording import DEVICE
+from hil.core.symbol_files import LARGEST_BYTES
 from hil.core.table_mistakes import told
 from test_plans.registry import Registry
 
@@ -17,6 +22,15 @@ KINDS: Registry[DeviceTable] = Registry("kind of device", "hil.devices", DeviceT
 
 #: Kinds of the tables that need not name theirs.
 DEFAULT_KINDS = {"rmcu": "rmcu-can", "dyno": "rcs-canopen"}
+
+
+def descriptions_of(device: str, files: Iterable[Path]) -> dict[str, bytes]:
+    """What says what a device's frames mean, by the names of a recording's attachments.
+
+    Raises:
+        BadInputError: a file cannot be read, or is larger than any that describes a device.
+    """
+    return {f"{DEVICE}{device}/{path.name}": read_bytes(path, LARGEST_BYTES) for path in files}
 
 
 def device_tables(data: dict[str, Any]) -> tuple[dict[str, Any], list[str]]:

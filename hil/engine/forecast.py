@@ -13,7 +13,7 @@ from hil.engine._predicted_bench import PredictedBench
 from hil.engine.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench_tables import BenchFile
 from hil.engine.prediction import PredictedRun
-from hil.engine.preflight import Rehearsal
+from hil.engine.preflight import rehearsed
 from hil.engine.ranges import limits_of_channels
 from test_plans import Judgement, Plan, estimate_duration_s
 
@@ -62,15 +62,13 @@ def forecast(plan: Plan, bench: BenchFile) -> Forecast:
     judgement = Judgement(plan, measured=False)
     with tempfile.TemporaryDirectory() as folder:
         predicted = PredictedBench(bench, load_model(simulation.model))
-        take = None if _analyses(plan, bench) else judgement.take
-        run = PredictedRun(predicted, Path(folder), each_segment=take)
+        run = PredictedRun(
+            predicted, Path(folder), each_segment=judgement.take, keeps_rows=_analyses(plan, bench)
+        )
         begin_s = predicted.loop.clock.now_s()
         run.carry_out((*plan.steps, *plan.finally_))
         duration_s = predicted.loop.clock.now_s() - begin_s
         found = run.ended()
-    if take is None:
-        for segment in found.segments:
-            judgement.take(found.recording, segment)
     limits = limits_of_channels(bench.limits)
     peaks = {channel: (found.peaks[channel], limit) for channel, limit in limits.items()}
     return Forecast(peaks, judgement.results(), found.bus_loads, duration_s)
@@ -82,15 +80,13 @@ def _analyses(plan: Plan, bench: BenchFile) -> bool:
     Raises:
         BadInputError: it does, and the plan is so long that this cannot be predicted in little memory.
     """
-    rehearsal = Rehearsal(bench)
-    for step in (*plan.steps, *plan.finally_):
-        step.carry_out(rehearsal)
+    analyses = bool(rehearsed(plan, bench).made)
     duration_s = estimate_duration_s(plan)
-    if rehearsal.made and duration_s > LONGEST_WITH_ANALYSIS_S:
+    if analyses and duration_s > LONGEST_WITH_ANALYSIS_S:
         raise BadInputError(
             f"takes {duration_s / 3600:.1f} h and analyses its own recording: at most "
             f"{LONGEST_WITH_ANALYSIS_S / 3600:g} h of such a plan are predicted",
             where=str(plan.source),
             fix="make two plans of it: one that identifies, and one for the rest",
         )
-    return bool(rehearsal.made)
+    return analyses

@@ -95,7 +95,8 @@ class PredictedRun:
         out: folder in which analysis steps find what earlier ones made.
         channels: those of the recording that are wanted; all without it.
         controllers: what is loaded in place of files that the plan loads.
-        each_segment: is given each segment as it ends; the recording then holds the last rows alone.
+        each_segment: is given each segment as it ends.
+        keeps_rows: else those of what is over are dropped, and the recording holds the last rows alone.
     """
 
     def __init__(
@@ -105,10 +106,14 @@ class PredictedRun:
         channels: Collection[str] | None = None,
         controllers: Mapping[Path, Controller] | None = None,
         each_segment: TakesSegment | None = None,
+        *,
+        keeps_rows: bool = True,
     ) -> None:
         self._bench, self._channels = bench, channels
         self._recorder = _PredictedRecorder(bench, channels)
         self._conductor = PredictionConductor(bench, self._recorder, out, controllers, each_segment)
+        if not keeps_rows:
+            bench.loop.after_block = self._forget_what_is_over
 
     def carry_out(self, steps: Iterable[Step]) -> None:
         """Carry steps out, from where the run stands.
@@ -126,6 +131,9 @@ class PredictedRun:
         run = copy.deepcopy(self, {id(one): one for one in shared} | {id(closed): closed.continued(room)})
         run._conductor.go_on(out, controllers)
         return run
+
+    def _forget_what_is_over(self) -> None:
+        self._bench.forget(self._bench.loop.closed.samples - round(_AROUND_S / TICK_S))
 
     @property
     def rows(self) -> Array:
@@ -158,11 +166,9 @@ class PredictionConductor(BenchConductor):
             cast(Bench, bench), cast(Recorder, recorder), out, lambda text, timeout_s: "not asked"
         )
         self._rmcu, self._loop, self._dyno = bench.rmcu, bench.loop, bench.dyno
-        self._rows_of, self._forget = recorder, bench.forget
+        self._rows_of = recorder
         self._in_place_of = controllers or {}
         self._each_segment = each_segment
-        if each_segment:
-            self._loop.after_block = self._forget_what_is_over
 
     def go_on(self, out: Path, controllers: Mapping[Path, Controller]) -> None:
         """From now on work in folder `out`, and load `controllers` in place of files."""
@@ -192,15 +198,11 @@ class PredictionConductor(BenchConductor):
         if segment:
             self._end(self._loop.now_s(), complete=True)
         self._switch_off()
-        if self._each_segment:
-            if segment:
-                ended = self.segments[-1]
-                around = self._rows_of.between(ended.start_s - _AROUND_S, ended.end_s + _AROUND_S)
-                self._each_segment(around, ended)
-            self._forget_what_is_over()
-
-    def _forget_what_is_over(self) -> None:
-        self._forget(self._loop.closed.samples - round(_AROUND_S / TICK_S))
+        if self._each_segment and segment:
+            ended = self.segments[-1]
+            around = self._rows_of.between(ended.start_s - _AROUND_S, ended.end_s + _AROUND_S)
+            self._each_segment(around, ended)
+        self._loop.after_block()
 
 
 class _ReadChannels(MutableMapping[str, Array]):

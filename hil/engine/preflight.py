@@ -25,9 +25,7 @@ def preflight(plan: Plan, bench: BenchFile, out: Path, *, somebody_answers: bool
         BadInputError: a controller file that cannot be used, a request beyond the
             bench's limits, a prompt that nobody can answer on hardware, or too little room on the disk.
     """
-    rehearsal = Rehearsal(bench)
-    for step in (*plan.steps, *plan.finally_):
-        step.carry_out(rehearsal)
+    rehearsal = rehearsed(plan, bench)
     if rehearsal.prompts and not somebody_answers and bench.simulation is None:
         raise BadInputError(
             f"the operator is asked '{rehearsal.prompts[0]}', and there is no terminal to ask on",
@@ -54,6 +52,18 @@ def channels_of(plan: Plan) -> list[str]:
     """What the criteria of a plan are computed from."""
     channels = (getattr(criterion.metric, "channel", None) for criterion in plan.criteria)
     return list(dict.fromkeys(name for name in channels if isinstance(name, str)))
+
+
+def rehearsed(plan: Plan, bench: BenchFile) -> Rehearsal:
+    """All steps and end steps, rehearsed.
+
+    Raises:
+        BadInputError: the plan asks for more than the bench allows.
+    """
+    rehearsal = Rehearsal(bench)
+    for step in (*plan.steps, *plan.finally_):
+        step.carry_out(rehearsal)
+    return rehearsal
 
 
 class Rehearsal:

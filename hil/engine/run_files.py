@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from hil.core.channels import CHANNELS
 from hil.core.file_format import FORMAT
-from hil.core.files import read_bytes
 from hil.core.model import model_to_toml
-from hil.core.recording import ACCEPTED_EXPIRY, DEVICE
+from hil.core.recording import ACCEPTED_EXPIRY
 from hil.core.result import AcceptedExpiry, RunResult
 from hil.core.versions import versions
 from hil.engine.bench import Bench
 from hil.engine.border import RunRequest
 from hil.engine.conductor import BenchConductor
+from hil.engine.device_kinds import descriptions_of
 from hil.engine.provenance import hashes
 from hil.engine.recorder import Recorder
 
@@ -93,9 +95,7 @@ def _inputs(request: RunRequest, bench: Bench) -> dict[str, bytes]:
 
 def _descriptions(bench: Bench) -> dict[str, bytes]:
     """DBC, EDS and whatever else says what the devices' frames mean, by device: raw frames need them."""
-    return {
-        f"{DEVICE}{key}/{path.name}": read_bytes(path)
-        for key, table in bench.file.device_tables.items()
-        for path in table.files()
-        if path.is_file()
-    }
+    found: dict[str, bytes] = {}
+    for key, table in bench.file.device_tables.items():
+        found |= descriptions_of(key, filter(Path.is_file, table.files()))
+    return found

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator
-
 import numpy as np
-from pydantic import ValidationError
 
 from hil.analysis.control_design._laws import lead
-from hil.analysis.control_design._plant import DesignPlant
+from hil.analysis.control_design._plant import DesignPlant, usable
 from hil.analysis.control_design._spec import DesignSpec
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification import fit_chain
@@ -18,7 +14,6 @@ from hil.core.controller import Controller, Dfc, Dfo, Lead, Notch, Wsc
 from hil.core.controller_bounds import SLOWEST_HZ
 from hil.core.effects import finite_number
 from hil.core.errors import BadInputError
-from hil.core.field_words import needed
 from hil.core.model import Model
 
 
@@ -42,24 +37,6 @@ def refuse_resonance(spec: DesignSpec, resonance_hz: float, where: str) -> None:
             where=where,
             fix="check the model's units: a stiffness, an inertia, or coefficients of its functions",
         )
-
-
-@contextlib.contextmanager
-def usable() -> Iterator[None]:
-    """Say in words that numbers which follow from a model are none that a controller may have.
-
-    Raises:
-        BadInputError: names the number and its bounds.
-    """
-    try:
-        yield
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise BadInputError(
-            f"the RMCU cannot use the controller for this model: {key} = {first['input']!r}: {needed(first)}",
-            fix="check the units of the model's numbers",
-        ) from error
 
 
 @usable()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,18 +76,13 @@ def design_plant(model: Model) -> DesignPlant:
     changes = list(notes)
     numerators[1] = _invertible(numerators[1], len(numerators[0]) - 1, "wheel speed", "(17)", changes)
     numerators[2] = _invertible(numerators[2], len(denominator) - 1, "shaft torque", "(18)", changes)
-    try:
+    with usable():
         filters = Plant(
             denominator=tuple(float(c) for c in denominator),
             motor_speed=tuple(float(c) for c in numerators[0]),
             wheel_speed=tuple(float(c) for c in numerators[1]),
             shaft_torque=tuple(float(c) for c in numerators[2]),
         )
-    except ValidationError as error:
-        raise BadInputError(
-            f"the RMCU's filters cannot hold this plant: {needed(dict(error.errors()[0]))}",
-            fix="is a parameter of the model in another unit? Else identify it again",
-        ) from error
     return DesignPlant(
         functions,
         filters,
@@ -95,6 +92,24 @@ def design_plant(model: Model) -> DesignPlant:
         _ratio(motor, wheel),
         tuple(changes),
     )
+
+
+@contextlib.contextmanager
+def usable() -> Iterator[None]:
+    """Say in words that numbers which follow from a model are none that a controller may have.
+
+    Raises:
+        BadInputError: names the number and its bounds.
+    """
+    try:
+        yield
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise BadInputError(
+            f"the RMCU cannot use the controller for this model: {key} = {first['input']!r}: {needed(first)}",
+            fix="check the units of the model's numbers",
+        ) from error
 
 
 def _refuse_empty(denominator: Array, numerators: list[Array]) -> None:

@@ -10,11 +10,10 @@ import numpy as np
 
 from drivers import TICK_S, BusLoop, Device, LogWire, Samples, SampleSource, Stream
 from hil.core.errors import BadInputError, BenchError
-from hil.core.files import read_bytes
 from hil.core.frames import FrameBlock
-from hil.core.recording import DEVICE
 from hil.engine.bench import connections_of
 from hil.engine.bench_tables import BenchFile
+from hil.engine.device_kinds import descriptions_of
 from hil.engine.recorder import Recorder
 
 _AT_ONCE_S = 0.25
@@ -41,8 +40,7 @@ class BenchDecoder:
                 self.remarks.append(f"{key} is not on a CAN bus, so a CAN log has no data of it")
             elif bus in frames:
                 self._devices[key] = table.open(key.removeprefix("devices."), connections)
-                for path in table.files():
-                    self.attachments[f"{DEVICE}{key}/{path.name}"] = read_bytes(path)
+                self.attachments |= descriptions_of(key, table.files())
 
     def write(self, path: Path, began_ns: int) -> Recorder:
         """Decode all of it into a recording that is not closed yet.

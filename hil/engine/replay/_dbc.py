@@ -13,9 +13,9 @@ import numpy.typing as npt
 from hil.core.channels import TIME
 from hil.core.dbc_messages import MessageLayout, MessageSamples, decoded, read_messages_of
 from hil.core.errors import BadInputError
-from hil.core.files import read_bytes
 from hil.core.frames import FrameBlock
-from hil.core.recording import DEVICE, RecordingWriter
+from hil.core.recording import RecordingWriter
+from hil.engine.device_kinds import descriptions_of
 from hil.engine.replay._channels import Frames, listed
 
 Array = npt.NDArray[np.float64]
@@ -42,7 +42,7 @@ class DbcDecoder:
         for channel, path in dbcs.items():
             layouts[channel], remarks = read_messages_of(path)
             self.remarks += [f"{path.name}: {remark}" for remark in remarks]
-            self.attachments[f"{DEVICE}{channel or 'can'}/{path.name}"] = read_bytes(path)
+            self.attachments |= descriptions_of(channel or "can", [path])
             if channel and frames.of(channel) is None:
                 raise BadInputError(
                     f"--dbc {channel}={path}: no log has a channel '{channel}'",

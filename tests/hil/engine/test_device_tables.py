@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -10,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 
 from drivers import DynoTable, RmcuTable
 from hil.core.table_mistakes import told
-from hil.engine.device_kinds import KINDS, device_tables
+from hil.engine.device_kinds import KINDS, descriptions_of, device_tables
 from tests.benches_for_tests import SIM
 
 
@@ -90,3 +91,12 @@ def test_pydantics_errors_become_key_value_and_what_would_be_right() -> None:
     with pytest.raises(ValidationError) as again:
         Outer.model_validate({"rod": 3, "tube": {"length_m": {}}})
     assert told(again.value, Outer)[1].startswith("tube.length_m = a table: ")
+
+
+def test_the_largest_description_that_a_reader_takes_is_attached_too(tmp_path: Path) -> None:
+    path = tmp_path / "engine.a2l"
+    with path.open("wb") as file:
+        file.truncate(70_000_000)  # holes: no room on the disk
+    assert {name: len(content) for name, content in descriptions_of("ram", [path]).items()} == {
+        "device/ram/engine.a2l": 70_000_000
+    }
