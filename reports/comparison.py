@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from hil.analysis.comparison import Comparison, CriterionRow, differences
+from hil.analysis.comparison import Comparison, CriterionRow, ResponseRow, differences
 from hil.core.result import Segment
 from reports import quantities
 from reports.labels import channel_label, criterion_title
@@ -115,7 +115,8 @@ def _parts(found: Comparison) -> list[Part]:
             "responses",
             "Distance of the responses",
             f"Rms of the difference from {names[0]} over the rms of {names[0]} around its mean, the whole "
-            "segment, aligned at the step.",
+            "segment, aligned at the step. ≈: no more than steady ripple out of phase could make, so it "
+            "proves no difference.",
             (_responses(found, names),),
         ),
     ]
@@ -184,11 +185,17 @@ def _responses(found: Comparison, names: tuple[str, ...]) -> Table:
         (
             row.segment,
             channel_label(row.channel).text,
-            *(quantities.share(gap) for gap in row.gaps),
+            *(_gap(row, run) for run in range(len(names))),
         )
         for row in found.responses
     ]
     return Table(("segment", "channel", *names), tuple(rows), 2)
+
+
+def _gap(row: ResponseRow, run: int) -> str:
+    """How far a response is from the first run's, marked where ripple alone could make that."""
+    within = run > 0 and row.within_ripple(run)
+    return ("≈ " if within else "") + quantities.share(row.gaps[run])
 
 
 def _segment_part(found: Comparison, segment: Segment) -> Part:

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 logger = logging.getLogger(__name__)
 
+_LEAST_SHARE, _LEAST_ELAPSED_S = 0.02, 2.0  # from which on a pace is known
 _COMPILING = "compiling for this machine, once: a minute or two"
 _COMPILER = "hil.core.compiled"  # named here, for importing it takes longer than most commands
 
@@ -111,15 +112,19 @@ def _bar(description: str, log: Show) -> Iterator[Show]:
         BarColumn(),
         TextColumn("{task.fields[now]}", markup=False),
         TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}", markup=False),
         console=Console(stderr=True),
         transient=True,
     )
     with bar:
-        task = bar.add_task(description, total=None, now="")
+        task = bar.add_task(description, total=None, now="", left="")
 
         def show(text: str, share: float | None = None) -> None:
             log(text, share)
-            bar.update(task, total=None if share is None else 1.0, completed=share or 0.0, now=text)
+            left = time_left(share, bar.tasks[0].elapsed or 0.0)
+            bar.update(
+                task, total=None if share is None else 1.0, completed=share or 0.0, now=text, left=left
+            )
 
         waits = _Waits(lambda: bar.update(task, now=_COMPILING))
         compiler = logging.getLogger(_COMPILER)
@@ -128,6 +133,17 @@ def _bar(description: str, log: Show) -> Iterator[Show]:
             yield show
         finally:
             compiler.removeHandler(waits)
+
+
+def time_left(share: float | None, elapsed_s: float) -> str:
+    """How much is done and how long the rest takes at the pace so far; '' while that is not known."""
+    if share is None:
+        return ""
+    if share < _LEAST_SHARE or elapsed_s < _LEAST_ELAPSED_S:
+        return f"{share:.0%}"
+    left_s = elapsed_s * (1.0 - share) / share
+    left = f"{left_s:.0f} s" if left_s < 2 * 60 else f"{left_s / 60:.0f} min"
+    return f"{share:.0%}, about {left} left"
 
 
 class _Waits(logging.Handler):

@@ -157,20 +157,23 @@ def _tell_all(summary: dict[str, Any], place: Place, *, as_json: bool) -> None:
         print_json(summary)
         return
     table = plain_table()
-    table.add_column("variables")
-    table.add_column("criterion", no_wrap=True)
+    varied = any(group["variables"] for group in summary["spread"])
+    if varied:
+        table.add_column("variables")
+    table.add_column("criterion", overflow="fold")
     table.add_column("limit", no_wrap=True)
     table.add_column("verdict", no_wrap=True)
-    for name in ("runs", "mean", "standard deviation", "lowest", "highest"):
-        table.add_column(name, justify="right")
-    table.add_column("unit")
+    for name in ("runs", "mean", "std. dev.", "lowest", "highest"):
+        table.add_column(name, justify="right", no_wrap=True, min_width=6)
+    table.add_column("unit", no_wrap=True)
     for group in summary["spread"]:
         values = values_in_words(group["variables"])
         for number, (name, spread) in enumerate(group["criteria"].items()):
             numbers = (spread[key] for key in ("mean", "standard_deviation", "lowest", "highest"))
             cells = ("-" if value is None else f"{value:.4g}" for value in numbers)
             said = (name, limit_in_words(spread), spread["verdict"].replace("_", " "), str(spread["count"]))
-            table.add_row(values if number == 0 else "", *said, *cells, spread["unit"])
+            first = (values if number == 0 else "",) if varied else ()
+            table.add_row(*first, *said, *cells, spread["unit"])
     page = console()
     page.print()
     page.print(table)

@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from hil.analysis.comparison import ComparedRun, Comparison, compare
+from hil.analysis.comparison import ComparedRun, Comparison, compare, names_by_variables
 from hil.cli._output import Show, console, plain_table, print_json, progress, to_json, warn_of_damage
 from hil.cli._place import refuse_missing, results_in
 from hil.core.errors import BadInputError
@@ -52,8 +52,8 @@ def _refuse_twice(paths: list[Path]) -> None:
 
 
 def _read(runs: list[Path], paths: list[Path], show: Show) -> list[ComparedRun]:
-    found = []
-    for name, path in zip(_names(runs), paths, strict=True):
+    recordings, results = [], []
+    for name, path in zip(_folders(runs), paths, strict=True):
         show(f"reading {name}")
         recording = read_recording(path, allow_missing=True)
         warn_of_damage([recording])
@@ -64,11 +64,13 @@ def _read(runs: list[Path], paths: list[Path], show: Show) -> list[ComparedRun]:
                 where=str(path),
                 fix="compare runs of 'hil run'",
             )
-        found.append(ComparedRun(name, recording, result))
-    return found
+        recordings.append(recording)
+        results.append(result)
+    names = names_by_variables(_folders(runs), results)
+    return [ComparedRun(*run) for run in zip(names, recordings, results, strict=True)]
 
 
-def _names(runs: list[Path]) -> list[str]:
+def _folders(runs: list[Path]) -> list[str]:
     """The last parts of the paths, as many as tell them apart."""
     resolved = [path.resolve() for path in runs]
     for parts in range(1, max(len(path.parts) for path in resolved) + 1):
@@ -104,7 +106,8 @@ def _summary(found: Comparison, runs: list[Path]) -> dict[str, Any]:
             for row in found.criteria
         ],
         "responses": [
-            {"segment": row.segment, "channel": row.channel, "gaps": row.gaps} for row in found.responses
+            {"segment": row.segment, "channel": row.channel, "gaps": row.gaps, "ripples": row.ripples}
+            for row in found.responses
         ],
         "notes": found.notes,
         "files": [SUMMARY, HTML, PDF],
@@ -125,7 +128,8 @@ def _tell(found: Comparison, page: Path) -> None:
     for run in found.runs:
         if run.result.variables:
             values = ", ".join(map(str, run.result.variables))
-            out.print(f"{run.name}: {values}", highlight=False, markup=False, soft_wrap=True)
+            where = run.recording.source.parent
+            out.print(f"{where}: {values}", highlight=False, markup=False, soft_wrap=True)
     out.print(f"\n{lead(found)}", highlight=False, markup=False)
     for note in found.notes:
         out.print(f"note: {note}", highlight=False, markup=False)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.cli._output import console, print_json, warn_of_damage
-from hil.cli._place import refuse_file
+from hil.cli._place import refuse_file, results_in
+from hil.cli._run_inputs import command_again, inputs_of
 from hil.core.recording import (
     FRAME_LOGS,
     Recording,
@@ -21,10 +22,13 @@ def carry_out(
     recording: Path,
     out: Path,
     frames: bool,
+    inputs: bool,
     overwrite: bool,
     as_json: bool,
 ) -> int:
     """Carry the command out; its exit code."""
+    if inputs:
+        return _inputs(recording, out, overwrite=overwrite, as_json=as_json)
     for file in written_with(out):
         refuse_file(file, [recording], overwrite=overwrite)
     table = read_recording(recording, any_replay=True)
@@ -55,4 +59,18 @@ def _frames(table: Recording, out: Path, *, as_json: bool) -> int:
         print_json({"file": str(out), "frames": count, "damage": table.damage, "notes": table.notes})
     else:
         console().print(f"{count} raw frames: {out}", highlight=False)
+    return 0
+
+
+def _inputs(recording: Path, out: Path, *, overwrite: bool, as_json: bool) -> int:
+    read = read_recording(recording, any_replay=True)
+    files = inputs_of(read)
+    with results_in(out, files, inputs=[recording], overwrite=overwrite, default="inputs") as place:
+        place.write(files, [recording])
+    again = command_again(read, out)
+    if as_json:
+        print_json({"folder": str(out), "files": sorted(files), "command": again})
+    else:
+        console().print(f"{', '.join(sorted(files))}: {out}", highlight=False, soft_wrap=True)
+        console().print(f"run it again: {again}", highlight=False, markup=False, soft_wrap=True)
     return 0

@@ -9,7 +9,12 @@ from hil.analysis.comparison._comparison import (
     difference,
 )
 from hil.analysis.comparison._differences import Difference, differences
-from hil.analysis.comparison._runs import ComparedRun, controllers_that_differ, refuse_other_plans
+from hil.analysis.comparison._runs import (
+    ComparedRun,
+    controllers_that_differ,
+    names_by_variables,
+    refuse_other_plans,
+)
 
 __all__ = [
     "ComparedRun",
@@ -22,5 +27,6 @@ __all__ = [
     "controllers_that_differ",
     "difference",
     "differences",
+    "names_by_variables",
     "refuse_other_plans",
 ]

@@ -11,11 +11,12 @@ import numpy.typing as npt
 from hil.analysis.comparison._runs import ComparedRun, controllers_that_differ, refuse_other_plans
 from hil.core.channels import TIME
 from hil.core.errors import BadInputError
-from hil.core.result import CriterionResult, CriterionVerdict
+from hil.core.result import CriterionResult, CriterionVerdict, Segment
 
 Array = npt.NDArray[np.float64]
 
 _LEAST_SAMPLES = 2
+_TREND = 3  # order of what changes slowly behind a step, as drag that grows with speed does
 CHANNELS = ("shaft_torque_nm", "motor_speed_rad_s", "wheel_speed_rad_s")
 
 
@@ -44,12 +45,19 @@ class CriterionRow:
 class ResponseRow:
     """One channel of one segment: rms(run - first run) / rms(first run - its mean), by run; 0 for the first.
 
-    NaN where a run lacks the channel or the segment.
+    `ripples` over the same: the rms that two steady ripples in antiphase would have, those of the first run
+    and of the run. A gap below that proves no difference: equal controllers reach it where the wheels stood
+    elsewhere at the step. NaN where a run lacks the channel or the segment, or the segment is no step.
     """
 
     segment: str
     channel: str
     gaps: tuple[float, ...]
+    ripples: tuple[float, ...]
+
+    def within_ripple(self, run: int) -> bool:
+        """Whether ripple out of phase alone could make the gap of a run."""
+        return self.gaps[run] <= self.ripples[run]
 
 
 @dataclass(frozen=True)
@@ -131,8 +139,29 @@ def _responses(runs: Sequence[ComparedRun]) -> tuple[ResponseRow, ...]:
                 continue
             spread = float(np.nanstd(first[1]))
             gaps = (_rms(difference(runs[0], run, segment.id, channel), spread) for run in runs)
-            rows.append(ResponseRow(segment.id, channel, tuple(gaps)))
+            rows.append(
+                ResponseRow(segment.id, channel, tuple(gaps), _ripples(runs, segment, channel, spread))
+            )
     return tuple(rows)
+
+
+def _ripples(runs: Sequence[ComparedRun], segment: Segment, channel: str, spread: float) -> tuple[float, ...]:
+    """Sum of the first and each run's rms around a cubic over the last half behind the step."""
+    if segment.kind != "step" or spread == 0.0:
+        return (float("nan"),) * len(runs)
+    first, *others = (_steady_rms(aligned(run, segment.id, channel)) for run in runs)
+    return (0.0, *((first + other) / spread for other in others))
+
+
+def _steady_rms(response: tuple[Array, Array] | None) -> float:
+    if response is None:
+        return float("nan")
+    time, values = response
+    steady = (time >= 0.5 * time[-1]) & np.isfinite(values)
+    if np.count_nonzero(steady) <= _TREND + 1:
+        return float("nan")
+    trend = np.polynomial.Polynomial.fit(time[steady], values[steady], _TREND)
+    return float(np.std(values[steady] - trend(time[steady])))
 
 
 def difference(

@@ -29,6 +29,18 @@ class ComparedRun:
     result: RunResult
 
 
+def names_by_variables(folders: Sequence[str], results: Sequence[RunResult]) -> list[str]:
+    """What to call each run: the variables of the plan in which they differ, or else their folders.
+
+    Variables are the better name where they tell every run from every other: 'torque_nm = 100 N m'.
+    """
+    values = [{one.name: str(one) for one in result.variables} for result in results]
+    every = dict.fromkeys(name for run in values for name in run)
+    differing = [name for name in every if len({run.get(name) for run in values}) > 1]
+    names = [", ".join(run[name] for name in differing if name in run) for run in values]
+    return names if all(names) and len(set(names)) == len(names) else list(folders)
+
+
 def refuse_other_plans(runs: Sequence[ComparedRun]) -> None:
     """Refuse runs of different plans: their criteria and segments are not of one kind.
 

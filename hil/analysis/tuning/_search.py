@@ -26,6 +26,7 @@ _FAR, _NEAR = 0.2, 0.08  # radius that an ascent begins with, as a share of the 
 _SHORTEST = 1e-3  # step that ends it
 _SCATTERED = 10  # points for each that is gone uphill from
 _AT_ONCE = 32  # points all over the space between two words about how far it is
+_FAR_SHARE = 0.3  # of the time, when there are draws
 _SAME = 1e-4  # of scores: less than this is no difference
 
 
@@ -80,7 +81,7 @@ class Search:
         self.best = np.clip(start, 0.0, 1.0)
         self._best_score = self._best_worst = -np.inf
         self._best_cars: list[Tried] = []  # the best on the cars that it was searched on
-        self._doing = ""
+        self._doing, self._share = "", 0.0
         self._active: tuple[int, ...] = (0,)
         self._joined: tuple[Array, list[Tried]] | None = None  # best of those that were tried on every car
         self.ended = "converged"
@@ -129,7 +130,12 @@ class Search:
             scores += [score(cars) for cars in self._tried(points[first : first + _AT_ONCE])]
         order = np.argsort(scores, kind="stable")[::-1]
         begun = [own, *(points[i] for i in order[: self._effort.starts])]
-        ends = [self._uphill(point, _FAR, self._effort.far) for point in begun]
+        whole = _FAR_SHARE if len(self._pool.trial.draws) > 1 else 1.0
+        ends = []
+        for number, point in enumerate(begun):
+            self._share = whole * (number + 1) / (len(begun) + 2)
+            ends.append(self._uphill(point, _FAR, self._effort.far))
+        self._share = whole * (len(begun) + 1) / (len(begun) + 2)
         ends.append(self._uphill(self.best, _NEAR, self._effort.far))
         ends.sort(key=lambda end: -end[0])
         return [point for _, point in ends]
@@ -138,6 +144,7 @@ class Search:
         """Uphill on the cars that matter, which become more."""
         candidates = list(hills)
         for number in range(self._effort.joins):
+            self._share = _FAR_SHARE + (1.0 - _FAR_SHARE) * number / (self._effort.joins + 1)
             if not self._join():
                 self.ended = "converged"
                 return
@@ -164,7 +171,7 @@ class Search:
 
     def _join(self) -> bool:
         """Let the cars that lower the best's score most join the active ones; whether any does."""
-        self._show(f"all {len(self._pool.trial.draws)} cars", None)
+        self._show(f"all {len(self._pool.trial.draws)} cars", self._share)
         found = self._on_all(self.best, self._refuse_if_stopped)
         whole = score(found)
         if self._joined is None or whole > score(self._joined[1]):
@@ -204,7 +211,7 @@ class Search:
                 self.best, self._best_score, self._best_cars = np.array(point), score(tried), tried
                 self._best_worst = min(one.worst for one in tried)
         worst = f"worst margin {share(self._best_worst)}"
-        self._show(f"{self._doing}: {self._pool.runs} runs, {worst}", None)
+        self._show(f"{self._doing}: {self._pool.runs} runs, {worst}", self._share)
         return each
 
     def _refuse_if_stopped(self) -> None:

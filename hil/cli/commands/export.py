@@ -19,6 +19,12 @@ def command(
     frames: Annotated[
         bool, typer.Option("--frames", help="write raw frames, not channels, to .mf4 (ASAM bus logging)")
     ] = False,
+    inputs: Annotated[
+        bool,
+        typer.Option(
+            "--inputs", help="write plan, bench, model and controllers of the run to the folder --out"
+        ),
+    ] = False,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
     as_json: Annotated[
         bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
@@ -26,8 +32,10 @@ def command(
 ) -> int:
     """Write a recording's channels as CSV, Parquet, MDF4 or MAT, or its frames as BLF, ASC, candump or MDF4.
 
-    What was lost of them is said.
+    With --inputs: the files with which the run can be carried out again. What was lost is said.
     """
     from hil.cli.export import carry_out
 
-    return carry_out(recording=recording, out=out, frames=frames, overwrite=overwrite, as_json=as_json)
+    return carry_out(
+        recording=recording, out=out, frames=frames, inputs=inputs, overwrite=overwrite, as_json=as_json
+    )

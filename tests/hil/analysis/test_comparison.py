@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.analysis.comparison import ComparedRun, compare, difference, differences
+from hil.analysis.comparison import ComparedRun, compare, difference, differences, names_by_variables
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
-from hil.core.result import CriterionResult, RunResult, Segment
+from hil.core.result import CriterionResult, RunResult, Segment, VariableValue
 from reports.comparison import comparison_html, comparison_pdf, lead, value_text
 
 PLAN = b"name: one\nsteps: [{wait: {duration_s: 1}}]\ncriteria: []\n"
@@ -70,6 +70,36 @@ def test_the_gap_is_the_rms_of_the_difference_over_the_firsts_spread():
     assert time[0] == pytest.approx(-1.0)
     row = compare([one, two]).responses[0]
     assert row.gaps[1] == pytest.approx(0.1 * np.sqrt(np.mean(first**2)) / np.std(first))
+
+
+def rippled(name, phase):
+    """A step with a wheel order of 30 N m that does not decay, at a phase of its own."""
+    one = run(name)
+    ripple = 30.0 * np.sin(2 * np.pi * 11.3 * one.recording.time_s + phase)
+    channels = dict(one.recording.channels)
+    channels["shaft_torque_nm"] = one.recording["shaft_torque_nm"] + ripple
+    return ComparedRun(name, dataclasses.replace(one.recording, channels=channels), one.result)
+
+
+def test_ripple_in_antiphase_is_no_difference():
+    same, more = rippled("two", np.pi), run("three", scale=1.3)
+    found = compare([rippled("one", 0.0), same, more])
+    row = next(row for row in found.responses if row.channel == "shaft_torque_nm")
+    assert row.gaps[1] == pytest.approx(row.ripples[1], rel=0.01)
+    assert row.gaps[1] > 0.25  # without a word it reads as another controller
+    assert "≈" in comparison_html(compare([rippled("one", 0.0), rippled("two", 0.9 * np.pi)]))
+    assert row.within_ripple(2) is False
+
+
+def test_runs_are_named_by_the_variables_in_which_they_differ():
+    def result(**values):
+        variables = tuple(VariableValue(name=name, value=value, unit="N m") for name, value in values.items())
+        return run("one").result.model_copy(update={"variables": variables})
+
+    two = [result(torque=100.0, least=1.0), result(torque=200.0, least=1.0)]
+    assert names_by_variables(["a/1", "a/2"], two) == ["torque = 100 N m", "torque = 200 N m"]
+    assert names_by_variables(["a/1", "a/2"], [two[0], two[0]]) == ["a/1", "a/2"]
+    assert names_by_variables(["a/1", "a/2", "a/3"], [*two, two[0]]) == ["a/1", "a/2", "a/3"]
 
 
 def test_without_a_value_there_is_no_distance():

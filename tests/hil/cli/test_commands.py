@@ -76,6 +76,17 @@ def test_the_report_can_be_made_again_from_the_recording_alone(finished, tmp_pat
 
 
 @pytest.mark.slow
+def test_the_inputs_of_a_recording_run_again_with_the_same_figures(finished, tmp_path):
+    out, result = finished
+    said = json.loads(
+        hil("export", out / "recording.mcap", "--inputs", "--out", tmp_path / "in", "--json").stdout
+    )
+    assert {"plan.yaml", "bench.toml", "rmcu.dbc", "phase_stabilization.toml"} <= set(said["files"])
+    _, command, *arguments = said["command"].split()
+    again = json.loads(hil(command, *arguments, "--out", tmp_path / "again", "--json").stdout)
+    assert again["criteria"] == result["criteria"]
+
+
 @pytest.mark.parametrize("ending", ["csv", "parquet", "mf4", "mat"])
 def test_exports_are_recordings_again(ending, finished, tmp_path):
     out, _ = finished

@@ -7,6 +7,10 @@ import pty
 import subprocess
 import sys
 
+import pytest
+
+from hil.cli._output import time_left
+
 _WAITS = """
 import logging, time
 from hil.cli._output import progress
@@ -38,3 +42,20 @@ def test_a_terminal_is_told_that_the_simulation_is_being_compiled() -> None:
     os.close(terminal)
     assert asked.wait(60) == 0
     assert "compiling for this machine, once" in shown.decode()
+
+
+@pytest.mark.parametrize(
+    ("share", "elapsed_s", "words"),
+    [
+        (None, 100.0, ""),
+        (0.0, 0.0, "0%"),
+        (0.01, 5.0, "1%"),
+        (0.25, 10.0, "25%, about 30 s left"),
+        (0.1, 60.0, "10%, about 9 min left"),
+        (1.0, 60.0, "100%, about 0 s left"),
+    ],
+)
+def test_time_left_follows_from_the_share_that_is_done(
+    share: float | None, elapsed_s: float, words: str
+) -> None:
+    assert time_left(share, elapsed_s) == words

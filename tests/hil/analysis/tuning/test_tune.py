@@ -89,7 +89,15 @@ def test_cars_join_until_no_car_is_worse_than_those_that_were_searched_on():
     trial = trial_of(draws=6)
     effort = Effort(starts=0, far=2, near=1, joins=6, joining=3)
     seen: list[str] = []
-    found = tune(trial, effort=effort, processes=1, show=lambda text, share: seen.append(text))
+    shares: list[float] = []
+
+    def show(text: str, share: float | None) -> None:
+        seen.append(text)
+        shares.append(-1.0 if share is None else share)
+
+    found = tune(trial, effort=effort, processes=1, show=show)
+    assert shares[:-1] == sorted(shares[:-1])  # how much is done never falls; the last is the comparison
+    assert 0.0 <= shares[0] <= max(shares) < 1.0
     assert found.ended == "converged"
     assert any("4 cars" in text for text in seen)
     assert found.chosen.worst.worst >= found.start.worst.worst
