@@ -143,6 +143,6 @@ def _print(result: RunResult, folder: Path) -> None:
         warn(expiry_in_words(result.accepted_expired))
     said = told_identities(result.identities)
     if said:
-        page.print(f"identification: {said}", highlight=False, markup=False, soft_wrap=True)
+        page.print(f"devices: {said}", highlight=False, markup=False, soft_wrap=True)
     shown = "html" if "html" in result.files else "recording"
     page.print(f"{'report' if shown == 'html' else shown}: {folder / result.files[shown]}", highlight=False)
