@@ -4,6 +4,9 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
+# What Python compiles on the way is kept, also where the surroundings forbid it: tests start a thousand processes.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: run autotune browser serve page-picture api-fuzz service-kills agent-kills service-stores openapi setup compile kills soak faults process-faults fuzz test test-slow nightly wrong-controllers test-can-vm hunt bad-inputs blind mutants coverage changelog lint bench figures lock clean readers release docs
 
 run: setup
@@ -43,7 +46,7 @@ lint: setup
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/lint-imports
-	$(BIN)/mypy
+	$(BIN)/mypy --num-workers 2
 
 # What is compiled on a machine's first run is compiled beside the checks of the text.
 test: setup
@@ -59,7 +62,8 @@ compile: setup
 test-can-vm: setup
 	$(BIN)/python -m tests.can_vm
 
-# What takes minutes and gates a change: tests/gate.py says which, and what it proves.
+# What takes minutes and gates a change: tests/gate.py says which, and what it proves. The machine with CAN controllers
+# of test-can-vm is one of them, beside the others.
 test-slow: setup browser
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal -m "slow and not nightly" --durations 40
 

@@ -1,51 +1,82 @@
-"""Which slow tests gate a change: those that prove most in ten minutes. The others run at night.
+"""Which tests are quick, which slow ones gate a change, and which run at night: decided by measured seconds.
 
-A test that takes more than a few seconds is marked `slow`. Of those, the ones of a module below are part of
-`make test-slow`, with what they prove; every other one is marked `nightly` as it is collected, and runs by
-`make nightly` (tests/nightly.py). What proves what stands in docs/reference/nightly.md.
+`tests/durations.json` has the seconds of every test that takes long (tests/durations.py measures them). One
+that takes longer than `QUICK_S`, or whose module prepares something for longer, is slow, whether it carries
+the mark or not. Of the slow ones of a module those gate that fit into `MODULE_S`, the shortest first: tests of
+one module prove things of one kind, and the shortest prove most in a second. What has to gate although it is
+longer stands in `PINNED`. All others, and those that were never measured, run by `make nightly`
+(tests/nightly.py).
 """
 
 from __future__ import annotations
 
-#: Modules below tests/ whose slow tests gate, and what they prove. A name behind `::` takes single tests.
-GATE = {
-    "test_wheel.py": "the wheel installs and runs; plans are tests of a user's own repository",
-    "transports/test_run_ends.py": "a run over each transport ends safely when its wire fails",
-    "hil/cli/test_run_to_the_end.py": "results, overwriting, signals, pipes of whole runs",
+import functools
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+DURATIONS = Path(__file__).with_name("durations.json")
+QUICK_S = 0.75
+MODULE_S = 8.0
+
+#: Long, and part of the gate all the same: a module below tests/, a part of the test's name, what it proves.
+PINNED = {
+    "can_vm/test_the_machine.py::controllers": "runs over real SocketCAN, beside the CAN tools of others",
+    "test_wheel.py::empty_folder": "the wheel installs and runs",
+    "hil/cli/test_run_to_the_end.py::same_out_twice": "results, overwriting, pipes of whole runs",
     "hil/cli/test_commands.py::ctrl_c": "Ctrl-C leaves a safe bench and the data",
-    "hil/cli/test_commands.py::bench_that_fails": "a bench that fails is exit code 3 and keeps the data",
-    "hil/cli/test_operator_terminal.py::prompt_is_answered": "a prompt is answered, and the answer is kept",
-    "hil/cli/test_identify_and_design.py": "from a recording to a model and a controller",
-    "hil/cli/test_campaign.py::what_it_writes": "a campaign of simulations, interrupted and gone on with",
-    "hil/cli/test_full_disk.py": "a full disk costs no evidence and leaves a safe bench",
-    "hil/cli/test_kills.py::killed": "a run, its stand-in or its command that is killed leaves no torque",
+    "hil/cli/test_kills.py::run_that_is_killed": "a run that is killed leaves no torque",
+    "hil/cli/test_kills.py::killed_or_frozen": "a command that is gone leaves a bench that is made safe",
     "hil/cli/test_reset.py::nobody_arms": "an emergency stop stays latched until it is reset",
-    "hil/cli/test_recover.py": "what a crash left opens",
-    "hil/cli/test_tune.py::test_a_controller_with_more_margin": "a tuning gives a controller with reasons",
-    "hil/core/recording/test_damage.py": "damaged recordings are found out",
-    "hil/engine/test_hardware_process.py": "the hardware process and its supervisor",
-    "hil/engine/test_wall_clock.py": "a bench in real time",
-    "hil/analysis/test_degenerate.py": "degenerate recordings end in words, in every analysis",
-    "hil/analysis/diagnosis/test_diagnose.py::two_effects": "missing effects are named, held-out data agree",
-    "hil/analysis/diagnosis/test_diagnose.py::unknown_line": "what has no name is described, not named",
-    "hil/service/test_serve.py": "the service begins, runs, is killed and ends",
+    "hil/cli/test_full_disk.py::fills_up": "a full disk costs no evidence and leaves a safe bench",
+    "hil/engine/test_wall_clock.py::compiled_or_loaded": "a bench in real time waits for no compiler",
     "hil/service/test_page.py::test_a_plan_is_foreseen": "a run by the page, from forecast to report",
+    "hil/service/test_serve.py::killed_service": "a killed service loses nothing and runs nothing twice",
     "hil/service/test_stop_under_attack.py::half_open": "the emergency stop is answered under attack",
-    "hil/service/test_stop_under_attack.py::killed": "a stop post that was killed is there again",
-    "hil/service/test_sessions.py": "tokens end, cookies are no tokens",
-    "hil/service/test_audit.py": "a row of the audit log that was changed is seen",
     "hil/service/test_client.py::exit_code": "a run over the API is one at the terminal",
-    "hil/service/test_client.py::travel": "files that a plan names go with it",
-    "hil/service/test_stop_post.py": "who may stop, and what repeated stops leave",
-    "hil/test_base_install.py": "a base install runs plans, and names the extra of what it leaves out",
-    "faults/test_faults.py": "each fault of the matrix, in one phase of a run",
-    "wrong_controllers/test_wrong_controllers.py": "wrong controllers do not pass",
-    "formats/test_formats.py": "files of earlier versions are read",
+    "hil/test_base_install.py::runs_a_plan": "a base install runs plans and writes reports",
+    "hil/analysis/diagnosis/test_diagnose.py::two_effects": "missing effects are named",
 }
 
 
-def gates(nodeid: str) -> bool:
-    """Whether a slow test gates; `nodeid` is pytest's, from the repository's root."""
-    below = nodeid.removeprefix("tests/")
-    module, _, name = below.partition("::")
-    return any(module == place.partition("::")[0] and place.partition("::")[2] in name for place in GATE)
+def pinned(nodeid: str) -> bool:
+    """Whether a test gates however long it takes; `nodeid` is pytest's, from the repository's root."""
+    module, _, name = nodeid.removeprefix("tests/").partition("::")
+    return any(module == place.partition("::")[0] and place.partition("::")[2] in name for place in PINNED)
+
+
+@functools.cache
+def measured() -> Mapping[str, float]:
+    """Seconds by test, and of what a module prepares by its path; nothing of what is quick."""
+    found: dict[str, float] = json.loads(DURATIONS.read_text("utf-8"))
+    return found
+
+
+def is_long(nodeid: str, *, prepared: bool) -> bool:
+    """Whether a test is slow by its own seconds or, if it uses what its module has `prepared`, by those."""
+    module = nodeid.partition("::")[0]
+    seconds = max(measured().get(nodeid, 0.0), measured().get(module, 0.0) if prepared else 0.0)
+    return seconds > QUICK_S
+
+
+def gating(slow: Iterable[str]) -> set[str]:
+    """Those of the slow tests that gate."""
+    modules: dict[str, list[str]] = {}
+    for nodeid in slow:
+        modules.setdefault(nodeid.partition("::")[0], []).append(nodeid)
+    return {nodeid for tests in modules.values() for nodeid in _within(tests)}
+
+
+def _within(tests: list[str]) -> list[str]:
+    """Those of one module: what is pinned, then the shortest that still fit."""
+    seconds = measured()
+    module = tests[0].partition("::")[0]
+    chosen = [nodeid for nodeid in tests if pinned(nodeid)]
+    left = MODULE_S - sum(seconds.get(nodeid, 0.0) for nodeid in chosen) - seconds.get(module, 0.0)
+    known = (nodeid for nodeid in tests if nodeid in seconds and nodeid not in chosen)
+    for nodeid in sorted(known, key=lambda one: seconds[one]):
+        left -= seconds[nodeid]
+        if left < 0.0:
+            break
+        chosen.append(nodeid)
+    return chosen

@@ -49,7 +49,6 @@ PARTS: dict[str, Part] = {
         (
             "tests/hil/analysis",
             "--ignore=tests/hil/analysis/diagnosis",
-            "--ignore=tests/hil/analysis/test_degenerate.py",
         ),
     ),
     "diagnosis": Part(
@@ -63,12 +62,13 @@ PARTS: dict[str, Part] = {
             "tests/bad_inputs",
             "tests/hil/test_notebook.py",
             "tests/hil/test_pytest_plugin.py",
+            "tests/hil/test_base_install.py",
             "tests/hil/campaign",
             "tests/reports",
         ),
     ),
     "engine": Part(
-        "the bench in real time, late stamps, forecasts, physics, foreign tools on each wire",
+        "the bench in real time, late stamps, forecasts, physics, single faults, tools of others on each wire",
         (
             "tests/hil/engine",
             "tests/hil/core",
@@ -81,6 +81,8 @@ PARTS: dict[str, Part] = {
             "tests/formats",
             "tests/benchmarks",
             "tests/test_wheel.py",
+            "tests/faults",
+            "tests/wrong_controllers",
         ),
     ),
     "service": Part(

@@ -2,41 +2,73 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
-from tests.gate import GATE, gates
+from tests import gate
+from tests.durations import Stopwatch
+from tests.gate import MODULE_S, PINNED, QUICK_S, gating, is_long
 from tests.nightly import PAGE, PARTS, counted, with_row
 
 ROOT = Path(__file__).parents[1]
 
 
-@pytest.mark.parametrize("place", GATE)
-def test_what_gates_is_there(place: str) -> None:
+@pytest.mark.parametrize("place", PINNED)
+def test_what_is_pinned_is_there(place: str) -> None:
     module, _, name = place.partition("::")
-    text = (ROOT / "tests" / module).read_text("utf-8")
-    assert "slow" in text
-    assert name in text
-    assert gates(f"tests/{module}::test_{name}")
+    assert name in (ROOT / "tests" / module).read_text("utf-8")
 
 
-def test_what_is_not_named_does_not_gate() -> None:
-    assert not gates("tests/hil/service/test_api_fuzz.py::test_a_call[1]")
-    assert not gates("tests/hil/cli/test_tune.py::test_ctrl_c_keeps_the_best_so_far")
+def test_what_is_measured_is_there() -> None:
+    modules = {ROOT / nodeid.partition("::")[0] for nodeid in gate.measured()}
+    assert [module for module in modules if module.suffix == ".py" and not module.exists()] == []
 
 
-def test_every_slow_test_runs_in_a_part_of_the_night_or_in_the_gate() -> None:
+def test_of_a_module_the_shortest_gate_that_fit_and_what_is_pinned(monkeypatch: pytest.MonkeyPatch) -> None:
+    seconds = {"m.py::a": 5.0, "m.py::b": 0.9, "m.py::c": 4.0, "m.py": 2.0, "n.py::d": 90.0}
+    monkeypatch.setattr(gate, "measured", lambda: seconds)
+    assert gating(["m.py::a", "m.py::b", "m.py::c", "m.py::never", "n.py::d"]) == {"m.py::b", "m.py::c"}
+    reset = "tests/hil/cli/test_reset.py::test_nobody_arms_the_bench_until_it_is_reset"
+    assert gating([reset]) == {reset}
+
+
+def test_what_is_prepared_counts_for_tests_that_use_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gate, "measured", lambda: {"m.py": 2 * QUICK_S})
+    assert (is_long("m.py::a", prepared=True), is_long("m.py::a", prepared=False)) == (True, False)
+
+
+def test_seconds_of_what_was_not_carried_out_stay(tmp_path: Path) -> None:
+    file = tmp_path / "durations.json"
+    file.write_text('{"m.py::gone": 3.0, "m.py": 9.0, "n.py::kept": 4.0}')
+    watch = Stopwatch()
+    watch.prepared_s = {"m.py::first": 6.0, "m.py::second": 0.0}
+    watch.took_s = {"m.py::first": 0.1, "m.py::second": MODULE_S, "m.py::marked": 0.2}
+    watch.marked = {"m.py::marked"}
+    watch.written_to(file)
+    assert json.loads(file.read_text()) == {
+        "m.py": 6.0, "m.py::gone": 3.0, "m.py::marked": 0.2, "m.py::second": MODULE_S, "n.py::kept": 4.0
+    }  # fmt: skip
+
+
+def test_every_test_that_may_be_slow_is_below_a_part_of_the_night() -> None:
     places = [place for part in PARTS.values() if part.mark == "nightly" for place in part.places]
-    slow = [
-        str(file.relative_to(ROOT))
-        for file in (ROOT / "tests").rglob("test_*.py")
-        if "mark.slow" in file.read_text("utf-8") and file.name != Path(__file__).name
-    ]
-    places += [f"tests/{place}" for place in GATE if "::" not in place]  # all of these gate
-    left_out = [file for file in slow if not any(file.startswith(place) for place in places)]
-    assert slow
-    assert left_out == []
+    folders = [place for place in places if not place.startswith("--")]
+    files = [str(file.relative_to(ROOT)) for file in (ROOT / "tests").rglob("test_*.py")]
+    left_out = [file for file in files if not any(file.startswith(place) for place in folders)]
+    assert left_out == [f"tests/{name}" for name in _QUICK if f"tests/{name}" in left_out]
+    assert [key for key in gate.measured() if key.startswith(tuple(left_out))] == []
+
+
+#: Of these nothing is slow, or the gate has all of it.
+_QUICK = (
+    "can_vm/test_at_the_limit.py",
+    "can_vm/test_served_bench.py",
+    "can_vm/test_the_machine.py",
+    "test_gate.py",
+    "test_imports.py",
+)
 
 
 def test_the_places_of_parts_exist() -> None:
@@ -44,9 +76,9 @@ def test_the_places_of_parts_exist() -> None:
     assert [place for place in places if not (ROOT / place).exists()] == []
 
 
-def test_the_page_has_every_module_and_part() -> None:
+def test_the_page_has_every_pin_and_part() -> None:
     page = PAGE.read_text("utf-8")
-    assert [place for place in GATE if f"| `tests/{place}` | {GATE[place]} |" not in page] == []
+    assert [place for place in PINNED if f"| `tests/{place}` | {PINNED[place]} |" not in page] == []
     assert [name for name, part in PARTS.items() if f"| `{name}` | {part.proves} |" not in page] == []
 
 
