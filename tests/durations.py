@@ -1,8 +1,8 @@
 """`python -m tests.durations [PYTEST'S ARGUMENTS]`: measures what tests take, for tests/gate.py.
 
-Carries the tests out (without arguments those that are part of the gate, marked or not) and writes the seconds
-of each that is slow into `durations.json`; tests that were not carried out keep theirs. Preparing what a module
-shares counts for the module, not for the test that happens to be the first.
+Carries the tests out (without arguments those of the gate) and writes the seconds of each that is slow into
+`durations.json`; tests that were not carried out keep theirs. Preparing what a module shares counts for the
+module, not for the test that happens to be the first.
 """
 
 from __future__ import annotations

@@ -1,11 +1,10 @@
 """Which tests are quick, which slow ones gate a change, and which run at night: decided by measured seconds.
 
-`tests/durations.json` has the seconds of every test that takes long (tests/durations.py measures them). One
-that takes longer than `QUICK_S`, or whose module prepares something for longer, is slow, whether it carries
-the mark or not. Of the slow ones of a module those gate that fit into `MODULE_S`, the shortest first: tests of
-one module prove things of one kind, and the shortest prove most in a second. What has to gate although it is
-longer stands in `PINNED`. All others, and those that were never measured, run by `make nightly`
-(tests/nightly.py).
+`tests/durations.json` has the seconds of every test that takes long (tests/durations.py measures them). A
+test that takes longer than `QUICK_S`, or whose module prepares something for longer, is slow, marked or not.
+Of the slow ones of a module those gate that fit into `MODULE_S`, the shortest first: one module proves
+things of one kind, and the shortest prove most in a second. What has to gate although it is longer stands in
+`PINNED`. All others, and those that were never measured, run by `make nightly` (tests/nightly.py).
 """
 
 from __future__ import annotations

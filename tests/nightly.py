@@ -68,7 +68,7 @@ PARTS: dict[str, Part] = {
         ),
     ),
     "engine": Part(
-        "the bench in real time, late stamps, forecasts, physics, single faults, tools of others on each wire",
+        "the bench in real time, forecasts, physics, single faults, tools of others on each wire",
         (
             "tests/hil/engine",
             "tests/hil/core",
