@@ -82,6 +82,7 @@ PARTS: dict[str, Part] = {
             "tests/benchmarks",
             "tests/test_wheel.py",
             "tests/faults",
+            "tests/test_imports.py",
             "tests/wrong_controllers",
         ),
     ),
