@@ -15,7 +15,7 @@ from hil.analysis.tuning import Pool, SpeedLoops, Trial, channels_needed, draws_
 from hil.core.controller import load_controller
 from hil.core.model import load_model
 from hil.engine import RunRequest, load_bench, run_plan
-from hil.engine.trial_runs import TrialRuns
+from hil.engine.batch_prediction import BatchPrediction
 from test_plans import load_plan
 
 EVALUATIONS = 2000
@@ -30,7 +30,9 @@ def acceptance_trial(draws: int = 0, plan: str | Path = "acceptance") -> Trial:
     cars = draws_of(load_model(bench.simulation.model), free.tolerance, draws, 0)
     channels = channels_needed(tuple(criterion.metric for criterion in driven.criteria), free)
     loops = SpeedLoops([car.model for car in cars], start.sample_time_s)
-    return Trial(loaded, driven, free, start, cars, loops, TrialRuns(loaded, bench, driven.file, channels))
+    return Trial(
+        loaded, driven, free, start, cars, loops, BatchPrediction(loaded, bench, driven.file, channels)
+    )
 
 
 def python_control_s() -> float:

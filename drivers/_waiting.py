@@ -91,14 +91,14 @@ class Waiting:
                 self.stamps = np.concatenate([self.stamps, *[samples.time_s for samples in new]])
                 self._values = np.concatenate([self._values, *[samples.values for samples in new]])
             return
-        counts, arrivals, values = self._uncertain
+        counts, arrival_times, values = self._uncertain
         if new:
             counts = np.concatenate([counts, *[self._counts(samples) for samples in new]])
-            arrivals = np.concatenate([arrivals, *[samples.time_s for samples in new]])
+            arrival_times = np.concatenate([arrival_times, *[samples.time_s for samples in new]])
             values = np.concatenate([values, *[samples.values for samples in new]])
-        numbers, fates = self._numbered(counts, arrivals, everything)
+        numbers, fates = self._numbered(counts, arrival_times, everything)
         end = len(numbers)
-        self._uncertain = counts[end:], arrivals[end:], values[end:]
+        self._uncertain = counts[end:], arrival_times[end:], values[end:]
         first = min(self._unwanted, end)
         self._unwanted -= first
         numbers, fates, values = numbers[first:], fates[first:], values[first:end]
@@ -116,20 +116,20 @@ class Waiting:
         self._came += len(samples.time_s)
         return np.arange(self._came - len(samples.time_s), self._came)
 
-    def _numbered(self, counts: Numbers, arrivals: Array, everything: bool) -> tuple[Numbers, Fates]:
+    def _numbered(self, counts: Numbers, arrival_times: Array, everything: bool) -> tuple[Numbers, Fates]:
         assert self.clock is not None
         if self.count:
-            return self.count.settle(counts, arrivals, everything=everything)
+            return self.count.settle(counts, arrival_times, everything=everything)
         assert self._followed is not None
         assert self._followed.count is not None
         assert self.stream.counting is not None
         numbers, fates = self._followed.count.follow(counts, opens=self.stream.counting.opens)
-        arrivals = arrivals[: len(numbers)]
+        arrival_times = arrival_times[: len(numbers)]
         if np.count_nonzero(fates):
             placed = fates == PLACED
-            self.clock.learn(numbers[placed], arrivals[placed])
+            self.clock.learn(numbers[placed], arrival_times[placed])
         else:
-            self.clock.learn(numbers, arrivals)
+            self.clock.learn(numbers, arrival_times)
         return numbers, fates
 
     def _keep(self, numbers: Numbers, values: Array) -> None:

@@ -43,7 +43,9 @@ class FrameCount:
         # What followers are numbered by: counts that rose, and the samples' numbers
         self.risen: tuple[Numbers, Numbers] = (_NOTHING, _NOTHING)
 
-    def settle(self, counts: Numbers, arrivals: Array, *, everything: bool = False) -> tuple[Numbers, Fates]:
+    def settle(
+        self, counts: Numbers, arrival_times: Array, *, everything: bool = False
+    ) -> tuple[Numbers, Fates]:
         """Numbers of those frames, first come first, whose turn is certain, and what becomes of each.
 
         Args:
@@ -54,22 +56,22 @@ class FrameCount:
         if not len(counts):
             return _NOTHING, _NO_FATES
         if not self._clock.begun:
-            self._clock.guess(counts, arrivals)
-        turns, end, fates = self._turns(counts, arrivals, everything)
+            self._clock.guess(counts, arrival_times)
+        turns, end, fates = self._turns(counts, arrival_times, everything)
         numbers = counts[:end] + self._behind + self.turn * turns[:end]
         fates = fates[:end]
         placed = fates == PLACED
         if end:
             self._behind += self.turn * int(turns[end - 1])
-        arrivals, counts = arrivals[:end], counts[:end]
-        self._clock.learn(numbers[placed], arrivals[placed])
+        arrival_times, counts = arrival_times[:end], counts[:end]
+        self._clock.learn(numbers[placed], arrival_times[placed])
         self._note_risen(counts[placed], numbers[placed])
         return numbers, fates
 
-    def _turns(self, counts: Numbers, arrivals: Array, everything: bool) -> tuple[Numbers, int, Fates]:
+    def _turns(self, counts: Numbers, arrival_times: Array, everything: bool) -> tuple[Numbers, int, Fates]:
         """Turns that each frame lacks, how many frames are certain, and which are of one turn only."""
         clock = self._clock
-        late_s = arrivals - clock.times(counts + self._behind)
+        late_s = arrival_times - clock.times(counts + self._behind)
         turn_s = self.turn * clock.period_s
         behind = np.rint(late_s / turn_s).astype(np.int64)
         behind[late_s <= 0.5 * turn_s + 2 * clock.spread_s] = 0
@@ -77,7 +79,7 @@ class FrameCount:
         fates = np.zeros(len(turns), np.int8)
         if not turns[-1]:
             return turns, len(turns), fates  # the newest is in time: nobody lacks anything
-        young = int(np.searchsorted(np.maximum.accumulate(arrivals), np.max(arrivals) - _AWAITED_S))
+        young = int(np.searchsorted(np.maximum.accumulate(arrival_times), np.max(arrival_times) - _AWAITED_S))
         waits = young + int(np.argmax(turns[young:] > 0))
         if everything:
             if np.count_nonzero(behind[waits:] == turns[-1]) < _PROOF:

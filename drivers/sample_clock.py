@@ -168,12 +168,12 @@ class SampleClock:
 
 
 @compiled
-def _least(numbers, arrivals, number, time_s, period_s, slope, state, found):  # type: ignore[no-untyped-def]
+def _least(numbers, arrival_times, number, time_s, period_s, slope, state, found):  # type: ignore[no-untyped-def]
     """Place and delay of the earliest sample of each stretch; how many are whole, and the longest delay."""
     count, longest = 0, -np.inf
     for i in range(len(numbers)):
         place = np.float64(numbers[i] - number)
-        delay = (arrivals[i] - time_s) - place * period_s
+        delay = (arrival_times[i] - time_s) - place * period_s
         longest = max(longest, delay - slope * place)
         state[0] += 1
         if delay < state[1]:

@@ -8,11 +8,11 @@ from pathlib import Path
 from hil.core.files import replacing, write_atomically
 from hil.core.recording import Recording
 from hil.core.result import RunResult
-from reports.belonging import Claim, claim_of
 from reports.content import content
 from reports.html import html_text, input_texts, recording_named_in, write_html
 from reports.junit import junit_text, write_junit
 from reports.pdf import pdf_bytes, write_pdf
+from reports.report_identity import Claim, claim_of
 from reports.sections import sections
 from reports.svg_figure import svg_figure
 

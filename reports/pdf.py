@@ -18,10 +18,10 @@ from hil.core.files import write_atomically
 from hil.core.recording import Recording
 from hil.core.result import RunResult
 from reports import style
-from reports.belonging import Claim, keywords
 from reports.content import Content, content
 from reports.figure import Figure
 from reports.labels import pieces
+from reports.report_identity import Claim, keywords
 from reports.svg_figure import svg_figure
 
 logger = logging.getLogger(__name__)

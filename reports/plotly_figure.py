@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from reports import quantities, style
 from reports.covering import Outline, outlines, shown_x
-from reports.envelope import envelope
+from reports.decimation import envelope
 from reports.figure import Band, Figure, Mark, Trace
 
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0e-\x1f\x7f]")

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from hil.core.channels import TIME
 from hil.core.recording import BLOCK, Recording
-from reports.envelope import break_at_gaps, envelope
+from reports.decimation import break_at_gaps, envelope
 from reports.figure import Trace
 from reports.labels import Label
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from reports import style
 from reports.covering import Outline, outlines, shown_x
-from reports.envelope import envelope
+from reports.decimation import envelope
 from reports.figure import Figure
 from reports.labels import Label
 from reports.svg_canvas import svg_canvas

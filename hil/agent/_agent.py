@@ -23,8 +23,8 @@ from hil.core.errors import BadInputError, BenchError, HilError
 from hil.engine import StopRequest
 from hil.service.agent_data import AgentOrders, AgentReport, RunEnding, TakenRun
 from hil.service.benches import benches_of
-from hil.service.carrying_out import CarriedRun, RunEnd, end_of_left
 from hil.service.data_folder import alone_in, name_in
+from hil.service.run_execution import RunEnd, RunExecution, end_of_left
 from hil.service.run_process import alive_in
 
 _LOOK_S = 0.1
@@ -209,7 +209,7 @@ class _Agent:
             return
         bench.kept = run
         try:
-            bench.running = await CarriedRun.begin(self._request.run, run.taken, bench.bench, run.folder)
+            bench.running = await RunExecution.begin(self._request.run, run.taken, bench.bench, run.folder)
         except (HilError, OSError) as error:
             code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
             end = _ending(RunEnd("ended", code, reason=str(error)))

@@ -10,10 +10,10 @@ from pathlib import Path
 from hil.agent._kept_runs import KeptRun
 from hil.core.errors import HilError
 from hil.core.printable import printable
-from hil.engine.border_messages import EmergencyAsked
+from hil.engine.ipc_messages import EmergencyAsked
 from hil.service.agent_data import AgentBench, Order
 from hil.service.benches import Bench
-from hil.service.carrying_out import CarriedRun
+from hil.service.run_execution import RunExecution
 
 _LONGEST = 2000
 _USED_S = 1.0
@@ -33,7 +33,7 @@ class DrivenBench:
     def __init__(self, bench: Bench) -> None:
         self.bench = bench
         self.kept: KeptRun | None = None
-        self.running: CarriedRun | None = None
+        self.running: RunExecution | None = None
         self.left = False
         self.refused = ""
         self._used_by, self._looked_s = "", -1e9
@@ -98,7 +98,7 @@ class DrivenBench:
         folder = self.kept.folder if self.kept is not None else Path()
         self.bench.stop(order.by, folder, origin=order.origin, way=order.way or "api")
 
-    def _steer(self, running: CarriedRun, order: Order) -> None:
+    def _steer(self, running: RunExecution, order: Order) -> None:
         process = running.process
         known: dict[str, Callable[[], None]] = {
             "pause": process.pause,

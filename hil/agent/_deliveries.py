@@ -13,7 +13,7 @@ from hil.agent._service import AwayError, TheService
 from hil.client import RefusedError
 from hil.engine import RECORDING
 from hil.service.agent_data import MOST_PIECE_BYTES, RunEnding
-from hil.service.apart import apart
+from hil.service.daemon_thread import apart
 
 _LOOK_S = 0.2  # how often a recording that grows is looked at
 _AGAIN_S = 1.0

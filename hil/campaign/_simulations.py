@@ -18,7 +18,7 @@ from hil.core.controller import Controller, load_controller
 from hil.core.errors import HilError
 from hil.core.printable import printable
 from hil.core.result import CriterionResult, verdict_of
-from hil.engine.trial_runs import TrialRuns
+from hil.engine.batch_prediction import BatchPrediction
 from test_plans import Choices, Plan, judge, plan_from_text
 from test_plans.yaml_document import read_yaml
 
@@ -34,7 +34,7 @@ class Simulations:
 
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
-        self._plans: OrderedDict[object, tuple[Plan, TrialRuns]] = OrderedDict()
+        self._plans: OrderedDict[object, tuple[Plan, BatchPrediction]] = OrderedDict()
         self._cars: OrderedDict[object, tuple[Draw, ...]] = OrderedDict()
 
     @cached_property
@@ -84,11 +84,11 @@ class Simulations:
         columns = tuple(f"{axis.group}.{axis.name}" for axis in self.setting.cases.axes)
         return {**inputs_of(car.model, (*columns, *self.drawn)), **_of_criteria(criteria)}
 
-    def _plan(self, values: Mapping[str, float]) -> tuple[Plan, TrialRuns]:
+    def _plan(self, values: Mapping[str, float]) -> tuple[Plan, BatchPrediction]:
         """The plan with values of its variables, judged by the criteria that count."""
         setting = self.setting
 
-        def made() -> tuple[Plan, TrialRuns]:
+        def made() -> tuple[Plan, BatchPrediction]:
             plan = setting.plan
             if values:
                 text = Choices(values=values).applied(plan.text, read_yaml(plan.text, str(plan.source)))
@@ -96,7 +96,7 @@ class Simulations:
             counted = {criterion.id for criterion in setting.criteria}
             kept = tuple(criterion for criterion in plan.criteria if criterion.id in counted)
             plan = plan.model_copy(update={"criteria": kept})
-            return plan, TrialRuns(plan, setting.bench, setting.replaced or Path(), _channels(plan))
+            return plan, BatchPrediction(plan, setting.bench, setting.replaced or Path(), _channels(plan))
 
         return _kept(self._plans, tuple(values.items()), made)
 

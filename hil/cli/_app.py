@@ -21,7 +21,7 @@ import typer
 from hil.cli._completion import completion_wanted, take_named_shell
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._log import LOG
-from hil.cli._several import each_with_its_option
+from hil.cli._multi_value_options import each_with_its_option
 from hil.cli._streams import complain, tolerate_outputs
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.extras import not_installed

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis, diagnose
-from hil.analysis.tuning import Effort, Patience, Tuning, tune
+from hil.analysis.tuning import Effort, RefinementBudget, Tuning, tune
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
-from hil.cli._on_bench import FOLDER, Allowed, Carried, WireBench
+from hil.cli._on_bench import FOLDER, Allowed, StageOutcome, WireBench
 from hil.cli._one_run import Runs
 from hil.cli._output import progress
-from hil.cli._place import results_in
 from hil.cli._refine_on_bench import Refined, refined
 from hil.cli._result_file import RESULT
+from hil.cli._results_folder import results_in
 from hil.cli._tuning import NAMES as TUNING_NAMES
 from hil.cli._tuning import SUMMARY as TUNING_SUMMARY
 from hil.cli._tuning import Asked, asked_of, write_results
@@ -91,7 +91,7 @@ class Stages:
         self._told, self.place = told, place
         self._spent_s, self._runs = 0.0, 0
 
-    def run(self, plan: Plan, name: str) -> Carried:
+    def run(self, plan: Plan, name: str) -> StageOutcome:
         """A plan as it is."""
         told, folder = self._told, self.place / name
         self._runs += 1
@@ -99,7 +99,7 @@ class Stages:
         made = earlier_run(plan, bench, folder) if told.resume else None
         if made is not None:
             self._spent_s += made.bench_time_s
-            return Carried(folder, 0, tuple(made.segments), made.criteria)
+            return StageOutcome(folder, 0, tuple(made.segments), made.criteria)
         with told.runs.finished(plan, bench, folder) as run:
             result, code, error = run.result, run.exit_code, run.outcome.error
         self._spent_s += result.bench_time_s
@@ -108,7 +108,7 @@ class Stages:
         if code > 1 or result.verdict == "error":
             reason = error.what if error else result.reason or "not all could be judged"
             raise EndedError(f"{plan.name}: {reason}", code if code > 1 else 0)
-        return Carried(folder, code, tuple(result.segments), result.criteria)
+        return StageOutcome(folder, code, tuple(result.segments), result.criteria)
 
     def diagnose(self, runs: Several[Recorded], number: int, folder: Path) -> Diagnosis:
         """What the given model lacks to explain recordings."""
@@ -150,7 +150,7 @@ class Stages:
     def confirm(self, asked: Asked, found: Tuning, folder: Path) -> tuple[Refined, WireBench]:
         """Run what was found, and refine it unless the first run is not as predicted."""
         told, sequence, stop = self._told, self._told.sequence, StopRequest()
-        patience = Patience(sequence.runs, sequence.grow_percent / 100, told.agree)
+        budget = RefinementBudget(sequence.runs, sequence.grow_percent / 100, told.agree)
         claim = results_in(
             folder,
             TUNING_NAMES,
@@ -168,7 +168,7 @@ class Stages:
                 folder / FOLDER,
             )
             wire.bench_time_s, wire.earlier_runs = self._spent_s, self._runs
-            came = refined(found, wire, patience, told.processes, lambda: stop.times > 0)
+            came = refined(found, wire, budget, told.processes, lambda: stop.times > 0)
             self._spent_s, self._runs = wire.bench_time_s, self._runs + len(wire.carried)
             write_results(asked, found, place.write, refinement=came)
         return came, wire

@@ -17,10 +17,10 @@ def main() -> None:
     from hil.cli._lean_imports import import_python_can
 
     import_python_can()
-    from hil.engine.border_pipe import BorderPipe
     from hil.engine.hardware_process import hold_hardware
+    from hil.engine.ipc_pipe import IpcPipe
 
-    unheard = hold_hardware(BorderPipe(reading, writing))
+    unheard = hold_hardware(IpcPipe(reading, writing))
     with contextlib.suppress(OSError):  # nobody may be left to read this either
         if unheard:
             os.write(2, f"error: the command has ended before its run\n  {unheard}\n".encode())

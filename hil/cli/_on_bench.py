@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from hil.analysis.tuning import Measured, Patience, Trial
+from hil.analysis.tuning import Measured, RefinementBudget, Trial
 from hil.cli._consent import consent, refuse_nobody
 from hil.cli._named_values import named_numbers
 from hil.cli._one_run import Runs
@@ -17,10 +17,10 @@ from hil.core.model import Model
 from hil.core.recording import read_recording
 from hil.core.result import CriterionResult, Segment
 from hil.engine import RECORDING, BenchFile
+from hil.engine.batch_prediction import BatchPrediction
 from hil.engine.bench_file import with_seed
 from hil.engine.envelope import Envelope, envelope_of
 from hil.engine.prediction import Prediction
-from hil.engine.trial_runs import TrialRuns
 from reports.tuning_report import Shown
 from test_plans import Choices, load_plan
 
@@ -96,12 +96,12 @@ def allowed_on(wanted: Wanted, bench: BenchFile, trial: Trial, model: Model) -> 
     asked = named_numbers(wanted.envelope, "--envelope")
     predicted = predicted_run(trial, model, None)
     lasts_s = float(predicted.recording.time_s[-1])
-    envelope = envelope_of(bench, predicted.peaks, wanted.runs or Patience.runs, lasts_s, asked)
+    envelope = envelope_of(bench, predicted.peaks, wanted.runs or RefinementBudget.runs, lasts_s, asked)
     return Allowed(bench, envelope, consent((trial.plan,), bench, envelope, wanted.confirm))
 
 
 @dataclass(frozen=True)
-class Carried:
+class StageOutcome:
     """A run that was made: where it is, and the exit code that it alone would have had."""
 
     folder: Path
@@ -141,7 +141,7 @@ class WireBench:
         self._trial, self._model = trial, model
         self.allowed, self._envelope, self._place = allowed, allowed.envelope, place
         self._runs = allowed.answered(runs)
-        self.carried: dict[int, Carried] = {}
+        self.carried: dict[int, StageOutcome] = {}
         self.bench_time_s, self.earlier_runs = 0.0, 0
 
     def refused(self, controller: Controller) -> str:
@@ -166,7 +166,9 @@ class WireBench:
         bench = self.allowed.watched(self.earlier_runs + number)
         with self._runs.finished(plan, bench, folder) as run:
             result = run.result
-            self.carried[number] = Carried(folder, run.exit_code, tuple(result.segments), result.criteria)
+            self.carried[number] = StageOutcome(
+                folder, run.exit_code, tuple(result.segments), result.criteria
+            )
             error = run.outcome.error
         self.bench_time_s += result.bench_time_s
         if error is not None or result.safe_state == "not_confirmed":
@@ -186,7 +188,7 @@ class WireBench:
 
 def predicted_run(trial: Trial, model: Model, controller: Controller | None) -> Prediction:
     """A whole run of the trial's plan, with every channel and its peaks; None: the plan's own controller."""
-    assert isinstance(trial.carry_out, TrialRuns)
+    assert isinstance(trial.carry_out, BatchPrediction)
     return trial.carry_out(model, controller, 0.0, 0, whole=True)
 
 

@@ -13,8 +13,8 @@ from typing import TypeVar
 from hil.cli._hold import HOLDER
 from hil.cli._interrupts import INTERRUPTS
 from hil.cli._output import Show, progress, warn
-from hil.cli._place import Place, results_in
 from hil.cli._result_file import RESULT, write_result
+from hil.cli._results_folder import ResultsFolder, results_in
 from hil.cli._streams import complain
 from hil.cli._terminal import KEYS, operators_terminal
 from hil.core.errors import BenchError, HilError, InterruptError
@@ -22,8 +22,8 @@ from hil.core.model import Model
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING, BenchFile, RunOutcome, RunRequest, StopRequest, carry_out
-from hil.engine.border import Terminal, analysed_apart
 from hil.engine.disk_room import remark_on_room
+from hil.engine.ipc import Terminal, analysed_apart
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import Plan
 
@@ -99,7 +99,7 @@ class Runs:
                 complain("error", str(run.outcome.error))
             yield run
 
-    def _carried_out(self, request: RunRequest, place: Place, stop: StopRequest) -> Finished:
+    def _carried_out(self, request: RunRequest, place: ResultsFolder, stop: StopRequest) -> Finished:
         plan, bench = request.plan, request.bench
         request.out, request.replaces = place.folder, place.stale
         remark = remark_on_room(plan, place.folder)
@@ -120,7 +120,7 @@ def _keys(request: RunRequest) -> str:
 class _Conclusion:
     """What is written once the bench is safe: the result first, then the slow reports."""
 
-    def __init__(self, place: Place, outcome: RunOutcome, stop: StopRequest) -> None:
+    def __init__(self, place: ResultsFolder, outcome: RunOutcome, stop: StopRequest) -> None:
         self._place, self._outcome, self._stop = place, outcome, stop
         self._files = {"recording": outcome.recording.name}
         self._files |= {name: name for name in outcome.made}

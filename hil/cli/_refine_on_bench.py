@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from hil.analysis.tuning import Patience, Refinement, Tuning, refine
+from hil.analysis.tuning import Refinement, RefinementBudget, Tuning, refine
 from hil.cli._on_bench import FOLDER, Allowed, WireBench
 from hil.cli._output import console, note, plain_table
 from reports.outputs.refinement import (
@@ -45,7 +45,7 @@ class Refined:
 def refined(
     found: Tuning,
     wire: WireBench,
-    patience: Patience,
+    budget: RefinementBudget,
     processes: int | None,
     stopped: Callable[[], bool],
 ) -> Refined:
@@ -55,7 +55,7 @@ def refined(
         found.space,
         found.space.point(found.chosen.values),
         wire,
-        patience=patience,
+        budget=budget,
         processes=processes,
         show=lambda text, share: note(text),
         stopped=lambda: stopped() or wire.exit_code > 0,

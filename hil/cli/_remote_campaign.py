@@ -16,9 +16,9 @@ from hil.analysis.campaigns import CampaignFile, Share, load_campaign_file
 from hil.campaign import BEGUN, FOLDER
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._output import print_json, progress
-from hil.cli._patience import OURS, Patience
-from hil.cli._place import Place, results_in
 from hil.cli._remote_run import TOKEN
+from hil.cli._results_folder import ResultsFolder, results_in
+from hil.cli._retry import OURS, Retry
 from hil.cli._streams import complain
 from hil.client import Client, RefusedError
 from hil.core.errors import BadInputError, BenchError, InterruptError
@@ -150,11 +150,11 @@ class _Watching:
             BenchError: the service has not answered for a minute.
             InterruptError: somebody asked twice to stop.
         """
-        patience, name = Patience(), f"campaign {self.campaign.id}: {self.campaign.name}"
+        retry, name = Retry(), f"campaign {self.campaign.id}: {self.campaign.name}"
         with progress(name) as show:
             while self.campaign.state not in CAMPAIGN_OVER:
                 time.sleep(_LOOK_S)
-                patience.ask(self._ask)
+                retry.ask(self._ask)
                 show(*_progress(self.campaign))
         return self.campaign
 
@@ -176,7 +176,7 @@ def _progress(campaign: CampaignData) -> tuple[str, float]:
     return f"{campaign.done} of {campaign.simulations}{rate}{state}", share
 
 
-def _brought(client: Client, campaign: CampaignData, place: Place) -> dict[str, Any]:
+def _brought(client: Client, campaign: CampaignData, place: ResultsFolder) -> dict[str, Any]:
     """Its files, here, as `hil campaign` leaves them, the table being one part; what `campaign.json` says."""
     table = place.folder / FOLDER
     make_directory(table)

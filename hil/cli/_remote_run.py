@@ -14,9 +14,9 @@ from pathlib import Path
 
 from hil.cli._one_run import NAMES
 from hil.cli._output import progress
-from hil.cli._patience import OURS, Patience
-from hil.cli._place import Place, results_in
 from hil.cli._result_file import RESULT
+from hil.cli._results_folder import ResultsFolder, results_in
+from hil.cli._retry import OURS, Retry
 from hil.cli._sent_plan import give_plan
 from hil.cli._streams import complain
 from hil.cli._terminal import KEYS, StandardTerminal, operators_terminal
@@ -110,13 +110,13 @@ class _Watching:
             BenchError: the service has not answered for a minute.
             InterruptError: somebody asked twice to stop.
         """
-        patience = Patience()
+        retry = Retry()
         if self.terminal is not None:
             threading.Thread(target=self._read_keys, args=(self.terminal,), daemon=True).start()
         keys = f" ({KEYS})" if self.terminal is not None else ""
         with progress(f"run {self.run.id}: {self.run.plan} on {self.run.bench}{keys}") as show:
             while self.run.state not in OVER:
-                patience.ask(self._look)
+                retry.ask(self._look)
                 show(self.run.doing or self.run.state.replace("_", " "), self.run.share)
                 time.sleep(_LOOK_S)
         return self.run
@@ -171,7 +171,7 @@ class _Watching:
             known.get(line.strip().lower(), lambda: self.client.answer(run, line.strip()))()
 
 
-def _brought(client: Client, run: RunData, place: Place, tell: Tell) -> int:
+def _brought(client: Client, run: RunData, place: ResultsFolder, tell: Tell) -> int:
     """The run's files, here; its exit code."""
     for name in [one for one in run.files if one in NAMES]:
         client.download(run.id, name, place.folder / name)

@@ -10,7 +10,7 @@ from typing import Any
 from hil.cli._choices import LARGEST_SERIES
 from hil.cli._one_run import Finished, Runs
 from hil.cli._output import console, count_in_words, note, plain_table, print_json, to_json
-from hil.cli._place import Place, results_in
+from hil.cli._results_folder import ResultsFolder, results_in
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.result import RunResult
@@ -152,7 +152,7 @@ def _tell(run: Finished) -> None:
     )
 
 
-def _tell_all(summary: dict[str, Any], place: Place, *, as_json: bool) -> None:
+def _tell_all(summary: dict[str, Any], place: ResultsFolder, *, as_json: bool) -> None:
     if as_json:
         print_json(summary)
         return

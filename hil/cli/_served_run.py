@@ -1,7 +1,7 @@
 """`python -m hil.cli._served_run`: one run for the bench service, which starts it; nobody else does.
 
 It does what `hil run` does. In place of a terminal it has two pipes with the messages of
-`hil.engine.border_messages`: asked and typed come in, progress, texts and the outcome go out. A second
+`hil.engine.ipc_messages`: asked and typed come in, progress, texts and the outcome go out. A second
 argument is the descriptor of its stop line: emergency stops come by it that no other message can hold up.
 """
 
@@ -20,8 +20,8 @@ from hil.cli._interrupts import INTERRUPTS
 
 if TYPE_CHECKING:
     from hil.cli._output import Show
-    from hil.engine.border_messages import EmergencyAsked, RunAsked
-    from hil.engine.border_pipe import BorderPipe
+    from hil.engine.ipc_messages import EmergencyAsked, RunAsked
+    from hil.engine.ipc_pipe import IpcPipe
 
 _ASKED_WITHIN_S = 60.0
 _LAST_WORDS_S = 10.0
@@ -34,13 +34,13 @@ RUNNER = (sys.executable, "-m", "hil.cli._served_run")
 class _Service:
     """The service at the other end: the operator's terminal, and who is shown the progress."""
 
-    def __init__(self, pipe: BorderPipe, stop_line: BorderPipe | None) -> None:
+    def __init__(self, pipe: IpcPipe, stop_line: IpcPipe | None) -> None:
         self._pipe, self._stop_line = pipe, stop_line
         self._told_end = False
 
     def asked(self) -> RunAsked | None:
         """The run that is asked for; None if the service is gone before it has asked."""
-        from hil.engine.border_messages import RunAsked
+        from hil.engine.ipc_messages import RunAsked
 
         until_s = time.monotonic() + _ASKED_WITHIN_S
         while not self._pipe.gone and time.monotonic() < until_s:
@@ -52,13 +52,13 @@ class _Service:
 
     def tell(self, text: str) -> None:
         """Show the operators a text."""
-        from hil.engine.border_messages import Told
+        from hil.engine.ipc_messages import Told
 
         self._pipe.send(Told(text=text))
 
     def typed(self) -> list[str | EmergencyAsked]:
         """What operators asked for since the last call; that the service has gone ends the run."""
-        from hil.engine.border_messages import EmergencyAsked, Typed
+        from hil.engine.ipc_messages import EmergencyAsked, Typed
 
         lines: list[str | EmergencyAsked] = []
         for message in [*(self._stop_line.fetch() if self._stop_line else ()), *self._pipe.fetch()]:
@@ -75,7 +75,7 @@ class _Service:
     def shown(self, description: str) -> Iterator[Show]:
         """Send the progress on."""
         del description
-        from hil.engine.border_messages import Progressed
+        from hil.engine.ipc_messages import Progressed
 
         def show(text: str, share: float | None = None) -> None:
             if not self._pipe.crowded:
@@ -97,10 +97,10 @@ def main() -> None:
     import_python_can()
     from hil.cli._log import LOG
     from hil.core.errors import BenchError, HilError
-    from hil.engine.border_messages import ErrorData, Refused
-    from hil.engine.border_pipe import BorderPipe
+    from hil.engine.ipc_messages import ErrorData, Refused
+    from hil.engine.ipc_pipe import IpcPipe
 
-    pipe = BorderPipe(reading, writing)
+    pipe = IpcPipe(reading, writing)
     service = _Service(pipe, _stop_line())
     LOG.begin(sys.argv)
     code = 130
@@ -125,21 +125,21 @@ def main() -> None:
     sys.exit(code)
 
 
-def _stop_line() -> BorderPipe | None:
+def _stop_line() -> IpcPipe | None:
     """Only read from; nobody else has this end of it."""
-    from hil.engine.border_pipe import BorderPipe
+    from hil.engine.ipc_pipe import IpcPipe
 
     if len(sys.argv) < 3:
         return None
     line = int(sys.argv[2])
     os.set_inheritable(line, False)
-    return BorderPipe(line, line)
+    return IpcPipe(line, line)
 
 
-def _carried_out(asked: RunAsked, service: _Service, pipe: BorderPipe) -> int:
+def _carried_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
     from hil.cli._log import LOG
     from hil.cli._one_run import Runs
-    from hil.engine.border_data import ended_of, request_of
+    from hil.engine.ipc_data import ended_of, request_of
 
     request = request_of(asked)
     out = Path(asked.out)

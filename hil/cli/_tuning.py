@@ -29,7 +29,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.toml_file import toml_text
 from hil.engine import BenchFile, load_bench
-from hil.engine.trial_runs import TrialRuns
+from hil.engine.batch_prediction import BatchPrediction
 from reports import HTML, PDF
 from reports.origin import origin_of
 from reports.outputs.tuning import CONTROLLER, FREE, output_files, summary_of
@@ -94,9 +94,9 @@ def asked_of(
     return Asked(loaded, file, text, trial, tuple(path for path in inputs if path.is_file()), told)
 
 
-def _runs(plan: Plan, bench: BenchFile, driven: Driven, free: Free) -> TrialRuns:
+def _runs(plan: Plan, bench: BenchFile, driven: Driven, free: Free) -> BatchPrediction:
     metrics = tuple(criterion.metric for criterion in driven.criteria)
-    return TrialRuns(plan, bench, driven.file, channels_needed(metrics, free))
+    return BatchPrediction(plan, bench, driven.file, channels_needed(metrics, free))
 
 
 def _refuse_beyond_bench(free: Free, start: Controller, bench: BenchFile) -> None:

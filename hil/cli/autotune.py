@@ -15,7 +15,7 @@ from hil.cli._named_values import named_numbers
 from hil.cli._on_bench import Allowed, predicted_run
 from hil.cli._one_run import Runs
 from hil.cli._output import console, plain_table, print_json, progress, to_json
-from hil.cli._place import Place, results_in
+from hil.cli._results_folder import ResultsFolder, results_in
 from hil.cli._tuning import Asked
 from hil.core.controller import controller_to_toml
 from hil.core.digits import share
@@ -148,7 +148,7 @@ def _consented(allowed: Allowed) -> Decision:
     )
 
 
-def _write(loop: AutotuneLoop, told: Told, place: Place) -> dict[str, Any]:
+def _write(loop: AutotuneLoop, told: Told, place: ResultsFolder) -> dict[str, Any]:
     """Controller, model, summary and report of what is known."""
     closing, files = loop.closing, dict[str, bytes]()
     if closing.best is not None:

@@ -26,10 +26,10 @@ from hil.campaign import (
     write_begun,
 )
 from hil.campaign import carry_out as simulate
-from hil.cli._asked_twice import at_once
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._output import print_json, progress, to_json
-from hil.cli._place import Place, results_in
+from hil.cli._results_folder import ResultsFolder, results_in
+from hil.cli._second_interrupt import at_once
 from hil.cli._streams import complain
 from hil.core.errors import BadInputError
 from hil.engine import StopRequest
@@ -123,7 +123,13 @@ def _refuse_together(
 
 
 def _simulated(
-    simulations: Simulations, place: Place, processes: int, scheduler: str, campaign: str, *, resume: bool
+    simulations: Simulations,
+    place: ResultsFolder,
+    processes: int,
+    scheduler: str,
+    campaign: str,
+    *,
+    resume: bool,
 ) -> bool:
     """Carry out what is missing; False if somebody stopped it, which is told."""
     setting = simulations.setting
@@ -153,7 +159,7 @@ def _simulated(
     return whole
 
 
-def _begin(place: Place, setting: Setting, batch: int) -> None:
+def _begin(place: ResultsFolder, setting: Setting, batch: int) -> None:
     """Earlier results go before anything of this campaign is there: never do both lie side by side."""
     place.remove_stale()
     for path in (place.folder / FOLDER).glob("part-*.parquet"):
@@ -181,13 +187,13 @@ def _one_s(simulations: Simulations) -> float:
     return time.perf_counter() - begun_s
 
 
-def _findings(setting: Setting, simulations: Simulations, place: Place) -> Findings:
+def _findings(setting: Setting, simulations: Simulations, place: ResultsFolder) -> Findings:
     batch = begun_batch(place.folder, setting)
     table = Parts(place.folder, setting, simulations.drawn, batch).table()
     return findings_of(table, setting.criteria, column_units(setting.cases.axes, simulations.drawn))
 
 
-def _write(setting: Setting, found: Findings, place: Place) -> dict[str, Any]:
+def _write(setting: Setting, found: Findings, place: ResultsFolder) -> dict[str, Any]:
     file = setting.file
     random = file.draws > 0
     asked = {

@@ -8,7 +8,7 @@ from typing import Any
 
 from hil.analysis.comparison import ComparedRun, Comparison, compare, names_by_variables
 from hil.cli._output import Show, console, plain_table, print_json, progress, to_json, warn_of_damage
-from hil.cli._place import refuse_missing, results_in
+from hil.cli._results_folder import refuse_missing, results_in
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from hil.engine import RECORDING

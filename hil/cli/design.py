@@ -9,7 +9,7 @@ from typing import Any, get_args
 from hil.analysis.control_design import DesignSpec, MarginLimits, Normalisation, Objective, design
 from hil.analysis.frequency_response import frf_from_csv
 from hil.cli._output import print_json, progress, to_json
-from hil.cli._place import results_in
+from hil.cli._results_folder import results_in
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from reports import HTML, PDF

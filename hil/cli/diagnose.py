@@ -10,7 +10,7 @@ from hil.analysis.diagnosis import INTERRUPTED, LEAST_SAMPLES, Diagnosis, diagno
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_values import named_numbers
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
-from hil.cli._place import results_in
+from hil.cli._results_folder import results_in
 from hil.core.digits import factor, share
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model, model_to_toml

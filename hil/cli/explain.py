@@ -20,7 +20,7 @@ from hil.cli._default_bench import bench_or_own
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_values import named_numbers
 from hil.cli._output import console, plain_table, print_json, progress, to_json
-from hil.cli._place import results_in
+from hil.cli._results_folder import results_in
 from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT
 from hil.core.model import Model, load_model

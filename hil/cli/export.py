@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.cli._output import console, print_json, warn_of_damage
-from hil.cli._place import refuse_file, results_in
+from hil.cli._results_folder import refuse_file, results_in
 from hil.cli._run_inputs import command_again, inputs_of
 from hil.core.recording import (
     FRAME_LOGS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.cli._output import console, print_json
-from hil.cli._place import refuse_file
+from hil.cli._results_folder import refuse_file
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from hil.core.files import read_text

@@ -9,7 +9,7 @@ from hil.analysis.frequency_response import Experiment, Method, experiments_of
 from hil.analysis.identification import identify
 from hil.analysis.plausible import refuse_same_data
 from hil.cli._output import Show, print_json, progress, to_json, warn, warn_of_damage
-from hil.cli._place import refuse_missing, results_in
+from hil.cli._results_folder import refuse_missing, results_in
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from reports import HTML, PDF

@@ -6,7 +6,7 @@ import shlex
 from pathlib import Path
 
 from hil.cli._output import print_json, progress
-from hil.cli._place import results_in
+from hil.cli._results_folder import results_in
 from hil.cli._samples import sample_files
 from hil.core.errors import BadInputError
 from hil.engine.bench_file import DEFAULT_BENCH, shipped

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from hil.cli._output import console, count_in_words, print_criteria, print_json, progress
-from hil.cli._place import refuse_missing, results_in
 from hil.cli._result_file import RESULT, write_result
+from hil.cli._results_folder import refuse_missing, results_in
 from hil.cli._streams import complain
 from hil.core.errors import BadInputError
 from hil.core.printable import printable, refuse_long

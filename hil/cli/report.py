@@ -13,8 +13,8 @@ from hil.cli._output import (
     progress,
     warn_of_damage,
 )
-from hil.cli._place import refuse_missing, results_in
 from hil.cli._result_file import RESULT, write_result
+from hil.cli._results_folder import refuse_missing, results_in
 from hil.cli._streams import complain
 from hil.core.errors import BadInputError
 from hil.core.files import read_text

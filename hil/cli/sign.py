@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 from hil.cli._output import console, print_json
-from hil.cli._place import alone_in, refuse_missing
 from hil.cli._result_file import RESULT
+from hil.cli._results_folder import alone_in, refuse_missing
 from hil.cli._streams import complain
 from hil.cli._verified import of_run
 from hil.core.errors import BadInputError

@@ -8,7 +8,7 @@ from pathlib import Path
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._named_values import named_values
 from hil.cli._output import print_json
-from hil.cli._place import refuse_file
+from hil.cli._results_folder import refuse_file
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.printable import printable

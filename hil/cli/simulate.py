@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from hil.cli._output import console, print_json, warn_of_damage
-from hil.cli._place import refuse_file
+from hil.cli._results_folder import refuse_file
 from hil.core.model import load_model
 from hil.core.recording import read_recording, write_recording
 from hil.plant import replay

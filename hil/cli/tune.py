@@ -6,15 +6,15 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from hil.analysis.tuning import Effort, Patience, Tuning, tune
-from hil.cli._asked_twice import at_once
+from hil.analysis.tuning import Effort, RefinementBudget, Tuning, tune
 from hil.cli._default_bench import bench_or_own
 from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._on_bench import FOLDER, Wanted, WireBench, allowed_on
 from hil.cli._one_run import Runs
 from hil.cli._output import print_json, progress
-from hil.cli._place import results_in
 from hil.cli._refine_on_bench import Refined, refined
+from hil.cli._results_folder import results_in
+from hil.cli._second_interrupt import at_once
 from hil.cli._streams import complain
 from hil.cli._then_run import OnTheWire, Ran, refuse_unasked, tell
 from hil.cli._then_run import then_run as run_tuned
@@ -94,8 +94,8 @@ def carry_out(
         if allowed is not None and not stop.times:
             on = WireBench(plan, asked.trial, axle, allowed, carried, place.folder / FOLDER)
             with stop.by_signals():
-                patience = Patience(allowed.envelope.runs)
-                refinement = refined(found, on, patience, processes, lambda: stop.times > 0)
+                budget = RefinementBudget(allowed.envelope.runs)
+                refinement = refined(found, on, budget, processes, lambda: stop.times > 0)
                 summary = write_results(asked, found, place.write, refinement=refinement)
         if json_:
             print_json(summary)

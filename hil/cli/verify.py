@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hil.cli._output import console, print_json
-from hil.cli._place import refuse_missing
+from hil.cli._results_folder import refuse_missing
 from hil.cli._verified import (
     RECORDINGS,
     REPORTS,

@@ -50,7 +50,6 @@ from hil.service.design_data import (
     ModelData,
     PlanCopyWanted,
 )
-from hil.service.given_data import KeptApart
 from hil.service.study_data import (
     DiagnosisData,
     DiagnosisWanted,
@@ -58,6 +57,7 @@ from hil.service.study_data import (
     IdentificationWanted,
     StudyData,
 )
+from hil.service.upload_data import KeptApart
 
 _FORECAST_WITHIN_S = 300.0
 _REPORTED_WITHIN_S = 5.0

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from hil.core.errors import BadInputError
-from hil.core.listed import listed
+from hil.core.finding_list import listed
 from hil.core.toml_lines import line_of, lines_of, nearest
 
 

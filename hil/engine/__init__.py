@@ -2,7 +2,7 @@
 
 from hil.engine.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench_tables import BenchFile
-from hil.engine.border import RECORDING, RunOutcome, RunRequest
+from hil.engine.ipc import RECORDING, RunOutcome, RunRequest
 from hil.engine.run import run_plan
 from hil.engine.stopping import StopRequest
 from hil.engine.supervisor import carry_out

@@ -9,10 +9,10 @@ from hil.core.errors import BenchError
 from hil.core.result import Identity
 from hil.engine.bench import Bench
 from hil.engine.identification import identities_of, refuse_others
+from hil.engine.jit_warm_up import warm_up
 from hil.engine.limits import LimitWatch
 from hil.engine.recorder import KEEP_S, Recorder
 from hil.engine.request_timing import RequestTiming
-from hil.engine.warming import warm_up
 from hil.engine.zero import ZeroCheck
 
 _LISTEN_S = 0.2

@@ -19,12 +19,12 @@ from hil.core.result import RunResult, Segment
 from hil.core.toml_file import toml_text
 from hil.core.vehicle import VehicleAndRoad
 from hil.engine.bench import Bench
-from hil.engine.border import Analyse, Analysis, analysed_here
 from hil.engine.hold import Holding
-from hil.engine.playing import Playing
+from hil.engine.ipc import Analyse, Analysis, analysed_here
 from hil.engine.preflight import Rehearsal
 from hil.engine.recorder import Recorder
 from hil.engine.request_timing import Periodic
+from hil.engine.waveform_player import WaveformPlayer
 from test_plans import PROMPT_TIMEOUT_S, Array, PlannedSegment, Quantity, Work
 
 _SPEED_TOLERANCE_RAD_S = 0.5
@@ -167,7 +167,7 @@ class BenchConductor:
         values = np.concatenate([samples_nm, release_from(samples_nm[-1])])
         if segment:
             self._begin(segment, loop.clock.now_s(), len(samples_nm))
-        playing = Playing(self._bench, self._noted)
+        playing = WaveformPlayer(self._bench, self._noted)
         try:
             sent = playing.send(quantity, values, self._is_due)
         finally:

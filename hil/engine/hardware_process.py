@@ -1,4 +1,4 @@
-"""The side of the border that holds the hardware, in a process of its own: one run, asked for over pipes."""
+"""The process that holds the hardware: one run, requested and reported over pipes."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hil.core.errors import BenchError, HilError
-from hil.engine.border import analysed_apart
-from hil.engine.border_data import ended_of, request_of
-from hil.engine.border_messages import (
+from hil.engine.ending_process import is_ending
+from hil.engine.ipc import analysed_apart
+from hil.engine.ipc_data import ended_of, request_of
+from hil.engine.ipc_messages import (
     Concluded,
     EmergencyAsked,
     ErrorData,
@@ -26,8 +27,7 @@ from hil.engine.border_messages import (
     Turned,
     Typed,
 )
-from hil.engine.border_pipe import BorderPipe
-from hil.engine.ending_process import is_ending
+from hil.engine.ipc_pipe import IpcPipe
 from hil.engine.run import run_plan
 from hil.engine.stopping import StopRequest, hear_signals
 
@@ -39,7 +39,7 @@ LAST_WORDS_S = 10.0
 logger = logging.getLogger(__name__)
 
 
-def hold_hardware(pipe: BorderPipe) -> str:
+def hold_hardware(pipe: IpcPipe) -> str:
     """Carry out the run that is asked for at the other end; what nobody there has heard of how it ended.
 
     Asking to stop counts as often as signals came here or the command tells of, whichever is more: a terminal
@@ -74,7 +74,7 @@ def hold_hardware(pipe: BorderPipe) -> str:
 class _Command:
     """The command at the other end: `Watched`, `Terminal` and `Progress` of the run."""
 
-    def __init__(self, pipe: BorderPipe, stop: StopRequest) -> None:
+    def __init__(self, pipe: IpcPipe, stop: StopRequest) -> None:
         self._pipe, self._stop = pipe, stop
         self._lines: list[str | EmergencyAsked] = []
         self._process = os.getppid()
@@ -136,7 +136,7 @@ class _Command:
 class _LogLines(logging.Handler):
     """The log goes to the command, which knows what becomes of it."""
 
-    def __init__(self, pipe: BorderPipe) -> None:
+    def __init__(self, pipe: IpcPipe) -> None:
         super().__init__()
         self._pipe = pipe
 
@@ -149,7 +149,7 @@ class _LogLines(logging.Handler):
         self._pipe.send(Logged(logger=record.name, level=record.levelno, text=text, traceback=trace))
 
 
-def _log_to(pipe: BorderPipe) -> None:
+def _log_to(pipe: IpcPipe) -> None:
     handler = _LogLines(pipe)
     for name in _PACKAGES:
         logging.getLogger(name).setLevel(logging.DEBUG)

@@ -16,7 +16,7 @@ from hil.core.recording import Recording, read_recording
 from hil.core.result import Segment
 from hil.core.toml_lines import line_of
 from hil.engine.bench_tables import BenchFile
-from hil.engine.border import Progress, RunOutcome, RunRequest, Terminal
+from hil.engine.ipc import Progress, RunOutcome, RunRequest, Terminal
 from hil.engine.run import run_plan
 from hil.engine.stopping import StopRequest
 from test_plans import Plan, plan_from_text

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 from drivers import BusLoop
 from hil.core.errors import EmergencyStopError, InterruptError
-from hil.engine.border import Terminal
-from hil.engine.border_messages import EmergencyAsked
+from hil.engine.ipc import Terminal
+from hil.engine.ipc_messages import EmergencyAsked
 
 LOOK_S = 0.02  # how often it is looked whether a line was typed
 _VIRTUAL_TICK_S = 0.01  # what passes at once while nobody has to be awaited

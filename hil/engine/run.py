@@ -30,19 +30,19 @@ from hil.core.result import (
 )
 from hil.engine.arming import Arming
 from hil.engine.bench import Bench, open_bench, refuse_needs
-from hil.engine.border import RECORDING, RunOutcome, RunRequest, analysed_apart, analysed_here
 from hil.engine.bus_loads import BusLoads
 from hil.engine.calibration_dates import accepted_expiry
 from hil.engine.conductor import BenchConductor
 from hil.engine.emergency_stop import keep_latched, refuse_latched
 from hil.engine.failures import Failures
+from hil.engine.ipc import RECORDING, RunOutcome, RunRequest, analysed_apart, analysed_here
 from hil.engine.operator import Operator
 from hil.engine.preflight import channels_of, preflight, refuse_unconfirmed
 from hil.engine.recorder import Recorder
 from hil.engine.request_timing import COLLECT_S, RequestTiming
 from hil.engine.run_files import store_expiry, store_inputs, store_result
+from hil.engine.run_monitoring import RunMonitoring
 from hil.engine.safety import reach_safe_state
-from hil.engine.watchkeeping import Watchkeeping
 from test_plans import estimate_duration_s, judge, not_checked
 
 _PROGRESS_S = 0.5
@@ -140,7 +140,7 @@ class _Run:
         rates = {name: request.bench.buses[name].bit_rate for name in buses}
         self._bus_loads = BusLoads(rates, clock.now_s)
         bench.loop.on_block(self._bus_loads.take_frames)
-        self._watch = Watchkeeping(bench, self._recorder, operator, self._failures.tell)
+        self._watch = RunMonitoring(bench, self._recorder, operator, self._failures.tell)
         self._conductor = BenchConductor(
             bench,
             self._recorder,

@@ -11,9 +11,9 @@ from hil.core.recording import ACCEPTED_EXPIRY
 from hil.core.result import AcceptedExpiry, RunResult
 from hil.core.versions import versions
 from hil.engine.bench import Bench
-from hil.engine.border import RunRequest
 from hil.engine.conductor import BenchConductor
 from hil.engine.device_kinds import descriptions_of
+from hil.engine.ipc import RunRequest
 from hil.engine.provenance import hashes
 from hil.engine.recorder import Recorder
 

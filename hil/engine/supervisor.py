@@ -18,9 +18,10 @@ from collections.abc import Iterator, Sequence
 from hil.core.errors import BenchError, EmergencyStopError, HilError, InterruptError
 from hil.core.result import SafeState
 from hil.engine.bench_tables import BenchFile
-from hil.engine.border import RECORDING, RunOutcome, RunRequest
-from hil.engine.border_data import asked_of, outcome_of
-from hil.engine.border_messages import (
+from hil.engine.emergency_stop import keep_latched
+from hil.engine.ipc import RECORDING, RunOutcome, RunRequest
+from hil.engine.ipc_data import asked_of, outcome_of
+from hil.engine.ipc_messages import (
     Concluded,
     EmergencyAsked,
     Ended,
@@ -34,12 +35,11 @@ from hil.engine.border_messages import (
     Turned,
     Typed,
 )
-from hil.engine.border_pipe import BorderPipe
-from hil.engine.emergency_stop import keep_latched
-from hil.engine.last_look import complaints_of
-from hil.engine.left_behind import identity_of, recording_left, result_left
+from hil.engine.ipc_pipe import IpcPipe
 from hil.engine.operator import EMERGENCY, LOOK_S, typed_emergency
+from hil.engine.orphaned_run import identity_of, recording_left, result_left
 from hil.engine.run import run_plan
+from hil.engine.safe_state_check import complaints_of
 from hil.engine.stopping import held_back
 
 _HERE_S = 0.1  # how often the other process hears of this one
@@ -80,7 +80,7 @@ def _apart(bench: BenchFile) -> bool:
 @contextlib.contextmanager
 def _started(
     command: Sequence[str], keeps: Sequence[int]
-) -> Iterator[tuple[subprocess.Popen[bytes], BorderPipe]]:
+) -> Iterator[tuple[subprocess.Popen[bytes], IpcPipe]]:
     """The process; however this is left, it ends: by itself if it can, for it makes its bench safe."""
     with held_back():  # one that comes before the other process can answer it would end it without a word
         process = subprocess.Popen(
@@ -94,7 +94,7 @@ def _started(
     assert process.stdin is not None
     assert process.stdout is not None
     logger.info("the bench is held by process %d", process.pid)
-    pipe = BorderPipe(os.dup(process.stdout.fileno()), os.dup(process.stdin.fileno()))
+    pipe = IpcPipe(os.dup(process.stdout.fileno()), os.dup(process.stdin.fileno()))
     process.stdin.close()
     process.stdout.close()
     try:
@@ -116,7 +116,7 @@ def _kill(process: subprocess.Popen[bytes]) -> None:
 class _Supervisor:
     """Passes on what is said on both sides, until the run has ended or its process must be given up."""
 
-    def __init__(self, request: RunRequest, process: subprocess.Popen[bytes], pipe: BorderPipe) -> None:
+    def __init__(self, request: RunRequest, process: subprocess.Popen[bytes], pipe: IpcPipe) -> None:
         self._request, self._process, self._pipe = request, process, pipe
         settings, scale = request.bench.supervision, request.bench.time_scale
         self._hung_after_s = settings.hung_after_s / scale

@@ -1,7 +1,7 @@
 """The plant: a model file turned into motion by a compiled kernel."""
 
+from hil.plant._batch_simulation import ideal_sensors, simulate_many
 from hil.plant._linear import LinearSystem, linear_system, linear_system_of, system
-from hil.plant._many import ideal_sensors, simulate_many
 from hil.plant._replay import Start, gear_ratio_of, load_of, replay, simulate, start_of
 from hil.plant._sensors import DELAY as SENSOR_DELAY
 from hil.plant._sensors import GAIN as SENSOR_GAIN

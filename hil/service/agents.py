@@ -18,11 +18,11 @@ from sqlalchemy import Engine
 
 from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
-from hil.engine.border_messages import EmergencyAsked
+from hil.engine.ipc_messages import EmergencyAsked
 from hil.service.agent_data import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
-from hil.service.carrying_out import PLAN, RunningRun
 from hil.service.plan_files import files_of
 from hil.service.remote_bench import Agent, AgentsRun, RemoteBench
+from hil.service.run_execution import PLAN, RunningRun
 from hil.service.run_files import folder_of
 from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
 from test_plans import Plan, plan_from_text

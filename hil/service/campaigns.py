@@ -31,10 +31,10 @@ from hil.service.campaign_data import (
     PassedShare,
 )
 from hil.service.command_process import CommandProcess, kill_left
-from hil.service.desk import Desk
-from hil.service.numbered import Numbered, files_in_results
+from hil.service.job_repository import JobRepository, files_in_results
 from hil.service.shared_results import SharedResults
 from hil.service.store import in_turns
+from hil.service.worker_pool import WorkerPool
 
 _AT_ONCE = 1  # each has every processor that campaigns may use
 _MOST_WAITING = 20
@@ -71,19 +71,23 @@ class Campaigns:
     Args:
         folder: where each has a folder of its own.
         command: starts `hil campaign`, with what says who simulates.
-        desk: reads campaigns and their tables.
+        worker_pool: reads campaigns and their tables.
         shared: those of other services.
     """
 
     def __init__(
-        self, folder: Path, command: Sequence[str], desk: Desk, shared: SharedResults[CampaignData]
+        self,
+        folder: Path,
+        command: Sequence[str],
+        worker_pool: WorkerPool,
+        shared: SharedResults[CampaignData],
     ) -> None:
-        self._command, self._desk, self._shared = command, desk, shared
+        self._command, self._worker_pool, self._shared = command, worker_pool, shared
         self._turn = asyncio.Semaphore(_AT_ONCE)
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._going: dict[int, _Going] = {}
         self._closing = False
-        self._records = Numbered(folder, "state.json", CampaignData, shared.draw)
+        self._records = JobRepository(folder, "state.json", CampaignData, shared.draw)
 
     def go_on(self) -> None:
         """Begin anew what was under way when the service before this one ended, oldest first."""
@@ -142,7 +146,7 @@ class Campaigns:
 
     async def examples(self) -> list[CampaignExample]:
         """The built-in ones."""
-        found = await self._desk.ask("campaign_examples")
+        found = await self._worker_pool.ask("campaign_examples")
         return [CampaignExample(**one) for one in found["examples"]]
 
     async def add(self, wanted: CampaignWanted, places: Places, by: str) -> CampaignData:
@@ -155,7 +159,7 @@ class Campaigns:
         number = self._records.take_number()
         folder = self._records.folder_of(number)
         try:
-            found = await self._desk.ask(
+            found = await self._worker_pool.ask(
                 "campaign",
                 text=wanted.text,
                 files=wanted.files,
@@ -289,14 +293,16 @@ class Campaigns:
 
     async def _write_table(self, number: int) -> None:
         try:
-            await self._desk.ask("campaign_table", folder=self._at(number), file=self._at(number, TABLE))
+            await self._worker_pool.ask(
+                "campaign_table", folder=self._at(number), file=self._at(number, TABLE)
+            )
         except HilError as error:
             logger.warning("campaign %d has its table in parts only: %s", number, error)
 
     async def _look(self, number: int, going: _Going) -> None:
         """What is on disk by now, and how many a second came since it began."""
         try:
-            found = await self._desk.ask("campaign_so_far", folder=self._at(number))
+            found = await self._worker_pool.ask("campaign_so_far", folder=self._at(number))
         except HilError as error:
             logger.warning("campaign %d: %s", number, error)
             return

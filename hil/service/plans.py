@@ -11,8 +11,8 @@ from pathlib import Path
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.service.data import PlanData
-from hil.service.given_files import GivenFiles, NameTakenError
 from hil.service.plan_reading import GivenPlan, data_of, given_plan, read_given
+from hil.service.uploads import NameTakenError, Uploads
 from test_plans import Choices, Plan, library_plans, load_plan
 from test_plans.yaml_document import read_yaml
 
@@ -27,7 +27,7 @@ class Plans:
         controllers: that people gave; plans find them beside themselves, in the same folder.
     """
 
-    def __init__(self, given: GivenFiles, controllers: GivenFiles) -> None:
+    def __init__(self, given: Uploads, controllers: Uploads) -> None:
         self._given, self._controllers = given, controllers
         self._built_in = {name: load_plan(name) for name in library_plans()}
         self._read: dict[str, GivenPlan] = {}

@@ -18,8 +18,8 @@ from pathlib import Path
 from hil.core.errors import BenchError, HilError
 from hil.service.agent_data import TakenRun
 from hil.service.benches import Bench
-from hil.service.carrying_out import CarriedRun, RunEnd, RunningRun, end_of_left
 from hil.service.data import BenchState, RunData
+from hil.service.run_execution import RunEnd, RunExecution, RunningRun, end_of_left
 from hil.service.run_files import folder_of
 from hil.service.run_process import alive_in
 from hil.service.stop_post import StopPost
@@ -38,7 +38,7 @@ class _Place:
     """A bench and what goes on on it."""
 
     bench: Bench
-    running: CarriedRun | None = None
+    running: RunExecution | None = None
     left: list[RunData] = field(default_factory=list)  # of an earlier service, perhaps still ending
     used_by: str = ""
     looked_s: float = -1e9
@@ -209,21 +209,21 @@ class Queue:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _carried(self, bench: Bench, taken: TakenRun) -> CarriedRun:
+    async def _carried(self, bench: Bench, taken: TakenRun) -> RunExecution:
         """Begin a run with its stop line."""
         run, folder, post = taken.data.id, self.folder_of(taken.data.id), self._stop_post
         if post is None:
-            return await CarriedRun.begin(self._command, taken, bench, folder)
+            return await RunExecution.begin(self._command, taken, bench, folder)
         line = post.add_line(bench.name, run, folder)
         try:
-            return await CarriedRun.begin(self._command, taken, bench, folder, line.reading)
+            return await RunExecution.begin(self._command, taken, bench, folder, line.reading)
         except BaseException:
             post.drop_line(run)
             raise
         finally:
             os.close(line.reading)
 
-    async def _watch(self, place: _Place, running: CarriedRun) -> None:
+    async def _watch(self, place: _Place, running: RunExecution) -> None:
         """Listen to a run until it has ended, and write down how."""
         bench = running.data.bench
         end = await running.ended(place.bench, lambda: self._changed(bench), lambda: self._closing)

@@ -9,10 +9,10 @@ import time
 from dataclasses import dataclass, field
 
 from hil.core.errors import StopWay
-from hil.engine.border_messages import EmergencyAsked
+from hil.engine.ipc_messages import EmergencyAsked
 from hil.service.agent_data import AgentBench, Order, OrderKind, PlanSent
-from hil.service.carrying_out import RunningRun
 from hil.service.data import BenchState
+from hil.service.run_execution import RunningRun
 from hil.service.store import BenchStore
 
 AWAY_S = 10.0

@@ -10,7 +10,7 @@ from pathlib import Path
 from hil.core.errors import BenchError
 from hil.core.locks import HeldError, lock_on
 from hil.core.result import RunResult
-from hil.engine.border_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
+from hil.engine.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
 from hil.engine.operator import END, PAUSE, RESUME
 from hil.service.background import begun
 from hil.service.run_files import LOCK

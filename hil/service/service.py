@@ -16,29 +16,26 @@ from sqlalchemy import Engine
 
 from hil.service.agents import Agents
 from hil.service.agents_forecasts import AgentsForecasts
-from hil.service.apart import apart
 from hil.service.archive import Archive, Keeper, Rounds
-from hil.service.arrivals import Arrivals
 from hil.service.audit import problem_of
 from hil.service.benches import Bench
 from hil.service.campaign_data import CampaignData
 from hil.service.campaigns import Campaigns, Places
-from hil.service.carrying_out import RunningRun
+from hil.service.catalogues import controller_catalogue, model_catalogue
+from hil.service.daemon_thread import apart
 from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
-from hil.service.desk import Desk
-from hil.service.earlier_folders import EarlierFolders
+from hil.service.deferred_audit import DeferredAudit
 from hil.service.forecasts import Forecasts
-from hil.service.given_files import GivenFiles
-from hil.service.giving import Giving
-from hil.service.late_log import LateLog
+from hil.service.legacy_import import LegacyImport
+from hil.service.live_hub import LiveHub
 from hil.service.owners import OwnersKnown
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
+from hil.service.run_execution import RunningRun
 from hil.service.run_files import files_in
+from hil.service.run_upload import RunUploads
 from hil.service.shared_results import SharedResults
-from hil.service.shelves import controller_shelf, model_shelf
-from hil.service.showing import Showing
 from hil.service.stop_post import StopPost
 from hil.service.stops import Stops
 from hil.service.store import (
@@ -55,6 +52,9 @@ from hil.service.store import (
 )
 from hil.service.studies import Studies
 from hil.service.study_data import StudyData
+from hil.service.upload_reader import UploadReader
+from hil.service.uploads import Uploads
+from hil.service.worker_pool import WorkerPool
 from test_plans import Plan
 
 _ASK_S = 1.0  # a database that is away
@@ -116,31 +116,31 @@ class Service:
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
         self.tokens, self.log = TokenStore(engine), LogStore(engine)
         given = GivenStore(engine)
-        models = GivenFiles(given, "model", folder / "given/models", ".toml")
-        controllers = GivenFiles(given, "controller", folder / "given/plans", ".toml")
-        self.plans = Plans(GivenFiles(given, "plan", folder / "given/plans", ".yaml"), controllers)
-        self.models, self.controllers = model_shelf(models), controller_shelf(controllers)
-        earlier = EarlierFolders(folder, given, self.log, self.plans, self.controllers, self.models)
+        models = Uploads(given, "model", folder / "given/models", ".toml")
+        controllers = Uploads(given, "controller", folder / "given/plans", ".toml")
+        self.plans = Plans(Uploads(given, "plan", folder / "given/plans", ".yaml"), controllers)
+        self.models, self.controllers = model_catalogue(models), controller_catalogue(controllers)
+        earlier = LegacyImport(folder, given, self.log, self.plans, self.controllers, self.models)
         self.kept_apart = earlier.take_in()
         self.forecasts = Forecasts(commands.hil)
         results, elsewhere = ResultStore(engine, held.service, held.place), folder / "elsewhere"
         studies = SharedResults(results, "study", StudyData, archive, elsewhere / "studies")
         campaigns = SharedResults(results, "campaign", CampaignData, archive, elsewhere / "campaigns")
         self.studies = Studies(folder / "studies", commands.hil, studies)
-        # Recordings are read at one desk, so that who designs at the other need not wait.
-        self.desk, self.drawing = Desk(niceness=10), Desk(niceness=0)
-        self.giving = Giving(self.plans)
+        # One worker reads recordings, so that a design in the other does not wait.
+        self.worker_pool, self.drawing = WorkerPool(niceness=10), WorkerPool(niceness=0)
+        self.upload_reader = UploadReader(self.plans)
         campaign = (*commands.hil, "campaign", *commands.simulating)
-        self.campaigns = Campaigns(folder / "campaigns", campaign, self.desk, campaigns)
+        self.campaigns = Campaigns(folder / "campaigns", campaign, self.worker_pool, campaigns)
         self.sharing = Rounds(self._share, "files of studies and campaigns")
         self._held = held
-        self.showing = Showing(lambda: self.benches, self.running)
+        self.live_hub = LiveHub(lambda: self.benches, self.running)
         runs_folder = folder / "runs"
         self.keeper: Keeper | None = None
         if archive is not None:
             files = FileStore(engine)
-            self.keeper = Keeper(archive, files, held.service, runs_folder, self.showing.runs, local_days)
-        source, changed = self.plans.source, self.showing.changed
+            self.keeper = Keeper(archive, files, held.service, runs_folder, self.live_hub.runs, local_days)
+        source, changed = self.plans.source, self.live_hub.changed
         self.queue = Queue(
             benches, self.runs, self.leases, held, runs_folder, commands.run, source, changed, stop_post
         )
@@ -151,10 +151,10 @@ class Service:
         self._waiting: defaultdict[str, Waiting] = defaultdict(Waiting)
         self.agents = Agents(engine, held.service, self.runs, self.leases, runs_folder, source, changed)
         self.agents_forecasts = AgentsForecasts()
-        self.arrivals = Arrivals(held.service, self.runs, runs_folder)
+        self.run_uploads = RunUploads(held.service, self.runs, runs_folder)
         self.audit_problem = ""
         self.known_agents: dict[str, Me] = {}  # by secret, for while the database is away
-        self.late_log = LateLog(self.log)
+        self.deferred_audit = DeferredAudit(self.log)
 
     async def _share(self) -> str:
         said = await self.studies.share(), await self.campaigns.share()
@@ -189,7 +189,7 @@ class Service:
 
     def changed(self, bench: str) -> None:
         """Something of a bench is to be shown anew."""
-        self.showing.changed(bench)
+        self.live_hub.changed(bench)
 
     def bench_data(self, name: str, *, ask: bool = True) -> BenchData:
         """A bench as it is now; what waits for it, without asking the database, as it was known last."""
@@ -304,7 +304,7 @@ class Service:
 
     async def leave(self) -> None:
         """Keep where the audit log ends; let others drive the benches, which are free by themselves later."""
-        self.late_log.write()
+        self.deferred_audit.write()
         with contextlib.suppress(DatabaseAwayError):
             if not self.audit_problem:
                 await apart(partial(problem_of, self.log, self._folder))

@@ -19,10 +19,10 @@ from sqlalchemy import Engine
 from hil.core.errors import BadInputError, BenchError
 from hil.core.printable import printable
 from hil.engine import StopRequest
-from hil.service.apart import going_on
 from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
 from hil.service.benches import benches_of
+from hil.service.daemon_thread import going_on
 from hil.service.data import ROLES, Role, TokenMade
 from hil.service.data_folder import alone_in, make_private, name_in
 from hil.service.service import Commands, Service
@@ -146,11 +146,11 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         logger.error("the stop post is not available yet; until then stops need the API")
     tasks = [
         asyncio.create_task(going_on(lambda: in_turns(service.queue.work()))),
-        asyncio.create_task(going_on(lambda: in_turns(service.showing.follow(lambda: service.closing)))),
+        asyncio.create_task(going_on(lambda: in_turns(service.live_hub.follow(lambda: service.closing)))),
         asyncio.create_task(server.serve(sockets=[listening])),
     ]
     besides = [
-        asyncio.create_task(going_on(lambda: in_turns(service.late_log.work(lambda: service.closing)))),
+        asyncio.create_task(going_on(lambda: in_turns(service.deferred_audit.work(lambda: service.closing)))),
         asyncio.create_task(going_on(lambda: in_turns(service.watch_database()))),
         asyncio.create_task(going_on(lambda: in_turns(service.owners.follow(lambda: service.closing)))),
     ]
@@ -177,9 +177,9 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
         server.should_exit = True
         await service.studies.close()
         await service.campaigns.close()
-        service.desk.close()
+        service.worker_pool.close()
         service.drawing.close()
-        service.giving.close()
+        service.upload_reader.close()
         for bench in list(service.benches):
             service.changed(bench)
             service.agents.wake(bench)

@@ -16,10 +16,10 @@ from typing import Generic, Protocol, TypeVar
 
 from hil.core.errors import HilError
 from hil.core.files import make_directory, sha256_of
-from hil.service.apart import apart
 from hil.service.archive import Archive, ArchiveAwayError, Kept
+from hil.service.daemon_thread import apart
 from hil.service.data import Record
-from hil.service.numbered import files_in_results
+from hil.service.job_repository import files_in_results
 from hil.service.store import DatabaseAwayError, KeptFile, ResultKind, ResultStore, Told
 
 R = TypeVar("R", bound=Record)

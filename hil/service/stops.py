@@ -14,9 +14,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hil.engine.border_messages import EmergencyAsked
-from hil.service.apart import apart
+from hil.engine.ipc_messages import EmergencyAsked
 from hil.service.benches import Bench
+from hil.service.daemon_thread import apart
 from hil.service.stop_post import Stopped, StopPost
 from hil.service.store import DatabaseAwayError, in_turns
 
@@ -113,7 +113,7 @@ class Stops:
             return
         rows.add(one)
         detail = f"from {asked.origin}, {asked.way}"
-        self._service.late_log.add(asked.by, role, "emergency stop", bench, detail)
+        self._service.deferred_audit.add(asked.by, role, "emergency stop", bench, detail)
 
 
 def _latch(bench: Bench, asked: EmergencyAsked, folder: Path) -> None:

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.service.command_process import CommandProcess, kill_left
-from hil.service.numbered import Numbered, files_in_results
+from hil.service.job_repository import JobRepository, files_in_results
 from hil.service.shared_results import SharedResults
 from hil.service.store import in_turns
 from hil.service.study_data import STUDY_OVER, StudyData, StudyKind
@@ -43,7 +43,7 @@ class Studies:
         self._tasks: dict[int, asyncio.Task[None]] = {}
         self._processes: dict[int, CommandProcess] = {}
         self._closing = False
-        self._records = Numbered(folder, "study.json", StudyData, shared.draw)
+        self._records = JobRepository(folder, "study.json", StudyData, shared.draw)
         for study in self._records:
             if study.state not in STUDY_OVER:
                 kill_left(self._records.folder_of(study.id), self.results(study.id))

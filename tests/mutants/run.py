@@ -51,9 +51,9 @@ FILES = {
             f"hil/engine/{name}.py"
             for name in (
                 *("limit_tables", "limits", "ranges", "range_scan", "computed_channels", "zero"),
-                *("hold", "operator", "watchkeeping", "failures", "arming"),
+                *("hold", "operator", "run_monitoring", "failures", "arming"),
                 *("safety", "emergency_stop", "stopping", "bench_lock"),
-                *("supervisor", "hardware_process", "last_look", "left_behind"),
+                *("supervisor", "hardware_process", "safe_state_check", "orphaned_run"),
             )
         ),
         *(f"drivers/{name}.py" for name in ("rmcu/_driver", "dyno/_driver", "dyno/_node", "panel/_panel")),

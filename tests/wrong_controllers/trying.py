@@ -15,9 +15,9 @@ from hil.core.model import load_model
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
 from hil.engine import load_bench
+from hil.engine.batch_prediction import BatchPrediction, controller_files
 from hil.engine.prediction import Prediction
 from hil.engine.ranges import limits_of_channels
-from hil.engine.trial_runs import TrialRuns, controller_files
 from hil.plant.closed_loop import TICK_S
 from test_plans import Plan, judge, load_plan
 from test_plans.metrics._low_pass import low_passed
@@ -68,7 +68,7 @@ class Stage:
 
     def run(self, file: Path, controller: Controller | None) -> Prediction:
         """The plan predicted with a controller in place of `file`."""
-        runs = TrialRuns(self.plan, self._bench, file, frozenset())
+        runs = BatchPrediction(self.plan, self._bench, file, frozenset())
         assert self._bench.simulation is not None
         return runs(load_model(self._bench.simulation.model), controller, 0.0, 0, whole=True)
 

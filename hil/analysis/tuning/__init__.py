@@ -16,7 +16,7 @@ from hil.analysis.tuning._front import Point, front_of, metrics_of, point_of
 from hil.analysis.tuning._loops import SpeedLoops
 from hil.analysis.tuning._parameters import ALTERNATIVES, PARAMETERS, Space, values_of, with_values
 from hil.analysis.tuning._pool import Pool
-from hil.analysis.tuning._refine import Bench, Measured, Patience, RefinedRun, Refinement, refine
+from hil.analysis.tuning._refine import Bench, Measured, RefinedRun, Refinement, RefinementBudget, refine
 from hil.analysis.tuning._search import Effort
 from hil.analysis.tuning._trial import CarryOut, Predicted, Trial, Tried, channels_needed
 from hil.analysis.tuning._tune import Standing, Tuning, refuse_model, refuse_start, tune
@@ -34,12 +34,12 @@ __all__ = [
     "Effort",
     "Free",
     "Measured",
-    "Patience",
     "Point",
     "Pool",
     "Predicted",
     "RefinedRun",
     "Refinement",
+    "RefinementBudget",
     "Space",
     "SpeedLoops",
     "Standing",

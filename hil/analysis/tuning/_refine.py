@@ -94,7 +94,7 @@ class Refinement:
 
 
 @dataclass(frozen=True)
-class Patience:
+class RefinementBudget:
     """How long a refinement goes on.
 
     Attributes:
@@ -115,7 +115,7 @@ def refine(
     start: Array,
     bench: Bench,
     *,
-    patience: Patience | None = None,
+    budget: RefinementBudget | None = None,
     processes: int | None = None,
     show: Callable[[str, float | None], None] = lambda text, share: None,
     stopped: Callable[[], bool] = lambda: False,
@@ -127,7 +127,9 @@ def refine(
     """
     with Pool(trial, processes) as pool:
         step = TrustStep(pool, space, start, stopped)
-        return _Refining(trial, space, bench, patience or Patience(), step, show, stopped).carry_out(start)
+        return _Refining(trial, space, bench, budget or RefinementBudget(), step, show, stopped).carry_out(
+            start
+        )
 
 
 class _Refining:
@@ -136,12 +138,12 @@ class _Refining:
         trial: Trial,
         space: Space,
         bench: Bench,
-        patience: Patience,
+        budget: RefinementBudget,
         step: TrustStep,
         show: Callable[[str, float | None], None],
         stopped: Callable[[], bool],
     ) -> None:
-        self._trial, self._space, self._bench, self._patience = trial, space, bench, patience
+        self._trial, self._space, self._bench, self._budget = trial, space, bench, budget
         self._step, self._show, self._stopped = step, show, stopped
         self._runs: list[RefinedRun] = []
         self._points: list[Array] = []
@@ -162,7 +164,7 @@ class _Refining:
 
     def _first_agrees(self) -> str:
         """Why a first run that is not as predicted is the last, if it is to be."""
-        allowed = self._patience.stop_beyond
+        allowed = self._budget.stop_beyond
         if allowed is None or self._runs[0].beside_prediction(allowed).agrees:
             return ""
         return f"the first run deviates from its prediction by more than {100 * allowed:g} % of a limit"
@@ -171,9 +173,9 @@ class _Refining:
         """One more run; why there is none, or no other after it."""
         if self._stopped():
             return "stopped"
-        if len(self._runs) >= self._patience.runs:
+        if len(self._runs) >= self._budget.runs:
             return "all runs are complete"
-        self._show(f"run {len(self._runs) + 1}: choosing parameters", len(self._runs) / self._patience.runs)
+        self._show(f"run {len(self._runs) + 1}: choosing parameters", len(self._runs) / self._budget.runs)
         correction = correction_of(self._points, self._apart, self._best)
         centre = self._step.promise(self._points[self._best], correction)
         assert centre is not None, "the same gain was predicted before"
@@ -181,7 +183,7 @@ class _Refining:
         if self._stopped():
             return "stopped"
         gain = found.worst - self._runs[self._best].worst
-        if gain < self._patience.least_gain:
+        if gain < self._budget.least_gain:
             return f"no further improvement predicted ({percent(max(gain, 0.0), 2)} of a limit)"
         return self._carried_out(found, self._decided)
 
@@ -203,7 +205,7 @@ class _Refining:
             self._bench.refused(controller),
         )
         if not run.reason:
-            self._show(f"run {number} of at most {self._patience.runs}", (number - 1) / self._patience.runs)
+            self._show(f"run {number} of at most {self._budget.runs}", (number - 1) / self._budget.runs)
             came = self._bench.run(controller, number)
             run = replace(run, measured=self._trial.margins_of(came.criteria), criteria=came.criteria)
             if came.trouble or len(run.measured) < len(run.expected):
@@ -231,7 +233,7 @@ class _Refining:
         gain, expected = run.worst - before, min(run.expected.values()) - before
         share = gain / expected
         words = f"gained {percent(gain, 2)}, expected {percent(expected, 2)}"
-        self._in_vain = 0 if gain >= self._patience.least_gain else self._in_vain + 1
+        self._in_vain = 0 if gain >= self._budget.least_gain else self._in_vain + 1
         if share >= AS_GOOD:
             self._radius = min(_GROW * self._radius, LARGEST_RADIUS)
             words += ": as expected, the region grows"

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from hil.core.channels import CHANNELS, TIME
-from hil.core.listed import repeated
+from hil.core.finding_list import repeated
 
 #: Spellings of time's unit, and how many of it are a second.
 _PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}

@@ -70,7 +70,7 @@ async def take_run(agent: AgentId, bench: BenchName, service: TheService, me: Ag
     try:
         taken = service.agents.take(agent, bench)
     except HilError as error:
-        service.late_log.add(me.name, me.role, "run not taken", f"{bench}: {error}")
+        service.deferred_audit.add(me.name, me.role, "run not taken", f"{bench}: {error}")
         raise
     if taken is not None:
         service.log.add(
@@ -94,7 +94,7 @@ async def send_run_file(
     _of_agent(service, run, agent)
     if name == LOCK:
         raise RefusedError(422, "is not a file of a run", where=name)
-    return FileThere(size=service.arrivals.add(run, name, at, await request.body()))
+    return FileThere(size=service.run_uploads.add(run, name, at, await request.body()))
 
 
 @router.post("/agents/{agent}/runs/{run}/ending", name="deliver_run")
@@ -102,11 +102,11 @@ async def deliver_run(
     agent: AgentId, run: RunId, ending: Annotated[RunEnding, Body()], service: TheService, me: AgentItself
 ) -> Delivered:
     """Report the end of a run; the run is finished when all of its files are uploaded."""
-    if service.arrivals.run_of(run, agent) is None and service.arrivals.are_those(run, ending.files):
+    if service.run_uploads.run_of(run, agent) is None and service.run_uploads.are_those(run, ending.files):
         return Delivered(missing=[])  # the answer to the first time went astray
     found = _of_agent(service, run, agent)
-    wanting = await service.arrivals.missing(run, ending.files)
-    if not wanting and service.arrivals.finish(found, agent, ending):
+    wanting = await service.run_uploads.missing(run, ending.files)
+    if not wanting and service.run_uploads.finish(found, agent, ending):
         service.log.add(me.name, me.role, "run delivered", f"run {run}", ending.state)
         service.agents.over(run, found.bench)
         service.wake(found.bench)
@@ -140,7 +140,7 @@ async def let_agent_go(bench: BenchName, service: TheService, me: Engineer) -> N
 
 
 def _of_agent(service: Service, run: int, agent: str) -> RunData:
-    found = service.arrivals.run_of(run, agent)
+    found = service.run_uploads.run_of(run, agent)
     if found is None:
         raise RefusedError(409, f"run {run} does not belong to this agent, or is finished")
     return found

@@ -24,7 +24,7 @@ async def compare_runs(
     """Criteria of two runs of one plan with their differences, and the inputs that differ."""
     del me
     one, two = _over(service, first), _over(service, other)
-    found = await service.desk.ask(
+    found = await service.worker_pool.ask(
         "comparison", first=await _named(service, one), other=await _named(service, two)
     )
     return ComparisonData(first=one, other=two, **found)
@@ -47,7 +47,7 @@ async def compare_traces(
     runs: dict[str, Any] = {
         name: await _named(service, _over(service, run)) for name, run in (("first", first), ("other", other))
     }
-    found = await service.desk.ask(
+    found = await service.worker_pool.ask(
         "traces", **runs, segment=segment, channel=channel, start_s=start_s, end_s=end_s, most=most
     )
     return TracesData(**found)

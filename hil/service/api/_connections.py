@@ -7,7 +7,7 @@ from typing import Any
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from hil.service.crowd import Crowd, descriptors
+from hil.service.connection_limit import ConnectionLimit, descriptors
 
 #: A request's head, and the whole of it with its body, have come by then.
 HEAD_WITHIN_S = 10.0
@@ -22,7 +22,9 @@ def bounded(proxies: frozenset[str]) -> type[asyncio.Protocol]:
     Half of the descriptors stay for runs, files and the database, however many connect.
     """
     most = min(_MOST, descriptors() // 2)
-    crowd: Crowd[_Bounded] = Crowd(most, min(_MOST_OF_ONE, max(1, 3 * most // 4)), proxies)
+    crowd: ConnectionLimit[_Bounded] = ConnectionLimit(
+        most, min(_MOST_OF_ONE, max(1, 3 * most // 4)), proxies
+    )
 
     class Protocol(_Bounded):
         def __init__(self, *arguments: Any, **named: Any) -> None:
@@ -35,7 +37,7 @@ def bounded(proxies: frozenset[str]) -> type[asyncio.Protocol]:
 class _Bounded(H11Protocol):
     """A connection that is closed if its request does not come, or if it has to give way."""
 
-    _crowd: Crowd[_Bounded]
+    _crowd: ConnectionLimit[_Bounded]
     _deadline: asyncio.TimerHandle | None = None
     _in_request = False
 

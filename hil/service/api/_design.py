@@ -13,6 +13,8 @@ from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
+from hil.service.catalogue import Catalogue
+from hil.service.catalogues import controller_data, model_data
 from hil.service.data import PlanData, PlanName
 from hil.service.design_data import (
     ControllerData,
@@ -24,8 +26,6 @@ from hil.service.design_data import (
     PlanCopyWanted,
 )
 from hil.service.service import Service
-from hil.service.shelf import Shelf
-from hil.service.shelves import controller_data, model_data
 
 router = APIRouter(tags=["design"])
 T = TypeVar("T")
@@ -53,7 +53,7 @@ async def get_model_text(model: FileName, service: TheService, me: Viewer) -> Re
 async def give_model(model: FileName, request: Request, service: TheService, me: Engineer) -> ModelData:
     """Upload a model file (TOML); the content of a name cannot be changed."""
     text = await _body(request, model)
-    await service.giving.read("model", model, text)
+    await service.upload_reader.read("model", model, text)
     service.models.give(model, text, me.name)
     service.log.add(me.name, me.role, "model given", model)
     return _there(service.models, model_data, "model", model)
@@ -87,7 +87,7 @@ async def give_controller(
 ) -> ControllerData:
     """Upload a controller file (TOML); uploaded plans can load it by name."""
     text = await _body(request, controller)
-    await service.giving.read("controller", controller, text)
+    await service.upload_reader.read("controller", controller, text)
     service.controllers.give(controller, text, me.name)
     service.log.add(me.name, me.role, "controller given", controller)
     return _there(service.controllers, controller_data, "controller", controller)
@@ -126,7 +126,7 @@ async def copy_plan(
 async def draft(wanted: Annotated[DraftWanted, Body()], service: TheService, me: Engineer) -> Response:
     """Loops, margins and steps of a controller on a model."""
     del me
-    # As the desk wrote it: who moves a slider waits for it.
+    # As the worker wrote it: who moves a slider waits for it.
     found = await service.drawing.ask_text("draft", **_chosen(service, wanted))
     return Response(found, media_type="application/json")
 
@@ -145,22 +145,24 @@ def _chosen(service: Service, wanted: DraftWanted) -> dict[str, Any]:
     return {**wanted.model_dump(), "model": str(path.resolve())}
 
 
-def _readable(shelf: Shelf[Any], told: Callable[[Shelf[Any], str, Path], T]) -> Iterator[T]:
+def _readable(catalogue: Catalogue[Any], told: Callable[[Catalogue[Any], str, Path], T]) -> Iterator[T]:
     """What is told of all that can still be read."""
-    for name, path in shelf.paths().items():
+    for name, path in catalogue.paths().items():
         with contextlib.suppress(BadInputError):
-            yield told(shelf, name, path)
+            yield told(catalogue, name, path)
 
 
-def _there(shelf: Shelf[Any], told: Callable[[Shelf[Any], str, Path], T], kind: str, name: str) -> T:
-    path = shelf.path(name)
+def _there(
+    catalogue: Catalogue[Any], told: Callable[[Catalogue[Any], str, Path], T], kind: str, name: str
+) -> T:
+    path = catalogue.path(name)
     if path is None:
         raise missing(kind, name)
-    return told(shelf, name, path)
+    return told(catalogue, name, path)
 
 
-def _text(shelf: Shelf[Any], kind: str, name: str) -> Response:
-    path = shelf.path(name)
+def _text(catalogue: Catalogue[Any], kind: str, name: str) -> Response:
+    path = catalogue.path(name)
     if path is None:
         raise missing(kind, name)
     headers = {"content-disposition": f'attachment; filename="{name}.toml"'}

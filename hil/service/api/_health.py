@@ -47,7 +47,7 @@ async def metrics(service: TheService, me: Viewer) -> Response:
         lines.append(f'hil_bench_state{{bench="{name}",state="{service.state(name)[0]}"}} 1')
     lines += ["# HELP hil_viewers Pages and programs that watch a bench.", "# TYPE hil_viewers gauge"]
     lines += [
-        f'hil_viewers{{bench="{name}"}} {len(service.showing.viewers[name])}' for name in service.benches
+        f'hil_viewers{{bench="{name}"}} {len(service.live_hub.viewers[name])}' for name in service.benches
     ]
     lines += ["# HELP hil_agents_connected Connected agents.", "# TYPE hil_agents_connected gauge"]
     lines.append(f"hil_agents_connected {sum(one.connected for one in service.agents.all())}")

@@ -17,8 +17,8 @@ from hil.service.api._problems import RefusedError
 from hil.service.data import BenchName
 from hil.service.drawn_numbers import numbers
 from hil.service.live import BUCKET_S, Spectrum, Stretch
+from hil.service.live_hub import LiveView
 from hil.service.service import Service
-from hil.service.showing import OnShow
 from hil.service.store import in_turns
 
 router = APIRouter(tags=["live"])
@@ -48,7 +48,7 @@ async def live(bench: BenchName, service: TheService, me: Viewer) -> StreamingRe
     """A bench as it changes: events `state`, `samples`, `spectrum`, `criteria` (docs/reference/api.md)."""
     del me
     known(service, bench)
-    if len(service.showing.viewers[bench]) >= _MOST_VIEWERS:
+    if len(service.live_hub.viewers[bench]) >= _MOST_VIEWERS:
         raise RefusedError(429, f"the limit of {_MOST_VIEWERS} viewers is reached")
     return StreamingResponse(_Watching(service, bench).events(), media_type="text/event-stream")
 
@@ -57,7 +57,7 @@ class _Watching:
     """One viewer of one bench."""
 
     def __init__(self, service: Service, bench: str) -> None:
-        self._service, self._bench, self._said = service, bench, service.showing.said[bench]
+        self._service, self._bench, self._said = service, bench, service.live_hub.said[bench]
         self._run = -1
         self._next_bucket = 0
         self._version = -1
@@ -66,7 +66,7 @@ class _Watching:
 
     async def events(self) -> AsyncIterator[str]:
         """Whatever is new, as long as somebody takes it; a sender that has to wait skips nothing but time."""
-        told, viewers = asyncio.Event(), self._service.showing.viewers[self._bench]
+        told, viewers = asyncio.Event(), self._service.live_hub.viewers[self._bench]
         viewers.add(told)
         try:
             while not self._service.closing:
@@ -87,17 +87,17 @@ class _Watching:
     def _news(self) -> list[str]:
         service, bench = self._service, self._bench
         news = []
-        if service.showing.version(bench) != self._version:
-            self._version = service.showing.version(bench)
+        if service.live_hub.version(bench) != self._version:
+            self._version = service.live_hub.version(bench)
             news.append(
                 self._said.text("state", self._version, lambda: _event("state", _state(service, bench)))
             )
-        shown = service.showing.run_of(bench)
+        shown = service.live_hub.run_of(bench)
         if shown is not None:
             news += self._of_run(shown)
         return news
 
-    def _of_run(self, shown: OnShow) -> list[str]:
+    def _of_run(self, shown: LiveView) -> list[str]:
         news, buckets, run = [], shown.live.buckets, shown.run
         if run != self._run:
             self._run, self._criteria = run, None
@@ -112,7 +112,7 @@ class _Watching:
             news.append(_event("criteria", {"run": run, "criteria": decided}))
         return [*news, self._spectrum(shown)]
 
-    def _spectrum(self, shown: OnShow) -> str:
+    def _spectrum(self, shown: LiveView) -> str:
         now_s = time.monotonic()
         if now_s - self._spectrum_at_s < _SPECTRUM_EVERY_S or shown.live.time_s == self._spectrum_s:
             return ""

@@ -10,7 +10,7 @@ from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError, missing
 from hil.service.data import ForecastData, ForecastWanted, PlanData, PlanName
-from hil.service.given_data import KeptApart
+from hil.service.upload_data import KeptApart
 
 router = APIRouter(tags=["plans"])
 _YAML = "application/yaml"
@@ -54,7 +54,7 @@ async def give_plan(plan: PlanName, request: Request, service: TheService, me: E
         text = (await request.body()).decode("utf-8")
     except UnicodeDecodeError as error:
         raise RefusedError(422, "is not UTF-8", where=plan) from error
-    found = await service.giving.plan(plan, text, me.name)
+    found = await service.upload_reader.plan(plan, text, me.name)
     service.log.add(me.name, me.role, "plan given", plan)
     return found
 

@@ -111,7 +111,7 @@ async def get_identification(study: RunId, service: TheService, me: Viewer) -> I
     del me
     of = _with(service, study, "identification", "identification.json")
     folder = await service.studies.files(study)
-    found = await service.desk.ask("fitted", folder=str(folder.resolve()))
+    found = await service.worker_pool.ask("fitted", folder=str(folder.resolve()))
     return IdentificationData(study=of, **found)
 
 

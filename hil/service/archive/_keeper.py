@@ -11,9 +11,9 @@ from pathlib import Path
 
 from hil.core.errors import HilError
 from hil.core.files import sha256_of
-from hil.service.apart import apart
 from hil.service.archive._archive import PIECE_BYTES, Archive, ArchiveAwayError, Kept
 from hil.service.archive._rounds import Rounds
+from hil.service.daemon_thread import apart
 from hil.service.run_files import LOCK, files_in, folder_of
 from hil.service.store import DatabaseAwayError, FileStore, KeptFile
 

@@ -18,9 +18,9 @@ from collections.abc import Callable
 from http import HTTPStatus
 from pathlib import Path
 
-from hil.engine.border_messages import EmergencyAsked
-from hil.engine.border_messages import to_line as to_run
-from hil.service.crowd import allow_all_descriptors
+from hil.engine.ipc_messages import EmergencyAsked
+from hil.engine.ipc_messages import to_line as to_run
+from hil.service.connection_limit import allow_all_descriptors
 from hil.service.stop_post._answering import Answering, Asked, RefusedError, answer, refusal
 from hil.service.stop_post._latches import Latched, Latches
 from hil.service.stop_post._listener import Listener

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from hil.service.crowd import Crowd, descriptors
+from hil.service.connection_limit import ConnectionLimit, descriptors
 from hil.service.stop_post._answering import LONGEST_BYTES
 
 #: A request has come whole by then; who sends a stop sends it in one piece.
@@ -46,7 +46,7 @@ class Listener:
         answer: Callable[[bytes, str], bytes],
     ) -> None:
         self._selector, self._listening, self._answer = selector, listening, answer
-        self._callers: Crowd[_Caller] = Crowd(min(_MOST, descriptors() // 4))
+        self._callers: ConnectionLimit[_Caller] = ConnectionLimit(min(_MOST, descriptors() // 4))
         self._deadlines: dict[_Caller, None] = {}  # the earliest first, by kind nearly so
         selector.register(listening, selectors.EVENT_READ, self.accept)
 

@@ -79,7 +79,7 @@ def test_a_simulation_that_fails_is_a_row(tmp_path, monkeypatch):
     def refused(*_, **__):
         raise BadInputError("no such axle")
 
-    monkeypatch.setattr("hil.engine.trial_runs.TrialRuns.__call__", refused)
+    monkeypatch.setattr("hil.engine.batch_prediction.BatchPrediction.__call__", refused)
     row = simulations.row(0)
     assert (row["verdict"], row["error"], row["draw"]) == ("error", "no such axle", 0)
     assert math.isfinite(row["processor_s"])

@@ -13,8 +13,8 @@ import pytest
 from hil.core.errors import BenchError, EmergencyStopError, InterruptError
 from hil.core.recording import Recording
 from hil.engine import RunRequest, run_plan
-from hil.engine.border import analysed_apart
-from hil.engine.border_messages import EmergencyAsked
+from hil.engine.ipc import analysed_apart
+from hil.engine.ipc_messages import EmergencyAsked
 from test_plans import Conductor, Outlook, Pace, Plan, Step
 from tests.benches_for_tests import plan, sim_bench
 from tests.hil.engine.test_wall_clock import bench_in_real_time, ran_in_real_time

@@ -17,10 +17,10 @@ from hil.core.recording import read_recording
 from hil.engine.arming import Arming
 from hil.engine.bench import open_bench
 from hil.engine.bench_tables import ZeroLimit
-from hil.engine.border import Terminal
+from hil.engine.ipc import Terminal
 from hil.engine.operator import Operator
 from hil.engine.recorder import Recorder
-from hil.engine.watchkeeping import Watchkeeping
+from hil.engine.run_monitoring import RunMonitoring
 from sim_backend.bench import Fault
 from sim_backend.can_interface import attached
 from tests.benches_for_tests import sim_bench
@@ -31,7 +31,7 @@ from tests.hil.engine.cages import Cage, cage, shut
 class Stage:
     bench: Any
     recorder: Recorder
-    watch: Watchkeeping
+    watch: RunMonitoring
     arming: Arming
     path: Path
 
@@ -45,7 +45,7 @@ def stage(out: Path, name: str, terminal: Terminal | None = None, **changes: Any
         def event(kind: str, text: str) -> None:
             recorder.event(bench.loop.clock.now_s(), kind, text)
 
-        watch = Watchkeeping(bench, recorder, Operator(bench.loop, terminal, ""), event)
+        watch = RunMonitoring(bench, recorder, Operator(bench.loop, terminal, ""), event)
         try:
             arming = Arming(bench, recorder, watch.limits, watch.zero, None)
             yield Stage(bench, recorder, watch, arming, out / "r.mcap")

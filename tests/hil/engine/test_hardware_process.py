@@ -20,8 +20,9 @@ from hil.engine import RunRequest
 from hil.engine.arming import TURNED_S
 from hil.engine.bench_file import bench_from_dict
 from hil.engine.bench_tables import BenchFile
-from hil.engine.border_data import asked_of
-from hil.engine.border_messages import (
+from hil.engine.hardware_process import LAST_WORDS_S
+from hil.engine.ipc_data import asked_of
+from hil.engine.ipc_messages import (
     Concluded,
     Ended,
     Here,
@@ -32,8 +33,7 @@ from hil.engine.border_messages import (
     Turned,
     Typed,
 )
-from hil.engine.border_pipe import BorderPipe
-from hil.engine.hardware_process import LAST_WORDS_S
+from hil.engine.ipc_pipe import IpcPipe
 from hil.engine.stopping import held_back
 from hil.engine.supervisor import carry_out
 from test_plans import Plan, plan_from_text
@@ -79,14 +79,14 @@ def test_what_cannot_be_carried_out_is_refused_as_here(tmp_path: Path):
 
 
 @contextlib.contextmanager
-def held(request: RunRequest) -> Iterator[tuple[subprocess.Popen[bytes], BorderPipe]]:
+def held(request: RunRequest) -> Iterator[tuple[subprocess.Popen[bytes], IpcPipe]]:
     """A process that has been asked for a run, and the command's end of its pipes."""
     process = subprocess.Popen(
         HOLDER, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
     )
     assert process.stdin is not None
     assert process.stdout is not None
-    pipe = BorderPipe(os.dup(process.stdout.fileno()), os.dup(process.stdin.fileno()))
+    pipe = IpcPipe(os.dup(process.stdout.fileno()), os.dup(process.stdin.fileno()))
     process.stdin.close()
     process.stdout.close()
     process.stdin = process.stdout = None  # the pipe has them
@@ -101,7 +101,7 @@ def held(request: RunRequest) -> Iterator[tuple[subprocess.Popen[bytes], BorderP
             process.stderr.close()
 
 
-def heard_until(pipe: BorderPipe, kind: type[Message], *, here: bool = True) -> list[Message]:
+def heard_until(pipe: IpcPipe, kind: type[Message], *, here: bool = True) -> list[Message]:
     """What is said until something of a kind comes."""
     found: list[Message] = []
     until_s = time.monotonic() + 120
@@ -120,7 +120,7 @@ def prompted(folder: Path, alone_after_s: float = 30.0) -> RunRequest:
     return RunRequest(asked(), own_process(alone_after_s), folder, terminal=Silent())
 
 
-def ask_twice(process: subprocess.Popen[bytes], pipe: BorderPipe) -> None:
+def ask_twice(process: subprocess.Popen[bytes], pipe: IpcPipe) -> None:
     """As a service manager that tells both processes: the one stop is counted once."""
     process.send_signal(signal.SIGTERM)
     pipe.send(StopAsked(times=1))
@@ -137,7 +137,7 @@ def ask_twice(process: subprocess.Popen[bytes], pipe: BorderPipe) -> None:
     ],
 )
 def test_asked_to_stop_from_either_side_it_ends_safe_once(
-    ask: Callable[[subprocess.Popen[bytes], BorderPipe], None], tmp_path: Path, heard_hangups: None
+    ask: Callable[[subprocess.Popen[bytes], IpcPipe], None], tmp_path: Path, heard_hangups: None
 ):
     with held(prompted(tmp_path)) as (process, pipe):
         heard_until(pipe, Told)

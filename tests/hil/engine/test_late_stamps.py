@@ -10,7 +10,7 @@ import pytest
 from hil.core.recording import Recording, read_frames, read_recording
 from hil.core.result import RunResult
 from hil.engine import RunRequest, run_plan
-from hil.engine.border import RECORDING
+from hil.engine.ipc import RECORDING
 from test_plans import Plan, load_plan
 from tests.benches_for_tests import plan, sim_bench
 from tests.late_stamps import late_bench

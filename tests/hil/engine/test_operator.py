@@ -6,7 +6,7 @@ import pytest
 
 from drivers import BusLoop
 from hil.core.errors import EmergencyStopError, InterruptError
-from hil.engine.border_messages import EmergencyAsked
+from hil.engine.ipc_messages import EmergencyAsked
 from hil.engine.operator import LOOK_S, Operator
 from tests.clocks import SteppedClock
 from tests.operators import Answering, Silent

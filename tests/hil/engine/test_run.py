@@ -5,7 +5,7 @@ import pytest
 
 from hil.core.errors import BadInputError, BenchError, InterruptError, OrderlyEndError
 from hil.core.recording import read_frames, read_recording
-from hil.engine.border import RunRequest
+from hil.engine.ipc import RunRequest
 from hil.engine.run import run_plan
 from sim_backend.bench import Fault, SimulatedBench
 from sim_backend.can_interface import attached

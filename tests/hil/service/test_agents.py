@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 from sqlalchemy import Engine, create_engine, text
 
 from hil.core.errors import BadInputError, BenchError
-from hil.engine.border_messages import EmergencyAsked
+from hil.engine.ipc_messages import EmergencyAsked
 from hil.service.agent_data import AgentBench, AgentReport, FileMade, RunEnding
 from hil.service.agents import Agents
-from hil.service.arrivals import Arrivals
 from hil.service.remote_bench import AWAY_S
+from hil.service.run_upload import RunUploads
 from hil.service.store import LeaseStore, NewRun, RunStore, open_database
 from test_plans import library_controllers
 from tests.hil.service import served as served_by
@@ -36,7 +36,7 @@ class _There:
         self.folder, self.engine = folder, engine
         self.runs, self.leases = RunStore(engine), LeaseStore(engine)
         self.agents = self.begun()
-        self.arrivals = Arrivals("service", self.runs, folder)
+        self.run_uploads = RunUploads("service", self.runs, folder)
 
     def begun(self, service: str = "service") -> Agents:
         return Agents(
@@ -157,10 +157,10 @@ def test_another_service_of_the_database_takes_an_agents_bench_and_run_over(ther
     assert running is not None
     assert running.data.id == run
     assert [row.benches for row in there.begun().all()] == []
-    arrivals = Arrivals("another service", there.runs, there.folder / "second")
-    found = arrivals.run_of(run, ONE)
+    run_uploads = RunUploads("another service", there.runs, there.folder / "second")
+    found = run_uploads.run_of(run, ONE)
     assert found is not None
-    assert arrivals.finish(found, ONE, RunEnding(state="ended", exit_code=0))
+    assert run_uploads.finish(found, ONE, RunEnding(state="ended", exit_code=0))
     there.lapse()
     there.agents.look()
     assert there.agents.benches["far"].running is None, "the first one sees that it is over"
@@ -177,10 +177,10 @@ def test_a_bench_that_was_let_go_is_anothers_and_its_run_comes_all_the_same(ther
     assert found.state == "interrupted"
     assert "anna has let the bench" in found.reason
     assert there.agents.heard(OTHER, _report()) == (["far"], {})
-    late = there.arrivals.run_of(run, ONE)
+    late = there.run_uploads.run_of(run, ONE)
     assert late is not None
-    assert there.arrivals.finish(late, ONE, RunEnding(state="ended", exit_code=1, ago_s=100.0))
-    assert there.arrivals.run_of(run, ONE) is None
+    assert there.run_uploads.finish(late, ONE, RunEnding(state="ended", exit_code=1, ago_s=100.0))
+    assert there.run_uploads.run_of(run, ONE) is None
     over = there.runs.get(run)
     assert over is not None
     assert (over.state, over.exit_code, over.reason) == ("ended", 1, "")
@@ -267,21 +267,21 @@ def test_pieces_are_taken_where_the_file_ends_and_files_are_shown_when_they_are_
     there.agents.take(ONE, "far")
     content = secrets.token_bytes(1000)
     made = [_made("report.pdf", content), _made("empty.txt", b""), _made("plan.yaml", SHORT.encode())]
-    arrivals, folder = there.arrivals, there.folder / f"{run:06d}"
-    assert arrivals.add(run, "report.pdf", 5, b"late") == 0
-    assert arrivals.add(run, "report.pdf", 0, content[:400]) == 400
-    assert arrivals.add(run, "report.pdf", 0, content[:400]) == 400, "sent twice"
-    assert asyncio.run(arrivals.missing(run, made)) == ["report.pdf"]
+    run_uploads, folder = there.run_uploads, there.folder / f"{run:06d}"
+    assert run_uploads.add(run, "report.pdf", 5, b"late") == 0
+    assert run_uploads.add(run, "report.pdf", 0, content[:400]) == 400
+    assert run_uploads.add(run, "report.pdf", 0, content[:400]) == 400, "sent twice"
+    assert asyncio.run(run_uploads.missing(run, made)) == ["report.pdf"]
     assert not (folder / "report.pdf").exists()
-    assert arrivals.add(run, "report.pdf", 400, content[400:]) == 1000
-    assert asyncio.run(arrivals.missing(run, made)) == []
-    found = arrivals.run_of(run, ONE)
+    assert run_uploads.add(run, "report.pdf", 400, content[400:]) == 1000
+    assert asyncio.run(run_uploads.missing(run, made)) == []
+    found = run_uploads.run_of(run, ONE)
     assert found is not None
-    assert arrivals.run_of(run, OTHER) is None
-    assert arrivals.finish(found, ONE, RunEnding(state="ended", files=made))
+    assert run_uploads.run_of(run, OTHER) is None
+    assert run_uploads.finish(found, ONE, RunEnding(state="ended", files=made))
     assert (folder / "report.pdf").read_bytes() == content
-    assert arrivals.are_those(run, made), "told a second time"
-    assert not arrivals.are_those(run, [_made("report.pdf", b"other")])
+    assert run_uploads.are_those(run, made), "told a second time"
+    assert not run_uploads.are_those(run, [_made("report.pdf", b"other")])
 
 
 @given(st.lists(st.tuples(st.integers(0, 60), st.integers(0, 40)), max_size=30))
@@ -290,10 +290,10 @@ def test_whatever_pieces_come_in_whatever_order_the_file_is_what_it_begins_with(
 ) -> None:
     content = bytes(range(60))
     with tempfile.TemporaryDirectory() as folder:
-        arrivals = Arrivals("service", RunStore(create_engine("sqlite://")), Path(folder))
+        run_uploads = RunUploads("service", RunStore(create_engine("sqlite://")), Path(folder))
         there = 0
         for at, size in pieces:
-            before, there = there, arrivals.add(1, "recording.mcap", at, content[at : at + size])
+            before, there = there, run_uploads.add(1, "recording.mcap", at, content[at : at + size])
             assert there == (min(at + size, 60) if at == before else before)
         path = Path(folder) / "000001/recording.mcap"
         assert (path.read_bytes() if path.exists() else b"") == content[:there]
@@ -310,14 +310,14 @@ def test_a_file_that_came_damaged_is_thrown_away_and_comes_again(
     content = secrets.token_bytes(1000)
     wrong = bytes([content[0] ^ 1]) + content[1:] if damage == "flipped" else content + b"x"
     made = [_made(name, content)]
-    assert there.arrivals.add(run, name, 0, wrong) == len(wrong)
-    assert asyncio.run(there.arrivals.missing(run, made)) == [name]
-    assert there.arrivals.add(run, name, 0, content) == 1000
-    assert asyncio.run(there.arrivals.missing(run, made)) == []
+    assert there.run_uploads.add(run, name, 0, wrong) == len(wrong)
+    assert asyncio.run(there.run_uploads.missing(run, made)) == [name]
+    assert there.run_uploads.add(run, name, 0, content) == 1000
+    assert asyncio.run(there.run_uploads.missing(run, made)) == []
 
 
 def test_a_file_that_is_too_large_is_not_taken(there: _There, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("hil.service.arrivals.MOST_FILE_BYTES", 10)
-    assert there.arrivals.add(1, "log.txt", 0, b"0123456789") == 10
+    monkeypatch.setattr("hil.service.run_upload.MOST_FILE_BYTES", 10)
+    assert there.run_uploads.add(1, "log.txt", 0, b"0123456789") == 10
     with pytest.raises(BenchError, match="more than 10 bytes"):
-        there.arrivals.add(1, "log.txt", 10, b"0")
+        there.run_uploads.add(1, "log.txt", 10, b"0")

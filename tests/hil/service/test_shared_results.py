@@ -11,7 +11,7 @@ import pytest
 from sqlalchemy import Engine
 
 from hil.service.archive import Archive, ArchiveAwayError
-from hil.service.numbered import Numbered, files_in_results
+from hil.service.job_repository import JobRepository, files_in_results
 from hil.service.shared_results import SharedResults
 from hil.service.store import ResultStore
 from hil.service.study_data import STUDY_OVER, StudyData
@@ -29,7 +29,7 @@ class _Here:
         store = ResultStore(self._engine, self._folder.name, f"that of {self._folder.name}")
         archive = None if self._archive is None else Archive(str(self._archive))
         self.shared = SharedResults(store, "study", StudyData, archive, self._folder / "elsewhere/studies")
-        self.records = Numbered(self._folder / "studies", "study.json", StudyData, self.shared.draw)
+        self.records = JobRepository(self._folder / "studies", "study.json", StudyData, self.shared.draw)
 
     def own(self) -> list[StudyData]:
         files = {one.id: files_in_results(self.results(one.id)) for one in self.records}

@@ -13,7 +13,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from hil.service.crowd import Crowd
+from hil.service.connection_limit import ConnectionLimit
 from hil.service.stop_post._answering import Answering, Asked, RefusedError
 from hil.service.stop_post._messages import Owner
 from tests.hil.service.served import Served, served
@@ -84,7 +84,7 @@ def test_a_look_is_no_stop_and_only_a_trusted_proxy_says_for_whom_it_asks() -> N
 
 
 def test_of_whom_most_are_the_longest_silent_gives_way() -> None:
-    crowd: Crowd[str] = Crowd(4)
+    crowd: ConnectionLimit[str] = ConnectionLimit(4)
     for name, address in (("a1", "a"), ("b1", "b"), ("a2", "a"), ("a3", "a")):
         assert crowd.give_way(address) == (True, None)
         crowd.add(name, address)
@@ -101,7 +101,7 @@ def test_of_whom_most_are_the_longest_silent_gives_way() -> None:
 
 
 def test_one_address_does_not_hold_all_unless_it_is_a_proxy() -> None:
-    crowd: Crowd[int] = Crowd(10, 2, frozenset({"proxy"}))
+    crowd: ConnectionLimit[int] = ConnectionLimit(10, 2, frozenset({"proxy"}))
     for number in range(2):
         crowd.add(number, "a")
         crowd.add(10 + number, "proxy")

@@ -29,7 +29,7 @@ from hil.analysis.diagnosis.fit._thresholds import (
     STEP,
 )
 from hil.core.model import TransferFunction
-from hil.core.side_by_side import side_by_side
+from hil.core.thread_map import map_on_threads
 from hil.plant import simulate_many
 
 Array = npt.NDArray[np.float64]
@@ -210,7 +210,7 @@ class Problem:
             return np.stack([self.errors(index, one).ravel() for one in simulated]), simulated
 
         rows, shown = (
-            list(each) for each in zip(*side_by_side(errors, range(len(self.traces))), strict=True)
+            list(each) for each in zip(*map_on_threads(errors, range(len(self.traces))), strict=True)
         )
         total = np.zeros(len(points))
         for index, own in enumerate(rows):
@@ -273,7 +273,7 @@ class Problem:
             cost = float(error @ error) + float(start**2 @ self.start_precision(index))
             return cost, Errors(error, shared, initial)
 
-        costs, errors = zip(*side_by_side(derived, range(len(starts))), strict=True)
+        costs, errors = zip(*map_on_threads(derived, range(len(starts))), strict=True)
         return Linearised(sum(costs), self.normals(errors, starts), errors)
 
     def free_starts(self, trace: int, hypothesis: Hypothesis) -> list[int]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil.analysis.tuning import Effort, Measured, Patience, Space, refine, tune, values_of
+from hil.analysis.tuning import Effort, Measured, RefinementBudget, Space, refine, tune, values_of
 from hil.core.model import EffectUse
 from tests.hil.analysis.tuning.trials import MODEL, trial_of
 
@@ -48,7 +48,7 @@ def refined(trial, bench, start=None, **options):
 
 def test_a_few_runs_gain_margin_on_an_axle_that_the_model_does_not_know(trial):
     bench = ComputedBench(trial, OTHER)
-    found = refined(trial, bench, patience=Patience(runs=8))
+    found = refined(trial, bench, budget=RefinementBudget(runs=8))
     first = found.runs[0]
     assert first.decision == "first"
     assert found.best is not None
@@ -65,7 +65,7 @@ def test_a_few_runs_gain_margin_on_an_axle_that_the_model_does_not_know(trial):
 
 
 def test_what_a_run_has_shown_is_expected_of_the_next_one(trial):
-    found = refined(trial, ComputedBench(trial, OTHER), patience=Patience(runs=2))
+    found = refined(trial, ComputedBench(trial, OTHER), budget=RefinementBudget(runs=2))
     first, second = found.runs
     apart = {name: first.measured[name] - first.predicted.margins[name] for name in first.measured}
     for name, more in apart.items():
@@ -77,7 +77,7 @@ def test_on_the_model_itself_nothing_is_gained_after_a_search(trial):
     search = tune(trial, effort=Effort(starts=2), processes=1)
     space = Space(trial.free.free)
     bench = ComputedBench(trial, MODEL)
-    found = refined(trial, bench, space.point(search.chosen.values), patience=Patience(least_gain=0.01))
+    found = refined(trial, bench, space.point(search.chosen.values), budget=RefinementBudget(least_gain=0.01))
     assert found.runs[0].worst == pytest.approx(search.chosen.worst.worst, abs=1e-6)
     assert len(found.runs) == 1
     assert "no further improvement predicted" in found.ended
@@ -86,8 +86,8 @@ def test_on_the_model_itself_nothing_is_gained_after_a_search(trial):
 def test_hard_limits_hold_on_every_car():
     text = f"{FREE}[limits]\nphase_margin_deg = 45.0\n[tolerance]\ndead_time_s = 0.006\n"
     trial = trial_of(text, draws=3)
-    found = refined(trial, ComputedBench(trial, OTHER), patience=Patience(runs=4))
-    alone = refined(trial_of(text), ComputedBench(trial, OTHER), patience=Patience(runs=4))
+    found = refined(trial, ComputedBench(trial, OTHER), budget=RefinementBudget(runs=4))
+    alone = refined(trial_of(text), ComputedBench(trial, OTHER), budget=RefinementBudget(runs=4))
     assert len(found.runs) > 1
     assert all(trial.tried(run.values, car).feasible for run in found.runs for car in range(4))
     worst = [min(trial.tried(run.values, car).worst for car in range(1, 4)) for run in found.runs]
@@ -96,7 +96,7 @@ def test_hard_limits_hold_on_every_car():
 
 
 def test_a_first_run_that_is_not_as_predicted_is_the_last_where_that_is_asked_for(trial):
-    found = refined(trial, ComputedBench(trial, OTHER), patience=Patience(stop_beyond=0.001))
+    found = refined(trial, ComputedBench(trial, OTHER), budget=RefinementBudget(stop_beyond=0.001))
     assert len(found.runs) == 1
     assert "deviates from its prediction" in found.ended
     assert found.best is found.runs[0]

@@ -5,7 +5,7 @@ from pathlib import Path
 from hil.analysis.tuning import SpeedLoops, Trial, channels_needed, draws_of, driven_by, free_from_toml
 from hil.core.controller import load_controller
 from hil.core.model import load_model
-from hil.engine.trial_runs import TrialRuns
+from hil.engine.batch_prediction import BatchPrediction
 from test_plans import plan_from_text
 from tests.benches_for_tests import SIM
 
@@ -54,5 +54,5 @@ def trial_of(free_text=FREE, *, draws=0, seed=0, model=MODEL, plan_text=PLAN):
         start,
         cars,
         SpeedLoops([car.model for car in cars], start.sample_time_s),
-        TrialRuns(plan, SIM, driven.file, channels),
+        BatchPrediction(plan, SIM, driven.file, channels),
     )

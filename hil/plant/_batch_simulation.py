@@ -1,0 +1,375 @@
+"""Replays one torque through many models at once, averaged over blocks of samples: for fits.
+
+Same equations as the step-by-step kernel; the linear part moves exactly, the nonlinear forces are inputs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.chain import Chain
+from hil.core.compiled import compiled, compiled_without_lock, inlined
+from hil.core.model import TransferFunction
+from hil.core.thread_map import map_on_threads, threads
+from hil.plant import _forces as F
+from hil.plant import _laws as L
+from hil.plant import _slots as P
+from hil.plant import _states as X
+from hil.plant._friction import mean_friction
+from hil.plant._functions import respond_many
+from hil.plant._held_linear import step_matrices
+from hil.plant._kernel import as_tuple
+from hil.plant._motion import acting_of, chain_of, motion_of, relative_speed
+from hil.plant._sensors import COLUMNS, GAIN, record
+from hil.plant._torque_path import over_samples
+from hil.plant._tuples import plus_product, plus_row, put
+
+Array = npt.NDArray[np.float64]
+
+CHANNELS = ("motor_speed_rad_s", "wheel_speed_rad_s", "shaft_torque_nm")
+SPEED, WHEEL, SHAFT = range(3)  # of the channels, and of a start
+VEHICLE, TYRE = 3, 4  # of a start alone
+STARTS = 5
+_PARTS_PER_THREAD = 4
+_CONSTANT, _BY_ANGLE, _BY_MOTION = range(3)  # what forces vary with; an angle alone may be known beforehand
+
+
+def ideal_sensors(sets: int) -> Array:
+    """Sensors that read the truth, for each of the three channels: sets x 3 x a sensor's numbers."""
+    sensors = np.zeros((sets, len(CHANNELS), COLUMNS))
+    sensors[:, :, GAIN] = 1.0
+    return sensors
+
+
+def simulate_many(
+    parameters: Array,
+    torque_nm: Array,
+    dt: float,
+    starts: Array,
+    sensors: Array,
+    block: int = 1,
+    angles: Array | None = None,
+    load_nm: Array | None = None,
+    functions: Mapping[str, TransferFunction] | None = None,
+) -> Array:
+    """Channels of many packed models for one torque request, each the mean of `block` samples.
+
+    Args:
+        parameters: sets x slots, from `pack`.
+        torque_nm: shape (n,), held for `dt` seconds each; the first value has acted since long before.
+        starts: sets x 3: motor speed, wheel speed (rad/s), shaft torque (N m); or sets x 5, where three
+            inertias begin in mid-motion: vehicle less wheel speed (rad/s), and the tyre's twist beyond what
+            the shaft torque holds (rad).
+        sensors: sets x 3 channels x a sensor's numbers (`_sensors.SENSOR`), as from `ideal_sensors`.
+        angles: n x 2, wheel and rotor angle in rad that ripples follow (as measured); when left out, the
+            simulated ones.
+        load_nm: shape (n,), brakes the wheels (the load where there is no wheel), straight from sample to
+            sample; none when left out.
+        functions: of a transfer-function model; only torque path and sensors of `parameters` count then.
+
+    Returns:
+        sets x (n // block) x 3, in the order of `CHANNELS`. A diverged set shows as NaN or huge numbers.
+    """
+    if functions:
+        return respond_many(functions, parameters, torque_nm, dt, starts, sensors, block)
+    sets = len(parameters)
+    begin = np.zeros((sets, STARTS))
+    begin[:, : starts.shape[1]] = starts
+    substeps, varies = _parts(parameters, dt)
+    most = int(substeps.max())
+    transition = np.zeros((sets, X.LINEAR_STATES, X.LINEAR_STATES))
+    torque = np.zeros((sets, 2 * most, X.LINEAR_STATES))
+    held, rising = (np.zeros((sets, F.COUNT, X.LINEAR_STATES)) for _ in range(2))
+    for index, p in enumerate(parameters):
+        used = int(substeps[index])
+        matrices = _matrices(p[: P.CHAIN].tobytes(), dt, used)
+        transition[index], held[index], rising[index] = matrices[0], matrices[2], matrices[3]
+        torque[index, : 2 * used] = matrices[1].reshape(-1, X.LINEAR_STATES)
+    out = np.empty((sets, len(torque_nm) // block, len(CHANNELS)))
+    torque_nm = np.ascontiguousarray(torque_nm, dtype=float)
+    parameters, sensors = np.ascontiguousarray(parameters), np.ascontiguousarray(sensors, dtype=float)
+    angles = np.zeros((0, 2)) if angles is None else np.ascontiguousarray(angles, dtype=float)
+    load_nm = None if load_nm is None else np.ascontiguousarray(load_nm, dtype=float)
+
+    def run(part: slice) -> None:
+        _run_all(
+            torque_nm,
+            dt,
+            parameters[part],
+            begin[part],
+            sensors[part],
+            block,
+            substeps[part],
+            varies[part],
+            (transition[part], torque[part], held[part], rising[part]),
+            angles,
+            load_nm,
+            out[part],
+        )
+
+    map_on_threads(run, _shared_out(sets))
+    return out
+
+
+def _shared_out(sets: int) -> list[slice]:
+    """Parts of about the same number of sets: a few for each thread, as some sets take longer."""
+    parts = min(sets, _PARTS_PER_THREAD * threads())
+    ends = [sets * part // parts for part in range(parts + 1)]
+    return [slice(*both) for both in pairwise(ends)]
+
+
+@lru_cache(maxsize=512)
+def _matrices(linear: bytes, dt: float, substeps: int) -> tuple[Array, Array, Array, Array]:
+    p = np.zeros(len(P.SLOTS))
+    p[: P.CHAIN] = np.frombuffer(linear)
+    return step_matrices(p, dt, substeps)
+
+
+def _parts(parameters: Array, dt: float) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    """In how many parts each model's samples are cut, and what its forces vary with (`_CONSTANT` …)."""
+    steps = np.ones(len(parameters), np.int64)
+    varies = np.full(len(parameters), _CONSTANT, np.int64)
+    for effect in P.ACTING:
+        law, first = effect.law, P.FIRST[effect.id]
+        own = parameters[:, first : first + len(effect.parameters)]
+        acts = np.any(
+            parameters[:, [P.place(effect.id, name) for name in effect.acting()]] != effect.off, axis=1
+        )
+        if not acts.any() or (law.shape is not None or law.slope is not None):
+            continue
+        steady = law.steady(tuple(own.T)) if law.steady is not None else False
+        with_what = _BY_MOTION if law.follows is None else _BY_ANGLE
+        varies = np.where(acts & ~np.asarray(steady), np.maximum(varies, with_what), varies)
+        if law.steps is not None:
+            for index in np.flatnonzero(acts):
+                p = parameters[index]
+                cut = law.steps(Chain(*p[: P.CHAIN]), tuple(own[index]), dt)
+                steps[index] = max(steps[index], cut)
+    return steps, varies
+
+
+@compiled
+def _shown(acting, ends, dt, whole, p, out):  # type: ignore[no-untyped-def]
+    """The delayed torque at each sample's instant: what a rigid axle's shaft torque shows of it."""
+    limit = L.steepest(p)
+    reach = (1.0 + whole - p[P.TORQUE_DELAY] / dt) * limit * dt
+    for k in range(acting.shape[0]):
+        now = max(k - whole - 1, 0)
+        out[k] = acting[now]
+        if limit < math.inf:
+            before = ends[max(now - 1, 0)]
+            gap = ends[now] - before
+            out[k] = before + math.copysign(min(abs(gap), reach), gap)
+
+
+@compiled
+def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
+    """State and memories that show a start."""
+    memories, twist = L.begun(start[SHAFT], chain_of(p), p)
+    memories = L.turned(start[SPEED], chain_of(p), memories, p)
+    x = put(put(X.LINEAR_AT_REST, X.LAGGED, acting), X.ROTOR_SPEED, start[SPEED])
+    if p[P.KIND] == P.RIGID:
+        wheel = start[SPEED] / p[P.GEAR_RATIO]
+        return put(put(x, X.WHEEL_SPEED, wheel), X.VEHICLE_SPEED, wheel), memories
+    twist += start[SHAFT] / p[P.SHAFT_STIFFNESS]
+    x = put(put(x, X.TWIST, twist), X.WHEEL_SPEED, start[WHEEL])
+    if p[P.KIND] != P.THREE_INERTIA:
+        return put(x, X.VEHICLE_SPEED, start[WHEEL]), memories
+    x = put(x, X.TYRE_TWIST, start[SHAFT] / p[P.TYRE_STIFFNESS] + start[TYRE])
+    return put(x, X.VEHICLE_SPEED, start[WHEEL] + start[VEHICLE]), memories
+
+
+@inlined
+def _moved(x, sub, old, new, column, transition):  # type: ignore[no-untyped-def]
+    """State after substep `sub` from `x` without any nonlinear force."""
+    y = plus_row(X.LINEAR_AT_REST, old, column, 2 * sub)
+    y = plus_row(y, new, column, 2 * sub + 1)
+    return plus_product(y, x, transition)
+
+
+@compiled
+def _run_linear(drive, whole, p, x, substeps, column, transition, fine):  # type: ignore[no-untyped-def]
+    acting, shown = drive
+    for k in range(acting.shape[0]):
+        new = acting[max(k - whole, 0)]
+        old = acting[max(k - whole - 1, 0)]
+        fine[k, SPEED] = relative_speed(x)
+        fine[k, WHEEL] = x[X.WHEEL_SPEED]
+        fine[k, SHAFT] = F.shaft_torque(x, F.NONE, 0.0, p, shown[k], False)
+        for sub in range(substeps):
+            x = _moved(x, sub, old, new, column, transition)
+
+
+@inlined
+def _pushed(y, f, held):  # type: ignore[no-untyped-def]
+    """State with the effect of forces, by the rows of `held` (or `rising`)."""
+    y = plus_row(plus_row(y, f[F.SHAFT], held, F.SHAFT), f[F.LOSS], held, F.LOSS)
+    y = plus_row(y, f[F.LOAD], held, F.LOAD)
+    return plus_row(plus_row(y, f[F.TYRE], held, F.TYRE), f[F.TYRE_RATE], held, F.TYRE_RATE)
+
+
+@inlined
+def _braked(y, begins, rises, held, rising, has_wheel):  # type: ignore[no-untyped-def]
+    """State with the effect of a torque that brakes the wheels, which changes by `rises` over a step."""
+    y = plus_row(plus_row(y, begins, held, F.LOAD), rises, rising, F.LOAD)
+    if has_wheel:  # what the tyre takes beside brakes the wheel and pushes the vehicle
+        y = plus_row(plus_row(y, begins, held, F.TYRE), rises, rising, F.TYRE)
+    return y
+
+
+@compiled
+def _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
+    # What is none is added all the same, as zero: a state that goes two ways falls apart into scalars.
+    asked, shown = drive
+    transition, column, held, rising = matrices
+    x, memories = first
+    chain, acting = chain_of(p), acting_of(p)
+    turns, leaps = L.turns(p), L.leaps(p)
+    known = varies == _BY_ANGLE and angles.shape[0] > 0  # forces are, before the motion is
+    gain = held[F.LOSS, X.HOUSING_SPEED] - held[F.LOSS, X.ROTOR_SPEED]
+    friction = 0.0
+    at = F.first_angles(angles, x, p)
+    m = motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+    f = F.forces(m, chain, memories, p, acting)
+    has_wheel = chain.kind == P.THREE_INERTIA
+    brakes, rises, foreseen = 0.0, 0.0, 0.0
+    for k in range(asked.shape[0]):
+        if load is not None:
+            brakes = load[k]
+            rises = (load[min(k + 1, load.shape[0] - 1)] - brakes) / substeps
+        new = asked[max(k - whole, 0)]
+        old = asked[max(k - whole - 1, 0)]
+        fine[k, SPEED] = relative_speed(x)
+        fine[k, WHEEL] = x[X.WHEEL_SPEED]
+        fine[k, SHAFT] = F.shaft_torque(x, f, brakes, p, shown[k], acting.dry)
+        for sub in range(substeps):
+            y = _pushed(_moved(x, sub, old, new, column, transition), f, held)
+            if load is not None:
+                y = _braked(y, brakes + sub * rises, rises, held, rising, has_wheel)
+            y = plus_row(y, foreseen, rising, F.SHAFT)
+            before = relative_speed(x)
+            if acting.dry:
+                level = F.level(before, chain, memories, p)
+                friction = mean_friction(before, relative_speed(y), gain, level)
+            y = plus_row(y, friction, held, F.LOSS)
+            if varies == _CONSTANT:
+                x = y
+                continue
+            part = (sub + 1.0) / substeps
+            later = F.angles_at(angles, k, part, x, y, at, h, p) if turns else at
+            n = motion_of(y, chain, memories, later[F.WHEEL], later[F.ROTOR], p)
+            kept = memories
+            if acting.memory:
+                kept = L.remembered(m, n, chain, memories, p, h)
+                n = motion_of(y, chain, kept, later[F.WHEEL], later[F.ROTOR], p)
+            middle = 0.5 * (before + relative_speed(y))
+            ends = F.forces(n, chain, kept, p, acting)
+            changed = F.change(ends, f)
+            more, rise = 0.0, 0.0
+            if leaps and kept != memories:  # what stays where it was does not leap
+                more, rise = L.shaft_leap(m, n, chain, memories, p, h)
+            y = _pushed(y, changed, rising)
+            y = plus_row(plus_row(y, more, held, F.SHAFT), rise - foreseen, rising, F.SHAFT)
+            if leaps:
+                foreseen = changed[F.SHAFT] if more == 0.0 and rise == 0.0 else 0.0
+            again = friction
+            if acting.dry:
+                level = F.level(middle, chain, memories, p)
+                again = mean_friction(before, relative_speed(y) + gain * friction, gain, level)
+            y = plus_row(y, again - friction, held, F.LOSS)
+            if known:
+                at, f = later, ends
+            else:
+                if turns:
+                    at = F.angles_at(angles, k, part, x, y, at, h, p)
+                n = motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+                if acting.memory:
+                    memories = L.remembered(m, n, chain, memories, p, h)
+                    n = motion_of(y, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+                m = n
+                f = F.forces(m, chain, memories, p, acting)
+            x = y
+
+
+@compiled
+def _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine):  # type: ignore[no-untyped-def]
+    """As `_run_forced`, by forces on shaft and rotor that measured angles tell before the motion is."""
+    asked, shown = drive
+    transition, column, held, rising = matrices
+    x, memories = first
+    chain, acting = chain_of(p), acting_of(p)
+    at = F.first_angles(angles, x, p)
+    f = F.forces(motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p), chain, memories, p, acting)
+    for k in range(asked.shape[0]):
+        new = asked[max(k - whole, 0)]
+        old = asked[max(k - whole - 1, 0)]
+        fine[k, SPEED] = relative_speed(x)
+        fine[k, WHEEL] = x[X.WHEEL_SPEED]
+        fine[k, SHAFT] = F.shaft_torque(x, f, 0.0, p, shown[k], False)
+        for sub in range(substeps):
+            at = F.angles_at(angles, k, (sub + 1.0) / substeps, x, x, at, h, p)
+            m = motion_of(x, chain, memories, at[F.WHEEL], at[F.ROTOR], p)
+            ends = F.forces(m, chain, memories, p, acting)
+            y = _moved(x, sub, old, new, column, transition)
+            y = plus_row(plus_row(y, f[F.SHAFT], held, F.SHAFT), ends[F.SHAFT] - f[F.SHAFT], rising, F.SHAFT)
+            x = plus_row(plus_row(y, f[F.LOSS], held, F.LOSS), ends[F.LOSS] - f[F.LOSS], rising, F.LOSS)
+            f = ends
+
+
+@compiled
+def _run(torque, dt, vector, start, substeps, varies, matrices, angles, load, fine):  # type: ignore[no-untyped-def]
+    """One model over the whole recording into `fine` (n x 3)."""
+    p = as_tuple(vector)
+    acting, ends, shown = np.empty(torque.shape[0]), np.empty(torque.shape[0]), np.empty(torque.shape[0])
+    over_samples(torque, dt, p, acting, ends)
+    first = _first_state(p, start, acting[0])
+    whole = math.floor(p[P.TORQUE_DELAY] / dt + 1e-9)
+    _shown(acting, ends, dt, whole, p, shown)
+    drive = (acting, shown)
+    h = dt / substeps
+    known = varies == _BY_ANGLE and angles.shape[0] > 0 and load is None
+    does = acting_of(p)
+    if known and not (does.dry or does.load or does.tyre or does.memory):
+        _run_by_angle(drive, whole, p, first, h, substeps, matrices, angles, fine)
+    elif varies != _CONSTANT or L.pushes(p) or load is not None:
+        _run_forced(drive, whole, p, first, varies, h, substeps, matrices, angles, load, fine)
+    else:
+        _run_linear(drive, whole, p, first[0], substeps, matrices[1], matrices[0], fine)
+
+
+@inlined
+def _alike(rows, s):  # type: ignore[no-untyped-def]
+    """Whether a row is the one before it."""
+    for i in range(rows.shape[1]):  # noqa: SIM110 - no generators in compiled code
+        if rows[s, i] != rows[s - 1, i]:
+            return False
+    return True
+
+
+@compiled_without_lock
+def _run_all(torque, dt, parameters, starts, sensors, block, substeps, varies, matrices, angles, load, out):  # type: ignore[no-untyped-def]
+    transition, column, held, rising = matrices
+    fine = np.empty((torque.shape[0], 3))
+    for s in range(parameters.shape[0]):
+        # sets that differ in their sensors alone move alike
+        if s == 0 or not (_alike(parameters, s) and _alike(starts, s)):
+            _run(
+                torque,
+                dt,
+                parameters[s],
+                starts[s],
+                substeps[s],
+                varies[s],
+                (transition[s], column[s], held[s], rising[s]),
+                angles,
+                load,
+                fine,
+            )
+        for channel in range(fine.shape[1]):
+            record(fine[:, channel], sensors[s, channel], dt, block, out[s, :, channel])

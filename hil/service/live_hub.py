@@ -1,0 +1,110 @@
+"""Live data for the viewers of each bench: the run under way or the last one, and its judgement."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+from hil.core.errors import HilError
+from hil.core.result import CriterionResult
+from hil.engine import RECORDING
+from hil.service.broadcast_cache import BroadcastCache
+from hil.service.live import LiveRun
+from hil.service.run_execution import PLAN, RunningRun
+from test_plans import plan_from_text
+
+_LOOK_S = 0.05  # a viewer is sent as many updates
+_JUDGE_S = 1.0
+
+
+@dataclass
+class LiveView:
+    """The newest run of a bench, under way or over, as it is shown."""
+
+    run: int
+    live: LiveRun
+    criteria: tuple[CriterionResult, ...] = ()
+    judged_s: float = 0.0
+    looked_s: float = field(default_factory=time.monotonic)
+
+
+class LiveHub:
+    """Viewers of benches, what they are shown, and when there is something new.
+
+    Args:
+        benches: names of all benches.
+        running: the run under way on a bench.
+    """
+
+    def __init__(
+        self, benches: Callable[[], Iterable[str]], running: Callable[[str], RunningRun | None]
+    ) -> None:
+        self._benches, self._running = benches, running
+        self.viewers: defaultdict[str, set[asyncio.Event]] = defaultdict(set)
+        self.said: defaultdict[str, BroadcastCache] = defaultdict(BroadcastCache)  # of each bench
+        self._runs: dict[str, LiveView] = {}
+        self._version: defaultdict[str, int] = defaultdict(int)
+
+    def run_of(self, bench: str) -> LiveView | None:
+        """The run that is shown of a bench."""
+        return self._runs.get(bench)
+
+    def runs(self) -> set[int]:
+        """Numbers of all runs that are shown."""
+        return {shown.run for shown in self._runs.values()}
+
+    def changed(self, bench: str) -> None:
+        """Something of a bench is to be shown anew."""
+        self._version[bench] += 1
+        self._tell(bench)
+
+    def version(self, bench: str) -> int:
+        """Counts what `changed` was called for."""
+        return self._version[bench]
+
+    async def follow(self, closing: Callable[[], bool]) -> None:
+        """Read what runs measure, until the service is closed."""
+        next_s = time.monotonic()
+        while not closing():
+            for name in list(self._benches()):
+                self._follow(name)
+                await self._judge(name)
+            next_s = max(next_s + _LOOK_S, time.monotonic())
+            await asyncio.sleep(next_s - time.monotonic())
+
+    def _follow(self, bench: str) -> None:
+        running, shown = self._running(bench), self._runs.get(bench)
+        if running is not None and (shown is None or shown.run != running.data.id):
+            if shown is not None:
+                shown.live.close()
+            try:
+                plan_file = running.folder / PLAN
+                plan = plan_from_text(
+                    plan_file.read_text("utf-8"), str(plan_file), running.folder, files_required=False
+                )
+            except (HilError, OSError):
+                return
+            shown = LiveView(running.data.id, LiveRun(running.folder / RECORDING, plan))
+            self._runs[bench] = shown
+        if shown is None:
+            return
+        passed_s, shown.looked_s = time.monotonic() - shown.looked_s, time.monotonic()
+        if shown.live.look(passed_s):
+            self._tell(bench)
+
+    async def _judge(self, bench: str) -> None:
+        shown = self._runs.get(bench)
+        if shown is None or time.monotonic() - shown.judged_s < _JUDGE_S:
+            return
+        shown.judged_s = time.monotonic()
+        found = await asyncio.to_thread(shown.live.decided)
+        if found is not None:
+            shown.criteria = found
+            self.changed(bench)
+
+    def _tell(self, bench: str) -> None:
+        for event in self.viewers[bench]:
+            event.set()

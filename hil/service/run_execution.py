@@ -1,0 +1,163 @@
+"""Carries a run out, from its claim to its end, for the owner of its bench: the service, or an agent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Protocol
+
+from hil.core.errors import HilError
+from hil.core.files import make_directory, write_atomically
+from hil.core.result import RunResult
+from hil.engine import RECORDING
+from hil.engine.ipc_messages import EmergencyAsked, Progressed, Refused, RunAsked, Told
+from hil.service.agent_data import TakenRun
+from hil.service.benches import Bench
+from hil.service.data import RunData
+from hil.service.run_process import RunProcess, result_in
+
+PLAN = "plan.yaml"
+_NOTHING = "the {who} ended before the recording started; the run can be queued again"
+_KEPT = "the {who} ended during the run; data measured before that is kept"
+
+
+class Steered(Protocol):
+    """A run under way, as those see it who may steer it."""
+
+    def pause(self) -> None:
+        """Hold it at its next safe point."""
+
+    def resume(self) -> None:
+        """Let it go on."""
+
+    def end(self) -> None:
+        """End it, with its end steps."""
+
+    def stop_in_emergency(self, asked: EmergencyAsked) -> None:
+        """Have the bench safe at once."""
+
+    def answer(self, text: str) -> None:
+        """A line for the operator's prompt."""
+
+
+@dataclass
+class RunningRun:
+    """A run under way. `told`: the last text for its operator."""
+
+    data: RunData
+    folder: Path
+    process: Steered
+    share: float | None = None
+    doing: str = "beginning"
+    told: str = ""
+
+
+@dataclass(frozen=True)
+class RunEnd:
+    """How a run ended; `queued` if nothing has happened and it is to wait again."""
+
+    state: Literal["ended", "interrupted", "queued"]
+    exit_code: int | None = None
+    result: RunResult | None = None
+    reason: str = ""
+    dut: str = ""
+
+
+class RunExecution(RunningRun):
+    """A run of which the process is here."""
+
+    process: RunProcess
+
+    @classmethod
+    async def begin(
+        cls,
+        command: Sequence[str],
+        taken: TakenRun,
+        bench: Bench,
+        folder: Path,
+        stop_line: int | None = None,
+    ) -> RunExecution:
+        """Start its process.
+
+        Args:
+            command: starts a process that carries a run out (`hil.cli._served_run`).
+            folder: for what the run leaves; made.
+            stop_line: a descriptor from which it takes emergency stops, too.
+
+        Raises:
+            HilError, OSError: the bench's file cannot be used any more, the folder cannot be written.
+        """
+        make_directory(folder)
+        write_atomically(folder / PLAN, taken.plan_text)
+        process = await RunProcess.begin(command, _asked(taken, bench, folder), stop_line)
+        run = cls(taken.data, folder, process)
+        process.answered = run._asks_no_more
+        return run
+
+    async def ended(self, bench: Bench, changed: Callable[[], None], closing: Callable[[], bool]) -> RunEnd:
+        """Listen to it until it has ended; how it did.
+
+        Args:
+            changed: called when something is to be shown anew.
+            closing: whether who drives the bench has ended the run for its own end.
+        """
+        refused: HilError | None = None
+        async for message in self.process.messages():
+            if isinstance(message, Progressed):
+                self.share = message.share if message.share >= 0 else self.share
+                self.doing = message.text
+            elif isinstance(message, Told):
+                self.told = message.text
+            elif isinstance(message, Refused):
+                refused = message.error.as_error()
+            changed()
+        code = await self.process.exit_code()
+        result, recorded = result_in(self.folder), (self.folder / RECORDING).exists()
+        if refused is not None and not recorded and not closing() and bench.used_by():
+            return RunEnd("queued", reason=str(refused))
+        reason = "" if result is not None else str(refused or f"its process ended with code {code}")
+        if result is None and recorded:
+            reason += f"\n  hil recover {self.folder} recovers the recording of what was measured"
+        dut = bench.file.dut.get("serial", bench.file.dut.get("name", ""))
+        return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
+
+    def _asks_no_more(self) -> None:
+        self.told = ""
+
+
+def end_of_left(folder: Path, who: str) -> RunEnd:
+    """How a run ended whose service or agent (`who`) was killed; its process has ended."""
+    result = result_in(folder)
+    reason = (_KEPT if (folder / RECORDING).exists() else _NOTHING).format(who=who)
+    if result is not None and result.reason:
+        reason += f": {result.reason}"
+    return RunEnd("interrupted", result=result, reason=reason)
+
+
+def _asked(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:
+    """What the process of a run is told.
+
+    Raises:
+        BadInputError: the bench's file cannot be used any more.
+    """
+    run, file = taken.data, bench.read_again()
+    return RunAsked(
+        plan=taken.plan_text,
+        plan_source=taken.plan_source,
+        bench=file.text,
+        bench_source=str(file.source),
+        out=str(folder),
+        operator=run.requested_by,
+        operator_is_there=True,
+        confirmed_by=taken.confirmed_by,
+        hazard_confirmed_by=_takes_it_upon_them(run),
+        accept_expired=taken.accept_expired,
+        stops=str(bench.stops or ""),
+    )
+
+
+def _takes_it_upon_them(run: RunData) -> str:
+    if not run.hazard:
+        return ""
+    return f"{run.requested_by}, approved by {run.approved_by}" if run.approved_by else run.requested_by

@@ -1,0 +1,49 @@
+"""Uploads are parsed in another process first: the service does not wait for a hostile one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hil.core.errors import BadInputError
+from hil.service.data import PlanData
+from hil.service.plan_reading import GivenPlan
+from hil.service.plans import Plans
+from hil.service.upload_data import GivenKind
+from hil.service.worker_pool import READ_WITHIN_S, READING, TooLongError, WorkerPool
+
+
+class UploadReader:
+    """Reads texts apart, and gives plans that could be read."""
+
+    def __init__(self, plans: Plans) -> None:
+        self._plans = plans
+        self._reading = WorkerPool(niceness=5)
+
+    async def read(self, kind: GivenKind, name: str, text: str, **more: str) -> dict[str, Any]:
+        """What another process reads of a text that somebody gives.
+
+        Raises:
+            BadInputError: it is none of its kind, or reading it takes too long.
+            BenchError: that process failed.
+        """
+        try:
+            return await self._reading.ask(f"{READING}{kind}", name=name, text=text, **more)
+        except TooLongError as error:
+            what = f"needs more than {READ_WITHIN_S:g} s of processor time to read"
+            raise BadInputError(what, where=name, fix="make it shorter") from error
+
+    async def plan(self, name: str, text: str, by: str) -> PlanData:
+        """Keep a plan, read by another process first.
+
+        Raises:
+            NameTakenError: a built-in plan has the name, or somebody else has given one just now.
+            BadInputError: all that is wrong with it.
+        """
+        folder = str(self._plans.fresh_folder().resolve())
+        found = await self.read("plan", name, text, folder=folder)
+        read = GivenPlan(PlanData.model_validate(found["data"]), tuple(found["files"]))
+        return self._plans.give(name, text, by, read=read)
+
+    def close(self) -> None:
+        """End the process that reads."""
+        self._reading.close()

@@ -1,0 +1,81 @@
+"""`python -m hil.service.worker_pool`: answers the service's questions until there are none."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import os
+import select
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from hil.core.errors import BadInputError, HilError
+from hil.service.worker_pool import _campaigning, _comparing, _designing, _fitting, _reading
+from hil.service.worker_pool._worker_pool import ANSWERED, READ_WITHIN_S, READING, REFUSED
+
+_IDLE_S = 600.0
+TASKS: dict[str, Callable[..., dict[str, Any]]] = {
+    "comparison": _comparing.comparison,
+    "traces": _comparing.traces,
+    "draft": _designing.draft,
+    "design": _designing.designed,
+    "fitted": _fitting.fitted,
+    "campaign": _campaigning.given,
+    "campaign_so_far": _campaigning.so_far,
+    "campaign_table": _campaigning.table,
+    "read_plan": _reading.plan,
+    "read_model": _reading.model,
+    "read_controller": _reading.controller,
+    "campaign_examples": _campaigning.examples,
+}
+
+
+def main() -> None:
+    """Answer line by line; end with the service, or after ten minutes without a question."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what a library prints is no answer
+    while select.select([0], [], [], _IDLE_S)[0]:
+        line = sys.stdin.buffer.readline()
+        if not line:
+            return
+        answers.write(_answer(json.loads(line)) + b"\n")
+        answers.flush()
+
+
+def _answer(question: dict[str, Any]) -> bytes:
+    try:
+        with _limited(question["task"]):
+            return ANSWERED + _json(TASKS[question["task"]](**question["asked"]))
+    except HilError as error:
+        bad = isinstance(error, BadInputError)
+        return _refusal(error.what, error.where, error.fix, bad_input=bad)
+    except Exception as error:
+        logging.getLogger(__name__).exception("internal error")
+        what = f"internal error: {type(error).__name__}: {error}"
+        return _refusal(what, question["task"], "please report it", bad_input=False)
+
+
+@contextlib.contextmanager
+def _limited(task: str) -> Iterator[None]:
+    """Of what people give, reading takes so much of a processor; the system ends this process after that."""
+    if task.startswith(READING):
+        signal.setitimer(signal.ITIMER_VIRTUAL, READ_WITHIN_S)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0.0)
+
+
+def _refusal(what: str, where: str, fix: str, *, bad_input: bool) -> bytes:
+    return REFUSED + _json({"what": what, "where": where, "fix": fix, "bad_input": bad_input})
+
+
+def _json(value: dict[str, Any]) -> bytes:
+    return json.dumps(value, allow_nan=False, separators=(",", ":")).encode()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,115 @@
+"""The service's side of its worker processes: questions out, answers in, each a line of JSON."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import signal
+import sys
+from typing import Any
+
+from hil.core.errors import BadInputError, BenchError
+from hil.service.background import FORECAST_BYTES, begun
+
+_WITHIN_S = 60.0
+#: What an answer begins with; JSON follows.
+ANSWERED, REFUSED = b"+", b"-"
+#: Reading what people give may take so much of a processor, however busy that is; 240 kB of YAML need 2 s.
+READING, READ_WITHIN_S = "read_", 5.0
+_LONGEST_ANSWER_BYTES = 1 << 26
+
+
+class TooLongError(BenchError):
+    """Reading took more than `READ_WITHIN_S` of a processor, and its process was ended."""
+
+
+class WorkerPool:
+    """A process that answers one question after the other; begun with the first, ended when nobody asks.
+
+    Args:
+        niceness: added to that of the service.
+    """
+
+    def __init__(self, niceness: int) -> None:
+        self._niceness = niceness
+        self._turn = asyncio.Lock()
+        self._process: asyncio.subprocess.Process | None = None
+
+    async def ask(self, task: str, **asked: object) -> dict[str, Any]:
+        """What one of the tasks in `__main__` gives for arguments of JSON.
+
+        Raises:
+            HilError: as of `ask_text`.
+        """
+        found: dict[str, Any] = json.loads(await self.ask_text(task, **asked))
+        return found
+
+    async def ask_text(self, task: str, **asked: object) -> bytes:
+        """The same as the JSON that it is.
+
+        Raises:
+            BadInputError: what was asked cannot be answered.
+            BenchError: it took too long, or its process failed.
+        """
+        question = json.dumps({"task": task, "asked": asked}).encode() + b"\n"
+        async with self._turn:
+            try:
+                line = await asyncio.wait_for(self._answer(question), _WITHIN_S)
+            except BaseException as error:
+                self.close()  # its answer would be taken for the next question's
+                if isinstance(error, TimeoutError):
+                    raise BenchError(f"took more than {_WITHIN_S:g} s", where=task) from error
+                raise
+        if not line:
+            raise BenchError("its process ended", where=task, fix="look at the service's log")
+        return _read(line)
+
+    def close(self) -> None:
+        """End the process, whatever it does."""
+        if self._process is not None:
+            with contextlib.suppress(ProcessLookupError):
+                self._process.kill()
+        self._process = None
+
+    async def _answer(self, question: bytes) -> bytes:
+        """The line that answers; a process that had just ended for want of questions is begun anew."""
+        was_there = self._process is not None
+        line = await self._asked(question)
+        return line or (await self._asked(question) if was_there else b"")
+
+    async def _asked(self, question: bytes) -> bytes:
+        process = self._process or await self._begun()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        with contextlib.suppress(ConnectionError):
+            process.stdin.write(question)
+            await process.stdin.drain()
+        line = await process.stdout.readline()
+        if not line:
+            code = await process.wait()
+            self._process = None
+            if code == -signal.SIGVTALRM:
+                raise TooLongError(f"took more than {READ_WITHIN_S:g} s of a processor", where="reading")
+        return line
+
+    async def _begun(self) -> asyncio.subprocess.Process:
+        self._process = await begun(
+            sys.executable,
+            "-m",
+            __package__,
+            niceness=self._niceness,
+            most_bytes=FORECAST_BYTES,
+            stdin=asyncio.subprocess.PIPE,
+            stdout=asyncio.subprocess.PIPE,
+            limit=_LONGEST_ANSWER_BYTES,
+        )
+        return self._process
+
+
+def _read(line: bytes) -> bytes:
+    if line.startswith(ANSWERED):
+        return line[len(ANSWERED) :]
+    refused = json.loads(line[len(REFUSED) :])
+    kind = BadInputError if refused["bad_input"] else BenchError
+    raise kind(refused["what"], where=refused["where"], fix=refused["fix"])
