@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import functools
 import importlib
 import importlib.metadata
 import inspect
@@ -14,7 +13,7 @@ import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any, Protocol, get_type_hints
 
 import typer
 
@@ -60,6 +59,16 @@ _COMMANDS = {
     "init": "Make a folder that is ready to run: plan, bench, model, controller.",
     "schema": "Print the JSON schema of plan, bench, model, controller or campaign files.",
 }
+
+
+class Command(Protocol):
+    """Options of a command, and what it does with them. Documented by its class, as `--help` shows it."""
+
+    def __init__(self, **options: Any) -> None: ...
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        ...
 
 
 def run_command_line() -> int:
@@ -126,13 +135,19 @@ def _module(name: str) -> ModuleType:
     return importlib.import_module(f"hil.cli.commands.{name.replace('-', '_')}")
 
 
+def _command(name: str) -> type[Command]:
+    """The class of a command, named as it is: ExportFmu of `export-fmu`. Its fields are the options."""
+    found: type[Command] = getattr(_module(name), name.title().replace("-", ""))
+    return found
+
+
 def _app_of(*names: str) -> typer.Typer:
     """Commands as typer has them."""
     several = len(names) > 1
     app = typer.Typer(add_completion=several, rich_markup_mode=None, pretty_exceptions_enable=False)
     settings = {"help_option_names": ["-h", "--help"]}
     for name in names:
-        command = _module(name).command
+        command = _command(name)
         app.command(name, help=command.__doc__, context_settings=settings)(_with_exit_code(command))
     return app
 
@@ -148,13 +163,12 @@ _VERBOSE = Annotated[bool, typer.Option("--verbose", help="print each action on 
 _LOG = Annotated[Path | None, typer.Option("--log", metavar="FILE", help="write a detailed log to FILE")]
 
 
-def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
-    """The command with the options that all have."""
+def _with_exit_code(command: type[Command]) -> Callable[..., None]:
+    """The command as a function, with the options that all have."""
 
-    @functools.wraps(command)
     def call(*, verbose: bool, log: Path | None, **options: Any) -> None:
         LOG.send(log, verbose=verbose)
-        raise SystemExit(command(**options))
+        raise SystemExit(command(**options).carry_out())
 
     common = {"verbose": (False, _VERBOSE), "log": (None, _LOG)}
     kinds = {
@@ -163,7 +177,7 @@ def _with_exit_code(command: Callable[..., int]) -> Callable[..., None]:
     }
     own = [
         parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY, annotation=kinds[name])
-        for name, parameter in inspect.signature(command).parameters.items()
+        for name, parameter in inspect.signature(command).parameters.items()  # those of its fields
     ]
     ours = [
         inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=kind)

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from hil.analysis.tuning import Confirmation, Tuning, confirmation
-from hil.cli import diagnose
 from hil.cli._one_run import Runs
 from hil.cli._output import console, plain_table
+from hil.cli.commands.diagnose import Diagnose
 from hil.core.digits import share
 from hil.core.errors import BadInputError, HilError
 from hil.core.recording import Recording, read_recording
@@ -93,17 +93,11 @@ def _name_in(plan: str, file: Path) -> str:
 def _diagnosed(place: Path, model: Path, *, overwrite: bool) -> str:
     """Diagnose the run with the model; where its results are, or why there are none."""
     try:
-        diagnose.carry_out(
-            recordings=[place / RUN / RECORDING],
-            model=model,
-            out=place / DIAGNOSIS,
-            holdout=None,
-            noise=None,
-            least=None,
-            at_most=10.0,
-            overwrite=overwrite,
-            json_=False,
+        recordings = [place / RUN / RECORDING]
+        asked = Diagnose(
+            model=model, recordings=recordings, out=place / DIAGNOSIS, at_most=10.0, overwrite=overwrite
         )
+        asked.carry_out()
     except HilError as error:
         return f"no diagnosis: {error.what}"
     return str(place / DIAGNOSIS)

@@ -6,29 +6,25 @@ import math
 import os
 import socket
 import sys
-from pathlib import Path
 
 from hil.agent import AgentRequest, work
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._output import print_json
 from hil.cli._remote_run import TOKEN
 from hil.cli._served_run import HIL, RUNNER
+from hil.cli.commands.agent import Agent
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from hil.engine import StopRequest
 
 
-def carry_out(
-    *,
-    server: list[str],
-    data: Path,
-    bench: list[str],
-    name: str,
-    keep_local: float,
-    for_s: float | None,
-    as_json: bool,
-) -> int:
+def carry_out(options: Agent) -> int:
     """Carry the command out; its exit code."""
+    server = options.server
+    data = options.data
+    bench = options.bench or ["sim"]
+    name = options.name
+    for_s = options.for_s
     if for_s is not None and not for_s > 0:
         raise BadInputError(f"--for is {for_s:g}", fix="give seconds greater than 0, or leave it out")
     name = name or socket.gethostname()
@@ -41,7 +37,7 @@ def carry_out(
     stop = StopRequest()
 
     def ready(away: str) -> None:
-        if as_json:
+        if options.as_json:
             print_json({"agent": name, "servers": server, "data": str(data.resolve()), "away": away})
         elif away:
             print(f"Agent {name} is ready; the service cannot be reached, the agent retries: {away}")
@@ -57,7 +53,7 @@ def carry_out(
         hil=HIL,
         token=os.environ.get(TOKEN, ""),
         name=name,
-        local_days=keep_local,
+        local_days=options.keep_local,
         for_s=math.inf if for_s is None else for_s,
         ready=ready,
         stop=stop,

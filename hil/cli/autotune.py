@@ -17,6 +17,7 @@ from hil.cli._one_run import Runs
 from hil.cli._output import console, plain_table, print_json, progress, to_json
 from hil.cli._results_folder import ResultsFolder, results_in
 from hil.cli._tuning import Asked
+from hil.cli.commands.autotune import Autotune
 from hil.core.controller import controller_to_toml
 from hil.core.digits import share
 from hil.core.errors import BadInputError
@@ -34,44 +35,40 @@ SUMMARY, CONTROLLER = "autotune.json", "controller.toml"
 _NAMES = (SUMMARY, CONTROLLER, MODEL, HTML, PDF)
 
 
-def carry_out(
-    *,
-    model: Path,
-    sequence: str,
-    bench: str,
-    out: Path | None,
-    envelope: list[str] | None,
-    confirm: str,
-    operator: str,
-    processes: int | None,
-    resume: bool,
-    overwrite: bool,
-    json_: bool,
-) -> int:
+def carry_out(options: Autotune) -> int:
     """Carry the command out; its exit code."""
-    if resume and out is None:
+    if options.resume and options.out is None:
         raise BadInputError(
             "--resume goes with --out", where="--resume", fix="name the directory to continue with --out"
         )
-    kept = resume or overwrite
-    told = _told(load_sequence(sequence), model, bench, envelope or [], confirm, operator, processes, kept)
-    told = replace(told, resume=resume)
+    kept = options.resume or options.overwrite
+    told = _told(
+        load_sequence(options.sequence),
+        options.model,
+        options.bench,
+        options.envelope or [],
+        options.confirm,
+        options.operator,
+        options.processes,
+        kept,
+    )
+    told = replace(told, resume=options.resume)
     inputs = told.runs.inputs
     with results_in(
-        out, _NAMES, inputs=inputs, overwrite=kept, default=told.sequence.name, summary=SUMMARY
+        options.out, _NAMES, inputs=inputs, overwrite=kept, default=told.sequence.name, summary=SUMMARY
     ) as place:
         closing = Closing(_asked_for(told), [_consented(told.allowed)])
 
         def keep() -> None:
             place.write({SUMMARY: _json(closing_summary(closing, [SUMMARY]))}, inputs)
-            if not json_:
+            if not options.json_:
                 _tell_newest(closing)
 
         loop = AutotuneLoop(told, place.folder, closing, keep)
         code = loop.carry_out()
         with progress("the report"):
             summary = _write(loop, told, place)
-        if json_:
+        if options.json_:
             print_json(summary)
         else:
             _tell(closing, place.folder)

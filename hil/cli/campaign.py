@@ -31,6 +31,7 @@ from hil.cli._output import print_json, progress, to_json
 from hil.cli._results_folder import ResultsFolder, results_in
 from hil.cli._second_interrupt import at_once
 from hil.cli._streams import complain
+from hil.cli.commands.campaign import Campaign
 from hil.core.errors import BadInputError
 from hil.engine import StopRequest
 from reports import HTML, PDF
@@ -42,52 +43,47 @@ from reports.parts import documents
 SUMMARY = "campaign.json"
 
 
-def carry_out(
-    *,
-    campaign: str,
-    out: Path | None,
-    workers: int | None,
-    scheduler: str,
-    server: str,
-    resume: bool,
-    dry_run: bool,
-    overwrite: bool,
-    json_: bool,
-) -> int:
+def carry_out(options: Campaign) -> int:
     """Carry the command out; its exit code."""
-    if server:
-        _refuse_here_only(workers=workers, scheduler=scheduler, dry_run=dry_run)
+    if options.server:
+        _refuse_here_only(workers=options.workers, scheduler=options.scheduler, dry_run=options.dry_run)
         from hil.cli._remote_campaign import RemoteCampaign  # costs a campaign here nothing
 
-        return RemoteCampaign(server, campaign, resume, overwrite).carry_out(out, as_json=json_)
-    _refuse_together(out, workers, scheduler, resume=resume, overwrite=overwrite)
-    setting = load_setting(campaign)
+        return RemoteCampaign(options.server, options.campaign, options.resume, options.overwrite).carry_out(
+            options.out, as_json=options.json_
+        )
+    _refuse_together(
+        options.out, options.workers, options.scheduler, resume=options.resume, overwrite=options.overwrite
+    )
+    setting = load_setting(options.campaign)
     simulations = Simulations(setting)
-    processes = len(os.sched_getaffinity(0)) if workers is None else workers
-    if dry_run:
+    processes = len(os.sched_getaffinity(0)) if options.workers is None else options.workers
+    if options.dry_run:
         with progress(f"campaign {setting.file.name}"):
             forecast = _forecast(simulations, max(1, processes))
-        if json_:
+        if options.json_:
             print_json(forecast)
         else:
             print(_forecast_in_words(forecast))
         return 0
     with results_in(
-        out,
+        options.out,
         (BEGUN, SUMMARY, HTML, PDF),
         inputs=[one.path for one in setting.sources],
-        overwrite=overwrite or resume,
+        overwrite=options.overwrite or options.resume,
         default="campaign",
         summary=SUMMARY,
     ) as place:
-        if not _simulated(simulations, place, processes, scheduler, campaign, resume=resume):
+        if not _simulated(
+            simulations, place, processes, options.scheduler, options.campaign, resume=options.resume
+        ):
             return EXIT_CODE
         with progress(f"campaign {setting.file.name}") as show:
             show("report")
             found = _findings(setting, simulations, place)
             summary = _write(setting, found, place)
         wanted, random = setting.file.pass_share, setting.file.draws > 0
-        if json_:
+        if options.json_:
             print_json(summary)
         else:
             print(text_of(found, random=random, wanted=wanted, out=str(place.folder)))

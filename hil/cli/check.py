@@ -13,6 +13,7 @@ from hil.cli._choices import choices_of
 from hil.cli._default_bench import bench_or_own
 from hil.cli._loop_margins import loop_margins, margins_json, margins_table, remarks_on_load, warnings_of
 from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
+from hil.cli.commands.check import Check
 from hil.core.channels import CHANNELS
 from hil.core.digits import share
 from hil.core.errors import BadInputError
@@ -29,17 +30,10 @@ if TYPE_CHECKING:
     from hil.analysis.control_design import Margins
 
 
-def carry_out(
-    *,
-    plan: str,
-    bench: str,
-    values: list[str] | None,
-    controller: list[str] | None,
-    as_json: bool,
-) -> int:
+def carry_out(options: Check) -> int:
     """Carry the command out; its exit code."""
-    choices = choices_of(values, controller)
-    checked, file = _loaded(plan, choices, bench)
+    choices = choices_of(options.values, options.controller)
+    checked, file = _loaded(options.plan, choices, options.bench)
     with tempfile.TemporaryDirectory() as directory:
         today = datetime.datetime.now(datetime.UTC).date()
         accepted_expiry(file, today, "")
@@ -56,7 +50,7 @@ def carry_out(
             raise
         warn(f"no margins of the loops: {missing}")
         loops = {}
-    if as_json:
+    if options.as_json:
         print_json(_json(checked, file.name, predicted) | {"loops": margins_json(loops)})
     else:
         _tell(checked, file.name, predicted, loops)

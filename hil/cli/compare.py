@@ -9,6 +9,7 @@ from typing import Any
 from hil.analysis.comparison import ComparedRun, Comparison, compare, names_by_variables
 from hil.cli._output import Show, console, plain_table, print_json, progress, to_json, warn_of_damage
 from hil.cli._results_folder import refuse_missing, results_in
+from hil.cli.commands.compare import Compare
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from hil.engine import RECORDING
@@ -18,27 +19,27 @@ from test_plans import rejudged
 SUMMARY, HTML, PDF = "comparison.json", "report.html", "report.pdf"
 
 
-def carry_out(*, runs: list[Path], out: Path | None, overwrite: bool, as_json: bool) -> int:
+def carry_out(options: Compare) -> int:
     """Carry the command out; its exit code."""
-    paths = [path / RECORDING if path.is_dir() else path for path in runs]
+    paths = [path / RECORDING if path.is_dir() else path for path in options.runs]
     for path in paths:
         refuse_missing(path)
     _refuse_twice(paths)
     names = (SUMMARY, HTML, PDF)
     with results_in(
-        out, names, inputs=paths, overwrite=overwrite, default="compare", summary=SUMMARY
+        options.out, names, inputs=paths, overwrite=options.overwrite, default="compare", summary=SUMMARY
     ) as place:
         with progress("comparison") as show:
-            found = compare(_read(runs, paths, show))
+            found = compare(_read(options.runs, paths, show))
             show("writing the report")
-            summary = _summary(found, runs)
+            summary = _summary(found, options.runs)
             files = {
                 HTML: comparison_html(found).encode(),
                 PDF: comparison_pdf(found),
                 SUMMARY: (to_json(summary) + "\n").encode(),
             }
         place.write(files, paths)
-        if as_json:
+        if options.as_json:
             print_json(summary)
         else:
             _tell(found, place.folder / HTML)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, get_args
 
 from hil.analysis.control_design import DesignSpec, MarginLimits, Normalisation, Objective, design
 from hil.analysis.frequency_response import frf_from_csv
 from hil.cli._output import print_json, progress, to_json
 from hil.cli._results_folder import results_in
+from hil.cli.commands.design import Design
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from reports import HTML, PDF
@@ -21,57 +21,36 @@ from reports.parts import documents
 _PAPER = DesignSpec()
 
 
-def carry_out(
-    *,
-    model: Path,
-    out: Path | None,
-    optimize: bool,
-    objective: str,
-    lead_deg: float,
-    lead_hz: float,
-    normalisation: str,
-    notch_hz: float | None,
-    notch_width: float,
-    notch_depth: float,
-    pole: float,
-    inertia: float | None,
-    gear_ratio: float | None,
-    wheel_inertia: float | None,
-    torque_limit: float,
-    largest_sensitivity: float,
-    frf: Path | None,
-    name: str,
-    overwrite: bool,
-    json_: bool,
-) -> int:
+def carry_out(options: Design) -> int:
     """Carry the command out; its exit code."""
+    wheel_inertia = options.wheel_inertia
     spec = DesignSpec(
-        stabilisation="phase" if notch_hz is None else "gain",
-        pole_rad_s=pole,
-        lead_deg=lead_deg,
-        lead_hz=lead_hz,
-        normalisation=_one_of("--normalisation", normalisation, get_args(Normalisation)),
-        notch_hz=notch_hz,
-        notch_width=notch_width,
-        notch_depth=notch_depth,
-        inertia_kg_m2=inertia,
-        gear_ratio=gear_ratio,
+        stabilisation="phase" if options.notch_hz is None else "gain",
+        pole_rad_s=options.pole,
+        lead_deg=options.lead_deg,
+        lead_hz=options.lead_hz,
+        normalisation=_one_of("--normalisation", options.normalisation, get_args(Normalisation)),
+        notch_hz=options.notch_hz,
+        notch_width=options.notch_width,
+        notch_depth=options.notch_depth,
+        inertia_kg_m2=options.inertia,
+        gear_ratio=options.gear_ratio,
         wheel_inertia_kg_m2=wheel_inertia,
-        torque_limit_nm=torque_limit,
-        optimise=optimize,
-        objective=_one_of("--objective", objective, get_args(Objective)),
-        limits=MarginLimits(sensitivity_peak=largest_sensitivity),
-        name=name,
+        torque_limit_nm=options.torque_limit,
+        optimise=options.optimize,
+        objective=_one_of("--objective", options.objective, get_args(Objective)),
+        limits=MarginLimits(sensitivity_peak=options.largest_sensitivity),
+        name=options.name,
     )
-    plant = load_model(model)
-    beside = model.parent / "frf.csv"
-    responses = frf or (beside if beside.is_file() else None)
-    inputs = [model, *([responses] if responses else [])]
+    plant = load_model(options.model)
+    beside = options.model.parent / "frf.csv"
+    responses = options.frf or (beside if beside.is_file() else None)
+    inputs = [options.model, *([responses] if responses else [])]
     with results_in(
-        out,
+        options.out,
         ("controller.toml", "design.json", HTML, PDF),
         inputs=inputs,
-        overwrite=overwrite,
+        overwrite=options.overwrite,
         default="design",
         summary="design.json",
     ) as place:
@@ -79,18 +58,18 @@ def carry_out(
             measured = frf_from_csv(responses) if responses else None
             found = design(plant, spec, progress=show)
             paper = None
-            if optimize:
+            if options.optimize:
                 wheel_inertia = found.controller.dfo.wheel_inertia_kg_m2
                 # Only compared with: on another axle the paper's own lead may well be unstable.
                 paper = design(plant, _as_in_the_paper(found.spec, wheel_inertia), unstable_too=True)
             show("figures")
             files = output_files(found, measured)
-            summary = summary_of(found, paper, str(model), sorted([*files, HTML, PDF]))
-            used = {"model": [model], "measured response": [responses] if responses else []}
-            files |= documents(design_page(found, summary, files, model.name, origin_of(used)))
+            summary = summary_of(found, paper, str(options.model), sorted([*files, HTML, PDF]))
+            used = {"model": [options.model], "measured response": [responses] if responses else []}
+            files |= documents(design_page(found, summary, files, options.model.name, origin_of(used)))
             files["design.json"] = (to_json(summary) + "\n").encode()
         place.write(files, inputs)
-    if json_:
+    if options.json_:
         print_json(summary)
     else:
         print(text_of(found, paper, place.folder))

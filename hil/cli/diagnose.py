@@ -11,6 +11,7 @@ from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_values import named_numbers
 from hil.cli._output import Show, print_json, progress, to_json, warn_of_damage
 from hil.cli._results_folder import results_in
+from hil.cli.commands.diagnose import Diagnose
 from hil.core.digits import factor, share
 from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model, model_to_toml
@@ -24,40 +25,39 @@ _WORTH_A_LINE = 0.02
 _MOST_WORSE = 3
 
 
-def carry_out(
-    *,
-    recordings: list[Path],
-    model: Path,
-    out: Path | None,
-    holdout: list[Path] | None,
-    noise: list[str] | None,
-    least: list[str] | None,
-    at_most: float,
-    overwrite: bool,
-    json_: bool,
-) -> int:
+def carry_out(options: Diagnose) -> int:
     """Carry the command out; its exit code."""
-    base = load_model(model)
-    known, smallest = named_numbers(noise or [], "--noise"), named_numbers(least or [], "--least")
-    _refuse_twice(recordings, holdout or [])
-    inputs = [model, *recordings, *(holdout or [])]
+    base = load_model(options.model)
+    known, smallest = (
+        named_numbers(options.noise or [], "--noise"),
+        named_numbers(options.least or [], "--least"),
+    )
+    _refuse_twice(options.recordings, options.holdout or [])
+    inputs = [options.model, *options.recordings, *(options.holdout or [])]
     with results_in(
-        out, FILES, inputs=inputs, overwrite=overwrite, default="diagnose", summary="diagnosis.json"
+        options.out,
+        FILES,
+        inputs=inputs,
+        overwrite=options.overwrite,
+        default="diagnose",
+        summary="diagnosis.json",
     ) as place:
         with progress("diagnosis") as show:
-            read = stretches_of(recordings, base, show)
-            held = stretches_of(holdout or [], base, show)
+            read = stretches_of(options.recordings, base, show)
+            held = stretches_of(options.holdout or [], base, show)
             found = diagnose(
-                base, read, held, noise=known, least=smallest, at_most_s=60.0 * at_most, show=show
+                base, read, held, noise=known, least=smallest, at_most_s=60.0 * options.at_most, show=show
             )
             interrupted = found.unfinished == INTERRUPTED
             if interrupted:
                 INTERRUPTS.answered()
             show("writing the report")
-            origin = origin_of({"model": [model], "recording": recordings, "held out": holdout or []})
-            files = output_files(found, model.name, origin)
+            origin = origin_of(
+                {"model": [options.model], "recording": options.recordings, "held out": options.holdout or []}
+            )
+            files = output_files(found, options.model.name, origin)
         place.write(files, inputs)
-    if json_:
+    if options.json_:
         print_json(_summary(found, files))
     else:
         print(text_of(found, place.folder))

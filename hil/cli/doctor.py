@@ -7,6 +7,7 @@ from rich.table import Table
 
 from hil.cli._default_bench import bench_or_own
 from hil.cli._output import console, plain_table, print_json, progress
+from hil.cli.commands.doctor import Doctor
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
 from hil.engine.doctor import BusFacts, DoctorRequest, Examination, examine_bench
@@ -20,14 +21,14 @@ _VERDICTS = {
 _COUNTERS = {"state": "", "transmit_errors": "transmit errors ", "receive_errors": "receive errors "}
 
 
-def carry_out(*, bench: str, for_s: float, as_json: bool) -> int:
+def carry_out(options: Doctor) -> int:
     """Carry the command out; its exit code."""
-    file = load_bench(bench_or_own(bench))
+    file = load_bench(bench_or_own(options.bench))
     with progress(f"checking {file.name}") as show:
-        request = DoctorRequest(file, for_s, stop=StopRequest())
+        request = DoctorRequest(file, options.for_s, stop=StopRequest())
         request.progress = lambda share, text: show(text, share)
         found = examine_bench(request)
-    if as_json:
+    if options.as_json:
         print_json(found.as_dict())
     else:
         _tell(found)

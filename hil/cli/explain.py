@@ -21,6 +21,7 @@ from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
 from hil.cli._named_values import named_numbers
 from hil.cli._output import console, plain_table, print_json, progress, to_json
 from hil.cli._results_folder import results_in
+from hil.cli.commands.explain import Explain
 from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT
 from hil.core.model import Model, load_model
@@ -33,58 +34,47 @@ from test_plans import Plan
 SUMMARY, HTML, PDF = "targets.json", "report.html", "report.pdf"
 
 
-def carry_out(
-    *,
-    targets: Path | None,
-    target: list[str],
-    plan: str | None,
-    bench: str,
-    model: Path | None,
-    among: list[str],
-    evaluations: int,
-    seed: int,
-    out: Path | None,
-    overwrite: bool,
-    as_json: bool,
-) -> int:
+def carry_out(options: Explain) -> int:
     """Carry the command out; its exit code."""
+    target = options.target or []
+    among = options.among or []
     wanted, file = (
-        read_targets(targets, plan, named_numbers(target, "--target")),
-        load_bench(bench_or_own(bench, plan)),
+        read_targets(options.targets, options.plan, named_numbers(target, "--target")),
+        load_bench(bench_or_own(options.bench, options.plan)),
     )
     if file.simulation is None:
         raise BadInputError(
             "is not a simulated bench", where=str(file.source), fix="give a bench file with [simulation]"
         )
-    source = model or file.simulation.model
+    source = options.model or file.simulation.model
     base = load_model(source)
     refuse_too_stiff(base)
-    inputs = [path for path in (targets, source, file.source) if path is not None]
+    inputs = [path for path in (options.targets, source, file.source) if path is not None]
     names = (SUMMARY, HTML, PDF, SEPARATING, model_name(1))
     stop = StopRequest()
     with results_in(
-        out, names, inputs=inputs, overwrite=overwrite, default="explain", summary=SUMMARY
+        options.out, names, inputs=inputs, overwrite=options.overwrite, default="explain", summary=SUMMARY
     ) as place:
         with progress("explain") as show, stop.by_signals():
             found = explain(
                 base,
                 _predicted_on(file),
                 wanted,
-                evaluations=evaluations,
+                evaluations=options.evaluations,
                 among=among,
-                seed=seed,
+                seed=options.seed,
                 show=lambda text, share: show(text, share),
                 stopped=lambda: stop.times > 0,
             )
         files = files_of(found)
-        summary = _summary(found, seed, sorted({*files, SUMMARY, HTML, PDF}))
+        summary = _summary(found, options.seed, sorted({*files, SUMMARY, HTML, PDF}))
         files |= {
             HTML: explanation_html(found).encode(),
             PDF: explanation_pdf(found),
             SUMMARY: (to_json(summary) + "\n").encode(),
         }
         place.write(files, inputs)
-        if as_json:
+        if options.as_json:
             print_json(summary)
         else:
             _tell(found, place.folder)

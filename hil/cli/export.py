@@ -7,6 +7,7 @@ from pathlib import Path
 from hil.cli._output import console, print_json, warn_of_damage
 from hil.cli._results_folder import refuse_file, results_in
 from hil.cli._run_inputs import command_again, inputs_of
+from hil.cli.commands.export import Export
 from hil.core.recording import (
     FRAME_LOGS,
     Recording,
@@ -17,26 +18,19 @@ from hil.core.recording import (
 )
 
 
-def carry_out(
-    *,
-    recording: Path,
-    out: Path,
-    frames: bool,
-    inputs: bool,
-    overwrite: bool,
-    as_json: bool,
-) -> int:
+def carry_out(options: Export) -> int:
     """Carry the command out; its exit code."""
-    if inputs:
-        return _inputs(recording, out, overwrite=overwrite, as_json=as_json)
+    out = options.out
+    if options.inputs:
+        return _inputs(options.recording, out, overwrite=options.overwrite, as_json=options.as_json)
     for file in written_with(out):
-        refuse_file(file, [recording], overwrite=overwrite)
-    table = read_recording(recording, any_replay=True)
+        refuse_file(file, [options.recording], overwrite=options.overwrite)
+    table = read_recording(options.recording, any_replay=True)
     warn_of_damage([table])
-    if frames or out.suffix.lower() in FRAME_LOGS:
-        return _frames(table, out, as_json=as_json)
+    if options.frames or out.suffix.lower() in FRAME_LOGS:
+        return _frames(table, out, as_json=options.as_json)
     write_recording(table, out)
-    if as_json:
+    if options.as_json:
         print_json(
             {
                 "file": str(out),

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from hil.cli._output import console, print_json
 from hil.cli._results_folder import refuse_file
+from hil.cli.commands.export_fmu import ExportFmu
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
@@ -13,16 +12,23 @@ from hil.core.model import load_model
 from hil.fmu import export_fmu
 
 
-def carry_out(*, model: Path, out: Path, controller: Path | None, overwrite: bool, as_json: bool) -> int:
+def carry_out(options: ExportFmu) -> int:
     """Carry the command out; its exit code."""
+    out = options.out
     if out.suffix.lower() != ".fmu":
         raise BadInputError("is not the name of an FMU", where=str(out), fix="give a name that ends in .fmu")
-    refuse_file(out, [model, *([controller] if controller else [])], overwrite=overwrite)
-    chosen = load_model(model)
-    loaded = (load_controller(controller), read_text(controller)) if controller else None
+    refuse_file(
+        out,
+        [options.model, *([options.controller] if options.controller else [])],
+        overwrite=options.overwrite,
+    )
+    chosen = load_model(options.model)
+    loaded = (
+        (load_controller(options.controller), read_text(options.controller)) if options.controller else None
+    )
     export_fmu(chosen, out, loaded)
-    asked = "driving_torque_ref_nm" if controller else "motor_torque_ref_nm"
-    if as_json:
+    asked = "driving_torque_ref_nm" if options.controller else "motor_torque_ref_nm"
+    if options.as_json:
         print_json({"file": str(out), "fmi": "2.0", "kind": "co-simulation", "input": asked})
         return 0
     console().print(

@@ -10,6 +10,7 @@ from hil.analysis.identification import identify
 from hil.analysis.plausible import refuse_same_data
 from hil.cli._output import Show, print_json, progress, to_json, warn, warn_of_damage
 from hil.cli._results_folder import refuse_missing, results_in
+from hil.cli.commands.identify import Identify
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from reports import HTML, PDF
@@ -21,55 +22,50 @@ from reports.parts import documents
 _LEAST_SAMPLES = 100
 
 
-def carry_out(
-    *,
-    recordings: list[Path],
-    out: Path | None,
-    segment: list[str] | None,
-    input_channel: str,
-    from_hz: float | None,
-    to_hz: float | None,
-    order: int | None,
-    gear_ratio: float | None,
-    method: str,
-    hold_ms: float | None,
-    overwrite: bool,
-    json_: bool,
-) -> int:
+def carry_out(options: Identify) -> int:
     """Carry the command out; its exit code."""
-    chosen = _method(method)
+    from_hz = options.from_hz
+    to_hz = options.to_hz
+    chosen = _method(options.method)
     if from_hz is not None and to_hz is not None and from_hz >= to_hz:
         raise BadInputError(
             f"--from-hz {from_hz:g} is not below --to-hz {to_hz:g}", fix="give the lower frequency first"
         )
-    for path in recordings:
+    for path in options.recordings:
         refuse_missing(path)
     names = ("identification.json", "model.toml", "physical.toml", "frf.csv", HTML, PDF)
     with results_in(
-        out, names, inputs=recordings, overwrite=overwrite, default="identify", summary="identification.json"
+        options.out,
+        names,
+        inputs=options.recordings,
+        overwrite=options.overwrite,
+        default="identify",
+        summary="identification.json",
     ) as place:
         with progress("identification") as show:
-            experiments = _experiments(recordings, segment or [], input_channel, to_hz, hold_ms, show)
+            experiments = _experiments(
+                options.recordings, options.segment or [], options.input_channel, to_hz, options.hold_ms, show
+            )
             found = identify(
                 experiments,
                 from_hz=from_hz,
                 to_hz=to_hz,
                 method=chosen,
-                order=order,
-                gear_ratio=gear_ratio,
+                order=options.order,
+                gear_ratio=options.gear_ratio,
                 progress=show,
             )
             show("figures")
             files = output_files(found)
             summary = summary_of(found, experiments, sorted([*files, HTML, PDF]))
-            title = ", ".join(path.name for path in recordings)
-            page = identification_page(found, summary, title, origin_of({"recording": recordings}))
+            title = ", ".join(path.name for path in options.recordings)
+            page = identification_page(found, summary, title, origin_of({"recording": options.recordings}))
             files |= documents(page)
             files["identification.json"] = (to_json(summary) + "\n").encode()
-        place.write(files, recordings)
+        place.write(files, options.recordings)
     for doubt in found.doubts:
         warn(doubt)
-    if json_:
+    if options.json_:
         print_json(summary)
     else:
         print(text_of(found, summary, place.folder))

@@ -8,6 +8,7 @@ from pathlib import Path
 from hil.cli._output import print_json, progress
 from hil.cli._results_folder import results_in
 from hil.cli._samples import sample_files
+from hil.cli.commands.init import Init
 from hil.core.errors import BadInputError
 from hil.engine.bench_file import DEFAULT_BENCH, shipped
 from test_plans.loading import LIBRARY
@@ -18,21 +19,17 @@ _NAME = "my_bench"
 _SHIPPED_MODEL = "three_inertia.toml"
 
 
-def carry_out(
-    *,
-    folder: Path,
-    samples: bool,
-    as_json: bool,
-) -> int:
+def carry_out(options: Init) -> int:
     """Carry the command out; its exit code."""
+    folder = options.folder
     _refuse_used(folder)
     files = _files()
-    if samples:
+    if options.samples:
         with progress("samples") as show:
             files |= sample_files(_STARTER / "samples.yaml", lambda share, text: show(text, share))
     with results_in(folder, files) as place:
         place.write(files)
-    if as_json:
+    if options.as_json:
         print_json({"folder": str(folder), "files": list(files)})
     else:
         print(f"{folder}: {', '.join(files)}")

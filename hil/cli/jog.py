@@ -12,6 +12,7 @@ from hil.cli._output import console, plain_table, print_json, progress, to_json
 from hil.cli._results_folder import results_in
 from hil.cli._streams import complain
 from hil.cli._terminal import operators_terminal
+from hil.cli.commands.jog import Jog
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
 from hil.core.printable import printable
@@ -24,16 +25,16 @@ _WORDS = {"right": "right", "wrong": "WRONG", "not_seen": "no motion", "not_ther
 _STYLES = {"right": "green", "wrong": "bold red", "not_seen": "bold red", "not_there": "bold red"}
 
 
-def carry_out(
-    *, bench: str, torque: float, out: Path | None, operator: str, yes: str, overwrite: bool, as_json: bool
-) -> int:
+def carry_out(options: Jog) -> int:
     """Carry the command out; its exit code."""
-    file, stop = load_bench(bench), StopRequest()
-    request = JogRequest(file, Path(), torque, operator=operator, confirmed_by=yes, stop=stop)
+    file, stop = load_bench(options.bench), StopRequest()
+    request = JogRequest(
+        file, Path(), options.torque, operator=options.operator, confirmed_by=options.yes, stop=stop
+    )
     request.terminal = operators_terminal()
     with (
         results_in(
-            out, NAMES, inputs=[file.source], overwrite=overwrite, default="jog", summary=JOG
+            options.out, NAMES, inputs=[file.source], overwrite=options.overwrite, default="jog", summary=JOG
         ) as place,
         stop.by_signals(),
     ):
@@ -43,7 +44,7 @@ def carry_out(
             outcome = jog(request)
         told = _as_dict(outcome)
         write_atomically(place.folder / JOG, to_json(told) + "\n")
-        if as_json:
+        if options.as_json:
             print_json(told)
         else:
             _tell(outcome, place.folder)

@@ -10,6 +10,7 @@ from pydantic import BaseModel
 from rich.markup import escape
 
 from hil.cli._output import console, plain_table, print_json
+from hil.cli.commands.list import List
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
@@ -26,16 +27,13 @@ from test_plans.registry import Registry
 Row = dict[str, Any]
 
 
-def carry_out(
-    *,
-    what: str,
-    as_json: bool,
-) -> int:
+def carry_out(options: List) -> int:
     """Carry the command out; its exit code."""
+    what = options.what
     if what not in _LISTS:
         raise BadInputError(f"there is no list of '{printable(what, 60)}'", fix=did_you_mean(what, _LISTS))
     rows = _LISTS[what]()
-    if as_json:
+    if options.as_json:
         print_json({what: rows})
     else:
         _tell(rows)

@@ -14,6 +14,7 @@ from rich.text import Text
 
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._output import console, plain_table, print_json
+from hil.cli.commands.monitor import Monitor
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
 from hil.engine.monitor import ChannelView, MonitorRequest, View, monitor
@@ -21,20 +22,22 @@ from hil.engine.monitor import ChannelView, MonitorRequest, View, monitor
 _EVERY_S = {True: 0.2, False: 1.0}  # on a terminal, and elsewhere
 
 
-def carry_out(*, bench: str, for_s: float | None, every_s: float | None, as_json: bool) -> int:
+def carry_out(options: Monitor) -> int:
     """Carry the command out; its exit code."""
-    file = load_bench(bench)
-    terminal = sys.stdout.isatty() and not as_json
+    file = load_bench(options.bench)
+    terminal = sys.stdout.isatty() and not options.as_json
     stop = StopRequest()
-    request = MonitorRequest(file, _EVERY_S[terminal] if every_s is None else every_s, stop=stop)
-    if for_s is not None:
-        request.for_s = for_s
-    if not as_json:
+    request = MonitorRequest(
+        file, _EVERY_S[terminal] if options.every_s is None else options.every_s, stop=stop
+    )
+    if options.for_s is not None:
+        request.for_s = options.for_s
+    if not options.as_json:
         request.begin = _tell_notes
-    with _shown(terminal=terminal, as_json=as_json) as show:
+    with _shown(terminal=terminal, as_json=options.as_json) as show:
         request.show = show
         whole = monitor(request)
-    if as_json:
+    if options.as_json:
         print_json(asdict(whole))
     return EXIT_CODE if stop.times else 0
 

@@ -9,6 +9,7 @@ from typing import Any
 from hil.cli._one_run import NAMES
 from hil.cli._output import console, print_json
 from hil.cli._results_folder import alone_in, refuse_file, refuse_missing
+from hil.cli.commands.recover import Recover
 from hil.core.errors import BadInputError
 from hil.core.recording import Missing, Recording, missing_of, read_recording, recover_recording, run_of
 from hil.core.result import RunResult
@@ -17,9 +18,9 @@ from hil.engine import RECORDING
 _RECOVERED = ".recovered.mcap"
 
 
-def carry_out(*, source: Path, out: Path | None, overwrite: bool, as_json: bool) -> int:
+def carry_out(options: Recover) -> int:
     """Carry the command out; its exit code."""
-    path = source / RECORDING if source.is_dir() else source
+    path = options.source / RECORDING if options.source.is_dir() else options.source
     refuse_missing(path)
     if path.suffix.lower() != ".mcap":
         raise BadInputError(
@@ -27,7 +28,7 @@ def carry_out(*, source: Path, out: Path | None, overwrite: bool, as_json: bool)
             where=str(path),
             fix="give the run's recording.mcap; other formats have no blocks to recover from",
         )
-    target = out or path.with_name(path.stem + _RECOVERED)
+    target = options.out or path.with_name(path.stem + _RECOVERED)
     if target.suffix.lower() != ".mcap":
         raise BadInputError(
             "a recovered recording ends in .mcap",
@@ -37,11 +38,11 @@ def carry_out(*, source: Path, out: Path | None, overwrite: bool, as_json: bool)
     with alone_in(path.parent):
         found = read_recording(path, least_samples=0, allow_missing=True)
         if found.damage:
-            refuse_file(target, [path], overwrite=overwrite)
+            refuse_file(target, [path], overwrite=options.overwrite)
             found = recover_recording(path, target)
-    absent = [name for name in NAMES if not (path.parent / name).exists()] if source.is_dir() else []
+    absent = [name for name in NAMES if not (path.parent / name).exists()] if options.source.is_dir() else []
     recovered = target if found.source == target else None
-    if as_json:
+    if options.as_json:
         print_json(_as_data(path, recovered, found, absent))
     else:
         _tell(path, recovered, found, absent)

@@ -9,6 +9,7 @@ from hil.cli._output import console, count_in_words, print_criteria, print_json,
 from hil.cli._result_file import RESULT, write_result
 from hil.cli._results_folder import refuse_missing, results_in
 from hil.cli._streams import complain
+from hil.cli.commands.replay import Replay
 from hil.core.errors import BadInputError
 from hil.core.printable import printable, refuse_long
 from hil.core.recording import read_recording
@@ -19,30 +20,28 @@ from reports import HTML, JUNIT, PDF, write_reports
 from test_plans import load_plan
 
 
-def carry_out(
-    *,
-    logs: list[Path],
-    bench: str | None,
-    dbc: list[str] | None,
-    bus: list[str] | None,
-    plan: str | None,
-    segments: Path | None,
-    operator: str,
-    out: Path | None,
-    overwrite: bool,
-    as_json: bool,
-) -> int:
+def carry_out(options: Replay) -> int:
     """Carry the command out; its exit code."""
-    request = _request(logs, bench, dbc, bus, plan, segments, operator)
-    named = [*request.dbcs.values(), *([segments] if segments else [])]
-    inputs = [*logs, *named, *([request.bench.source] if request.bench else [])]
+    request = _request(
+        options.logs,
+        options.bench,
+        options.dbc,
+        options.bus,
+        options.plan,
+        options.segments,
+        options.operator,
+    )
+    named = [*request.dbcs.values(), *([options.segments] if options.segments else [])]
+    inputs = [*options.logs, *named, *([request.bench.source] if request.bench else [])]
     inputs += [request.plan.source] if request.plan else []
-    for path in (*logs, *named):
+    for path in (*options.logs, *named):
         refuse_missing(path)
     names = (RECORDING, RESULT, JUNIT, HTML, PDF)
-    with results_in(out, names, inputs=inputs, overwrite=overwrite, default="replay") as place:
+    with results_in(
+        options.out, names, inputs=inputs, overwrite=options.overwrite, default="replay"
+    ) as place:
         path = place.folder / RECORDING
-        with progress(", ".join(log.name for log in logs)) as show:
+        with progress(", ".join(log.name for log in options.logs)) as show:
             replayed = replay(request, path, show)
             show("writing the reports")
             recording = read_recording(path, least_samples=0, allow_missing=True, any_replay=True)
@@ -52,7 +51,7 @@ def carry_out(
         if result is not None:
             result = write_result(result, recording, files, place.folder)
         place.remove_stale([*files.values(), *([RESULT] if result else [])])
-    return _told(replayed, result, files, place.folder, as_json=as_json)
+    return _told(replayed, result, files, place.folder, as_json=options.as_json)
 
 
 def _request(

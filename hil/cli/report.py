@@ -16,6 +16,7 @@ from hil.cli._output import (
 from hil.cli._result_file import RESULT, write_result
 from hil.cli._results_folder import refuse_missing, results_in
 from hil.cli._streams import complain
+from hil.cli.commands.report import Report
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.core.recording import read_recording
@@ -25,20 +26,14 @@ from reports import HTML, JUNIT, PDF, recording_named_in, write_reports
 from test_plans import rejudged
 
 
-def carry_out(
-    *,
-    source: Path,
-    out: Path | None,
-    overwrite: bool,
-    as_json: bool,
-) -> int:
+def carry_out(options: Report) -> int:
     """Carry the command out; its exit code."""
-    path = source / RECORDING if source.is_dir() else source
+    path = options.source / RECORDING if options.source.is_dir() else options.source
     refuse_missing(path)
-    folder = out or path.parent
+    folder = options.out or path.parent
     renewed = folder.resolve() == path.parent.resolve() and _belongs(folder, path.name)
     names = (JUNIT, HTML, PDF, RESULT)
-    with results_in(folder, names, inputs=[path], overwrite=overwrite or renewed) as place:
+    with results_in(folder, names, inputs=[path], overwrite=options.overwrite or renewed) as place:
         with progress(path.name) as show:
             show("reading")
             recording = read_recording(path, allow_missing=True, any_replay=True)
@@ -51,7 +46,7 @@ def carry_out(
         if result is not None:
             result = write_result(result, recording, {"recording": path.name, **files}, folder)
         place.remove_stale([*files.values(), *([RESULT] if result else [])])
-    return _told(result, files, path, folder, as_json=as_json)
+    return _told(result, files, path, folder, as_json=options.as_json)
 
 
 def _belongs(folder: Path, recording: str) -> bool:

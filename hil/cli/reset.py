@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from hil.cli._output import console, print_json
+from hil.cli.commands.reset import Reset
 from hil.core.errors import BadInputError
 from hil.core.printable import is_printable, printable, refuse_long
 from hil.engine import load_bench
@@ -12,15 +11,15 @@ from hil.engine.bus_identity import within_process
 from hil.engine.emergency_stop import reset
 
 
-def carry_out(*, bench: str, by: str, data: Path | None, as_json: bool) -> int:
+def carry_out(options: Reset) -> int:
     """Carry the command out; its exit code."""
-    refuse_long(by, "--by")
-    name = by.strip()
+    refuse_long(options.by, "--by")
+    name = options.by.strip()
     if not name or not is_printable(name):
         raise BadInputError("--by is empty", fix="give the name of the person who checked that it is safe")
-    file = load_bench(bench)
-    stops = reset(file, name, data.resolve() if data is not None else None)
-    if as_json:
+    file = load_bench(options.bench)
+    stops = reset(file, name, options.data.resolve() if options.data is not None else None)
+    if options.as_json:
         print_json({"bench": file.name, "reset": [stop.model_dump() for stop in stops]})
         return 0
     page = console()
@@ -29,7 +28,7 @@ def carry_out(*, bench: str, by: str, data: Path | None, as_json: bool) -> int:
         page.print(printable(text, 500), highlight=False, markup=False, soft_wrap=True)
     if not stops:
         page.print(f"no emergency stop is latched on {file.name}", highlight=False, markup=False)
-        if within_process(file) and data is None:
+        if within_process(file) and options.data is None:
             text = "its service keeps a simulated bench's stop: reset it there, or give its --data directory"
             page.print(text, highlight=False, markup=False)
     return 0

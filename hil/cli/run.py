@@ -20,6 +20,7 @@ from hil.cli._output import (
 )
 from hil.cli._series import announce_series, carry_out_series, repeated
 from hil.cli._timing import times_in_words, timing_in_words
+from hil.cli.commands.run import Run
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.printable import printable
@@ -28,51 +29,54 @@ from hil.engine import DEFAULT_BENCH, load_bench
 from test_plans import Plan, load_plan
 
 
-def carry_out(
-    *,
-    plan: str,
-    bench: str,
-    out: Path | None,
-    model: Path | None,
-    values: list[str] | None,
-    repeat: int,
-    controller: list[str] | None,
-    operator: str,
-    yes: str,
-    confirm: str,
-    accept_expired: str,
-    overwrite: bool,
-    server: str,
-    show: bool,
-    as_json: bool,
-) -> int:
+def carry_out(options: Run) -> int:
     """Carry the command out; its exit code."""
-    choices = list(all_choices(values, controller))
-    if server:
-        _refuse_here_only(model=model, controller=controller, repeat=repeat * len(choices), confirm=confirm)
+    choices = list(all_choices(options.values, options.controller))
+    if options.server:
+        _refuse_here_only(
+            model=options.model,
+            controller=options.controller,
+            repeat=options.repeat * len(choices),
+            confirm=options.confirm,
+        )
         from hil.cli._remote_run import RemoteRun  # costs a run here nothing
 
         remote = RemoteRun(
-            server, plan, bench or DEFAULT_BENCH, dict(choices[0].values), yes, accept_expired, overwrite
+            options.server,
+            options.plan,
+            options.bench or DEFAULT_BENCH,
+            dict(choices[0].values),
+            options.yes,
+            options.accept_expired,
+            options.overwrite,
         )
-        return remote.carry_out(out, lambda result, folder: _tell(result, folder, show=show, as_json=as_json))
-    plans = [load_plan(plan, choice) for choice in choices]
-    bench_file = load_bench(bench_or_own(bench, plan, drives=True))
-    inputs = [bench_file.source, *([Path(plan)] if Path(plan).is_file() else []), *([model] if model else [])]
+        return remote.carry_out(
+            options.out,
+            lambda result, folder: _tell(result, folder, show=options.show, as_json=options.as_json),
+        )
+    plans = [load_plan(options.plan, choice) for choice in choices]
+    bench_file = load_bench(bench_or_own(options.bench, options.plan, drives=True))
+    inputs = [
+        bench_file.source,
+        *([Path(options.plan)] if Path(options.plan).is_file() else []),
+        *([options.model] if options.model else []),
+    ]
     runs = Runs(
-        model=load_model(model) if model else None,
-        operator=operator,
-        confirmed_by=yes,
-        hazard_confirmed_by=confirm or _asked_for_name(plans[0]),
-        accept_expired=accept_expired,
+        model=load_model(options.model) if options.model else None,
+        operator=options.operator,
+        confirmed_by=options.yes,
+        hazard_confirmed_by=options.confirm or _asked_for_name(plans[0]),
+        accept_expired=options.accept_expired,
         inputs=(*inputs, *choices[0].controllers.values()),
-        overwrite=overwrite,
+        overwrite=options.overwrite,
     )
-    if len(plans) * repeat > 1:
-        announce_series(plans, repeat, out)
-        return carry_out_series(runs, plans, repeated(bench_file, repeat), out, as_json=as_json)
-    with runs.finished(plans[0], bench_file, out) as run:
-        _tell(run.result, run.folder, show=show, as_json=as_json)
+    if len(plans) * options.repeat > 1:
+        announce_series(plans, options.repeat, options.out)
+        return carry_out_series(
+            runs, plans, repeated(bench_file, options.repeat), options.out, as_json=options.as_json
+        )
+    with runs.finished(plans[0], bench_file, options.out) as run:
+        _tell(run.result, run.folder, show=options.show, as_json=options.as_json)
         return run.exit_code
 
 

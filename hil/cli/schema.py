@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hil.cli._output import print_json
+from hil.cli.commands.schema import Schema
 from hil.core.controller import controller_schema
 from hil.core.errors import BadInputError
 from hil.core.model_schema import model_schema
@@ -32,11 +33,9 @@ _SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
 }
 
 
-def carry_out(
-    *,
-    kind: str,
-) -> int:
+def carry_out(options: Schema) -> int:
     """Carry the command out; its exit code."""
+    kind = options.kind
     if kind not in _SCHEMAS:
         raise BadInputError(
             f"there is no schema for '{printable(kind, 60)}'", fix=did_you_mean(kind, _SCHEMAS)

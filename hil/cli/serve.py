@@ -6,58 +6,42 @@ import importlib.util
 import math
 import os
 import sys
-from pathlib import Path
 
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._output import print_json
 from hil.cli._served_run import HIL, RUNNER
+from hil.cli.commands.serve import Serve
 from hil.core.errors import BadInputError
 from hil.engine import StopRequest
 
 
-def carry_out(
-    *,
-    data: Path,
-    bench: list[str],
-    no_bench: bool,
-    host: str,
-    port: int,
-    stop_port: int | None,
-    stop_url: str,
-    trusted_proxy: list[str],
-    allow_host: list[str],
-    database: str,
-    store: str,
-    keep_local: float,
-    workers: int | None,
-    scheduler: str,
-    rate: float,
-    for_s: float | None,
-    add_token: str,
-    token_days: float,
-    as_json: bool,
-) -> int:
+def carry_out(options: Serve) -> int:
     """Carry the command out; its exit code."""
+    data = options.data
+    bench = options.bench or []
+    trusted_proxy = options.trusted_proxy or []
+    allow_host = options.allow_host or []
+    for_s = options.for_s
     from hil.service.service import Commands  # the extra 'service' brings what they need
     from hil.service.serving import ServeRequest, make_token, serve
 
     if for_s is not None and not for_s > 0:
         raise BadInputError(f"--for is {for_s:g}", fix="give seconds greater than 0, or leave it out")
-    if bench and no_bench:
+    if bench and options.no_bench:
         raise BadInputError("--bench does not go with --no-bench", fix="leave one of them out")
-    if add_token:
-        name, _, role = add_token.rpartition("=")
-        made = make_token(data, database, name, role, token_days)
-        if as_json:
+    if options.add_token:
+        name, _, role = options.add_token.rpartition("=")
+        made = make_token(data, options.database, name, role, options.token_days)
+        if options.as_json:
             print_json(made.model_dump(mode="json"))
         else:
             print(f"# token of {made.token.name}, {made.token.role}; it is printed only once\n{made.secret}")
         return 0
-    simulating = _simulating(workers, scheduler)
+    simulating = _simulating(options.workers, options.scheduler)
     stop = StopRequest()
 
     def ready(url: str) -> None:
-        if as_json:
+        if options.as_json:
             print_json({"url": url, "data": str(data.resolve())})
         else:
             print(f"The bench service is at {url} (Ctrl-C ends it); data directory: {data}")
@@ -65,18 +49,18 @@ def carry_out(
 
     request = ServeRequest(
         folder=data,
-        benches=[] if no_bench else bench or ["sim"],
+        benches=[] if options.no_bench else bench or ["sim"],
         commands=Commands(HIL, RUNNER, simulating),
-        host=host,
-        port=port,
-        stop_port=stop_port,
-        stop_url=stop_url,
+        host=options.host,
+        port=options.port,
+        stop_port=options.stop_port,
+        stop_url=options.stop_url,
         trusted_proxies=trusted_proxy,
-        database=database,
-        store=store,
-        local_days=keep_local,
+        database=options.database,
+        store=options.store,
+        local_days=options.keep_local,
         hosts=allow_host,
-        rate=rate,
+        rate=options.rate,
         for_s=math.inf if for_s is None else for_s,
         ready=ready,
         stop=stop,

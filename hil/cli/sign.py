@@ -5,42 +5,44 @@ from __future__ import annotations
 import datetime
 import getpass
 import sys
-from pathlib import Path
 
 from hil.cli._output import console, print_json
 from hil.cli._result_file import RESULT
 from hil.cli._results_folder import alone_in, refuse_missing
 from hil.cli._streams import complain
 from hil.cli._verified import of_run
+from hil.cli.commands.sign import Sign
 from hil.core.errors import BadInputError
 from hil.core.printable import refuse_long
 from hil.core.signatures import fingerprint, private_key, sign_folder
 
 
-def carry_out(*, folder: Path, key: Path, by: str, overwrite: bool, as_json: bool) -> int:
+def carry_out(options: Sign) -> int:
     """Carry the command out; its exit code."""
-    refuse_long(by, "--by")
-    refuse_missing(folder)
-    if not folder.is_dir():
-        raise BadInputError("is not a directory", where=str(folder), fix="name a run's folder")
-    if folder.resolve() in key.resolve().parents:
+    refuse_long(options.by, "--by")
+    refuse_missing(options.folder)
+    if not options.folder.is_dir():
+        raise BadInputError("is not a directory", where=str(options.folder), fix="name a run's folder")
+    if options.folder.resolve() in options.key.resolve().parents:
         raise BadInputError(
             "the private key is in the folder to be signed",
-            where=str(key),
+            where=str(options.key),
             fix="move the key to another folder",
         )
-    signer = private_key(key, _passphrase)
-    with alone_in(folder):
-        wrong = [f for f in of_run(folder) if not f.holds] if (folder / RESULT).exists() else []
+    signer = private_key(options.key, _passphrase)
+    with alone_in(options.folder):
+        wrong = (
+            [f for f in of_run(options.folder) if not f.holds] if (options.folder / RESULT).exists() else []
+        )
         if wrong:
             told = "\n  ".join(f"{finding.file}: {finding.text}" for finding in wrong)
             complain("error", f"not signed, because something does not match:\n  {told}")
             return 1
-        name = by or getpass.getuser()
+        name = options.by or getpass.getuser()
         at = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-        manifest, signature = sign_folder(folder, signer, by=name, at=at, overwrite=overwrite)
+        manifest, signature = sign_folder(options.folder, signer, by=name, at=at, overwrite=options.overwrite)
     shown = fingerprint(signer.public_key().public_bytes_raw())
-    if as_json:
+    if options.as_json:
         files = {"manifest": str(manifest), "signature": str(signature)}
         print_json({**files, "signed_by": name, "signed_at": at, "key": shown})
     else:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
 from hil.cli._interrupts import EXIT_CODE
 from hil.cli._named_values import named_values
 from hil.cli._output import print_json
 from hil.cli._results_folder import refuse_file
+from hil.cli.commands.sim_bench import SimBench
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.printable import printable
@@ -16,46 +16,37 @@ from hil.engine import StopRequest, load_bench
 from hil.engine.sim_bench import HIDDEN_FORM, TRANSPORTS, Served, Serving, SimBenchRequest, serve
 
 
-def carry_out(
-    *,
-    bench: str,
-    time_scale: float,
-    seed: int | None,
-    hide: tuple[str, ...],
-    for_s: float | None,
-    transport: str,
-    port: int,
-    interface: tuple[str, ...],
-    bench_file: Path | None,
-    as_json: bool,
-) -> int:
+def carry_out(options: SimBench) -> int:
     """Carry the command out; its exit code."""
+    hide = tuple(options.hide or ())
+    transport = options.transport
+    interface = tuple(options.interface or ())
     if transport not in TRANSPORTS:
         raise BadInputError(
             f"--transport '{printable(transport)}' is not known", fix=f"one of {', '.join(TRANSPORTS)}"
         )
-    checked = load_bench(bench)
-    if bench_file is not None:
-        refuse_file(bench_file, [checked.source], overwrite=True)
+    checked = load_bench(options.bench)
+    if options.bench_file is not None:
+        refuse_file(options.bench_file, [checked.source], overwrite=True)
     stop = StopRequest()
 
     def ready(serving: Serving) -> None:
-        if bench_file is not None:
-            write_atomically(bench_file, serving.bench_file)
-        if as_json:
-            print_json(_as_json(checked.name, time_scale, serving))
+        if options.bench_file is not None:
+            write_atomically(options.bench_file, serving.bench_file)
+        if options.as_json:
+            print_json(_as_json(checked.name, options.time_scale, serving))
         else:
-            _print(checked.name, time_scale, serving)
+            _print(checked.name, options.time_scale, serving)
         sys.stdout.flush()
 
     request = SimBenchRequest(
         bench=checked,
-        time_scale=time_scale,
-        seed=seed,
+        time_scale=options.time_scale,
+        seed=options.seed,
         hidden=named_values(hide, "--hide", form=HIDDEN_FORM),
-        for_s=float("inf") if for_s is None else for_s,
+        for_s=float("inf") if options.for_s is None else options.for_s,
         transport=transport,
-        port=port,
+        port=options.port,
         interfaces=interface,
         ready=ready,
         stop=stop,

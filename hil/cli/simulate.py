@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from hil.cli._output import console, print_json, warn_of_damage
 from hil.cli._results_folder import refuse_file
+from hil.cli.commands.simulate import Simulate
 from hil.core.model import load_model
 from hil.core.recording import read_recording, write_recording
 from hil.plant import replay
 
 
-def carry_out(
-    *,
-    model: Path,
-    source: Path,
-    out: Path,
-    overwrite: bool,
-    as_json: bool,
-) -> int:
+def carry_out(options: Simulate) -> int:
     """Carry the command out; its exit code."""
-    refuse_file(out, [source, model], overwrite=overwrite)
-    chosen = load_model(model)
-    recording = read_recording(source)
+    out = options.out
+    refuse_file(out, [options.source, options.model], overwrite=options.overwrite)
+    chosen = load_model(options.model)
+    recording = read_recording(options.source)
     warn_of_damage([recording])
     simulated = replay(chosen, recording)
     notes = [*recording.notes, *simulated.notes]
     write_recording(simulated, out)
-    if as_json:
+    if options.as_json:
         print_json(
             {
                 "file": str(out),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 from hil.analysis.tuning import Effort, RefinementBudget, Tuning, tune
 from hil.cli._default_bench import bench_or_own
@@ -19,58 +18,45 @@ from hil.cli._streams import complain
 from hil.cli._then_run import OnTheWire, Ran, refuse_unasked, tell
 from hil.cli._then_run import then_run as run_tuned
 from hil.cli._tuning import NAMES, SUMMARY, asked_of, write_results
+from hil.cli.commands.tune import Tune
 from hil.core.errors import BadInputError
 from hil.engine import StopRequest
 from reports.outputs.tuning import text_of
 
 
-def carry_out(
-    *,
-    plan: str,
-    model: Path,
-    out: Path | None,
-    free: Path | None,
-    controller: str,
-    start: Path | None,
-    draws: int,
-    seed: int,
-    starts: int,
-    at_most: float | None,
-    processes: int | None,
-    bench: str,
-    then_run: bool,
-    differ: float,
-    on_bench: str,
-    runs: int | None,
-    envelope: list[str] | None,
-    confirm: str,
-    operator: str,
-    overwrite: bool,
-    json_: bool,
-) -> int:
+def carry_out(options: Tune) -> int:
     """Carry the command out; its exit code."""
-    wanted = Wanted(on_bench, runs, envelope or [], confirm)
-    _refuse_together(wanted, bench, then_run=then_run)
-    used = wanted.bench or bench_or_own(bench, plan, drives=then_run)
-    asked = asked_of(plan, model, free, controller, start, draws, seed, used)
-    if then_run:
+    wanted = Wanted(options.on_bench, options.runs, options.envelope or [], options.confirm)
+    _refuse_together(wanted, options.bench, then_run=options.then_run)
+    used = wanted.bench or bench_or_own(options.bench, options.plan, drives=options.then_run)
+    asked = asked_of(
+        options.plan,
+        options.model,
+        options.free,
+        options.controller,
+        options.start,
+        options.draws,
+        options.seed,
+        used,
+    )
+    if options.then_run:
         refuse_unasked(asked.plan)
     axle = asked.trial.draws[0].model
     allowed = allowed_on(wanted, asked.bench, asked.trial, axle) if wanted.bench else None
-    carried = Runs(None, operator, "", "", "", asked.inputs, overwrite)
+    carried = Runs(None, options.operator, "", "", "", asked.inputs, options.overwrite)
     stop, ran, refinement = StopRequest(), None, None
     with results_in(
-        out, NAMES, inputs=asked.inputs, overwrite=overwrite, default="tune", summary=SUMMARY
+        options.out, NAMES, inputs=asked.inputs, overwrite=options.overwrite, default="tune", summary=SUMMARY
     ) as place:
         with progress(f"tune {asked.plan.name}") as show, stop.by_signals(), stop.telling(at_once(stop)):
             try:
                 found = tune(
                     asked.trial,
-                    seed=seed,
-                    effort=Effort(starts=starts),
-                    processes=processes,
+                    seed=options.seed,
+                    effort=Effort(starts=options.starts),
+                    processes=options.processes,
                     show=lambda text, share: show(text, share),
-                    stopped=_stopped(stop, at_most),
+                    stopped=_stopped(stop, options.at_most),
                 )
             except BadInputError as error:  # nothing that was tried is worth keeping
                 if not stop.times:
@@ -80,24 +66,24 @@ def carry_out(
                 return EXIT_CODE
             show("figures and report")
             summary = write_results(asked, found, place.write)
-        if not json_:
+        if not options.json_:
             print(text_of(found, str(place.folder)))
         tried, every = len(found.trial.draws), len(asked.trial.draws)
         if tried < every:
             complain(
                 "note", f"stopped: compared on {tried} of {every} vehicles, those that the search had used"
             )
-        if then_run and not stop.times:
-            wire = OnTheWire(asked.bench, differ / 100, carried)
-            ran = run_tuned(found, plan, place.folder, wire, model)
+        if options.then_run and not stop.times:
+            wire = OnTheWire(asked.bench, options.differ / 100, carried)
+            ran = run_tuned(found, options.plan, place.folder, wire, options.model)
             summary = write_results(asked, found, place.write, ran)
         if allowed is not None and not stop.times:
-            on = WireBench(plan, asked.trial, axle, allowed, carried, place.folder / FOLDER)
+            on = WireBench(options.plan, asked.trial, axle, allowed, carried, place.folder / FOLDER)
             with stop.by_signals():
                 budget = RefinementBudget(allowed.envelope.runs)
-                refinement = refined(found, on, budget, processes, lambda: stop.times > 0)
+                refinement = refined(found, on, budget, options.processes, lambda: stop.times > 0)
                 summary = write_results(asked, found, place.write, refinement=refinement)
-        if json_:
+        if options.json_:
             print_json(summary)
         elif ran is not None:
             tell(ran)

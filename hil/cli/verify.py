@@ -18,13 +18,14 @@ from hil.cli._verified import (
     of_run,
     of_signatures,
 )
+from hil.cli.commands.verify import Verify
 from hil.core.errors import BadInputError
 from hil.core.signatures import public_key
 
 
-def carry_out(*, sources: list[Path], by: Path | None, as_json: bool) -> int:
+def carry_out(options: Verify) -> int:
     """Carry the command out; its exit code."""
-    for source in sources:
+    for source in options.sources:
         refuse_missing(source)
         if not source.is_dir() and source.suffix.lower() not in (*RECORDINGS, *REPORTS):
             raise BadInputError(
@@ -32,12 +33,12 @@ def carry_out(*, sources: list[Path], by: Path | None, as_json: bool) -> int:
                 where=str(source),
                 fix="give a run's folder, a report, a recording, or a service's folder",
             )
-    if by is not None and not any(source.is_dir() for source in sources):
+    if options.by is not None and not any(source.is_dir() for source in options.sources):
         raise BadInputError("--by goes with a folder", fix="give the folder that was signed")
-    key = public_key(by) if by else None
-    findings = list(dict.fromkeys(_findings(sources, key)))
+    key = public_key(options.by) if options.by else None
+    findings = list(dict.fromkeys(_findings(options.sources, key)))
     holds = all(finding.holds for finding in findings)
-    if as_json:
+    if options.as_json:
         told = [{"holds": f.holds, "file": str(f.file), "text": f.text} for f in findings]
         print_json({"verified": holds, "findings": told})
         return 0 if holds else 1

@@ -1,1 +1,1 @@
-"""What each command takes, one module a command: light, so that --help and typing mistakes answer at once."""
+"""The options of each command, one class a command; light, so that --help answers at once."""

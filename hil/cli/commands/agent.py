@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -12,35 +13,8 @@ from hil.cli._lean_imports import import_python_can
 SEVERAL = ("--bench", "--server")
 
 
-def command(
-    server: Annotated[
-        list[str],
-        typer.Option(
-            metavar="URL", help="address of the service; repeat it for several services with one database"
-        ),
-    ],
-    data: Annotated[
-        Path, typer.Option(metavar="DIR", help="directory that keeps runs until the service has them")
-    ],
-    bench: Annotated[
-        list[str] | None, typer.Option(help="bench files, or names of shipped benches; default: sim")
-    ] = None,
-    name: Annotated[
-        str, typer.Option(help="name of this agent in the service; default: this machine's name")
-    ] = "",
-    keep_local: Annotated[
-        float,
-        typer.Option(
-            min=0, metavar="DAYS", help="days to keep files in DIR after their upload to the service"
-        ),
-    ] = 30.0,
-    for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")
-    ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Agent:
     """Drive benches of this machine for a bench service on another machine.
 
     The service holds the queue and the page. The agent works until Ctrl-C or SIGTERM; it then ends runs
@@ -48,10 +22,38 @@ def command(
     HIL_TOKEN holds a token with the role agent. Exit code: 0 the time of --for is over, 2 bad input, 3 the
     service has another bench of that name, 130 ended by a signal.
     """
-    import_python_can()
-    from hil.cli.agent import carry_out
 
-    return carry_out(
-        server=server, data=data, bench=bench or ["sim"], name=name, keep_local=keep_local, for_s=for_s,
-        as_json=as_json,
-    )  # fmt: skip
+    server: Annotated[
+        list[str],
+        typer.Option(
+            metavar="URL", help="address of the service; repeat it for several services with one database"
+        ),
+    ]
+    data: Annotated[
+        Path, typer.Option(metavar="DIR", help="directory that keeps runs until the service has them")
+    ]
+    bench: Annotated[
+        list[str] | None, typer.Option(help="bench files, or names of shipped benches; default: sim")
+    ] = None
+    name: Annotated[
+        str, typer.Option(help="name of this agent in the service; default: this machine's name")
+    ] = ""
+    keep_local: Annotated[
+        float,
+        typer.Option(
+            min=0, metavar="DAYS", help="days to keep files in DIR after their upload to the service"
+        ),
+    ] = 30.0
+    for_s: Annotated[float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")] = (
+        None
+    )
+    as_json: Annotated[bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")] = (
+        False
+    )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.agent import carry_out
+
+        return carry_out(self)

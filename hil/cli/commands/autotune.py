@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -14,50 +15,8 @@ from hil.cli.commands._options import BenchName, Operator, found_model
 SEVERAL = ("--envelope",)
 
 
-def command(
-    model: Annotated[
-        Path,
-        typer.Option(
-            "--model",
-            help="initial model file of the axle (a chain), or the name of a shipped model",
-            callback=found_model,
-            autocompletion=shipped_model(),
-        ),
-    ],
-    sequence: Annotated[
-        str, typer.Argument(help="sequence file, or the name of a shipped one: autotune")
-    ] = "autotune",
-    bench: BenchName = "",
-    out: Annotated[
-        Path | None, typer.Option(help="directory for the results; default: out/autotune-NNN")
-    ] = None,
-    envelope: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="CHANNEL=VALUE",
-            help="largest magnitude allowed in a run, or bench_time_s for all runs; default: 1.3 times "
-            "the values predicted for both plans",
-        ),
-    ] = None,
-    confirm: Annotated[
-        str,
-        typer.Option(metavar="NAME", help="name of the person who authorises all runs within the envelope"),
-    ] = "",
-    operator: Operator = "",
-    processes: Annotated[
-        int | None, typer.Option(min=1, max=256, help="parallel predictions; default: one per core")
-    ] = None,
-    resume: Annotated[
-        bool,
-        typer.Option("--resume", help="continue in --out; keep the runs made there before the first round"),
-    ] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="replace an earlier result in --out")
-    ] = False,
-    json_: Annotated[
-        bool, typer.Option("--json", help="print autotune.json on stdout, nothing else")
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Autotune:
     """Identify, diagnose, tune and confirm on a bench, in rounds, unattended.
 
     A sequence file names the plans and the end conditions. Each round identifies the effects that the model
@@ -70,19 +29,49 @@ def command(
     0 prediction and run agree and every criterion that depends on the controller passes, 1 otherwise, 3 a run
     failed.
     """
-    import_python_can()
-    from hil.cli.autotune import carry_out
 
-    return carry_out(
-        sequence=sequence,
-        model=model,
-        bench=bench,
-        out=out,
-        envelope=envelope,
-        confirm=confirm,
-        operator=operator,
-        processes=processes,
-        resume=resume,
-        overwrite=overwrite,
-        json_=json_,
+    model: Annotated[
+        Path,
+        typer.Option(
+            "--model",
+            help="initial model file of the axle (a chain), or the name of a shipped model",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
+    ]
+    sequence: Annotated[str, typer.Argument(help="sequence file, or the name of a shipped one: autotune")] = (
+        "autotune"
     )
+    bench: BenchName = ""
+    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/autotune-NNN")] = (
+        None
+    )
+    envelope: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CHANNEL=VALUE",
+            help="largest magnitude allowed in a run, or bench_time_s for all runs; default: 1.3 times "
+            "the values predicted for both plans",
+        ),
+    ] = None
+    confirm: Annotated[
+        str,
+        typer.Option(metavar="NAME", help="name of the person who authorises all runs within the envelope"),
+    ] = ""
+    operator: Operator = ""
+    processes: Annotated[
+        int | None, typer.Option(min=1, max=256, help="parallel predictions; default: one per core")
+    ] = None
+    resume: Annotated[
+        bool,
+        typer.Option("--resume", help="continue in --out; keep the runs made there before the first round"),
+    ] = False
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")] = False
+    json_: Annotated[bool, typer.Option("--json", help="print autotune.json on stdout, nothing else")] = False
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.autotune import carry_out
+
+        return carry_out(self)

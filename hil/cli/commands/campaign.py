@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -11,48 +12,8 @@ from hil.cli._completion import shipped_campaign
 from hil.cli._lean_imports import import_python_can
 
 
-def command(
-    campaign: Annotated[
-        str,
-        typer.Argument(
-            help="campaign file, or the name of a shipped one: robustness", autocompletion=shipped_campaign()
-        ),
-    ],
-    out: Annotated[
-        Path | None, typer.Option(help="directory for the results; default: out/campaign-NNN")
-    ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            min=0,
-            max=1024,
-            help="worker processes on this machine; 0: none, simulate in this process; default: one per core",
-        ),
-    ] = None,
-    scheduler: Annotated[
-        str,
-        typer.Option(
-            metavar="ADDRESS", help="address of a dask.distributed scheduler; use its workers instead"
-        ),
-    ] = "",
-    server: Annotated[
-        str,
-        typer.Option(metavar="URL", help="run it on a bench service (hil serve); HIL_TOKEN holds the token"),
-    ] = "",
-    resume: Annotated[
-        bool, typer.Option("--resume", help="continue in --out; simulate only what is missing")
-    ] = False,
-    dry_run: Annotated[
-        bool,
-        typer.Option("--dry-run", help="print the number of simulations and the duration; write nothing"),
-    ] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="replace an earlier result in --out")
-    ] = False,
-    json_: Annotated[
-        bool, typer.Option("--json", help="print campaign.json on stdout, nothing else")
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Campaign:
     """Simulate a plan many times: vary parameters, sample vehicles around the model, compare controllers.
 
     Writes simulations/ (Parquet, one row per simulation), campaign.json, report.html and report.pdf. Ctrl-C
@@ -63,17 +24,47 @@ def command(
     Exit code: 0 done, each controller reaches the file's pass_share, 1 one does not, 3 no worker could
     continue; finished simulations are kept.
     """
-    import_python_can()
-    from hil.cli.campaign import carry_out
 
-    return carry_out(
-        campaign=campaign,
-        out=out,
-        workers=workers,
-        scheduler=scheduler,
-        server=server,
-        resume=resume,
-        dry_run=dry_run,
-        overwrite=overwrite,
-        json_=json_,
+    campaign: Annotated[
+        str,
+        typer.Argument(
+            help="campaign file, or the name of a shipped one: robustness", autocompletion=shipped_campaign()
+        ),
+    ]
+    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/campaign-NNN")] = (
+        None
     )
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            max=1024,
+            help="worker processes on this machine; 0: none, simulate in this process; default: one per core",
+        ),
+    ] = None
+    scheduler: Annotated[
+        str,
+        typer.Option(
+            metavar="ADDRESS", help="address of a dask.distributed scheduler; use its workers instead"
+        ),
+    ] = ""
+    server: Annotated[
+        str,
+        typer.Option(metavar="URL", help="run it on a bench service (hil serve); HIL_TOKEN holds the token"),
+    ] = ""
+    resume: Annotated[
+        bool, typer.Option("--resume", help="continue in --out; simulate only what is missing")
+    ] = False
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="print the number of simulations and the duration; write nothing"),
+    ] = False
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")] = False
+    json_: Annotated[bool, typer.Option("--json", help="print campaign.json on stdout, nothing else")] = False
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.campaign import carry_out
+
+        return carry_out(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
@@ -12,9 +13,16 @@ from hil.cli.commands._options import BenchName, Controllers, PlanName
 SEVERAL = ("--controller", "--set")
 
 
-def command(
-    plan: PlanName,
-    bench: BenchName = "",
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """Validate a plan; predict its duration, peaks and criteria; compare them with the limits.
+
+    Exit code: 0 the plan fits the bench, 1 a predicted peak exceeds a limit, 2 the plan cannot be run. A
+    criterion that is predicted to fail is reported and does not change the exit code.
+    """
+
+    plan: PlanName
+    bench: BenchName = ""
     values: Annotated[
         list[str] | None,
         typer.Option(
@@ -22,18 +30,15 @@ def command(
             metavar="NAME=VALUE",
             help="value of a variable of the plan",
         ),
-    ] = None,
-    controller: Controllers = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
-    """Validate a plan; predict its duration, peaks and criteria; compare them with the limits.
+    ] = None
+    controller: Controllers = None
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
 
-    Exit code: 0 the plan fits the bench, 1 a predicted peak exceeds a limit, 2 the plan cannot be run. A
-    criterion that is predicted to fail is reported and does not change the exit code.
-    """
-    import_python_can()
-    from hil.cli.check import carry_out
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.check import carry_out
 
-    return carry_out(plan=plan, bench=bench, values=values, controller=controller, as_json=as_json)
+        return carry_out(self)

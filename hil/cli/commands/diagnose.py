@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -14,10 +15,16 @@ from hil.cli.commands._options import found_model
 SEVERAL = ("--holdout",)
 
 
-def command(
+@dataclass(frozen=True, kw_only=True)
+class Diagnose:
+    """Find where a model and recordings disagree, identify the missing effect and add it to the model.
+
+    Writes model.toml, diagnosis.json, report.html and report.pdf, all or none.
+    """
+
     recordings: Annotated[
         list[Path], typer.Argument(help="recordings to explain (.mcap, .csv, .parquet, .mf4, .mat)")
-    ],
+    ]
     model: Annotated[
         Path,
         typer.Option(
@@ -26,18 +33,18 @@ def command(
             callback=found_model,
             autocompletion=shipped_model(),
         ),
-    ],
+    ]
     out: Annotated[
         Path | None,
         typer.Option("--out", help="directory for the results; default: out/diagnose-001 and so on"),
-    ] = None,
+    ] = None
     holdout: Annotated[
         list[Path] | None,
         typer.Option(
             "--holdout",
             help="recordings for validation, not used in any fit; all files up to the next option",
         ),
-    ] = None,
+    ] = None
     noise: Annotated[
         list[str] | None,
         typer.Option(
@@ -45,7 +52,7 @@ def command(
             metavar="CHANNEL=VALUE",
             help="standard deviation of a channel's samples, from its sensor's data sheet; repeatable",
         ),
-    ] = None,
+    ] = None
     least: Annotated[
         list[str] | None,
         typer.Option(
@@ -53,7 +60,7 @@ def command(
             metavar="EFFECT=SIZE",
             help="smallest relevant size of an effect, in its own unit; repeatable",
         ),
-    ] = None,
+    ] = None
     at_most: Annotated[
         float,
         typer.Option(
@@ -61,28 +68,16 @@ def command(
             metavar="MINUTES",
             help="processor time of the search; then the result so far is reported as unfinished",
         ),
-    ] = 10.0,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="replace an earlier diagnosis in --out")
-    ] = False,
-    json_: Annotated[
-        bool, typer.Option("--json", help="print diagnosis.json on stdout, nothing else")
-    ] = False,
-) -> int:
-    """Find where a model and recordings disagree, identify the missing effect and add it to the model.
-
-    Writes model.toml, diagnosis.json, report.html and report.pdf, all or none.
-    """
-    from hil.cli.diagnose import carry_out
-
-    return carry_out(
-        recordings=recordings,
-        model=model,
-        out=out,
-        holdout=holdout,
-        noise=noise,
-        least=least,
-        at_most=at_most,
-        overwrite=overwrite,
-        json_=json_,
+    ] = 10.0
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier diagnosis in --out")] = (
+        False
     )
+    json_: Annotated[bool, typer.Option("--json", help="print diagnosis.json on stdout, nothing else")] = (
+        False
+    )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        from hil.cli.diagnose import carry_out
+
+        return carry_out(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
@@ -10,22 +11,26 @@ from hil.cli._lean_imports import import_python_can
 from hil.cli.commands._options import DefaultBenchArgument
 
 
-def command(
-    bench: DefaultBenchArgument = "",
-    for_s: Annotated[
-        float, typer.Option("--for", metavar="SECONDS", help="time to listen before the devices are read")
-    ] = 2.0,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Doctor:
     """Check which devices are connected and answer; report faults and remedies.
 
     Listens first, then reads from every device. Writes nothing to a device and moves nothing. Exit code: 0 no
     fault (hints do not count), 1 faults were found, 2 the bench file cannot be used, 3 neither RMCU nor dynos
     answer.
     """
-    import_python_can()
-    from hil.cli.doctor import carry_out
 
-    return carry_out(bench=bench, for_s=for_s, as_json=as_json)
+    bench: DefaultBenchArgument = ""
+    for_s: Annotated[
+        float, typer.Option("--for", metavar="SECONDS", help="time to listen before the devices are read")
+    ] = 2.0
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.doctor import carry_out
+
+        return carry_out(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -12,21 +13,29 @@ from hil.cli._lean_imports import import_python_can
 from hil.cli.commands._options import SimulatedBenchName, found_model, found_targets
 
 
-def command(
+@dataclass(frozen=True, kw_only=True)
+class Explain:
+    """Search for model changes, one effect or two, with which a predicted run reproduces target values.
+
+    Writes targets.json, rival_1.toml and further models, separating_plan.yaml, report.html and report.pdf.
+    Ctrl-C ends the search and keeps the results so far. Exit code: 0 a rival meets every condition, 1 none
+    does.
+    """
+
     targets: Annotated[
         Path | None,
         typer.Argument(
             help="targets file (TOML), or the name of a shipped one: paper_targets", callback=found_targets
         ),
-    ] = None,
+    ] = None
     target: Annotated[
         list[str] | None,
         typer.Option("--target", metavar="ID=VALUE", help="target value of a criterion; may be repeated"),
-    ] = None,
+    ] = None
     plan: Annotated[
         str | None, typer.Option(help="plan file or name; default: the targets file's, or acceptance")
-    ] = None,
-    bench: SimulatedBenchName = "",
+    ] = None
+    bench: SimulatedBenchName = ""
     model: Annotated[
         Path | None,
         typer.Option(
@@ -34,7 +43,7 @@ def command(
             callback=found_model,
             autocompletion=shipped_model(),
         ),
-    ] = None,
+    ] = None
     among: Annotated[
         list[str] | None,
         typer.Option(
@@ -42,38 +51,20 @@ def command(
             metavar="ID",
             help="search only this effect, or 'controller'; may be repeated",
         ),
-    ] = None,
-    evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="number of predicted runs")] = 2000,
-    seed: Annotated[int, typer.Option(min=0, help="random seed of the starting points")] = 0,
-    out: Annotated[
-        Path | None, typer.Option(help="directory for the results; default: out/explain-NNN")
-    ] = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="replace an earlier result in --out")
-    ] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print targets.json on stdout, nothing else")
-    ] = False,
-) -> int:
-    """Search for model changes, one effect or two, with which a predicted run reproduces target values.
-
-    Writes targets.json, rival_1.toml and further models, separating_plan.yaml, report.html and report.pdf.
-    Ctrl-C ends the search and keeps the results so far. Exit code: 0 a rival meets every condition, 1 none
-    does.
-    """
-    import_python_can()
-    from hil.cli.explain import carry_out
-
-    return carry_out(
-        targets=targets,
-        target=target or [],
-        plan=plan,
-        bench=bench,
-        model=model,
-        among=among or [],
-        evaluations=evaluations,
-        seed=seed,
-        out=out,
-        overwrite=overwrite,
-        as_json=as_json,
+    ] = None
+    evaluations: Annotated[int, typer.Option(min=20, max=100_000, help="number of predicted runs")] = 2000
+    seed: Annotated[int, typer.Option(min=0, help="random seed of the starting points")] = 0
+    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/explain-NNN")] = (
+        None
     )
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")] = False
+    as_json: Annotated[bool, typer.Option("--json", help="print targets.json on stdout, nothing else")] = (
+        False
+    )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.explain import carry_out
+
+        return carry_out(self)

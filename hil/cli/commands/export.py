@@ -2,40 +2,43 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 
-def command(
-    recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet, .mf4 or .mat")],
+@dataclass(frozen=True, kw_only=True)
+class Export:
+    """Write a recording's channels as CSV, Parquet, MDF4 or MAT, or its frames as BLF, ASC, candump or MDF4.
+
+    With --inputs: the files with which the run can be carried out again. What was lost is said.
+    """
+
+    recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet, .mf4 or .mat")]
     out: Annotated[
         Path,
         typer.Option(
             help="file to write: .csv, .parquet, .mf4 or .mat; raw frames: .blf, .asc or .log (candump)"
         ),
-    ],
+    ]
     frames: Annotated[
         bool, typer.Option("--frames", help="write raw frames, not channels, to .mf4 (ASAM bus logging)")
-    ] = False,
+    ] = False
     inputs: Annotated[
         bool,
         typer.Option(
             "--inputs", help="write plan, bench, model and controllers of the run to the folder --out"
         ),
-    ] = False,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
-    """Write a recording's channels as CSV, Parquet, MDF4 or MAT, or its frames as BLF, ASC, candump or MDF4.
-
-    With --inputs: the files with which the run can be carried out again. What was lost is said.
-    """
-    from hil.cli.export import carry_out
-
-    return carry_out(
-        recording=recording, out=out, frames=frames, inputs=inputs, overwrite=overwrite, as_json=as_json
+    ] = False
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
     )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        from hil.cli.export import carry_out
+
+        return carry_out(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -11,7 +12,13 @@ from hil.cli._completion import shipped_model
 from hil.cli.commands._options import found_model
 
 
-def command(
+@dataclass(frozen=True, kw_only=True)
+class ExportFmu:
+    """Export a model, with its controller, as an FMI 2 co-simulation unit (FMU).
+
+    The unit computes with this package: where it is used, Python with eaxle-hil has to be installed.
+    """
+
     model: Annotated[
         Path,
         typer.Argument(
@@ -19,20 +26,18 @@ def command(
             callback=found_model,
             autocompletion=shipped_model(),
         ),
-    ],
-    out: Annotated[Path, typer.Option(help="FMU to write: NAME.fmu")],
+    ]
+    out: Annotated[Path, typer.Option(help="FMU to write: NAME.fmu")]
     controller: Annotated[
         Path | None, typer.Option(help="controller file; without it the FMU's input is motor torque")
-    ] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
-    """Export a model, with its controller, as an FMI 2 co-simulation unit (FMU).
+    ] = None
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
 
-    The unit computes with this package: where it is used, Python with eaxle-hil has to be installed.
-    """
-    from hil.cli.export_fmu import carry_out
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        from hil.cli.export_fmu import carry_out
 
-    return carry_out(model=model, controller=controller, out=out, overwrite=overwrite, as_json=as_json)
+        return carry_out(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -10,22 +11,26 @@ import typer
 from hil.cli._lean_imports import import_python_can
 
 
-def command(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="a new folder, or an empty one")],
-    samples: Annotated[
-        bool,
-        typer.Option("--samples", help="add recordings of an axle with backlash, to try a diagnosis"),
-    ] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Init:
     """Make a folder with a plan, a simulated bench, its model and a controller.
 
     `hil check`, `hil run` and `pytest` work in it at once; its README.md says how. --samples adds the files
     for the how-to on diagnosis: axle.toml, chirp_high.csv, chirp_low.csv, steps.csv, multisine.csv.
     """
-    import_python_can()
-    from hil.cli.init import carry_out
 
-    return carry_out(folder=folder, samples=samples, as_json=as_json)
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="a new folder, or an empty one")]
+    samples: Annotated[
+        bool,
+        typer.Option("--samples", help="add recordings of an axle with backlash, to try a diagnosis"),
+    ] = False
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.init import carry_out
+
+        return carry_out(self)

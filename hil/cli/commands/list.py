@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
@@ -10,23 +11,27 @@ from hil.cli._completion import one_of
 from hil.cli._lean_imports import import_python_can
 
 
-def command(
+@dataclass(frozen=True, kw_only=True)
+class List:
+    """List built-in plans, benches, models and effects, or the steps, metrics and devices for files.
+
+    Steps, metrics and devices of installed packages stand there too.
+    """
+
     what: Annotated[
         str,
         typer.Argument(
             help="plans, benches, models, effects, steps, metrics or devices",
             autocompletion=one_of("plans", "benches", "models", "effects", "steps", "metrics", "devices"),
         ),
-    ],
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
-    """List built-in plans, benches, models and effects, or the steps, metrics and devices for files.
+    ]
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
 
-    Steps, metrics and devices of installed packages stand there too.
-    """
-    import_python_can()
-    from hil.cli.list import carry_out
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.list import carry_out
 
-    return carry_out(what=what, as_json=as_json)
+        return carry_out(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
@@ -10,28 +11,32 @@ from hil.cli._lean_imports import import_python_can
 from hil.cli.commands._options import BenchArgument
 
 
-def command(
-    bench: BenchArgument,
-    for_s: Annotated[
-        float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")
-    ] = None,
-    every_s: Annotated[
-        float | None,
-        typer.Option(
-            "--every", metavar="SECONDS", help="time between two updates; default: 0.2 on a terminal, else 1"
-        ),
-    ] = None,
-    as_json: Annotated[
-        bool,
-        typer.Option("--json", help="print one JSON object for the whole time, nothing else"),
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Monitor:
     """Show decoded channels and bus load live; no frame is sent, not even a heartbeat.
 
     Prints a table that updates on a terminal, else a line per update. Exit code: 0 the time of --for is over,
     2 bad input or a simulated bench, 3 no bus can be opened or one fails, 130 ended by Ctrl-C.
     """
-    import_python_can()
-    from hil.cli.monitor import carry_out
 
-    return carry_out(bench=bench, for_s=for_s, every_s=every_s, as_json=as_json)
+    bench: BenchArgument
+    for_s: Annotated[float | None, typer.Option("--for", metavar="SECONDS", help="stop after this time")] = (
+        None
+    )
+    every_s: Annotated[
+        float | None,
+        typer.Option(
+            "--every", metavar="SECONDS", help="time between two updates; default: 0.2 on a terminal, else 1"
+        ),
+    ] = None
+    as_json: Annotated[
+        bool,
+        typer.Option("--json", help="print one JSON object for the whole time, nothing else"),
+    ] = False
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.monitor import carry_out
+
+        return carry_out(self)

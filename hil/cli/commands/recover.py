@@ -2,29 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 
-def command(
-    source: Annotated[
-        Path, typer.Argument(metavar="RECORDING_OR_DIR", help="a recording (.mcap), or a run's directory")
-    ],
-    out: Annotated[
-        Path | None, typer.Option(help="file to write: .mcap; default: NAME.recovered.mcap beside it")
-    ] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Recover:
     """Recover a recording after a crash, a power cut or a disk fault, and list what is missing.
 
     The input is never written over. A recording that is whole is left as it is. `hil report` makes the report
     of the recovered recording; it says that the run was cut.
     """
-    from hil.cli.recover import carry_out
 
-    return carry_out(source=source, out=out, overwrite=overwrite, as_json=as_json)
+    source: Annotated[
+        Path, typer.Argument(metavar="RECORDING_OR_DIR", help="a recording (.mcap), or a run's directory")
+    ]
+    out: Annotated[
+        Path | None, typer.Option(help="file to write: .mcap; default: NAME.recovered.mcap beside it")
+    ] = None
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        from hil.cli.recover import carry_out
+
+        return carry_out(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -12,57 +13,58 @@ from hil.cli._lean_imports import import_python_can
 SEVERAL = ("--dbc", "--bus")
 
 
-def command(
+@dataclass(frozen=True, kw_only=True)
+class Replay:
+    """Decode CAN logs to a recording and report on it: recording.mcap, report.html, report.pdf.
+
+    With --plan the criteria are judged: result.json and junit.xml too. Several logs are put on one clock by
+    their absolute stamps. What is left out of a log is said.
+    """
+
     logs: Annotated[
         list[Path],
         typer.Argument(
             metavar="LOG...", help=".mcap, .asc, .blf, .trc, .log (candump) or .mf4 (bus logging)"
         ),
-    ],
+    ]
     bench: Annotated[
         str | None,
         typer.Option(help="bench file, or the name of a shipped bench: its devices decode the frames"),
-    ] = None,
+    ] = None
     dbc: Annotated[
         list[str] | None,
         typer.Option(
             metavar="[CHANNEL=]FILE",
             help="instead of --bench: DBC whose signals become channels; CHANNEL of the log, default: all",
         ),
-    ] = None,
+    ] = None
     bus: Annotated[
         list[str] | None,
         typer.Option(
             metavar="BUS=CHANNEL", help="assign a channel of the log to a bus, where it is ambiguous"
         ),
-    ] = None,
+    ] = None
     plan: Annotated[
         str | None, typer.Option(help="plan whose criteria are evaluated; needs the times of its segments")
-    ] = None,
+    ] = None
     segments: Annotated[
         Path | None,
         typer.Option(help="the run's recording.mcap, or JSON with segments; default: those of a .mcap LOG"),
-    ] = None,
+    ] = None
     operator: Annotated[
         str, typer.Option(help="name of the person who ran the bench; printed in the report")
-    ] = "",
+    ] = ""
     out: Annotated[
         Path | None, typer.Option(help="directory; default: a new one, out/replay-001 and so on")
-    ] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace earlier results in --out")] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
-    """Decode CAN logs to a recording and report on it: recording.mcap, report.html, report.pdf.
+    ] = None
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace earlier results in --out")] = False
+    as_json: Annotated[bool, typer.Option("--json", help="print one JSON object on stdout, nothing else")] = (
+        False
+    )
 
-    With --plan the criteria are judged: result.json and junit.xml too. Several logs are put on one clock by
-    their absolute stamps. What is left out of a log is said.
-    """
-    import_python_can()
-    from hil.cli.replay import carry_out
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.replay import carry_out
 
-    return carry_out(
-        logs=logs, bench=bench, dbc=dbc, bus=bus, plan=plan, segments=segments, operator=operator, out=out,
-        overwrite=overwrite, as_json=as_json,
-    )  # fmt: skip
+        return carry_out(self)

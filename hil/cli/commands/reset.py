@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -11,14 +12,20 @@ from hil.cli._lean_imports import import_python_can
 from hil.cli.commands._options import BenchArgument
 
 
-def command(
-    bench: BenchArgument,
+@dataclass(frozen=True, kw_only=True)
+class Reset:
+    """Reset an emergency stop, so that the bench can be armed again. Nothing moves.
+
+    First make sure that nobody is in danger and that the cause of the stop is removed.
+    """
+
+    bench: BenchArgument
     by: Annotated[
         str,
         typer.Option(
             "--by", metavar="NAME", help="name of the person who checked that it is safe; kept in the record"
         ),
-    ],
+    ]
     data: Annotated[
         Path | None,
         typer.Option(
@@ -26,16 +33,14 @@ def command(
             metavar="DIR",
             help="data directory of the service or agent that drives this simulated bench",
         ),
-    ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
-    """Reset an emergency stop, so that the bench can be armed again. Nothing moves.
+    ] = None
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
 
-    First make sure that nobody is in danger and that the cause of the stop is removed.
-    """
-    import_python_can()
-    from hil.cli.reset import carry_out
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.reset import carry_out
 
-    return carry_out(bench=bench, by=by, data=data, as_json=as_json)
+        return carry_out(self)

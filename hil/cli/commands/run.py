@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -14,13 +15,19 @@ from hil.cli.commands._options import BenchName, Controllers, Operator, PlanName
 SEVERAL = ("--controller", "--set")
 
 
-def command(
-    plan: PlanName,
-    bench: BenchName = "",
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """Run a test plan on a bench and write recording.mcap, result.json, report.html, report.pdf, junit.xml.
+
+    Exit code: 0 passed, 1 a criterion failed, 2 bad input, 3 the bench failed, 130 interrupted.
+    """
+
+    plan: PlanName
+    bench: BenchName = ""
     out: Annotated[
         Path | None,
         typer.Option(help="directory for recording and reports; default: a new one, out/PLAN-001 and so on"),
-    ] = None,
+    ] = None
     model: Annotated[
         Path | None,
         typer.Option(
@@ -28,7 +35,7 @@ def command(
             callback=found_model,
             autocompletion=shipped_model(),
         ),
-    ] = None,
+    ] = None
     values: Annotated[
         list[str] | None,
         typer.Option(
@@ -36,12 +43,12 @@ def command(
             metavar="NAME=VALUE",
             help="value of a variable of the plan; NAME=VALUE,VALUE,… runs the plan for each value",
         ),
-    ] = None,
+    ] = None
     repeat: Annotated[
         int, typer.Option(min=1, max=1000, help="number of runs, each in its own folder, with the spread")
-    ] = 1,
-    controller: Controllers = None,
-    operator: Operator = "",
+    ] = 1
+    controller: Controllers = None
+    operator: Operator = ""
     yes: Annotated[
         str,
         typer.Option(
@@ -49,7 +56,7 @@ def command(
             metavar="NAME",
             help="name of the person who confirms all operator prompts; printed in the report",
         ),
-    ] = "",
+    ] = ""
     confirm: Annotated[
         str,
         typer.Option(
@@ -57,36 +64,27 @@ def command(
             metavar="NAME",
             help="name of the person who authorises a hazardous plan; printed in the report",
         ),
-    ] = "",
+    ] = ""
     accept_expired: Annotated[
         str,
         typer.Option(
             metavar="'NAME: reason'",
             help="person who accepts expired sensor calibrations, and why; printed in the report",
         ),
-    ] = "",
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False,
+    ] = ""
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier run in --out")] = False
     server: Annotated[
         str,
         typer.Option(metavar="URL", help="run it on a bench service (hil serve); HIL_TOKEN holds the token"),
-    ] = "",
+    ] = ""
     show: Annotated[
         bool, typer.Option("--open", help="open the report of a single run in a browser, if one is installed")
-    ] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print result.json on stdout, nothing else")
-    ] = False,
-) -> int:
-    """Run a test plan on a bench and write recording.mcap, result.json, report.html, report.pdf, junit.xml.
+    ] = False
+    as_json: Annotated[bool, typer.Option("--json", help="print result.json on stdout, nothing else")] = False
 
-    Exit code: 0 passed, 1 a criterion failed, 2 bad input, 3 the bench failed, 130 interrupted.
-    """
-    import_python_can()
-    from hil.cli.run import carry_out
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.run import carry_out
 
-    return carry_out(
-        plan=plan, bench=bench, out=out, model=model, values=values, repeat=repeat,
-        controller=controller, operator=operator, yes=yes,
-        confirm=confirm, accept_expired=accept_expired, overwrite=overwrite, server=server, show=show,
-        as_json=as_json,
-    )  # fmt: skip
+        return carry_out(self)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Annotated
 
 import typer
@@ -10,21 +11,25 @@ from hil.cli._completion import one_of
 from hil.cli._lean_imports import import_python_can
 
 
-def command(
+@dataclass(frozen=True, kw_only=True)
+class Schema:
+    """Print the JSON schema of plan, bench, model, controller or campaign files.
+
+    Editors complete and check with it: yaml-language-server for plans and campaigns, Taplo (Even Better
+    TOML) for the rest.
+    """
+
     kind: Annotated[
         str,
         typer.Argument(
             help="kind of file: plan, bench, model, controller or campaign",
             autocompletion=one_of("plan", "bench", "model", "controller", "campaign"),
         ),
-    ] = "plan",
-) -> int:
-    """Print the JSON schema of plan, bench, model, controller or campaign files.
+    ] = "plan"
 
-    Editors complete and check with it: yaml-language-server for plans and campaigns, Taplo (Even Better
-    TOML) for the rest.
-    """
-    import_python_can()
-    from hil.cli.schema import carry_out
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.schema import carry_out
 
-    return carry_out(kind=kind)
+        return carry_out(self)

@@ -2,32 +2,37 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 
-def command(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="a run's directory")],
-    key: Annotated[
-        Path,
-        typer.Option(help="your Ed25519 private key, of OpenSSH or PEM; 'ssh-keygen -t ed25519' makes one"),
-    ],
-    by: Annotated[
-        str, typer.Option(metavar="NAME", help="name of the person who signs; default: the user's name")
-    ] = "",
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="replace an earlier signature of this key")
-    ] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Sign:
     """Sign every file of a run's directory; write two files there, which hil verify --by checks.
 
     A directory that does not verify is not signed (exit code 1). Several persons can sign.
     """
-    from hil.cli.sign import carry_out
 
-    return carry_out(folder=folder, key=key, by=by, overwrite=overwrite, as_json=as_json)
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="a run's directory")]
+    key: Annotated[
+        Path,
+        typer.Option(help="your Ed25519 private key, of OpenSSH or PEM; 'ssh-keygen -t ed25519' makes one"),
+    ]
+    by: Annotated[
+        str, typer.Option(metavar="NAME", help="name of the person who signs; default: the user's name")
+    ] = ""
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="replace an earlier signature of this key")
+    ] = False
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        from hil.cli.sign import carry_out
+
+        return carry_out(self)

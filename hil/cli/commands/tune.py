@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -14,107 +15,8 @@ from hil.cli.commands._options import Operator, PlanName, found_model
 SEVERAL = ("--envelope",)
 
 
-def command(
-    plan: PlanName,
-    model: Annotated[
-        Path,
-        typer.Option(
-            "--model",
-            help="model file of the axle (a chain), effects included, or the name of a shipped model",
-            callback=found_model,
-            autocompletion=shipped_model(),
-        ),
-    ],
-    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/tune-NNN")] = None,
-    free: Annotated[
-        Path | None,
-        typer.Option(
-            help="TOML with free parameters, weights, hard limits and tolerances; default: the built-in one"
-        ),
-    ] = None,
-    controller: Annotated[
-        str,
-        typer.Option(help="file name of the plan's controller to tune; default: the last one"),
-    ] = "",
-    start: Annotated[Path | None, typer.Option(help="initial controller file; default: the plan's")] = None,
-    draws: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            max=5000,
-            help="vehicles sampled from uncertainty and tolerances; 0: the nominal model only",
-        ),
-    ] = 0,
-    seed: Annotated[int, typer.Option(min=0, help="random seed of sampling and search")] = 0,
-    starts: Annotated[
-        int,
-        typer.Option(min=0, max=1000, help="number of additional starting points of the optimiser"),
-    ] = 6,
-    at_most: Annotated[
-        float | None,
-        typer.Option(
-            metavar="MINUTES", min=0.01, help="stop the search after this time; keep the best so far"
-        ),
-    ] = None,
-    processes: Annotated[
-        int | None, typer.Option(min=1, max=256, help="parallel predictions; default: one per core")
-    ] = None,
-    bench: Annotated[
-        str,
-        typer.Option(
-            help="simulated bench to predict on, by file or name; default: that of --on-bench, else as of "
-            "`hil run`",
-            autocompletion=shipped_bench(),
-        ),
-    ] = "",
-    then_run: Annotated[
-        bool,
-        typer.Option(
-            "--then-run", help="then run the plan with the tuned controller; compare with the prediction"
-        ),
-    ] = False,
-    differ: Annotated[
-        float,
-        typer.Option(
-            metavar="PERCENT",
-            min=0.01,
-            max=1000,
-            help="deviation from the prediction, % of a criterion's limit, above which a run is diagnosed",
-        ),
-    ] = 5.0,
-    on_bench: Annotated[
-        str,
-        typer.Option(
-            "--on-bench",
-            metavar="BENCH",
-            help="refine the controller by runs on BENCH, within a trust region around the prediction",
-            autocompletion=shipped_bench(),
-        ),
-    ] = "",
-    runs: Annotated[
-        int | None, typer.Option(min=1, max=200, help="with --on-bench: largest number of runs; default: 20")
-    ] = None,
-    envelope: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="CHANNEL=VALUE",
-            help="with --on-bench: largest magnitude allowed in a run, or bench_time_s for all runs; "
-            "default: 1.3 times the values predicted for the plan",
-        ),
-    ] = None,
-    confirm: Annotated[
-        str,
-        typer.Option(
-            metavar="NAME",
-            help="with --on-bench: name of the person who authorises all runs within the envelope",
-        ),
-    ] = "",
-    operator: Operator = "",
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="replace an earlier result in --out")
-    ] = False,
-    json_: Annotated[bool, typer.Option("--json", help="print tune.json on stdout, nothing else")] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Tune:
     """Optimise a controller's parameters for the largest worst margin over a plan's criteria.
 
     Each candidate is evaluated by predicted runs of the whole plan, on the nominal model and on vehicles
@@ -131,29 +33,108 @@ def command(
     Exit code: 0 every criterion that depends on the controller passes (on every vehicle; with --then-run: in
     the run, and as predicted; with --on-bench: in the best run), 1 one does not, 3 a run failed.
     """
-    import_python_can()
-    from hil.cli.tune import carry_out
 
-    return carry_out(
-        plan=plan,
-        model=model,
-        out=out,
-        free=free,
-        controller=controller,
-        start=start,
-        draws=draws,
-        seed=seed,
-        starts=starts,
-        at_most=at_most,
-        processes=processes,
-        bench=bench,
-        then_run=then_run,
-        differ=differ,
-        on_bench=on_bench,
-        runs=runs,
-        envelope=envelope,
-        confirm=confirm,
-        operator=operator,
-        overwrite=overwrite,
-        json_=json_,
-    )
+    plan: PlanName
+    model: Annotated[
+        Path,
+        typer.Option(
+            "--model",
+            help="model file of the axle (a chain), effects included, or the name of a shipped model",
+            callback=found_model,
+            autocompletion=shipped_model(),
+        ),
+    ]
+    out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/tune-NNN")] = None
+    free: Annotated[
+        Path | None,
+        typer.Option(
+            help="TOML with free parameters, weights, hard limits and tolerances; default: the built-in one"
+        ),
+    ] = None
+    controller: Annotated[
+        str,
+        typer.Option(help="file name of the plan's controller to tune; default: the last one"),
+    ] = ""
+    start: Annotated[Path | None, typer.Option(help="initial controller file; default: the plan's")] = None
+    draws: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=5000,
+            help="vehicles sampled from uncertainty and tolerances; 0: the nominal model only",
+        ),
+    ] = 0
+    seed: Annotated[int, typer.Option(min=0, help="random seed of sampling and search")] = 0
+    starts: Annotated[
+        int,
+        typer.Option(min=0, max=1000, help="number of additional starting points of the optimiser"),
+    ] = 6
+    at_most: Annotated[
+        float | None,
+        typer.Option(
+            metavar="MINUTES", min=0.01, help="stop the search after this time; keep the best so far"
+        ),
+    ] = None
+    processes: Annotated[
+        int | None, typer.Option(min=1, max=256, help="parallel predictions; default: one per core")
+    ] = None
+    bench: Annotated[
+        str,
+        typer.Option(
+            help="simulated bench to predict on, by file or name; default: that of --on-bench, else as of "
+            "`hil run`",
+            autocompletion=shipped_bench(),
+        ),
+    ] = ""
+    then_run: Annotated[
+        bool,
+        typer.Option(
+            "--then-run", help="then run the plan with the tuned controller; compare with the prediction"
+        ),
+    ] = False
+    differ: Annotated[
+        float,
+        typer.Option(
+            metavar="PERCENT",
+            min=0.01,
+            max=1000,
+            help="deviation from the prediction, % of a criterion's limit, above which a run is diagnosed",
+        ),
+    ] = 5.0
+    on_bench: Annotated[
+        str,
+        typer.Option(
+            "--on-bench",
+            metavar="BENCH",
+            help="refine the controller by runs on BENCH, within a trust region around the prediction",
+            autocompletion=shipped_bench(),
+        ),
+    ] = ""
+    runs: Annotated[
+        int | None, typer.Option(min=1, max=200, help="with --on-bench: largest number of runs; default: 20")
+    ] = None
+    envelope: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CHANNEL=VALUE",
+            help="with --on-bench: largest magnitude allowed in a run, or bench_time_s for all runs; "
+            "default: 1.3 times the values predicted for the plan",
+        ),
+    ] = None
+    confirm: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="with --on-bench: name of the person who authorises all runs within the envelope",
+        ),
+    ] = ""
+    operator: Operator = ""
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")] = False
+    json_: Annotated[bool, typer.Option("--json", help="print tune.json on stdout, nothing else")] = False
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        import_python_can()
+        from hil.cli.tune import carry_out
+
+        return carry_out(self)

@@ -2,27 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 
-def command(
-    sources: Annotated[
-        list[Path],
-        typer.Argument(
-            metavar="DIR|REPORT|RECORDING...", help="files that belong together; or a service's directory"
-        ),
-    ],
-    by: Annotated[
-        Path | None,
-        typer.Option(metavar="PUBLIC_KEY", help="public key of the required signer: NAME.pub, or PEM"),
-    ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")
-    ] = False,
-) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Verify:
     """Verify that reports match their recording and that no file changed; check signatures.
 
     In the directory of a bench service (`hil serve --data`) it verifies the audit log: no row was changed,
@@ -31,6 +19,23 @@ def command(
     A report is compared with the recordings given, or else with the one beside it. Exit code: 0 everything
     is verified, 1 something does not match or cannot be verified.
     """
-    from hil.cli.verify import carry_out
 
-    return carry_out(sources=sources, by=by, as_json=as_json)
+    sources: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="DIR|REPORT|RECORDING...", help="files that belong together; or a service's directory"
+        ),
+    ]
+    by: Annotated[
+        Path | None,
+        typer.Option(metavar="PUBLIC_KEY", help="public key of the required signer: NAME.pub, or PEM"),
+    ] = None
+    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
+        False
+    )
+
+    def carry_out(self) -> int:
+        """Carry the command out; its exit code."""
+        from hil.cli.verify import carry_out
+
+        return carry_out(self)

@@ -7,11 +7,10 @@ import json
 from pathlib import Path
 
 import pytest
-import typer
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
-from hil.cli.commands import design, identify
+from hil.cli._app import _app_of
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
@@ -24,10 +23,9 @@ _FIGURES = {f"{n}.{kind}" for n in ("nyquist", "sensitivity", "trade_off") for k
 
 
 def invoke(*arguments: object) -> str:
-    app = typer.Typer()
-    app.command("identify")(identify.command)
-    app.command("design")(design.command)
-    result = CliRunner().invoke(app, [str(a) for a in arguments], catch_exceptions=False)
+    result = CliRunner().invoke(
+        _app_of("identify", "design"), [str(a) for a in arguments], catch_exceptions=False
+    )
     assert result.exit_code == 0, result.output
     return result.stdout
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from hil.cli._app import guarded
-from hil.cli.agent import carry_out
+from hil.cli.commands.agent import Agent
 from hil.core.errors import BadInputError
 from hil.core.locks import lock_on
 from tests.hil.service.served import ASKING, HIL, SHORT, RefusedError, Served, environment_of, served
@@ -216,9 +216,9 @@ def test_what_an_agent_cannot_use_is_said(tmp_path: Path) -> None:
         (["sim"], "", 0.0, "--for is 0"),
     ):
         with pytest.raises(BadInputError, match=said):
-            carry_out(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual)
+            Agent(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual).carry_out()
     with lock_on(tmp_path), pytest.raises(BadInputError, match="another agent keeps its data here"):
-        carry_out(data=tmp_path, bench=["sim"], name="", for_s=None, **usual)
+        Agent(data=tmp_path, bench=["sim"], name="", for_s=None, **usual).carry_out()
 
 
 def test_a_service_has_benches_of_its_own_or_says_that_it_has_none(
