@@ -21,11 +21,11 @@ from hil.agent._service import AwayError, TheService
 from hil.client import RefusedError
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.engine import StopRequest
-from hil.service.agent_data import AgentOrders, AgentReport, RunEnding, TakenRun
-from hil.service.benches import benches_of
-from hil.service.data_folder import alone_in, name_in
-from hil.service.run_execution import RunEnd, RunExecution, end_of_left
-from hil.service.run_process import alive_in
+from hil.execution.benches import benches_of
+from hil.execution.data_folder import alone_in, name_in
+from hil.execution.run_execution import RunEnd, RunExecution, end_of_left
+from hil.execution.run_process import alive_in
+from hil.messages.agent import AgentOrders, AgentReport, RunEnding, TakenRun
 
 _LOOK_S = 0.1
 _REPORT_S = 0.2  # at least; the service holds a report for up to half a second

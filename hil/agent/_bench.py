@@ -11,9 +11,9 @@ from hil.agent._kept_runs import KeptRun
 from hil.core.errors import HilError
 from hil.core.printable import printable
 from hil.engine.ipc_messages import EmergencyAsked
-from hil.service.agent_data import AgentBench, Order
-from hil.service.benches import Bench
-from hil.service.run_execution import RunExecution
+from hil.execution.benches import Bench
+from hil.execution.run_execution import RunExecution
+from hil.messages.agent import AgentBench, Order
 
 _LONGEST = 2000
 _USED_S = 1.0

@@ -11,10 +11,10 @@ from hil.agent._service import AwayError, TheService
 from hil.client import RefusedError
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.files import write_atomically
-from hil.service.agent_data import AgentsForecast, Order, PlanSent
-from hil.service.benches import Bench
-from hil.service.data import ForecastData, Problem
-from hil.service.forecasts import Forecasts
+from hil.execution.benches import Bench
+from hil.execution.forecasts import Forecasts
+from hil.messages.agent import AgentsForecast, Order, PlanSent
+from hil.messages.api import ForecastData, Problem
 from test_plans import plan_from_text
 
 

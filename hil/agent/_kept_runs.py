@@ -11,8 +11,8 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from hil.core.files import make_directory, sha256_of, write_atomically
-from hil.service.agent_data import FileMade, RunEnding, TakenRun
-from hil.service.run_files import files_in, folder_of
+from hil.execution.run_files import files_in, folder_of
+from hil.messages.agent import FileMade, RunEnding, TakenRun
 
 _TAKEN, _ENDING, _INPUTS = ".taken.json", ".ending.json", ".inputs"
 _DELIVERED, _REFUSED = ".delivered", ".refused"

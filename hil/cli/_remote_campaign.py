@@ -24,8 +24,8 @@ from hil.client import Client, RefusedError
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.files import is_file, make_directory, read_text, write_atomically
 from hil.engine import StopRequest
-from hil.service.campaign_data import CAMPAIGN_OVER, TABLE, CampaignData, CampaignWanted
-from hil.service.plan_files import files_of
+from hil.execution.plan_files import files_of
+from hil.messages.campaign import CAMPAIGN_OVER, TABLE, CampaignData, CampaignWanted
 from reports import HTML, PDF
 from reports.outputs.campaign import OWN, share_in_words
 from test_plans import load_plan

@@ -25,7 +25,7 @@ from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.result import RunResult
 from hil.engine import StopRequest
 from hil.engine.operator import EMERGENCY
-from hil.service.data import OVER, RunData, RunWanted
+from hil.messages.api import OVER, RunData, RunWanted
 from test_plans import load_plan
 
 _LOOK_S = 0.3

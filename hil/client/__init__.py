@@ -2,5 +2,7 @@
 
 from hil.client._client import Client
 from hil.client._requests import RefusedError
+from hil.messages.api import RunData, RunWanted
+from hil.messages.campaign import CampaignWanted
 
-__all__ = ["Client", "RefusedError"]
+__all__ = ["CampaignWanted", "Client", "RefusedError", "RunData", "RunWanted"]

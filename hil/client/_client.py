@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hil.client._requests import WITHIN_S, Requests, first_of, part
 from hil.core.errors import BenchError
-from hil.service.agent_data import (
+from hil.messages.agent import (
     AgentData,
     AgentOrders,
     AgentReport,
@@ -19,9 +19,7 @@ from hil.service.agent_data import (
     RunEnding,
     Taken,
 )
-from hil.service.campaign_data import CampaignData, CampaignExample, CampaignWanted
-from hil.service.comparison_data import ComparisonData, TracesData
-from hil.service.data import (
+from hil.messages.api import (
     OVER,
     Answer,
     AuditEntry,
@@ -42,7 +40,9 @@ from hil.service.data import (
     TokenWanted,
     TrendData,
 )
-from hil.service.design_data import (
+from hil.messages.campaign import CampaignData, CampaignExample, CampaignWanted
+from hil.messages.comparison import ComparisonData, TracesData
+from hil.messages.design import (
     ControllerData,
     DesignData,
     DraftData,
@@ -50,14 +50,14 @@ from hil.service.design_data import (
     ModelData,
     PlanCopyWanted,
 )
-from hil.service.study_data import (
+from hil.messages.study import (
     DiagnosisData,
     DiagnosisWanted,
     IdentificationData,
     IdentificationWanted,
     StudyData,
 )
-from hil.service.upload_data import KeptApart
+from hil.messages.upload import KeptApart
 
 _FORECAST_WITHIN_S = 300.0
 _REPORTED_WITHIN_S = 5.0

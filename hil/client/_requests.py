@@ -19,7 +19,7 @@ from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from hil.core.errors import BenchError
 from hil.core.files import replacing
-from hil.service.data import Problem
+from hil.messages.api import Problem
 
 A = TypeVar("A")
 T = TypeVar("T", bound=BaseModel)

@@ -19,11 +19,11 @@ from sqlalchemy import Engine
 from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
 from hil.engine.ipc_messages import EmergencyAsked
-from hil.service.agent_data import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
-from hil.service.plan_files import files_of
+from hil.execution.plan_files import files_of
+from hil.execution.run_execution import PLAN, RunningRun
+from hil.execution.run_files import folder_of
+from hil.messages.agent import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
 from hil.service.remote_bench import Agent, AgentsRun, RemoteBench
-from hil.service.run_execution import PLAN, RunningRun
-from hil.service.run_files import folder_of
 from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
 from test_plans import Plan, plan_from_text
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import asyncio
 
 from hil.core.errors import BadInputError, BenchError
-from hil.service.agent_data import AgentsForecast
+from hil.messages.agent import AgentsForecast
+from hil.messages.api import ForecastData, Problem
 from hil.service.agents import sent
-from hil.service.data import ForecastData, Problem
 from hil.service.remote_bench import RemoteBench
 from test_plans import Plan
 

@@ -22,7 +22,7 @@ from typing import Any
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.files import make_directory
 from hil.core.locks import HeldError, lock_on
-from hil.service.campaign_data import (
+from hil.messages.campaign import (
     CAMPAIGN_OVER,
     TABLE,
     CampaignData,

@@ -10,9 +10,9 @@ from hil.core.errors import BadInputError
 from hil.core.model import Model, load_model, model_from_dict
 from hil.core.toml_file import parse_toml
 from hil.engine.bench_file import shipped
+from hil.messages.design import ControllerData, ModelData
 from hil.plant import refuse_too_stiff
 from hil.service.catalogue import Catalogue
-from hil.service.design_data import ControllerData, ModelData
 from hil.service.uploads import Uploads
 from test_plans import library_controllers
 

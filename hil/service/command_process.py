@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hil.core.files import write_atomically
-from hil.service.background import STUDY_BYTES, begun
+from hil.execution.background import STUDY_BYTES, begun
 
 _NICENESS = 10
 _NUMBER = "process"

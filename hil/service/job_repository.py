@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from hil.core.files import make_directory, write_atomically
-from hil.service.data import Record
+from hil.messages.api import Record
 
 logger = logging.getLogger(__name__)
 

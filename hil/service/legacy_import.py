@@ -16,13 +16,13 @@ from pydantic import TypeAdapter, ValidationError
 
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
+from hil.execution.plan_files import files_of
+from hil.messages.api import PlanName
+from hil.messages.design import FileName
+from hil.messages.upload import GivenKind, KeptApart
 from hil.service.catalogue import Catalogue
-from hil.service.data import PlanName
-from hil.service.design_data import FileName
-from hil.service.plan_files import files_of
 from hil.service.plans import Plans
 from hil.service.store import GivenStore, LogStore
-from hil.service.upload_data import GivenKind, KeptApart
 from test_plans import plan_from_text
 
 _NAMES: dict[GivenKind, TypeAdapter[str]] = {

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 from hil.core.errors import HilError
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
+from hil.execution.run_execution import PLAN, RunningRun
 from hil.service.broadcast_cache import BroadcastCache
 from hil.service.live import LiveRun
-from hil.service.run_execution import PLAN, RunningRun
 from test_plans import plan_from_text
 
 _LOOK_S = 0.05  # a viewer is sent as many updates

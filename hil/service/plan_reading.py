@@ -7,8 +7,8 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
-from hil.service.data import PlanData, VariableData
-from hil.service.plan_files import files_of
+from hil.execution.plan_files import files_of
+from hil.messages.api import PlanData, VariableData
 from test_plans import Plan, plan_from_text
 
 

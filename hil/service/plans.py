@@ -10,7 +10,7 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
-from hil.service.data import PlanData
+from hil.messages.api import PlanData
 from hil.service.plan_reading import GivenPlan, data_of, given_plan, read_given
 from hil.service.uploads import NameTakenError, Uploads
 from test_plans import Choices, Plan, library_plans, load_plan

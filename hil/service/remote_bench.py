@@ -10,9 +10,9 @@ from dataclasses import dataclass, field
 
 from hil.core.errors import StopWay
 from hil.engine.ipc_messages import EmergencyAsked
-from hil.service.agent_data import AgentBench, Order, OrderKind, PlanSent
-from hil.service.data import BenchState
-from hil.service.run_execution import RunningRun
+from hil.execution.run_execution import RunningRun
+from hil.messages.agent import AgentBench, Order, OrderKind, PlanSent
+from hil.messages.api import BenchState
 from hil.service.store import BenchStore
 
 AWAY_S = 10.0

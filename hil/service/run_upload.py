@@ -13,11 +13,11 @@ from pathlib import Path
 from hil.core.errors import BenchError
 from hil.core.files import make_directory, sha256_of
 from hil.engine import RECORDING
-from hil.service.agent_data import MOST_FILE_BYTES, MOST_FILES, FileMade, RunEnding
-from hil.service.daemon_thread import apart
-from hil.service.data import RunData
-from hil.service.run_files import folder_of
-from hil.service.run_process import result_in
+from hil.execution.daemon_thread import apart
+from hil.execution.run_files import folder_of
+from hil.execution.run_process import result_in
+from hil.messages.agent import MOST_FILE_BYTES, MOST_FILES, FileMade, RunEnding
+from hil.messages.api import RunData
 from hil.service.store import RunStore
 
 

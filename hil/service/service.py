@@ -14,26 +14,27 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
+from hil.execution.benches import Bench
+from hil.execution.daemon_thread import apart
+from hil.execution.forecasts import Forecasts
+from hil.execution.run_execution import RunningRun
+from hil.execution.run_files import files_in
+from hil.messages.api import OVER, BenchData, BenchState, ForecastData, Me, RunData
+from hil.messages.campaign import CampaignData
+from hil.messages.study import StudyData
 from hil.service.agents import Agents
 from hil.service.agents_forecasts import AgentsForecasts
 from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.audit import problem_of
-from hil.service.benches import Bench
-from hil.service.campaign_data import CampaignData
 from hil.service.campaigns import Campaigns, Places
 from hil.service.catalogues import controller_catalogue, model_catalogue
-from hil.service.daemon_thread import apart
-from hil.service.data import OVER, BenchData, BenchState, ForecastData, Me, RunData
 from hil.service.deferred_audit import DeferredAudit
-from hil.service.forecasts import Forecasts
 from hil.service.legacy_import import LegacyImport
 from hil.service.live_hub import LiveHub
 from hil.service.owners import OwnersKnown
 from hil.service.plans import Plans
 from hil.service.queue import Queue
 from hil.service.remote_bench import RemoteBench
-from hil.service.run_execution import RunningRun
-from hil.service.run_files import files_in
 from hil.service.run_upload import RunUploads
 from hil.service.shared_results import SharedResults
 from hil.service.stop_post import StopPost
@@ -51,7 +52,6 @@ from hil.service.store import (
     TokenStore,
 )
 from hil.service.studies import Studies
-from hil.service.study_data import StudyData
 from hil.service.upload_reader import UploadReader
 from hil.service.uploads import Uploads
 from hil.service.worker_pool import WorkerPool

@@ -19,12 +19,12 @@ from sqlalchemy import Engine
 from hil.core.errors import BadInputError, BenchError
 from hil.core.printable import printable
 from hil.engine import StopRequest
+from hil.execution.benches import benches_of
+from hil.execution.daemon_thread import going_on
+from hil.execution.data_folder import alone_in, make_private, name_in
+from hil.messages.api import ROLES, Role, TokenMade
 from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
-from hil.service.benches import benches_of
-from hil.service.daemon_thread import going_on
-from hil.service.data import ROLES, Role, TokenMade
-from hil.service.data_folder import alone_in, make_private, name_in
 from hil.service.service import Commands, Service
 from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, LogStore, TokenStore, in_turns, open_database

@@ -14,11 +14,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hil.core.errors import BadInputError
+from hil.messages.study import STUDY_OVER, StudyData, StudyKind
 from hil.service.command_process import CommandProcess, kill_left
 from hil.service.job_repository import JobRepository, files_in_results
 from hil.service.shared_results import SharedResults
 from hil.service.store import in_turns
-from hil.service.study_data import STUDY_OVER, StudyData, StudyKind
 
 _AT_ONCE = 1  # a run needs the other processor
 _LAST_WORDS_S = 20.0

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from hil.core.errors import BadInputError
-from hil.service.data import PlanData
+from hil.messages.api import PlanData
+from hil.messages.upload import GivenKind
 from hil.service.plan_reading import GivenPlan
 from hil.service.plans import Plans
-from hil.service.upload_data import GivenKind
 from hil.service.worker_pool import READ_WITHIN_S, READING, TooLongError, WorkerPool
 
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, of_the_system, sha256_of, write_atomically
+from hil.messages.upload import GivenKind
 from hil.service.store import GivenStore, GivenText, asked_apart
-from hil.service.upload_data import GivenKind
 
 
 class NameTakenError(BadInputError):

@@ -8,8 +8,8 @@ from typing import Annotated
 from fastapi import Depends, Request
 from fastapi.security import APIKeyCookie, HTTPAuthorizationCredentials, HTTPBearer
 
+from hil.messages.api import LADDER, Me, Role
 from hil.service.api._problems import RefusedError
-from hil.service.data import LADDER, Me, Role
 from hil.service.service import Service
 from hil.service.stop_post import COOKIE
 from hil.service.store import DatabaseAwayError

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Body, Path, Query, Request
 
 from hil.core.errors import HilError
-from hil.service.agent_data import (
+from hil.execution.run_files import LOCK
+from hil.messages.agent import (
     MOST_FILE_BYTES,
     AgentData,
     AgentId,
@@ -20,11 +21,10 @@ from hil.service.agent_data import (
     RunFileName,
     Taken,
 )
+from hil.messages.api import BenchName, RunData, RunId
 from hil.service.api._access import AgentItself, Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
-from hil.service.data import BenchName, RunData, RunId
 from hil.service.remote_bench import RemoteBench
-from hil.service.run_files import LOCK
 from hil.service.service import Service
 
 router = APIRouter(tags=["agents"])

@@ -6,9 +6,9 @@ from fastapi import APIRouter, Request
 
 from hil.core.errors import StopWay
 from hil.engine.ipc_messages import EmergencyAsked
+from hil.messages.api import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
-from hil.service.data import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.service.service import Service
 from hil.service.stop_post import COOKIE
 

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Body
 from fastapi.responses import FileResponse
 from starlette.responses import Response
 
+from hil.messages.api import RunId
+from hil.messages.campaign import CampaignData, CampaignExample, CampaignWanted
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._left_files import left_file
 from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
-from hil.service.campaign_data import CampaignData, CampaignExample, CampaignWanted
-from hil.service.data import RunId
 from hil.service.service import Service
 
 router = APIRouter(tags=["campaigns"])

@@ -7,10 +7,10 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query
 
 from hil.engine import RECORDING
+from hil.messages.api import OVER, RunData, RunId
+from hil.messages.comparison import ChannelName, ComparisonData, SegmentName, TracesData
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
-from hil.service.comparison_data import ChannelName, ComparisonData, SegmentName, TracesData
-from hil.service.data import OVER, RunData, RunId
 from hil.service.service import Service
 
 router = APIRouter(prefix="/comparisons", tags=["runs"])

@@ -11,12 +11,8 @@ from fastapi import APIRouter, Body, Request, Response
 
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
-from hil.service.api._access import Engineer, TheService, Viewer
-from hil.service.api._problems import RefusedError, missing
-from hil.service.catalogue import Catalogue
-from hil.service.catalogues import controller_data, model_data
-from hil.service.data import PlanData, PlanName
-from hil.service.design_data import (
+from hil.messages.api import PlanData, PlanName
+from hil.messages.design import (
     ControllerData,
     DesignData,
     DraftData,
@@ -25,6 +21,10 @@ from hil.service.design_data import (
     ModelData,
     PlanCopyWanted,
 )
+from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._problems import RefusedError, missing
+from hil.service.catalogue import Catalogue
+from hil.service.catalogues import controller_data, model_data
 from hil.service.service import Service
 
 router = APIRouter(tags=["design"])

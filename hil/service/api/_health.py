@@ -7,9 +7,9 @@ import time
 
 from fastapi import APIRouter, Request, Response
 
+from hil.messages.api import Health
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._guard import StopAddress
-from hil.service.data import Health
 
 router = APIRouter(tags=["service"])
 

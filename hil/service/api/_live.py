@@ -11,10 +11,10 @@ from typing import Any
 from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
 
+from hil.messages.api import BenchName
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
-from hil.service.data import BenchName
 from hil.service.drawn_numbers import numbers
 from hil.service.live import BUCKET_S, Spectrum, Stretch
 from hil.service.live_hub import LiveView

@@ -6,11 +6,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Body, Request, Response
 
+from hil.messages.api import ForecastData, ForecastWanted, PlanData, PlanName
+from hil.messages.upload import KeptApart
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError, missing
-from hil.service.data import ForecastData, ForecastWanted, PlanData, PlanName
-from hil.service.upload_data import KeptApart
 
 router = APIRouter(tags=["plans"])
 _YAML = "application/yaml"

@@ -11,7 +11,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 
 from hil.core.errors import BadInputError, HilError
-from hil.service.data import Problem, Record
+from hil.messages.api import Problem, Record
 from hil.service.store import DatabaseAwayError
 from hil.service.uploads import NameTakenError
 

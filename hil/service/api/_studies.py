@@ -11,12 +11,8 @@ from starlette.responses import Response
 
 from hil.core.files import read_text
 from hil.engine import RECORDING
-from hil.service.api._access import Engineer, TheService, Viewer
-from hil.service.api._left_files import left_file
-from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
-from hil.service.data import OVER, Me, RunId
-from hil.service.service import Service
-from hil.service.study_data import (
+from hil.messages.api import OVER, Me, RunId
+from hil.messages.study import (
     STUDY_OVER,
     DiagnosisData,
     DiagnosisWanted,
@@ -25,6 +21,10 @@ from hil.service.study_data import (
     StudyData,
     StudyKind,
 )
+from hil.service.api._access import Engineer, TheService, Viewer
+from hil.service.api._left_files import left_file
+from hil.service.api._problems import RefusedError, missing, refuse_elsewhere
+from hil.service.service import Service
 
 router = APIRouter(tags=["studies"])
 _IDENTIFIED_WITHIN_S = 600.0

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from hil.core.errors import HilError
 from hil.core.files import sha256_of
+from hil.execution.daemon_thread import apart
+from hil.execution.run_files import LOCK, files_in, folder_of
 from hil.service.archive._archive import PIECE_BYTES, Archive, ArchiveAwayError, Kept
 from hil.service.archive._rounds import Rounds
-from hil.service.daemon_thread import apart
-from hil.service.run_files import LOCK, files_in, folder_of
 from hil.service.store import DatabaseAwayError, FileStore, KeptFile
 
 _DAY_S = 86400.0

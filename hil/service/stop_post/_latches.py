@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hil.core.errors import HilError
-from hil.service.benches import Bench
+from hil.execution.benches import Bench
 from hil.service.stop_post._answering import Asked
 
 logger = logging.getLogger(__name__)

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from hil.service.background import begun
+from hil.execution.background import begun
 from hil.service.stop_post._messages import (
     Benches,
     Line,

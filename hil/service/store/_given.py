@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from sqlalchemy import Engine, or_, select, update
 from sqlalchemy.orm import Session, sessionmaker
 
+from hil.messages.upload import GivenKind
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now
 from hil.service.store._tables import GivenRow
 from hil.service.store._upsert import put
-from hil.service.upload_data import GivenKind
 
 
 @dataclass(frozen=True)

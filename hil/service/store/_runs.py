@@ -12,8 +12,8 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
 from hil.core.result import CriterionResult, RunResult
-from hil.service.agent_data import TakenRun
-from hil.service.data import RunData, RunState, TrendPoint
+from hil.messages.agent import TakenRun
+from hil.messages.api import RunData, RunState, TrendPoint
 from hil.service.store._benches import HELD_S
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now, now_there

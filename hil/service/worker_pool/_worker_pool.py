@@ -10,7 +10,7 @@ import sys
 from typing import Any
 
 from hil.core.errors import BadInputError, BenchError
-from hil.service.background import FORECAST_BYTES, begun
+from hil.execution.background import FORECAST_BYTES, begun
 
 _WITHIN_S = 60.0
 #: What an answer begins with; JSON follows.

@@ -12,8 +12,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from hil.messages.api import LADDER, ROLES
 from hil.service.api import openapi_text
-from hil.service.data import LADDER, ROLES
 from tests.hil.service.served import HIL, SHORT, RefusedError, Served, environment_of, served
 
 ROOT = Path(__file__).parents[3]

@@ -17,8 +17,8 @@ import pytest
 from hil.agent._kept_runs import KeptRuns
 from hil.agent._service import AwayError, TheService
 from hil.client import RefusedError
-from hil.service.agent_data import RunEnding, TakenRun
-from hil.service.data import RunData
+from hil.messages.agent import RunEnding, TakenRun
+from hil.messages.api import RunData
 from tests.hil.service.served import SHORT, Served
 from tests.hil.service.working import bench_called, working
 

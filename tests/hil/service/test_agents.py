@@ -17,7 +17,7 @@ from sqlalchemy import Engine, create_engine, text
 
 from hil.core.errors import BadInputError, BenchError
 from hil.engine.ipc_messages import EmergencyAsked
-from hil.service.agent_data import AgentBench, AgentReport, FileMade, RunEnding
+from hil.messages.agent import AgentBench, AgentReport, FileMade, RunEnding
 from hil.service.agents import Agents
 from hil.service.remote_bench import AWAY_S
 from hil.service.run_upload import RunUploads

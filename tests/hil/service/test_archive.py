@@ -18,12 +18,12 @@ from sqlalchemy import Engine, text
 from hil.client import Client
 from hil.client import RefusedError as AnswerError
 from hil.core.errors import BadInputError
+from hil.messages.campaign import CampaignWanted
+from hil.messages.study import IdentificationWanted
 from hil.service.archive import Archive, ArchiveAwayError, Keeper
-from hil.service.campaign_data import CampaignWanted
 from hil.service.service import Commands
 from hil.service.serving import ServeRequest, serve
 from hil.service.store import BenchStore, FileStore, NewRun, RunStore, open_database
-from hil.service.study_data import IdentificationWanted
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.campaign.short import CAMPAIGN
 from tests.hil.service.s3 import BUCKET, S3, s3_server

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from hil.client import Client, RefusedError
-from hil.service.campaign_data import CAMPAIGN_OVER, CampaignData, CampaignWanted
+from hil.messages.campaign import CAMPAIGN_OVER, CampaignData, CampaignWanted
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.campaign.short import CAMPAIGN
 from tests.hil.service.served import Served, served

@@ -15,7 +15,7 @@ import pytest
 from hil.client import Client, RefusedError
 from hil.core.errors import BenchError
 from hil.core.recording import read_recording
-from hil.service.data import RunWanted
+from hil.messages.api import RunWanted
 from test_plans import library_controllers
 from tests.hil.service.served import HIL, SHORT, Served
 

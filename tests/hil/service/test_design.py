@@ -10,8 +10,8 @@ from hil.core.controller import controller_from_toml
 from hil.core.model import load_model
 from hil.core.recording import read_recording
 from hil.engine.bench_file import shipped
-from hil.service.data import RunWanted
-from hil.service.design_data import DraftWanted, PlanCopyWanted
+from hil.messages.api import RunWanted
+from hil.messages.design import DraftWanted, PlanCopyWanted
 from tests.hil.service.served import SHORT, Served
 from tests.hil.service.served import RefusedError as AnswerError
 

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Engine
 
+from hil.messages.study import STUDY_OVER, StudyData
 from hil.service.archive import Archive, ArchiveAwayError
 from hil.service.job_repository import JobRepository, files_in_results
 from hil.service.shared_results import SharedResults
 from hil.service.store import ResultStore
-from hil.service.study_data import STUDY_OVER, StudyData
 
 
 class _Here:

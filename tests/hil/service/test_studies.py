@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from hil.client import Client, RefusedError
-from hil.service.data import RunWanted
-from hil.service.study_data import STUDY_OVER, DiagnosisWanted, IdentificationWanted, StudyData
+from hil.messages.api import RunWanted
+from hil.messages.study import STUDY_OVER, DiagnosisWanted, IdentificationWanted, StudyData
 from tests.hil.service.served import Served, served
 
 #: A chirp of some seconds: enough for a fit, not for a good one.

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hil.core.result import CriterionResult, RunResult
-from hil.service.data import RunState, TrendPoint
+from hil.messages.api import RunState, TrendPoint
 from hil.service.store import BenchStore, NewRun, RunStore, open_database
 from hil.service.trends import LEAST_POINTS, trends
 

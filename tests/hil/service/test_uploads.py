@@ -11,11 +11,11 @@ from sqlalchemy import Engine
 
 from hil.core.errors import BadInputError
 from hil.engine.bench_file import shipped
+from hil.messages.upload import KeptApart
 from hil.service.catalogues import controller_catalogue, model_catalogue
 from hil.service.legacy_import import LegacyImport
 from hil.service.plans import Plans
 from hil.service.store import GivenStore, LogStore
-from hil.service.upload_data import KeptApart
 from hil.service.uploads import NameTakenError, Uploads
 from test_plans import library_controllers
 from tests.hil.service.served import SHORT

@@ -12,10 +12,10 @@ from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
 from hil.engine.ipc_messages import EmergencyAsked, Progressed, Refused, RunAsked, Told
-from hil.service.agent_data import TakenRun
-from hil.service.benches import Bench
-from hil.service.data import RunData
-from hil.service.run_process import RunProcess, result_in
+from hil.execution.benches import Bench
+from hil.execution.run_process import RunProcess, result_in
+from hil.messages.agent import TakenRun
+from hil.messages.api import RunData
 
 PLAN = "plan.yaml"
 _NOTHING = "the {who} ended before the recording started; the run can be queued again"

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from hil.core.errors import StopWay
-from hil.service.data import BenchName, ForecastData, Number, PersonName, Problem, RunData, RunId
+from hil.messages.api import BenchName, ForecastData, Number, PersonName, Problem, RunData, RunId
 
 AgentId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 #: A file that a run has left; what is hidden is not for others.

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from hil.service.data import Record, RunId
-from hil.service.design_data import FileName, Numbers
+from hil.messages.api import Record, RunId
+from hil.messages.design import FileName, Numbers
 
 StudyKind = Literal["identification", "diagnosis"]
 StudyState = Literal["waiting", "running", "ended", "failed", "cancelled", "interrupted"]

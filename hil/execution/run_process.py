@@ -12,8 +12,8 @@ from hil.core.locks import HeldError, lock_on
 from hil.core.result import RunResult
 from hil.engine.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
 from hil.engine.operator import END, PAUSE, RESUME
-from hil.service.background import begun
-from hil.service.run_files import LOCK
+from hil.execution.background import begun
+from hil.execution.run_files import LOCK
 
 RESULT = "result.json"
 _LONGEST_LINE = 1 << 24

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hil.core.errors import BadInputError
-from hil.service.data_folder import alone_in, name_in
+from hil.execution.data_folder import alone_in, name_in
 from hil.service.service import Commands
 from hil.service.serving import ServeRequest, serve
 

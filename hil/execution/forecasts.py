@@ -13,9 +13,9 @@ from pathlib import Path
 from hil.core.errors import BadInputError, BenchError
 from hil.core.files import read_bytes
 from hil.engine import BenchFile
-from hil.service.background import FORECAST_BYTES, begun
-from hil.service.data import ForecastData
-from hil.service.plan_files import files_of
+from hil.execution.background import FORECAST_BYTES, begun
+from hil.execution.plan_files import files_of
+from hil.messages.api import ForecastData
 from test_plans import Plan
 
 _AT_ONCE = 1  # a run needs the other processor

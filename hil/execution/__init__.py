@@ -1,0 +1,1 @@
+"""Carries runs and forecasts out in processes of their own, for a service or for an agent."""

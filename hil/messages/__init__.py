@@ -1,0 +1,1 @@
+"""What passes between service, client and agent, one schema each: requests, outcomes, events."""
