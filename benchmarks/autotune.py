@@ -13,7 +13,7 @@ from pathlib import Path
 
 from hil.cli._app import guarded
 from hil.core.model import load_model, model_to_toml
-from hil.engine.sim_bench import with_hidden
+from hil.engine.commissioning.sim_bench import with_hidden
 
 BENCHES = Path(__file__).parents[1] / "benches"
 HIDDEN = {"backlash": "0.01", "dead_time": "0.003"}

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from hil.core.model import load_model
 from hil.engine import RunRequest, load_bench, run_plan
-from hil.engine.forecast import forecast
-from hil.engine.prediction import predict
+from hil.engine.prediction.forecast import forecast
+from hil.engine.prediction.prediction import predict
 from test_plans import load_plan
 
 _COMMAND = "import sys; sys.argv[0] = 'hil'; from hil.cli import main; main()"

@@ -218,7 +218,7 @@ def _wrong_words(fault: Fault, folder: Path, code: int) -> list[str]:
 def said_after(log: Path, words: str, since_s: float) -> float:
     """How long after a moment (s since 1970) the log says one of `words`, s; NaN if it does not."""
     for line in log.read_text().splitlines():
-        if words and " ERROR hil.engine.supervisor" in line and re.search(words, line):
+        if words and " ERROR hil.engine.process.supervisor" in line and re.search(words, line):
             said = datetime.datetime.strptime(line[:23], "%Y-%m-%d %H:%M:%S,%f")
             return said.timestamp() - since_s
     return np.nan

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from benchmarks.answers import largest_difference
 from benchmarks.c_plant import compiled_c, refuse_more
 from hil.core.model import Model, load_model
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 from hil.plant import _kernel, _slots
 
 SAMPLES, DT, STEP = 20_000, 1e-3, 1e-4

@@ -15,7 +15,7 @@ from hil.analysis.tuning import Pool, SpeedLoops, Trial, channels_needed, draws_
 from hil.core.controller import load_controller
 from hil.core.model import load_model
 from hil.engine import RunRequest, load_bench, run_plan
-from hil.engine.batch_prediction import BatchPrediction
+from hil.engine.prediction.batch_prediction import BatchPrediction
 from test_plans import load_plan
 
 EVALUATIONS = 2000

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.engine import BenchFile, load_bench
-from hil.engine.bench import open_bench
+from hil.engine.bench.bench import open_bench
 from test_plans import Plan, plan_from_text
 
 #: Any: its tables are those of the kinds that the file names.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from hil.engine.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked
 
 
 class Answering:

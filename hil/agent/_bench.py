@@ -10,7 +10,7 @@ from pathlib import Path
 from hil.agent._kept_runs import KeptRun
 from hil.core.errors import HilError
 from hil.core.printable import printable
-from hil.engine.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.benches import Bench
 from hil.execution.run_execution import RunExecution
 from hil.messages.agent import AgentBench, Order

@@ -24,7 +24,7 @@ from hil.core.model import Model, load_model
 from hil.core.shipped import shipped_file
 from hil.core.suggestion import did_you_mean
 from hil.engine import BenchFile, load_bench
-from hil.engine.batch_prediction import controller_files
+from hil.engine.prediction.batch_prediction import controller_files
 from test_plans import Criterion, Plan, load_plan
 
 

@@ -18,7 +18,7 @@ from hil.core.controller import Controller, load_controller
 from hil.core.errors import HilError
 from hil.core.printable import printable
 from hil.core.result import CriterionResult, verdict_of
-from hil.engine.batch_prediction import BatchPrediction
+from hil.engine.prediction.batch_prediction import BatchPrediction
 from test_plans import Choices, Plan, judge, plan_from_text
 from test_plans.yaml_document import read_yaml
 

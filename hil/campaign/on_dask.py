@@ -21,7 +21,7 @@ from hil.campaign._setting import Setting, load_setting
 from hil.campaign._simulations import Simulations
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.core.extras import not_installed
-from hil.engine.stopping import held_back
+from hil.engine.stop.stopping import held_back
 
 try:
     import dask

@@ -7,8 +7,8 @@ import sys
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from hil.engine import BenchFile
-from hil.engine.envelope import Envelope
-from hil.engine.preflight import Rehearsal
+from hil.engine.prediction.envelope import Envelope
+from hil.engine.run.preflight import Rehearsal
 from test_plans import Plan
 
 NOT_NEEDED = "not required: the bench is simulated"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hil.cli._streams import complain
 from hil.engine import DEFAULT_BENCH
-from hil.engine.found_bench import folders_of, found_bench, refuse_hardware
+from hil.engine.bench.found_bench import folders_of, found_bench, refuse_hardware
 
 
 def bench_or_own(given: str, plan: str | None = None, *, drives: bool = False) -> str:

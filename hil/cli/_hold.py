@@ -17,8 +17,8 @@ def main() -> None:
     from hil.cli._lean_imports import import_python_can
 
     import_python_can()
-    from hil.engine.hardware_process import hold_hardware
-    from hil.engine.ipc_pipe import IpcPipe
+    from hil.engine.ipc.ipc_pipe import IpcPipe
+    from hil.engine.process.hardware_process import hold_hardware
 
     unheard = hold_hardware(IpcPipe(reading, writing))
     with contextlib.suppress(OSError):  # nobody may be left to read this either

@@ -13,8 +13,8 @@ from hil.cli._output import plain_table
 from hil.core.controller import load_controller
 from hil.core.model import load_model
 from hil.engine import BenchFile, load_bench
-from hil.engine.batch_prediction import controller_files
-from hil.engine.bench_file import DEFAULT_BENCH
+from hil.engine.bench.bench_file import DEFAULT_BENCH
+from hil.engine.prediction.batch_prediction import controller_files
 from test_plans import Plan
 from test_plans.steps import Step
 

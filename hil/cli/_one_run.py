@@ -22,8 +22,8 @@ from hil.core.model import Model
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
 from hil.engine import RECORDING, BenchFile, RunOutcome, RunRequest, StopRequest, carry_out
-from hil.engine.disk_room import remark_on_room
-from hil.engine.ipc import Terminal, analysed_apart
+from hil.engine.ipc.ipc import Terminal, analysed_apart
+from hil.engine.run.disk_room import remark_on_room
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import Plan
 

@@ -24,7 +24,7 @@ from hil.client import Client, RefusedError
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.result import RunResult
 from hil.engine import StopRequest
-from hil.engine.operator import EMERGENCY
+from hil.engine.run.operator import EMERGENCY
 from hil.messages.api import OVER, RunData, RunWanted
 from test_plans import load_plan
 

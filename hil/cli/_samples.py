@@ -12,7 +12,7 @@ from hil.core.channels import TIME
 from hil.core.model import load_model
 from hil.core.recording import Recording, driven_by_torque, read_recording, write_recording
 from hil.engine import DEFAULT_BENCH, RunRequest, load_bench, run_plan
-from hil.engine.sim_bench import with_hidden
+from hil.engine.commissioning.sim_bench import with_hidden
 from test_plans import load_plan
 
 #: What the axle has and its model has not, as `hil sim-bench --hide` takes it.

@@ -1,7 +1,7 @@
 """`python -m hil.cli._served_run`: one run for the bench service, which starts it; nobody else does.
 
 It does what `hil run` does. In place of a terminal it has two pipes with the messages of
-`hil.engine.ipc_messages`: asked and typed come in, progress, texts and the outcome go out. A second
+`hil.engine.ipc.ipc_messages`: asked and typed come in, progress, texts and the outcome go out. A second
 argument is the descriptor of its stop line: emergency stops come by it that no other message can hold up.
 """
 
@@ -20,8 +20,8 @@ from hil.cli._interrupts import INTERRUPTS
 
 if TYPE_CHECKING:
     from hil.cli._output import Show
-    from hil.engine.ipc_messages import EmergencyAsked, RunAsked
-    from hil.engine.ipc_pipe import IpcPipe
+    from hil.engine.ipc.ipc_messages import EmergencyAsked, RunAsked
+    from hil.engine.ipc.ipc_pipe import IpcPipe
 
 _ASKED_WITHIN_S = 60.0
 _LAST_WORDS_S = 10.0
@@ -40,7 +40,7 @@ class _Service:
 
     def asked(self) -> RunAsked | None:
         """The run that is asked for; None if the service is gone before it has asked."""
-        from hil.engine.ipc_messages import RunAsked
+        from hil.engine.ipc.ipc_messages import RunAsked
 
         until_s = time.monotonic() + _ASKED_WITHIN_S
         while not self._pipe.gone and time.monotonic() < until_s:
@@ -52,13 +52,13 @@ class _Service:
 
     def tell(self, text: str) -> None:
         """Show the operators a text."""
-        from hil.engine.ipc_messages import Told
+        from hil.engine.ipc.ipc_messages import Told
 
         self._pipe.send(Told(text=text))
 
     def typed(self) -> list[str | EmergencyAsked]:
         """What operators asked for since the last call; that the service has gone ends the run."""
-        from hil.engine.ipc_messages import EmergencyAsked, Typed
+        from hil.engine.ipc.ipc_messages import EmergencyAsked, Typed
 
         lines: list[str | EmergencyAsked] = []
         for message in [*(self._stop_line.fetch() if self._stop_line else ()), *self._pipe.fetch()]:
@@ -75,7 +75,7 @@ class _Service:
     def shown(self, description: str) -> Iterator[Show]:
         """Send the progress on."""
         del description
-        from hil.engine.ipc_messages import Progressed
+        from hil.engine.ipc.ipc_messages import Progressed
 
         def show(text: str, share: float | None = None) -> None:
             if not self._pipe.crowded:
@@ -97,8 +97,8 @@ def main() -> None:
     import_python_can()
     from hil.cli._log import LOG
     from hil.core.errors import BenchError, HilError
-    from hil.engine.ipc_messages import ErrorData, Refused
-    from hil.engine.ipc_pipe import IpcPipe
+    from hil.engine.ipc.ipc_messages import ErrorData, Refused
+    from hil.engine.ipc.ipc_pipe import IpcPipe
 
     pipe = IpcPipe(reading, writing)
     service = _Service(pipe, _stop_line())
@@ -127,7 +127,7 @@ def main() -> None:
 
 def _stop_line() -> IpcPipe | None:
     """Only read from; nobody else has this end of it."""
-    from hil.engine.ipc_pipe import IpcPipe
+    from hil.engine.ipc.ipc_pipe import IpcPipe
 
     if len(sys.argv) < 3:
         return None
@@ -139,7 +139,7 @@ def _stop_line() -> IpcPipe | None:
 def _carried_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
     from hil.cli._log import LOG
     from hil.cli._one_run import Runs
-    from hil.engine.ipc_data import ended_of, request_of
+    from hil.engine.ipc.ipc_data import ended_of, request_of
 
     request = request_of(asked)
     out = Path(asked.out)

@@ -29,7 +29,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.toml_file import toml_text
 from hil.engine import BenchFile, load_bench
-from hil.engine.batch_prediction import BatchPrediction
+from hil.engine.prediction.batch_prediction import BatchPrediction
 from reports import HTML, PDF
 from reports.origin import origin_of
 from reports.outputs.tuning import CONTROLLER, FREE, output_files, summary_of

@@ -22,8 +22,8 @@ from hil.core.controller import controller_to_toml
 from hil.core.digits import share
 from hil.core.errors import BadInputError
 from hil.core.model import Model
-from hil.engine.envelope import envelope_of
-from hil.engine.prediction import predict
+from hil.engine.prediction.envelope import envelope_of
+from hil.engine.prediction.prediction import predict
 from reports import HTML, PDF
 from reports.autotune_report import autotune_page
 from reports.origin import origin_of

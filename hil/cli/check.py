@@ -20,10 +20,10 @@ from hil.core.errors import BadInputError
 from hil.core.extras import not_installed
 from hil.core.mistakes import all_of
 from hil.engine import BenchFile, load_bench
-from hil.engine.calibration_dates import accepted_expiry
-from hil.engine.forecast import Forecast, forecast
-from hil.engine.measured import refuse_unmeasured
-from hil.engine.preflight import preflight
+from hil.engine.bench.calibration_dates import accepted_expiry
+from hil.engine.bench.measured import refuse_unmeasured
+from hil.engine.prediction.forecast import Forecast, forecast
+from hil.engine.run.preflight import preflight
 from test_plans import Choices, Plan, load_plan
 
 if TYPE_CHECKING:

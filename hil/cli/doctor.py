@@ -10,7 +10,7 @@ from hil.cli._output import console, plain_table, print_json, progress
 from hil.cli.commands.doctor import Doctor
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
-from hil.engine.doctor import BusFacts, DoctorRequest, Examination, examine_bench
+from hil.engine.commissioning.doctor import BusFacts, DoctorRequest, Examination, examine_bench
 
 _EXIT_CODES = {"fine": 0, "faults": 1, "not_there": 3}
 _VERDICTS = {

@@ -26,7 +26,7 @@ from hil.core.errors import BadInputError
 from hil.core.file_format import FORMAT
 from hil.core.model import Model, load_model
 from hil.engine import BenchFile, StopRequest, load_bench
-from hil.engine.prediction import predict
+from hil.engine.prediction.prediction import predict
 from hil.plant import refuse_too_stiff
 from reports.target_search import caution, explanation_html, explanation_pdf
 from test_plans import Plan

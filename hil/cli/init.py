@@ -10,7 +10,7 @@ from hil.cli._results_folder import results_in
 from hil.cli._samples import sample_files
 from hil.cli.commands.init import Init
 from hil.core.errors import BadInputError
-from hil.engine.bench_file import DEFAULT_BENCH, shipped
+from hil.engine.bench.bench_file import DEFAULT_BENCH, shipped
 from test_plans.loading import LIBRARY
 
 _STARTER = Path(__file__).parent / "starter"

@@ -17,7 +17,7 @@ from hil.core.errors import BenchError
 from hil.core.files import write_atomically
 from hil.core.printable import printable
 from hil.engine import RECORDING, StopRequest, load_bench
-from hil.engine.jog import JogOutcome, JogRequest, Sign, jog
+from hil.engine.commissioning.jog import JogOutcome, JogRequest, Sign, jog
 
 JOG = "jog.json"
 NAMES = (RECORDING, JOG)

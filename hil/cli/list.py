@@ -18,8 +18,8 @@ from hil.core.printable import printable
 from hil.core.shipped import shipped_file, shipped_names
 from hil.core.suggestion import did_you_mean
 from hil.engine import load_bench
-from hil.engine.bench_file import shipped_benches
-from hil.engine.device_kinds import KINDS
+from hil.engine.bench.bench_file import shipped_benches
+from hil.engine.bench.device_kinds import KINDS
 from test_plans import METRICS, STEPS, estimate_duration_s, library_plans, load_plan
 from test_plans.building import key_names
 from test_plans.registry import Registry

@@ -17,7 +17,7 @@ from hil.cli._output import console, plain_table, print_json
 from hil.cli.commands.monitor import Monitor
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
-from hil.engine.monitor import ChannelView, MonitorRequest, View, monitor
+from hil.engine.commissioning.monitor import ChannelView, MonitorRequest, View, monitor
 
 _EVERY_S = {True: 0.2, False: 1.0}  # on a terminal, and elsewhere
 

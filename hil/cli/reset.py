@@ -7,8 +7,8 @@ from hil.cli.commands.reset import Reset
 from hil.core.errors import BadInputError
 from hil.core.printable import is_printable, printable, refuse_long
 from hil.engine import load_bench
-from hil.engine.bus_identity import within_process
-from hil.engine.emergency_stop import reset
+from hil.engine.bench.bus_identity import within_process
+from hil.engine.stop.emergency_stop import reset
 
 
 def carry_out(options: Reset) -> int:

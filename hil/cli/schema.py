@@ -12,7 +12,7 @@ from hil.core.errors import BadInputError
 from hil.core.model_schema import model_schema
 from hil.core.printable import printable
 from hil.core.suggestion import did_you_mean
-from hil.engine.bench_schema import bench_schema
+from hil.engine.bench.bench_schema import bench_schema
 from test_plans import plan_schema
 
 

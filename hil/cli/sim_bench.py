@@ -13,7 +13,14 @@ from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
-from hil.engine.sim_bench import HIDDEN_FORM, TRANSPORTS, Served, Serving, SimBenchRequest, serve
+from hil.engine.commissioning.sim_bench import (
+    HIDDEN_FORM,
+    TRANSPORTS,
+    Served,
+    Serving,
+    SimBenchRequest,
+    serve,
+)
 
 
 def carry_out(options: SimBench) -> int:

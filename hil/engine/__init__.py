@@ -1,11 +1,11 @@
 """A run: pre-flight, arm, carry out, safe state, record."""
 
-from hil.engine.bench_file import DEFAULT_BENCH, load_bench
-from hil.engine.bench_tables import BenchFile
-from hil.engine.ipc import RECORDING, RunOutcome, RunRequest
-from hil.engine.run import run_plan
-from hil.engine.stopping import StopRequest
-from hil.engine.supervisor import carry_out
+from hil.engine.bench.bench_file import DEFAULT_BENCH, load_bench
+from hil.engine.bench.bench_tables import BenchFile
+from hil.engine.ipc.ipc import RECORDING, RunOutcome, RunRequest
+from hil.engine.process.supervisor import carry_out
+from hil.engine.run.run import run_plan
+from hil.engine.stop.stopping import StopRequest
 
 __all__ = [
     "DEFAULT_BENCH",

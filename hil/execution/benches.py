@@ -7,9 +7,9 @@ from pathlib import Path
 from hil.core.channels import unit_of
 from hil.core.errors import BadInputError, BenchError, StopWay
 from hil.engine import BenchFile, load_bench
-from hil.engine.bench_lock import alone_on
-from hil.engine.emergency_stop import latch, refuse_latched, reset
-from hil.engine.ranges import limits_of_channels
+from hil.engine.bench.bench_lock import alone_on
+from hil.engine.bench.ranges import limits_of_channels
+from hil.engine.stop.emergency_stop import latch, refuse_latched, reset
 
 
 class Bench:

@@ -11,7 +11,7 @@ from hil.core.errors import HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
-from hil.engine.ipc_messages import EmergencyAsked, Progressed, Refused, RunAsked, Told
+from hil.engine.ipc.ipc_messages import EmergencyAsked, Progressed, Refused, RunAsked, Told
 from hil.execution.benches import Bench
 from hil.execution.run_process import RunProcess, result_in
 from hil.messages.agent import TakenRun

@@ -10,8 +10,8 @@ from pathlib import Path
 from hil.core.errors import BenchError
 from hil.core.locks import HeldError, lock_on
 from hil.core.result import RunResult
-from hil.engine.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
-from hil.engine.operator import END, PAUSE, RESUME
+from hil.engine.ipc.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
+from hil.engine.run.operator import END, PAUSE, RESUME
 from hil.execution.background import begun
 from hil.execution.run_files import LOCK
 

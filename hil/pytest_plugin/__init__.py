@@ -158,7 +158,7 @@ class PlanFile(pytest.File):
         CollectError: the plan or the bench file has mistakes; all of them.
         """
         from hil.core.errors import HilError
-        from hil.engine.bench_file import load_bench
+        from hil.engine.bench.bench_file import load_bench
         from test_plans import load_plan
 
         try:
@@ -253,7 +253,7 @@ def _refuse_unnamed_hardware(config: pytest.Config, found: str) -> None:
     BadInputError: a bench.toml that nobody has named describes hardware.
     """
     if not config.getoption("--bench") and not config.getini("hil_bench"):
-        from hil.engine.found_bench import refuse_hardware
+        from hil.engine.bench.found_bench import refuse_hardware
 
         refuse_hardware(Path(found))
 

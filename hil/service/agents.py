@@ -18,7 +18,7 @@ from sqlalchemy import Engine
 
 from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
-from hil.engine.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.plan_files import files_of
 from hil.execution.run_execution import PLAN, RunningRun
 from hil.execution.run_files import folder_of

@@ -9,7 +9,7 @@ import time
 from dataclasses import dataclass, field
 
 from hil.core.errors import StopWay
-from hil.engine.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.run_execution import RunningRun
 from hil.messages.agent import AgentBench, Order, OrderKind, PlanSent
 from hil.messages.api import BenchState

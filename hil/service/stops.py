@@ -14,7 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hil.engine.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.benches import Bench
 from hil.execution.daemon_thread import apart
 from hil.service.stop_post import Stopped, StopPost

@@ -11,7 +11,7 @@ import pytest
 from benchmarks.answers import OtherAnswerError, largest_difference
 from benchmarks.c_plant import compiled_c, header, refuse_more
 from hil.core.model import EffectUse, load_model
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 from hil.plant import _kernel, _slots
 
 SAMPLES, DT, STEP = 300, 1e-3, 1e-4

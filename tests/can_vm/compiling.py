@@ -13,7 +13,7 @@ from pathlib import Path
 from hil.engine import RunRequest, run_plan
 from tests.benches_for_tests import plan, sim_bench
 from tests.can_vm.plans import BOTH_CONTROLLERS, CRITERIA
-from tests.hil.engine.test_wall_clock import bench_in_real_time
+from tests.hil.engine.run.test_wall_clock import bench_in_real_time
 
 
 def main() -> None:

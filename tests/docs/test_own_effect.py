@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from hil.core.model import Model, load_model, save_model
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 
 PAGE = Path(__file__).parents[2] / "docs/how-to/own-effect.md"
 DT, SHARE = 1e-3, 0.25

@@ -8,7 +8,7 @@ import pytest
 
 from hil.core.model import load_model
 from hil.engine import load_bench
-from hil.engine.prediction import predict
+from hil.engine.prediction.prediction import predict
 from test_plans import judge, plan_from_text
 from tests.docs.documented import ROOT
 

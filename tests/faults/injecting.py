@@ -236,7 +236,7 @@ def in_metric(failing: Callable[[], None]) -> None:
 
 
 def in_recorder(failing: Callable[[], None]) -> None:
-    from hil.engine.recorder import Recorder
+    from hil.engine.run.recorder import Recorder
 
     before = Recorder.take_frames
 

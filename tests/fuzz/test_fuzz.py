@@ -24,7 +24,7 @@ def test_parsers_are_watched_and_what_is_compiled_is_not() -> None:
     watched = {
         "hil.core.recording._mcap_reader",
         "test_plans.loading",
-        "hil.engine.bench_file",
+        "hil.engine.bench.bench_file",
         "hil.core.pdo",
     }
     assert not left & watched

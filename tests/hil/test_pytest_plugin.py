@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 
 PLAN = """
 name: short

@@ -50,10 +50,11 @@ FILES = {
         *(
             f"hil/engine/{name}.py"
             for name in (
-                *("limit_tables", "limits", "ranges", "range_scan", "computed_channels", "zero"),
-                *("hold", "operator", "run_monitoring", "failures", "arming"),
-                *("safety", "emergency_stop", "stopping", "bench_lock"),
-                *("supervisor", "hardware_process", "safe_state_check", "orphaned_run"),
+                *("bench/limit_tables", "bench/ranges", "bench/range_scan", "bench/computed_channels"),
+                *("bench/bench_lock", "run/limits", "run/zero", "run/hold", "run/operator"),
+                *("run/run_monitoring", "run/failures", "run/arming", "run/safety"),
+                *("stop/emergency_stop", "stop/stopping", "process/supervisor"),
+                *("process/hardware_process", "process/safe_state_check", "process/orphaned_run"),
             )
         ),
         *(f"drivers/{name}.py" for name in ("rmcu/_driver", "dyno/_driver", "dyno/_node", "panel/_panel")),

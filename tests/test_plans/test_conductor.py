@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import math
 
-from hil.engine.preflight import Rehearsal
+from hil.engine.run.preflight import Rehearsal
 from test_plans import Conductor, PlannedSegment
 from tests.benches_for_tests import SIM
 from tests.test_plans.note_taker import NoteTaker

@@ -15,9 +15,9 @@ from hil.core.model import load_model
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult, Segment
 from hil.engine import load_bench
-from hil.engine.batch_prediction import BatchPrediction, controller_files
-from hil.engine.prediction import Prediction
-from hil.engine.ranges import limits_of_channels
+from hil.engine.bench.ranges import limits_of_channels
+from hil.engine.prediction.batch_prediction import BatchPrediction, controller_files
+from hil.engine.prediction.prediction import Prediction
 from hil.plant.closed_loop import TICK_S
 from test_plans import Plan, judge, load_plan
 from test_plans.metrics._low_pass import low_passed

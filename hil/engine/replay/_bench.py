@@ -11,10 +11,10 @@ import numpy as np
 from drivers import TICK_S, BusLoop, Device, LogWire, Samples, SampleSource, Stream
 from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import FrameBlock
-from hil.engine.bench import connections_of
-from hil.engine.bench_tables import BenchFile
-from hil.engine.device_kinds import descriptions_of
-from hil.engine.recorder import Recorder
+from hil.engine.bench.bench import connections_of
+from hil.engine.bench.bench_tables import BenchFile
+from hil.engine.bench.device_kinds import descriptions_of
+from hil.engine.run.recorder import Recorder
 
 _AT_ONCE_S = 0.25
 

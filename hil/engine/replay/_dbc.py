@@ -15,7 +15,7 @@ from hil.core.dbc_messages import MessageLayout, MessageSamples, decoded, read_m
 from hil.core.errors import BadInputError
 from hil.core.frames import FrameBlock
 from hil.core.recording import RecordingWriter
-from hil.engine.device_kinds import descriptions_of
+from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.replay._channels import Frames, listed
 
 Array = npt.NDArray[np.float64]

@@ -14,14 +14,14 @@ from hil.core.files import replacing, sha256_of
 from hil.core.recording import REPLAY, Recording, RecordingWriter, read_as_written
 from hil.core.result import RunResult, Segment, verdict_of
 from hil.core.versions import versions
-from hil.engine.bench_tables import BenchFile
-from hil.engine.bus_tally import known_identifiers
-from hil.engine.provenance import hashes
-from hil.engine.recorder import Recorder
+from hil.engine.bench.bench_tables import BenchFile
+from hil.engine.bench.bus_tally import known_identifiers
 from hil.engine.replay._bench import BenchDecoder
 from hil.engine.replay._channels import Frames, chosen_buses, merged
 from hil.engine.replay._dbc import DbcDecoder
 from hil.engine.replay._segments import Segments, segments_from
+from hil.engine.run.provenance import hashes
+from hil.engine.run.recorder import Recorder
 from test_plans import Plan, judge, not_checked
 
 _NO_SEGMENTS = "the times of the plan's segments in the log are not known, so no criterion is evaluated"

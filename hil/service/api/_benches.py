@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 
 from hil.core.errors import StopWay
-from hil.engine.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.messages.api import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing

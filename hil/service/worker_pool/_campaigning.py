@@ -15,7 +15,7 @@ from hil.core.errors import BadInputError, HilError
 from hil.core.files import make_directory, read_text, write_atomically
 from hil.core.printable import printable
 from hil.core.suggestion import did_you_mean
-from hil.engine.bench_file import shipped, shipped_benches
+from hil.engine.bench.bench_file import shipped, shipped_benches
 from hil.execution.plan_files import files_of
 from hil.service.drawn_numbers import number
 from test_plans import plan_from_text

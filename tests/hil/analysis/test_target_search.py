@@ -27,7 +27,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import EffectUse, load_model, model_from_dict
 from hil.core.toml_file import parse_toml
 from hil.engine import load_bench
-from hil.engine.prediction import predict
+from hil.engine.prediction.prediction import predict
 from reports.target_search import caution, explanation_html, explanation_pdf
 from tests.benches_for_tests import SIM, plan
 

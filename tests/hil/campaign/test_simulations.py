@@ -9,7 +9,7 @@ from hil.campaign import Simulations, load_setting
 from hil.core.controller import load_controller
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError
-from hil.engine.prediction import predict
+from hil.engine.prediction.prediction import predict
 from test_plans import judge
 from tests.docs.documented import blocks_of
 from tests.hil.campaign.short import CAMPAIGN, written
@@ -79,7 +79,7 @@ def test_a_simulation_that_fails_is_a_row(tmp_path, monkeypatch):
     def refused(*_, **__):
         raise BadInputError("no such axle")
 
-    monkeypatch.setattr("hil.engine.batch_prediction.BatchPrediction.__call__", refused)
+    monkeypatch.setattr("hil.engine.prediction.batch_prediction.BatchPrediction.__call__", refused)
     row = simulations.row(0)
     assert (row["verdict"], row["error"], row["draw"]) == ("error", "no such axle", 0)
     assert math.isfinite(row["processor_s"])

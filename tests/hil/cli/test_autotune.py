@@ -11,7 +11,7 @@ import pytest
 from hil.cli._app import guarded
 from hil.core.controller import load_controller
 from hil.core.model import load_model, model_to_toml
-from hil.engine.sim_bench import with_hidden
+from hil.engine.commissioning.sim_bench import with_hidden
 from tests.docs.documented import ROOT
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.cli.test_commands import HIL

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from hil.cli._app import guarded
-from hil.engine.ranges import limits_of_channels
+from hil.engine.bench.ranges import limits_of_channels
 from tests.benches_for_tests import SIM
 
 PLAN = """

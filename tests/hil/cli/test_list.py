@@ -11,7 +11,7 @@ from hil.cli._app import guarded
 from hil.cli.list import _tell
 from hil.core.effects import EFFECTS
 from hil.core.shipped import shipped_names
-from hil.engine.device_kinds import KINDS
+from hil.engine.bench.device_kinds import KINDS
 from test_plans import METRICS, STEPS, library_plans
 
 

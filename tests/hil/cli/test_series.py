@@ -16,7 +16,7 @@ from hil.cli._series import _BADNESS, announce_series
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from hil.core.result import CriterionVerdict
-from hil.engine.bench_file import with_seed
+from hil.engine.bench.bench_file import with_seed
 from reports.series_report import limit_in_words
 from test_plans import load_plan
 from tests.benches_for_tests import SIM

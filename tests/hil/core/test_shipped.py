@@ -11,7 +11,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.shipped import shipped_file, shipped_names
 from hil.engine import load_bench
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 
 
 def test_every_shipped_model_is_read_by_its_name() -> None:

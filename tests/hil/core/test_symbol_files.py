@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hil.core.errors import BadInputError
 from hil.core.symbol_files import read_symbols
 from hil.core.symbols import TYPES, Symbol
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 
 A2L = """ASAP2_VERSION 1 61
 /* a comment with /begin in it */

@@ -8,7 +8,7 @@ import pytest
 
 from hil.core.errors import BadInputError
 from hil.core.toml_lines import line_of
-from hil.engine.bench_file import bench_from_dict, load_bench
+from hil.engine.bench.bench_file import bench_from_dict, load_bench
 from tests.benches_for_tests import SIM
 
 TEXT = """# a bench

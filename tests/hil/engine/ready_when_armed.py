@@ -12,10 +12,10 @@ from typing import Any
 
 from hil.core import compiled
 from hil.engine import RunRequest, load_bench, run_plan
-from hil.engine.bench import Bench
-from hil.engine.request_timing import RequestTiming
+from hil.engine.bench.bench import Bench
+from hil.engine.bench.request_timing import RequestTiming
 from tests.benches_for_tests import plan
-from tests.hil.engine.test_wall_clock import STEPS
+from tests.hil.engine.run.test_wall_clock import STEPS
 
 _STARTED, _LOADED = Bench.start_heartbeats, compiled._Cache.load_overload
 _watched: list[Bench] = []

@@ -14,7 +14,7 @@ from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.recording import Recording, read_recording
 from hil.engine import RunRequest, run_plan
-from hil.engine.bench_file import bench_from_dict
+from hil.engine.bench.bench_file import bench_from_dict
 from hil.fmu import Axle
 from hil.plant import replay
 from tests.benches_for_tests import SIM, plan

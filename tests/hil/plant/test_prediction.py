@@ -9,7 +9,7 @@ from drivers.rmcu._parameters import parameters_of
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError, BenchError
 from hil.core.model import load_model
-from hil.engine._predicted_wire import wire_of
+from hil.engine.prediction._predicted_wire import wire_of
 from hil.plant.closed_loop import SIDES, ClosedLoop
 from hil.plant.closed_loop import drive as D
 from hil.plant.controller import memory as M

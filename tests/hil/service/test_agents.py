@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from sqlalchemy import Engine, create_engine, text
 
 from hil.core.errors import BadInputError, BenchError
-from hil.engine.ipc_messages import EmergencyAsked
+from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.messages.agent import AgentBench, AgentReport, FileMade, RunEnding
 from hil.service.agents import Agents
 from hil.service.remote_bench import AWAY_S

@@ -9,7 +9,7 @@ from hil.client import Client, RefusedError
 from hil.core.controller import controller_from_toml
 from hil.core.model import load_model
 from hil.core.recording import read_recording
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 from hil.messages.api import RunWanted
 from hil.messages.design import DraftWanted, PlanCopyWanted
 from tests.hil.service.served import SHORT, Served

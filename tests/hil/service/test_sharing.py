@@ -13,7 +13,7 @@ import pytest
 
 from hil.client import Client, RefusedError
 from hil.core.errors import BenchError
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 from test_plans import library_controllers
 from tests.hil.service.served import SHORT, Served, served
 from tests.hil.service.served import RefusedError as AnswerError

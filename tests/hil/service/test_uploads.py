@@ -10,7 +10,7 @@ import pytest
 from sqlalchemy import Engine
 
 from hil.core.errors import BadInputError
-from hil.engine.bench_file import shipped
+from hil.engine.bench.bench_file import shipped
 from hil.messages.upload import KeptApart
 from hil.service.catalogues import controller_catalogue, model_catalogue
 from hil.service.legacy_import import LegacyImport

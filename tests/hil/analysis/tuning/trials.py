@@ -5,7 +5,7 @@ from pathlib import Path
 from hil.analysis.tuning import SpeedLoops, Trial, channels_needed, draws_of, driven_by, free_from_toml
 from hil.core.controller import load_controller
 from hil.core.model import load_model
-from hil.engine.batch_prediction import BatchPrediction
+from hil.engine.prediction.batch_prediction import BatchPrediction
 from test_plans import plan_from_text
 from tests.benches_for_tests import SIM
 

@@ -1,0 +1,147 @@
+"""Bench files: interfaces, devices, limits, calibration, DUT. A plan never names hardware."""
+
+from __future__ import annotations
+
+import importlib.resources
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+from pydantic import ValidationError
+
+from drivers import DeviceTable
+from hil.core.errors import BadInputError
+from hil.core.file_kind import refuse_other_kind
+from hil.core.mistakes import keyed, refuse
+from hil.core.printable import is_printable, printable
+from hil.core.shipped import shipped_file
+from hil.core.suggestion import did_you_mean
+from hil.core.table_mistakes import told
+from hil.core.toml_file import parse_toml, toml_text
+from hil.engine.bench._bench_checks import contradictions, device_mistakes, file_mistakes, unprintable
+from hil.engine.bench.bench_tables import BenchFile
+from hil.engine.bench.device_kinds import device_tables
+
+DEFAULT_BENCH = "sim"
+
+_FIX = "see docs/how-to/bench-file.md"
+_LOADED = ("text", "source")  # fields of the loaded bench that are no keys of the file
+
+
+def load_bench(name_or_path: str | Path) -> BenchFile:
+    """Read a bench file by path, or one of `benches/` by name.
+
+    The files that it names are read too: what is wrong with the DBC or the EDS is said now.
+
+    Raises:
+        BadInputError: not found, or all that is wrong with it: file, keys, values, and what to do.
+    """
+    path = Path(name_or_path)
+    if path.suffix != ".toml":
+        path = _shipped_bench(str(name_or_path))
+    text = toml_text(path)
+    data = parse_toml(text, printable(path, 200), _FIX)
+    refuse_other_kind(data, "bench file", printable(path, 200))
+    return bench_from_dict(data, text, path)
+
+
+def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
+    """Check the contents of a bench file; paths in it are relative to the file.
+
+    Raises:
+        BadInputError: all that is wrong with it.
+    """
+    where = printable(path, 200)
+    unknown = [f"{key}: unknown key" for key in _LOADED if key in data]
+    _refuse(where, [*unprintable(data), *unknown], text)
+    base = path.resolve().parent
+    devices, mistakes = device_tables(data)
+    of_files = file_mistakes(_beside(devices, base), _model_of(data, base))
+    try:
+        bench = BenchFile.model_validate({**data, **devices, "text": text, "source": path.resolve()})
+    except ValidationError as error:
+        further = told(error, BenchFile, known=mistakes)
+        further = [told for told in further if not _is_of(told, mistakes)]
+        _refuse(where, [*mistakes, *further, *of_files], text)
+        raise
+    _refuse(where, [*(mistakes or contradictions(bench)), *of_files], text)
+    changes: dict[str, Any] = _beside(devices, base)
+    if bench.simulation:
+        model = _model_of(data, base)
+        changes["simulation"] = bench.simulation.model_copy(update={"model": model})
+    loaded = bench.model_copy(update=changes)
+    _refuse(where, device_mistakes(loaded), text)
+    return loaded
+
+
+def with_seed(bench: BenchFile, seed: int) -> BenchFile:
+    """A simulated bench with another seed of its noise; its text says so."""
+    data = tomllib.loads(bench.text)
+    data["simulation"]["seed"] = seed
+    return bench_from_dict(data, tomli_w.dumps(data), bench.source)
+
+
+def _beside(devices: dict[str, Any], base: Path) -> dict[str, Any]:
+    """The device tables that are right, with their files as they lie beside the bench file."""
+    found: dict[str, Any] = {
+        key: table.beside(base) for key, table in devices.items() if isinstance(table, DeviceTable)
+    }
+    further = devices.get("devices", {})
+    found["devices"] = {
+        name: table.beside(base) for name, table in further.items() if isinstance(table, DeviceTable)
+    }
+    return found
+
+
+def _model_of(data: dict[str, Any], base: Path) -> Path | None:
+    """The model file that the contents of a bench file name: beside it, or a shipped one."""
+    simulation = data.get("simulation")
+    model = simulation.get("model") if isinstance(simulation, dict) else None
+    if not isinstance(model, str) or not model or not is_printable(model):
+        return None
+    try:
+        return shipped_file(model, "model", base)
+    except BadInputError:  # told among the bench file's other mistakes
+        return base / model
+
+
+def _refuse(where: str, mistakes: list[str], text: str) -> None:
+    refuse(where, map(keyed, mistakes), text, _FIX)
+
+
+def _is_of(told: str, of_devices: list[str]) -> bool:
+    """Whether it is of a device's table that has mistakes: its kind has told them."""
+    wrong = {_device(keyed(mistake).key) for mistake in of_devices}
+    return _device(keyed(told).key) in wrong
+
+
+def _device(key: str) -> str:
+    """The device's table that a key stands in."""
+    parts = key.split(".")
+    return ".".join(parts[: 2 if parts[0] == "devices" else 1])
+
+
+def _shipped_bench(name: str) -> Path:
+    path = shipped(f"{name}.toml")
+    try:
+        if path.is_file():
+            return path
+    except (OSError, ValueError):  # no file can have such a name
+        pass
+    shipped_ones = did_you_mean(name, shipped_benches())
+    raise BadInputError(
+        f"there is no bench '{printable(name)}'",
+        fix=f"{shipped_ones}; or give a file whose name ends in .toml",
+    )
+
+
+def shipped_benches() -> tuple[str, ...]:
+    """Names of the shipped bench files."""
+    files = shipped("sim.toml").parent.glob("*.toml")
+    return tuple(sorted(path.stem for path in files if "[buses." in path.read_text("utf-8")))
+
+
+def shipped(name: str) -> Path:
+    """Path of a file of the shipped `benches`."""
+    return Path(str(importlib.resources.files("benches"))) / name

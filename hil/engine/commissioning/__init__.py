@@ -1,0 +1,1 @@
+"""Before the first run: doctor, jog, monitor, and the simulated bench as a process."""

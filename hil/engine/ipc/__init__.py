@@ -1,0 +1,1 @@
+"""Messages between the command and the process that holds the hardware."""

@@ -1,0 +1,70 @@
+"""Checks over new connections whether a bench is safe whose process was lost; sends nothing."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+
+from drivers import BusLoop, Device, SaysPowerless
+from hil.core.errors import HilError
+from hil.engine.bench.bench import bench_clock, connections_of, open_wire
+from hil.engine.bench.bench_tables import BenchFile
+
+#: RMCU (50 ms) and dynos (200 ms) have switched themselves off by then; s of the bench's clock.
+LISTEN_S = 1.5
+_CHUNK_S = 0.02
+
+
+def complaints_of(file: BenchFile) -> list[str]:
+    """Which devices do not say that they give no torque, and why; empty: all say so.
+
+    A device without a bus is not asked: opening its port would touch it.
+    """
+    found: dict[str, str] = {}
+    with ExitStack() as opened:
+        try:
+            clock, offset_s = bench_clock(file, None, opened)
+            wires = []
+            for name in file.buses:
+                try:
+                    wires.append(open_wire(file, name, clock, offset_s, opened, listen_only=True))
+                except HilError as error:
+                    found[f"bus '{name}'"] = error.what
+            loop = BusLoop(clock, wires)
+            devices = _devices(file, loop, found)
+            _listen(loop, devices, found)
+        except Exception as error:  # a device's own code; then nothing is known
+            found["the bench"] = f"{type(error).__name__}: {error}"
+    return [f"{name}: {why}" for name, why in found.items()]
+
+
+def _devices(file: BenchFile, loop: BusLoop, found: dict[str, str]) -> list[Device]:
+    connections = connections_of(file, loop)
+    devices = []
+    for key, table in file.device_tables.items():
+        bus = getattr(table, "bus", None)
+        if bus in connections.wires:
+            devices.append(table.open(key.removeprefix("devices."), connections))
+        elif bus is None:
+            found[key] = "was not read, because opening its port would affect it"
+        else:
+            found[key] = "sends nothing"
+    return devices
+
+
+def _listen(loop: BusLoop, devices: list[Device], found: dict[str, str]) -> None:
+    waiting = list(devices)
+    until_s = loop.clock.now_s() + LISTEN_S
+    while waiting and loop.clock.now_s() < until_s:
+        try:
+            loop.run_for(_CHUNK_S)
+        except HilError as error:
+            found[error.where or "bus"] = error.what
+            break
+        waiting = [device for device in waiting if not _is_powerless(device)]
+    for device in waiting:
+        said = "; ".join(dict.fromkeys(device.troubles()))
+        found[device.name] = f"does not confirm that its torque is off{f' ({said})' if said else ''}"
+
+
+def _is_powerless(device: Device) -> bool:
+    return device.is_powerless() if isinstance(device, SaysPowerless) else device.is_safe()

@@ -1,0 +1,1 @@
+"""Requests to stop, emergency stops and their latch."""
