@@ -29,7 +29,7 @@ PINNED = {
     "hil/cli/test_reset.py::nobody_arms": "an emergency stop stays latched until it is reset",
     "hil/cli/test_identify_and_design.py::identify_writes": "from a recording to a model",
     "hil/cli/test_full_disk.py::fills_up": "a full disk costs no evidence and leaves a safe bench",
-    "hil/engine/test_wall_clock.py::compiled_or_loaded": "a bench in real time waits for no compiler",
+    "hil/engine/run/test_wall_clock.py::compiled_or_loaded": "a bench in real time waits for no compiler",
     "hil/service/test_page.py::test_a_plan_is_foreseen": "a run by the page, from forecast to report",
     "hil/service/test_serve.py::killed_service": "a killed service loses nothing and runs nothing twice",
     "hil/service/test_stop_under_attack.py::half_open": "the emergency stop is answered under attack",

@@ -88,7 +88,7 @@ PARTS: dict[str, Part] = {
     ),
     "service": Part(
         "page, studies, campaigns, archive, agents and stores of the service",
-        ("tests/hil/service", "--ignore=tests/hil/service/test_api_fuzz.py"),
+        ("tests/hil/service", "tests/hil/execution", "--ignore=tests/hil/service/test_api_fuzz.py"),
     ),
     "api": Part(
         "every operation of the API, with requests made from its document",

@@ -172,7 +172,8 @@ def test_lines_stops_and_signs_of_life_reach_it(tmp_path: Path):
 
 
 def test_its_log_is_told_as_that_of_this_process(tmp_path: Path, caplog: pytest.LogCaptureFixture):
-    line = '{"kind": "logged", "logger": "hil.engine.run", "level": 40, "text": "TEXT", "traceback": "TRACE"}'
+    line = '{"kind": "logged", "logger": "hil.engine.run.run", "level": 40, "text": "TEXT", '
+    line += '"traceback": "TRACE"}'
     plain = line.replace("TEXT", "plain").replace("TRACE", "")
     traced = line.replace("TEXT", "traced").replace("TRACE", "Traceback: line 7")
     shown = Silent()
