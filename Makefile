@@ -133,7 +133,7 @@ service-kills: setup compile
 
 # An agent, or its service, killed at fifty random moments of a queue.
 agent-kills: setup compile
-	HIL_AGENT_KILLS=50 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/test_agent_kills.py
+	HIL_AGENT_KILLS=50 $(BIN)/python -m pytest -q --timeout 7200 tests/hil/service/agents/test_agent_kills.py
 
 # The service's tests on a PostgreSQL server of Debian's, begun and ended by them; as root it is installed.
 service-stores: setup compile

@@ -22,21 +22,24 @@ from hil.execution.run_files import files_in
 from hil.messages.api import OVER, BenchData, BenchState, ForecastData, Me, RunData
 from hil.messages.campaign import CampaignData
 from hil.messages.study import StudyData
-from hil.service.agents import Agents
-from hil.service.agents_forecasts import AgentsForecasts
+from hil.service.agents.agents import Agents
+from hil.service.agents.agents_forecasts import AgentsForecasts
+from hil.service.agents.remote_bench import RemoteBench
+from hil.service.agents.run_upload import RunUploads
 from hil.service.archive import Archive, Keeper, Rounds
 from hil.service.audit import problem_of
-from hil.service.campaigns import Campaigns, Places
-from hil.service.catalogues import controller_catalogue, model_catalogue
 from hil.service.deferred_audit import DeferredAudit
-from hil.service.legacy_import import LegacyImport
-from hil.service.live_hub import LiveHub
+from hil.service.files.catalogues import controller_catalogue, model_catalogue
+from hil.service.files.legacy_import import LegacyImport
+from hil.service.files.plans import Plans
+from hil.service.files.upload_reader import UploadReader
+from hil.service.files.uploads import Uploads
+from hil.service.jobs.campaigns import Campaigns, Places
+from hil.service.jobs.shared_results import SharedResults
+from hil.service.jobs.studies import Studies
+from hil.service.live.live_hub import LiveHub
 from hil.service.owners import OwnersKnown
-from hil.service.plans import Plans
 from hil.service.queue import Queue
-from hil.service.remote_bench import RemoteBench
-from hil.service.run_upload import RunUploads
-from hil.service.shared_results import SharedResults
 from hil.service.stop_post import StopPost
 from hil.service.stops import Stops
 from hil.service.store import (
@@ -51,9 +54,6 @@ from hil.service.store import (
     RunStore,
     TokenStore,
 )
-from hil.service.studies import Studies
-from hil.service.upload_reader import UploadReader
-from hil.service.uploads import Uploads
 from hil.service.worker_pool import WorkerPool
 from test_plans import Plan
 

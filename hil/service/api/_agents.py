@@ -22,9 +22,9 @@ from hil.messages.agent import (
     Taken,
 )
 from hil.messages.api import BenchName, RunData, RunId
+from hil.service.agents.remote_bench import RemoteBench
 from hil.service.api._access import AgentItself, Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
-from hil.service.remote_bench import RemoteBench
 from hil.service.service import Service
 
 router = APIRouter(tags=["agents"])

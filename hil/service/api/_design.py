@@ -23,8 +23,8 @@ from hil.messages.design import (
 )
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
-from hil.service.catalogue import Catalogue
-from hil.service.catalogues import controller_data, model_data
+from hil.service.files.catalogue import Catalogue
+from hil.service.files.catalogues import controller_data, model_data
 from hil.service.service import Service
 
 router = APIRouter(tags=["design"])

@@ -15,11 +15,11 @@ from hil.messages.api import BenchName
 from hil.service.api._access import TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._problems import RefusedError
-from hil.service.drawn_numbers import numbers
-from hil.service.live import BUCKET_S, Spectrum, Stretch
-from hil.service.live_hub import LiveView
+from hil.service.live.live import BUCKET_S, Spectrum, Stretch
+from hil.service.live.live_hub import LiveView
 from hil.service.service import Service
 from hil.service.store import in_turns
+from hil.service.worker_pool.drawn_numbers import numbers
 
 router = APIRouter(tags=["live"])
 #: What the page draws.

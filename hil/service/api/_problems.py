@@ -12,8 +12,8 @@ from starlette.exceptions import HTTPException
 
 from hil.core.errors import BadInputError, HilError
 from hil.messages.api import Problem, Record
+from hil.service.files.uploads import NameTakenError
 from hil.service.store import DatabaseAwayError
-from hil.service.uploads import NameTakenError
 
 R = TypeVar("R", bound=Record)
 _MEANINGS = {

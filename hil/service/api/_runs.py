@@ -9,15 +9,15 @@ from starlette.responses import Response
 
 from hil.execution.run_execution import RunningRun
 from hil.messages.api import Answer, BenchName, Me, RunChange, RunData, RunId, RunState, RunVerdict, RunWanted
+from hil.service.agents.remote_bench import RemoteBench
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._benches import known
 from hil.service.api._from_store import from_store
 from hil.service.api._left_files import disposition_of, headers_of, left_file, media_of
 from hil.service.api._problems import RefusedError, missing
-from hil.service.plan_reading import hazard_of
-from hil.service.remote_bench import RemoteBench
 from hil.service.service import Service
 from hil.service.store import NewRun
+from hil.service.worker_pool.plan_reading import hazard_of
 
 router = APIRouter(prefix="/runs", tags=["runs"])
 _LAST = 2**31 - 1

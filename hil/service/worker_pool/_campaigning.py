@@ -17,7 +17,7 @@ from hil.core.printable import printable
 from hil.core.suggestion import did_you_mean
 from hil.engine.bench.bench_file import shipped, shipped_benches
 from hil.execution.plan_files import files_of
-from hil.service.drawn_numbers import number
+from hil.service.worker_pool.drawn_numbers import number
 from test_plans import plan_from_text
 from test_plans.yaml_document import KeyPath
 

@@ -13,7 +13,7 @@ from hil.analysis.comparison import ComparedRun, aligned, compare, differences
 from hil.core.channels import TIME, unit_of
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
-from hil.service.drawn_numbers import number, numbers
+from hil.service.worker_pool.drawn_numbers import number, numbers
 from test_plans import rejudged
 
 Array = npt.NDArray[np.float64]

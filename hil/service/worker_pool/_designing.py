@@ -14,7 +14,7 @@ from hil.core.controller import Controller, controller_to_toml
 from hil.core.errors import HilError
 from hil.core.model import load_model
 from hil.fmu.axle import Axle
-from hil.service.drawn_numbers import number, numbers
+from hil.service.worker_pool.drawn_numbers import number, numbers
 
 _KEPT = 4  # models that stay prepared
 _SHOWN_HZ = (0.1, 100.0)

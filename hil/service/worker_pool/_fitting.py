@@ -12,7 +12,7 @@ from hil.analysis.frequency_response import FrequencyResponse, frf_from_csv
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.core.model import Model, load_model, parameter_unit
-from hil.service.drawn_numbers import numbers
+from hil.service.worker_pool.drawn_numbers import numbers
 
 _IN_95 = 1.959964  # standard deviations
 

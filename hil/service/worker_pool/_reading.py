@@ -8,7 +8,7 @@ from typing import Any
 from hil.core.controller import controller_from_toml
 from hil.core.model import model_from_dict
 from hil.core.toml_file import parse_toml
-from hil.service.plan_reading import read_given
+from hil.service.worker_pool.plan_reading import read_given
 
 
 def plan(name: str, text: str, folder: str) -> dict[str, Any]:

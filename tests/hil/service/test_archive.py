@@ -26,9 +26,9 @@ from hil.service.serving import ServeRequest, serve
 from hil.service.store import BenchStore, FileStore, NewRun, RunStore, open_database
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.campaign.short import CAMPAIGN
+from tests.hil.service.jobs.test_studies import CHIRP
 from tests.hil.service.s3 import BUCKET, S3, s3_server
 from tests.hil.service.served import SHORT, RefusedError, Served, served
-from tests.hil.service.test_studies import CHIRP
 from tests.hil.service.working import bench_called
 
 STORE = f"s3://{BUCKET}/bench"

@@ -12,9 +12,9 @@ from playwright import sync_api as playwright
 
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.campaign.short import CAMPAIGN
+from tests.hil.service.jobs.test_campaigns import LONG
 from tests.hil.service.looks import refuse_hard_to_use
 from tests.hil.service.served import Served, served
-from tests.hil.service.test_campaigns import LONG
 
 pytestmark = [
     pytest.mark.slow,

@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from playwright import sync_api as playwright
 
+from tests.hil.service.jobs.test_studies import CHIRP
 from tests.hil.service.looks import refuse_hard_to_use, roles_drawn
 from tests.hil.service.served import SHORT, Served, served
-from tests.hil.service.test_studies import CHIRP
 
 playwright.expect.set_options(timeout=120_000)
 pytestmark = [

@@ -15,8 +15,8 @@ import pytest
 
 from hil.client import Client
 from tests.hil.campaign.short import CAMPAIGN, written
+from tests.hil.service.jobs.test_campaigns import LONG
 from tests.hil.service.served import HIL, Served, served
-from tests.hil.service.test_campaigns import LONG
 from tests.hil.service.test_client import hil
 
 pytestmark = pytest.mark.slow

@@ -7,9 +7,9 @@ from typing import Any
 from hil.core.errors import BadInputError
 from hil.messages.api import PlanData
 from hil.messages.upload import GivenKind
-from hil.service.plan_reading import GivenPlan
-from hil.service.plans import Plans
+from hil.service.files.plans import Plans
 from hil.service.worker_pool import READ_WITHIN_S, READING, TooLongError, WorkerPool
+from hil.service.worker_pool.plan_reading import GivenPlan
 
 
 class UploadReader:

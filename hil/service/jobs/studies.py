@@ -15,9 +15,9 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.messages.study import STUDY_OVER, StudyData, StudyKind
-from hil.service.command_process import CommandProcess, kill_left
-from hil.service.job_repository import JobRepository, files_in_results
-from hil.service.shared_results import SharedResults
+from hil.service.jobs.command_process import CommandProcess, kill_left
+from hil.service.jobs.job_repository import JobRepository, files_in_results
+from hil.service.jobs.shared_results import SharedResults
 from hil.service.store import in_turns
 
 _AT_ONCE = 1  # a run needs the other processor

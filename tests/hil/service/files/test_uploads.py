@@ -12,11 +12,11 @@ from sqlalchemy import Engine
 from hil.core.errors import BadInputError
 from hil.engine.bench.bench_file import shipped
 from hil.messages.upload import KeptApart
-from hil.service.catalogues import controller_catalogue, model_catalogue
-from hil.service.legacy_import import LegacyImport
-from hil.service.plans import Plans
+from hil.service.files.catalogues import controller_catalogue, model_catalogue
+from hil.service.files.legacy_import import LegacyImport
+from hil.service.files.plans import Plans
+from hil.service.files.uploads import NameTakenError, Uploads
 from hil.service.store import GivenStore, LogStore
-from hil.service.uploads import NameTakenError, Uploads
 from test_plans import library_controllers
 from tests.hil.service.served import SHORT
 

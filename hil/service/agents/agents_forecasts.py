@@ -7,8 +7,8 @@ import asyncio
 from hil.core.errors import BadInputError, BenchError
 from hil.messages.agent import AgentsForecast
 from hil.messages.api import ForecastData, Problem
-from hil.service.agents import sent
-from hil.service.remote_bench import RemoteBench
+from hil.service.agents.agents import sent
+from hil.service.agents.remote_bench import RemoteBench
 from test_plans import Plan
 
 _WITHIN_S = 200.0

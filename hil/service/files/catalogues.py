@@ -12,8 +12,8 @@ from hil.core.toml_file import parse_toml
 from hil.engine.bench.bench_file import shipped
 from hil.messages.design import ControllerData, ModelData
 from hil.plant import refuse_too_stiff
-from hil.service.catalogue import Catalogue
-from hil.service.uploads import Uploads
+from hil.service.files.catalogue import Catalogue
+from hil.service.files.uploads import Uploads
 from test_plans import library_controllers
 
 

@@ -23,7 +23,7 @@ from hil.execution.plan_files import files_of
 from hil.execution.run_execution import PLAN, RunningRun
 from hil.execution.run_files import folder_of
 from hil.messages.agent import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
-from hil.service.remote_bench import Agent, AgentsRun, RemoteBench
+from hil.service.agents.remote_bench import Agent, AgentsRun, RemoteBench
 from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
 from test_plans import Plan, plan_from_text
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hil.messages.study import StudyData
-from hil.service.job_repository import JobRepository
+from hil.service.jobs.job_repository import JobRepository
 
 
 def studies(folder: Path) -> JobRepository[StudyData]:

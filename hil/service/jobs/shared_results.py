@@ -19,7 +19,7 @@ from hil.core.files import make_directory, sha256_of
 from hil.execution.daemon_thread import apart
 from hil.messages.api import Record
 from hil.service.archive import Archive, ArchiveAwayError, Kept
-from hil.service.job_repository import files_in_results
+from hil.service.jobs.job_repository import files_in_results
 from hil.service.store import DatabaseAwayError, KeptFile, ResultKind, ResultStore, Told
 
 R = TypeVar("R", bound=Record)

@@ -11,8 +11,8 @@ from pathlib import Path
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
 from hil.messages.api import PlanData
-from hil.service.plan_reading import GivenPlan, data_of, given_plan, read_given
-from hil.service.uploads import NameTakenError, Uploads
+from hil.service.files.uploads import NameTakenError, Uploads
+from hil.service.worker_pool.plan_reading import GivenPlan, data_of, given_plan, read_given
 from test_plans import Choices, Plan, library_plans, load_plan
 from test_plans.yaml_document import read_yaml
 

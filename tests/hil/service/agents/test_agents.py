@@ -18,9 +18,9 @@ from sqlalchemy import Engine, create_engine, text
 from hil.core.errors import BadInputError, BenchError
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.messages.agent import AgentBench, AgentReport, FileMade, RunEnding
-from hil.service.agents import Agents
-from hil.service.remote_bench import AWAY_S
-from hil.service.run_upload import RunUploads
+from hil.service.agents.agents import Agents
+from hil.service.agents.remote_bench import AWAY_S
+from hil.service.agents.run_upload import RunUploads
 from hil.service.store import LeaseStore, NewRun, RunStore, open_database
 from test_plans import library_controllers
 from tests.hil.service import served as served_by
@@ -317,7 +317,7 @@ def test_a_file_that_came_damaged_is_thrown_away_and_comes_again(
 
 
 def test_a_file_that_is_too_large_is_not_taken(there: _There, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("hil.service.run_upload.MOST_FILE_BYTES", 10)
+    monkeypatch.setattr("hil.service.agents.run_upload.MOST_FILE_BYTES", 10)
     assert there.run_uploads.add(1, "log.txt", 0, b"0123456789") == 10
     with pytest.raises(BenchError, match="more than 10 bytes"):
         there.run_uploads.add(1, "log.txt", 10, b"0")

@@ -20,8 +20,8 @@ from hil.execution.plan_files import files_of
 from hil.messages.api import PlanName
 from hil.messages.design import FileName
 from hil.messages.upload import GivenKind, KeptApart
-from hil.service.catalogue import Catalogue
-from hil.service.plans import Plans
+from hil.service.files.catalogue import Catalogue
+from hil.service.files.plans import Plans
 from hil.service.store import GivenStore, LogStore
 from test_plans import plan_from_text
 

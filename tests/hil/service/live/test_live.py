@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.core.recording import FollowedRecording, RecordingWriter, read_as_written
-from hil.service.live import BUCKET_S, MOST_BUCKETS, SPECTRUM_CHANNEL, Buckets, LiveRun
+from hil.service.live.live import BUCKET_S, MOST_BUCKETS, SPECTRUM_CHANNEL, Buckets, LiveRun
 from test_plans import plan_from_text
 from tests.hil.service.served import SHORT
 

@@ -12,8 +12,8 @@ from sqlalchemy import Engine
 
 from hil.messages.study import STUDY_OVER, StudyData
 from hil.service.archive import Archive, ArchiveAwayError
-from hil.service.job_repository import JobRepository, files_in_results
-from hil.service.shared_results import SharedResults
+from hil.service.jobs.job_repository import JobRepository, files_in_results
+from hil.service.jobs.shared_results import SharedResults
 from hil.service.store import ResultStore
 
 

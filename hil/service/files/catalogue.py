@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Generic, TypeVar
 
 from hil.core.files import read_text
-from hil.service.uploads import NameTakenError, Uploads
+from hil.service.files.uploads import NameTakenError, Uploads
 
 T = TypeVar("T")
 _KEPT = 200  # texts that stay read

@@ -12,8 +12,8 @@ from hil.core.errors import HilError
 from hil.core.result import CriterionResult
 from hil.engine import RECORDING
 from hil.execution.run_execution import PLAN, RunningRun
-from hil.service.broadcast_cache import BroadcastCache
-from hil.service.live import LiveRun
+from hil.service.live.broadcast_cache import BroadcastCache
+from hil.service.live.live import LiveRun
 from test_plans import plan_from_text
 
 _LOOK_S = 0.05  # a viewer is sent as many updates

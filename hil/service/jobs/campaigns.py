@@ -30,9 +30,9 @@ from hil.messages.campaign import (
     CampaignWanted,
     PassedShare,
 )
-from hil.service.command_process import CommandProcess, kill_left
-from hil.service.job_repository import JobRepository, files_in_results
-from hil.service.shared_results import SharedResults
+from hil.service.jobs.command_process import CommandProcess, kill_left
+from hil.service.jobs.job_repository import JobRepository, files_in_results
+from hil.service.jobs.shared_results import SharedResults
 from hil.service.store import in_turns
 from hil.service.worker_pool import WorkerPool
 

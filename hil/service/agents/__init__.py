@@ -1,0 +1,1 @@
+"""Agents on other machines: their benches, the runs that they upload."""

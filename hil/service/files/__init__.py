@@ -1,0 +1,1 @@
+"""Files that people give: uploads, the catalogues of what can be used, plans."""

@@ -1,0 +1,1 @@
+"""Identifications, diagnoses, designs and campaigns that people start, and what they leave."""

@@ -1,0 +1,1 @@
+"""What viewers see while a run goes on."""
