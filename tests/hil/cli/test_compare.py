@@ -27,7 +27,7 @@ def test_criteria_side_by_side(runs, capsys):
     shown = capsys.readouterr().out
     (peak,) = (line.split() for line in shown.splitlines() if line.startswith("s.peak_shaft_torque"))
     assert peak[1] == peak[2]
-    assert peak[3] == "(+0.0"
+    assert peak[3] == "(0.0"
     assert {path.name for path in out.iterdir()} == {"comparison.json", "report.html", "report.pdf"}
     told = json.loads((out / "comparison.json").read_text())
     assert [run["name"] for run in told["runs"]] == ["one", "two"]
