@@ -18,10 +18,15 @@ os.environ["HIL_STATE"] = _STATE.name
 @pytest.hookimpl(tryfirst=True)  # before pytest deselects by marks
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark what is slow by its measured seconds, and of the slow ones what runs at night."""
+    slow = []
     for item in items:
-        if not item.get_closest_marker("slow") and is_long(item.nodeid, prepared=_shares(item)):
+        if item.get_closest_marker("hunt"):
+            continue
+        if item.get_closest_marker("slow"):
+            slow.append(item)
+        elif is_long(item.nodeid, prepared=_shares(item)):
             item.add_marker(pytest.mark.slow)
-    slow = [item for item in items if item.get_closest_marker("slow") and not item.get_closest_marker("hunt")]
+            slow.append(item)
     chosen = gating(item.nodeid for item in slow)
     for item in slow:
         if item.nodeid not in chosen:

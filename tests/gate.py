@@ -16,7 +16,7 @@ from pathlib import Path
 
 DURATIONS = Path(__file__).with_name("durations.json")
 QUICK_S = 0.75
-MODULE_S = 3.0
+MODULE_S = 5.0
 
 #: Long, and part of the gate all the same: a module below tests/, a part of the test's name, what it proves.
 PINNED = {

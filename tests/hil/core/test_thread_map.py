@@ -86,12 +86,12 @@ def test_ctrl_c_in_the_calling_thread_ends_it() -> None:
 
 
 FORKED = """import os
-from hil.core.thread_map import side_by_side, threads
+from hil.core.thread_map import map_on_threads, threads
 assert threads() == 3
-assert side_by_side(abs, range(-100, 0)) == list(range(100, 0, -1))
+assert map_on_threads(abs, range(-100, 0)) == list(range(100, 0, -1))
 child = os.fork()
 if child == 0:
-    os._exit(0 if side_by_side(abs, range(-100, 0)) == list(range(100, 0, -1)) else 1)
+    os._exit(0 if map_on_threads(abs, range(-100, 0)) == list(range(100, 0, -1)) else 1)
 assert os.waitpid(child, 0)[1] == 0
 """
 
