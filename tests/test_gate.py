@@ -29,6 +29,7 @@ def test_what_is_measured_is_there() -> None:
 def test_of_a_module_the_shortest_gate_that_fit_and_what_is_pinned(monkeypatch: pytest.MonkeyPatch) -> None:
     seconds = {"m.py::a": 5.0, "m.py::b": 0.9, "m.py::c": 4.0, "m.py": 2.0, "n.py::d": 90.0}
     monkeypatch.setattr(gate, "measured", lambda: seconds)
+    monkeypatch.setattr(gate, "MODULE_S", 8.0)
     assert gating(["m.py::a", "m.py::b", "m.py::c", "m.py::never", "n.py::d"]) == {"m.py::b", "m.py::c"}
     reset = "tests/hil/cli/test_reset.py::test_nobody_arms_the_bench_until_it_is_reset"
     assert gating([reset]) == {reset}
