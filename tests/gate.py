@@ -25,7 +25,7 @@ PINNED = {
     "hil/cli/test_run_to_the_end.py::same_out_twice": "results, overwriting, pipes of whole runs",
     "hil/cli/test_commands.py::ctrl_c": "Ctrl-C leaves a safe bench and the data",
     "hil/cli/test_kills.py::run_that_is_killed": "a run that is killed leaves no torque",
-    "hil/cli/test_kills.py::its_process_makes_safe[9]": "a command that is gone leaves a bench that is made safe",
+    "hil/cli/test_kills.py::process_makes_safe[9]": "a command that is gone leaves a safe bench",
     "hil/cli/test_identify_and_design.py::identify_writes": "from a recording to a model",
     "hil/cli/test_full_disk.py::fills_up": "a full disk costs no evidence and leaves a safe bench",
     "hil/engine/run/test_wall_clock.py::compiled_or_loaded": "a bench in real time waits for no compiler",
