@@ -38,9 +38,10 @@ def inputs_of(recording: Recording) -> dict[str, bytes]:
         for name, content in stored.items()
         if name.startswith(("controller/", "device/"))
     }
+    tables = parse_toml(bench, BENCH)
     if MODEL in stored:
-        files[_model_name(bench)] = stored[MODEL]
-    paths = _paths([yaml.safe_load(plan), parse_toml(bench, BENCH)], set(files))
+        files[_model_name(tables)] = stored[MODEL]
+    paths = _paths([yaml.safe_load(plan), tables], set(files))
     return {**files, PLAN: _beside(plan, paths).encode(), BENCH: _beside(bench, paths).encode()}
 
 
@@ -53,8 +54,8 @@ def command_again(recording: Recording, folder: Path) -> str:
     return " ".join(words)
 
 
-def _model_name(bench: str) -> str:
-    model = parse_toml(bench, BENCH).get("simulation", {}).get("model", MODEL)
+def _model_name(tables: dict[str, Any]) -> str:
+    model = tables.get("simulation", {}).get("model", MODEL)
     return PurePosixPath(str(model)).name if str(model).endswith(".toml") else f"{model}.toml"
 
 

@@ -53,8 +53,9 @@ def _refuse_twice(paths: list[Path]) -> None:
 
 
 def _read(runs: list[Path], paths: list[Path], show: Show) -> list[ComparedRun]:
+    folders = _folders(runs)
     recordings, results = [], []
-    for name, path in zip(_folders(runs), paths, strict=True):
+    for name, path in zip(folders, paths, strict=True):
         show(f"reading {name}")
         recording = read_recording(path, allow_missing=True)
         warn_of_damage([recording])
@@ -67,7 +68,7 @@ def _read(runs: list[Path], paths: list[Path], show: Show) -> list[ComparedRun]:
             )
         recordings.append(recording)
         results.append(result)
-    names = names_by_variables(_folders(runs), results)
+    names = names_by_variables(folders, results)
     return [ComparedRun(*run) for run in zip(names, recordings, results, strict=True)]
 
 

@@ -14,6 +14,7 @@ from hil.core.errors import BadInputError
 from hil.core.result import CriterionResult, CriterionVerdict, Segment
 
 Array = npt.NDArray[np.float64]
+Response = tuple[Array, Array]  # time from the step in s, values
 
 _LEAST_SAMPLES = 2
 _TREND = 3  # order of what changes slowly behind a step, as drag that grows with speed does
@@ -134,26 +135,24 @@ def _responses(runs: Sequence[ComparedRun]) -> tuple[ResponseRow, ...]:
     rows = []
     for segment in runs[0].result.segments:
         for channel in CHANNELS:
-            first = aligned(runs[0], segment.id, channel)
-            if first is None:
+            responses = [aligned(run, segment.id, channel) for run in runs]
+            if responses[0] is None:
                 continue
-            spread = float(np.nanstd(first[1]))
-            gaps = (_rms(difference(runs[0], run, segment.id, channel), spread) for run in runs)
-            rows.append(
-                ResponseRow(segment.id, channel, tuple(gaps), _ripples(runs, segment, channel, spread))
-            )
+            spread = float(np.nanstd(responses[0][1]))
+            gaps = tuple(_rms(_between(responses[0], other), spread) for other in responses)
+            rows.append(ResponseRow(segment.id, channel, gaps, _ripples(responses, segment, spread)))
     return tuple(rows)
 
 
-def _ripples(runs: Sequence[ComparedRun], segment: Segment, channel: str, spread: float) -> tuple[float, ...]:
+def _ripples(responses: Sequence[Response | None], segment: Segment, spread: float) -> tuple[float, ...]:
     """Sum of the first and each run's rms around a cubic over the last half behind the step."""
     if segment.kind != "step" or spread == 0.0:
-        return (float("nan"),) * len(runs)
-    first, *others = (_steady_rms(aligned(run, segment.id, channel)) for run in runs)
+        return (float("nan"),) * len(responses)
+    first, *others = map(_steady_rms, responses)
     return (0.0, *((first + other) / spread for other in others))
 
 
-def _steady_rms(response: tuple[Array, Array] | None) -> float:
+def _steady_rms(response: Response | None) -> float:
     if response is None:
         return float("nan")
     time, values = response
@@ -171,7 +170,10 @@ def difference(
 
     Over the time that both have; None if one of them has not got the segment or the channel.
     """
-    one, two = aligned(first, segment, channel), aligned(other, segment, channel)
+    return _between(aligned(first, segment, channel), aligned(other, segment, channel))
+
+
+def _between(one: Response | None, two: Response | None) -> Response | None:
     if one is None or two is None:
         return None
     time, values = one

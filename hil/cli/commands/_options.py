@@ -68,3 +68,6 @@ Controllers = Annotated[
     ),
 ]
 Operator = Annotated[str, typer.Option(help="name of the person who runs the bench; printed in the report")]
+JsonObject = Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")]
+OverwriteFile = Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")]
+OverwriteResult = Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")]

@@ -10,7 +10,7 @@ import typer
 
 from hil.cli._completion import shipped_model
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import BenchName, Operator, found_model
+from hil.cli.commands._options import BenchName, Operator, OverwriteResult, found_model
 
 SEVERAL = ("--envelope",)
 
@@ -66,7 +66,7 @@ class Autotune:
         bool,
         typer.Option("--resume", help="continue in --out; keep the runs made there before the first round"),
     ] = False
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")] = False
+    overwrite: OverwriteResult = False
     json_: Annotated[bool, typer.Option("--json", help="print autotune.json on stdout, nothing else")] = False
 
     def carry_out(self) -> int:

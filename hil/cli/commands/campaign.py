@@ -10,6 +10,7 @@ import typer
 
 from hil.cli._completion import shipped_campaign
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import OverwriteResult
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,7 +60,7 @@ class Campaign:
         bool,
         typer.Option("--dry-run", help="print the number of simulations and the duration; write nothing"),
     ] = False
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")] = False
+    overwrite: OverwriteResult = False
     json_: Annotated[bool, typer.Option("--json", help="print campaign.json on stdout, nothing else")] = False
 
     def carry_out(self) -> int:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import BenchName, Controllers, PlanName
+from hil.cli.commands._options import BenchName, Controllers, JsonObject, PlanName
 
 SEVERAL = ("--controller", "--set")
 
@@ -32,9 +32,7 @@ class Check:
         ),
     ] = None
     controller: Controllers = None
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import DefaultBenchArgument
+from hil.cli.commands._options import DefaultBenchArgument, JsonObject
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,9 +24,7 @@ class Doctor:
     for_s: Annotated[
         float, typer.Option("--for", metavar="SECONDS", help="time to listen before the devices are read")
     ] = 2.0
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

@@ -10,7 +10,7 @@ import typer
 
 from hil.cli._completion import shipped_model
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import SimulatedBenchName, found_model, found_targets
+from hil.cli.commands._options import OverwriteResult, SimulatedBenchName, found_model, found_targets
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +57,7 @@ class Explain:
     out: Annotated[Path | None, typer.Option(help="directory for the results; default: out/explain-NNN")] = (
         None
     )
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")] = False
+    overwrite: OverwriteResult = False
     as_json: Annotated[bool, typer.Option("--json", help="print targets.json on stdout, nothing else")] = (
         False
     )

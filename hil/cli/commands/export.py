@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from hil.cli.commands._options import JsonObject, OverwriteFile
+
 
 @dataclass(frozen=True, kw_only=True)
 class Export:
@@ -32,10 +34,8 @@ class Export:
             "--inputs", help="write plan, bench, model and controllers of the run to the folder --out"
         ),
     ] = False
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    overwrite: OverwriteFile = False
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from hil.cli._completion import shipped_model
-from hil.cli.commands._options import found_model
+from hil.cli.commands._options import JsonObject, OverwriteFile, found_model
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,10 +31,8 @@ class ExportFmu:
     controller: Annotated[
         Path | None, typer.Option(help="controller file; without it the FMU's input is motor torque")
     ] = None
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    overwrite: OverwriteFile = False
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

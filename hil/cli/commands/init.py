@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import JsonObject
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,9 +25,7 @@ class Init:
         bool,
         typer.Option("--samples", help="add recordings of an axle with backlash, to try a diagnosis"),
     ] = False
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

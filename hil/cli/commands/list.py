@@ -9,6 +9,7 @@ import typer
 
 from hil.cli._completion import one_of
 from hil.cli._lean_imports import import_python_can
+from hil.cli.commands._options import JsonObject
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,9 +26,7 @@ class List:
             autocompletion=one_of("plans", "benches", "models", "effects", "steps", "metrics", "devices"),
         ),
     ]
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from hil.cli.commands._options import JsonObject, OverwriteFile
+
 
 @dataclass(frozen=True, kw_only=True)
 class Recover:
@@ -23,10 +25,8 @@ class Recover:
     out: Annotated[
         Path | None, typer.Option(help="file to write: .mcap; default: NAME.recovered.mcap beside it")
     ] = None
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    overwrite: OverwriteFile = False
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

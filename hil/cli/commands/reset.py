@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import BenchArgument
+from hil.cli.commands._options import BenchArgument, JsonObject
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,9 +34,7 @@ class Reset:
             help="data directory of the service or agent that drives this simulated bench",
         ),
     ] = None
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from hil.cli.commands._options import JsonObject
+
 
 @dataclass(frozen=True, kw_only=True)
 class Sign:
@@ -27,9 +29,7 @@ class Sign:
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="replace an earlier signature of this key")
     ] = False
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

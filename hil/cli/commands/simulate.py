@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from hil.cli.commands._options import ModelOption
+from hil.cli.commands._options import JsonObject, ModelOption, OverwriteFile
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,10 +21,8 @@ class Simulate:
     model: ModelOption
     source: Annotated[Path, typer.Option("--input", help="recording with motor_torque_ref_nm")]
     out: Annotated[Path, typer.Option(help="file to write: .csv, .parquet, .mf4 or .mat")]
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace the file in --out")] = False
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    overwrite: OverwriteFile = False
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""

@@ -10,7 +10,7 @@ import typer
 
 from hil.cli._completion import shipped_bench, shipped_model
 from hil.cli._lean_imports import import_python_can
-from hil.cli.commands._options import Operator, PlanName, found_model
+from hil.cli.commands._options import Operator, OverwriteResult, PlanName, found_model
 
 SEVERAL = ("--envelope",)
 
@@ -129,7 +129,7 @@ class Tune:
         ),
     ] = ""
     operator: Operator = ""
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="replace an earlier result in --out")] = False
+    overwrite: OverwriteResult = False
     json_: Annotated[bool, typer.Option("--json", help="print tune.json on stdout, nothing else")] = False
 
     def carry_out(self) -> int:

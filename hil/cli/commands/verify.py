@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from hil.cli.commands._options import JsonObject
+
 
 @dataclass(frozen=True, kw_only=True)
 class Verify:
@@ -30,9 +32,7 @@ class Verify:
         Path | None,
         typer.Option(metavar="PUBLIC_KEY", help="public key of the required signer: NAME.pub, or PEM"),
     ] = None
-    as_json: Annotated[bool, typer.Option("--json", help="print a JSON object on stdout, nothing else")] = (
-        False
-    )
+    as_json: JsonObject = False
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
