@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -47,11 +48,12 @@ def inputs_of(recording: Recording) -> dict[str, bytes]:
 
 def command_again(recording: Recording, folder: Path) -> str:
     """The command that carries the run out again, with the values that its variables had."""
-    words = ["hil run", str(folder / PLAN), "--bench", str(folder / BENCH)]
+    words = ["hil", "run", str(folder / PLAN), "--bench", str(folder / BENCH)]
     told = recording.attachments.get("run.json")
     values = RunResult.model_validate_json(told).variables if told else ()
-    words += [f"--set {one.name}={one.value:g}" for one in values]
-    return " ".join(words)
+    for one in values:
+        words += ["--set", f"{one.name}={one.value!r}"]
+    return shlex.join(words)
 
 
 def _model_name(tables: dict[str, Any]) -> str:
