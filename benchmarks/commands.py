@@ -52,7 +52,7 @@ def _parts(directory: Path) -> list[tuple[str, float]]:
         return result
 
     def imports() -> None:
-        from hil.cli._lean_imports import import_python_can
+        from hil.app.worker.lean_imports import import_python_can
 
         import_python_can()
         import hil.cli.run  # noqa: F401

@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import datetime
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -133,7 +134,15 @@ def main() -> int:
     unknown = [part for part in asked if part not in PARTS]
     if unknown:
         parser.error(f"no part {', '.join(unknown)}; there are {', '.join(PARTS)}")
+    _take_signals()
     return max([_run(part) for part in asked])
+
+
+def _take_signals() -> None:
+    """Signals that `nohup` or a shell's `&` left ignored would be ignored by every run that is tested."""
+    for number in (signal.SIGHUP, signal.SIGQUIT):
+        signal.signal(number, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def _run(name: str) -> int:

@@ -46,7 +46,6 @@ class AgentRequest:
         servers: URLs of the service, or of several with one database.
         folder: where runs and the agent's name for the service are kept; made if it is not there.
         benches: bench files, or names of shipped ones.
-        run, hil: start a process that carries a run out (`hil.cli._served_run`), and the command line.
         local_days: how long files stay that the service has.
         for_s: ends by itself after this many seconds.
         ready: called when the service has answered, with '', or has not, with why.
@@ -55,8 +54,6 @@ class AgentRequest:
     servers: Sequence[str]
     folder: Path
     benches: Sequence[str]
-    run: Sequence[str]
-    hil: Sequence[str]
     token: str = ""
     name: str = field(default_factory=socket.gethostname)
     local_days: float = 30.0
@@ -85,7 +82,7 @@ class _Agent:
         self._runs = KeptRuns(request.folder / "runs", request.local_days)
         self._service = TheService(request.servers, request.token)
         self._deliveries = Deliveries(self._service, self._id)
-        self._forecasting = Forecasting(request.hil, self._service, self._id)
+        self._forecasting = Forecasting(self._service, self._id)
         self._obeyed: list[str] = []
         self._answers: set[asyncio.Task[None]] = set()
         self._tasks: set[asyncio.Task[None]] = set()
@@ -209,7 +206,7 @@ class _Agent:
             return
         bench.kept = run
         try:
-            bench.running = await RunExecution.begin(self._request.run, run.taken, bench.bench, run.folder)
+            bench.running = await RunExecution.begin(run.taken, bench.bench, run.folder)
         except (HilError, OSError) as error:
             code = error.exit_code if isinstance(error, HilError) else BenchError.exit_code
             end = _ending(RunEnd("ended", code, reason=str(error)))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
 
 from hil.agent._service import AwayError, TheService
@@ -19,10 +18,10 @@ from test_plans import plan_from_text
 
 
 class Forecasting:
-    """`hil check` in processes of its own, for whoever asks the service."""
+    """Checks plans in processes of their own, for whoever asks the service."""
 
-    def __init__(self, command: Sequence[str], service: TheService, agent: str) -> None:
-        self._forecasts, self._service, self._agent = Forecasts(command), service, agent
+    def __init__(self, service: TheService, agent: str) -> None:
+        self._forecasts, self._service, self._agent = Forecasts(), service, agent
 
     async def answer(self, order: Order, bench: Bench) -> None:
         """Predict and tell; a service that does not wait any more need not hear it."""

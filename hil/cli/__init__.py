@@ -9,7 +9,7 @@ import gc
 import os
 import sys
 
-from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 
 # What imports leave is no garbage: looked through every 700 objects, as by default, it took a tenth of a run.
 _LOOKED_THROUGH_EVERY = (50_000, 20, 20)

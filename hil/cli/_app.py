@@ -7,9 +7,7 @@ import importlib
 import importlib.metadata
 import inspect
 import logging
-import resource
 import sys
-import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -17,14 +15,13 @@ from typing import Annotated, Any, Protocol, get_type_hints
 
 import typer
 
+from hil.app.failures import error_of
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.log import LOG
 from hil.cli._completion import completion_wanted, take_named_shell
-from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
-from hil.cli._log import LOG
 from hil.cli._multi_value_options import each_with_its_option
 from hil.cli._streams import complain, tolerate_outputs
 from hil.core.errors import BadInputError, BenchError, HilError
-from hil.core.extras import not_installed
-from hil.core.files import of_the_system
 
 logger = logging.getLogger(__name__)
 
@@ -203,7 +200,7 @@ def guarded(arguments: list[str]) -> int:
     """The exit code of a command line; every error is told in one message, none as a traceback."""
     LOG.begin(arguments)
     try:
-        code = _carried_out(arguments)
+        code = _carry_out(arguments)
         logger.info("exit code %d", code)
         if LOG.faulty:
             complain("note", f"details are in {LOG.kept() or 'no log: it cannot be written'}")
@@ -212,7 +209,7 @@ def guarded(arguments: list[str]) -> int:
         LOG.end()
 
 
-def _carried_out(arguments: list[str]) -> int:
+def _carry_out(arguments: list[str]) -> int:
     try:
         return _dispatch(arguments)
     except SystemExit as stop:
@@ -221,16 +218,9 @@ def _carried_out(arguments: list[str]) -> int:
         return stop.code if isinstance(stop.code, int) else 0
     except KeyboardInterrupt:
         return _interrupted()
-    except HilError as error:
-        return _told(error)
-    except OSError as error:
-        return _told(of_the_system(error))
-    except ModuleNotFoundError as error:
-        return _told(not_installed(error) or _fault_of_ours(error))
-    except MemoryError:
-        return _told(_too_little_memory())
     except Exception as error:
-        return _interrupted() if INTERRUPTS.arrived else _told(_fault_of_ours(error))
+        internal = not isinstance(error, HilError | OSError | ModuleNotFoundError | MemoryError)
+        return _interrupted() if internal and INTERRUPTS.arrived else _complained(error_of(error))
 
 
 def _interrupted() -> int:
@@ -239,26 +229,6 @@ def _interrupted() -> int:
     return EXIT_CODE
 
 
-def _told(error: HilError) -> int:
-    logger.debug("ended by", exc_info=error)
+def _complained(error: HilError) -> int:
     complain("error", str(error))
     return error.exit_code
-
-
-def _too_little_memory() -> BenchError:
-    limit, _ = resource.getrlimit(resource.RLIMIT_DATA)  # a service sets one for what it begins
-    limited = f", which may use {limit / 1e9:.3g} GB" if limit != resource.RLIM_INFINITY else ""
-    return BenchError(
-        f"there is not enough memory for this command{limited}", fix="use a shorter recording or plan"
-    )
-
-
-def _fault_of_ours(error: Exception) -> BenchError:
-    """A mistake in the program: where it was; its traceback is in the log, for whoever mends it."""
-    logger.error("internal error", exc_info=error)
-    at = traceback.extract_tb(error.__traceback__)[-1]
-    return BenchError(
-        f"internal error: {type(error).__name__}: {error}",
-        where=f"{Path(at.filename).name}:{at.lineno}",
-        fix="please report it with the log, the command and its input",
-    )

@@ -6,14 +6,13 @@ import itertools
 import math
 from collections.abc import Iterator
 
+from hil.app.series import LARGEST_SERIES
 from hil.cli._named_values import named_values, number_of
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from test_plans import Choices, controller_choices
 
 _OPTION = "--set"
-#: Runs of one series: some days at a bench.
-LARGEST_SERIES = 1000
 
 
 def choices_of(values: list[str] | None, controller: list[str] | None) -> Choices:

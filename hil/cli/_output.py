@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import logging
-import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from hil.cli._log import LOG
+from hil.app.feedback import LOGGED, Show
+from hil.app.log import LOG
+from hil.app.result_file import to_json
 from hil.cli._streams import complain
+from hil.cli._terminal import KEYS, operators_terminal
 from hil.core.digits import share
 from hil.core.printable import printable
 from hil.core.result import AcceptedExpiry, CriterionResult, CriterionVerdict, Identity
-
-if TYPE_CHECKING:
-    from hil.core.recording import Recording
 
 logger = logging.getLogger(__name__)
 
@@ -38,18 +36,6 @@ _STYLE: dict[CriterionVerdict, str] = {
     "not_judged": "magenta",
     "error": "bold magenta",
 }
-
-
-class Show(Protocol):
-    """Shows what is being done, and how much of it is done if that is known (0 to 1)."""
-
-    def __call__(self, text: str, share: float | None = None) -> None:
-        """Show it."""
-
-
-def to_json(value: Mapping[str, Any], *, ascii_only: bool = False) -> str:
-    """JSON with two spaces of indent; infinities and NaN become null."""
-    return json.dumps(_plain(value), indent=2, ensure_ascii=ascii_only, allow_nan=False)
 
 
 def print_json(value: Mapping[str, Any]) -> None:
@@ -81,28 +67,43 @@ def warn(text: str) -> None:
     complain("warning", text)
 
 
-def warn_of_damage(recordings: Iterable[Recording]) -> None:
-    """Say what of recordings was lost or cannot be trusted."""
-    for recording in recordings:
-        for sentence in recording.damage:
-            warn(f"{recording.source}: {sentence}")
-
-
 @contextlib.contextmanager
 def progress(description: str) -> Iterator[Show]:
-    """A line on a terminal, nothing in a pipe; with --verbose the log tells it."""
-    told: list[str] = []
+    """A line on a terminal, nothing in a pipe; with --verbose the log has it."""
+    with LOGGED.progress(description) as log:
+        if LOG.verbose or not sys.stderr.isatty():
+            yield log
+        else:
+            yield from _bar(description, log)
 
-    def log(text: str, share: float | None = None) -> None:
-        del share
-        if told != [text]:
-            told[:] = [text]
-            logger.info("%s: %s", description, text)
 
-    if LOG.verbose or not sys.stderr.isatty():
-        yield log
-        return
-    yield from _bar(description, log)
+class _Terminal:
+    """Feedback of a use case on standard error, and the person at standard input."""
+
+    keys = KEYS
+    progress = staticmethod(progress)
+    note = staticmethod(note)
+    warn = staticmethod(warn)
+
+    @staticmethod
+    def complain(text: str) -> None:
+        """An error that ends nothing here."""
+        complain("error", text)
+
+    @property
+    def can_ask(self) -> bool:
+        """Whether a person sits at standard input."""
+        return sys.stdin.isatty()
+
+    def ask_name(self, question: str, given: str) -> str:
+        """Print the question; read a line if no name is given."""
+        print(question, file=sys.stderr)
+        return given or sys.stdin.readline().strip()
+
+    terminal = staticmethod(operators_terminal)
+
+
+TERMINAL = _Terminal()
 
 
 def _bar(description: str, log: Show) -> Iterator[Show]:
@@ -235,15 +236,3 @@ def _reasons(criteria: tuple[CriterionResult, ...]) -> list[str]:
     return [
         f"{f'{count} ' if count > 1 else ''}{verdict}: {reason}" for (verdict, reason), count in found.items()
     ]
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if hasattr(value, "tolist"):
-        return _plain(value.tolist())
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

@@ -13,14 +13,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from hil.analysis.campaigns import CampaignFile, Share, load_campaign_file
+from hil.app.interrupts import EXIT_CODE
+from hil.app.results_folder import ResultsFolder, results_in
 from hil.campaign import BEGUN, FOLDER
-from hil.cli._interrupts import EXIT_CODE
 from hil.cli._output import print_json, progress
 from hil.cli._remote_run import TOKEN
-from hil.cli._results_folder import ResultsFolder, results_in
-from hil.cli._retry import OURS, Retry
 from hil.cli._streams import complain
 from hil.client import Client, RefusedError
+from hil.client.retry import OURS, Retry
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.files import is_file, make_directory, read_text, write_atomically
 from hil.engine import StopRequest

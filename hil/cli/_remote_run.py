@@ -12,15 +12,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hil.cli._one_run import NAMES
+from hil.app.result_file import RESULT
+from hil.app.results_folder import ResultsFolder, results_in
+from hil.app.run import NAMES
 from hil.cli._output import progress
-from hil.cli._result_file import RESULT
-from hil.cli._results_folder import ResultsFolder, results_in
-from hil.cli._retry import OURS, Retry
-from hil.cli._sent_plan import give_plan
 from hil.cli._streams import complain
 from hil.cli._terminal import KEYS, StandardTerminal, operators_terminal
 from hil.client import Client, RefusedError
+from hil.client.retry import OURS, Retry
+from hil.client.sent_plan import give_plan
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.result import RunResult
 from hil.engine import StopRequest

@@ -8,10 +8,9 @@ import socket
 import sys
 
 from hil.agent import AgentRequest, work
-from hil.cli._interrupts import EXIT_CODE
+from hil.app.interrupts import EXIT_CODE
 from hil.cli._output import print_json
 from hil.cli._remote_run import TOKEN
-from hil.cli._served_run import HIL, RUNNER
 from hil.cli.commands.agent import Agent
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
@@ -49,8 +48,6 @@ def carry_out(options: Agent) -> int:
         servers=server,
         folder=data,
         benches=bench,
-        run=RUNNER,
-        hil=HIL,
         token=os.environ.get(TOKEN, ""),
         name=name,
         local_days=options.keep_local,

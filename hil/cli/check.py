@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-import datetime
-import tempfile
-from pathlib import Path
+import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from rich.table import Table
 
+from hil.app.check import Checked, check_plan
+from hil.app.requests import CheckRequest
 from hil.cli._choices import choices_of
 from hil.cli._default_bench import bench_or_own
-from hil.cli._loop_margins import loop_margins, margins_json, margins_table, remarks_on_load, warnings_of
-from hil.cli._output import console, plain_table, print_criteria, print_json, progress, warn
+from hil.cli._output import TERMINAL, console, plain_table, print_criteria, print_json, warn
+from hil.cli._requests import request_of
 from hil.cli.commands.check import Check
 from hil.core.channels import CHANNELS
 from hil.core.digits import share
-from hil.core.errors import BadInputError
-from hil.core.extras import not_installed
-from hil.core.mistakes import all_of
-from hil.engine import BenchFile, load_bench
-from hil.engine.bench.calibration_dates import accepted_expiry
-from hil.engine.bench.measured import refuse_unmeasured
-from hil.engine.prediction.forecast import Forecast, forecast
-from hil.engine.run.preflight import preflight
-from test_plans import Choices, Plan, load_plan
+from hil.engine.prediction.forecast import Forecast
 
 if TYPE_CHECKING:
     from hil.analysis.control_design import Margins
@@ -33,72 +26,23 @@ if TYPE_CHECKING:
 def carry_out(options: Check) -> int:
     """Carry the command out; its exit code."""
     choices = choices_of(options.values, options.controller)
-    checked, file = _loaded(options.plan, choices, options.bench)
-    with tempfile.TemporaryDirectory() as directory:
-        today = datetime.datetime.now(datetime.UTC).date()
-        accepted_expiry(file, today, "")
-        preflight(checked, file, Path(directory))
-    refuse_unmeasured(file)
-    with progress(checked.name) as show:
-        show("predicting")
-        predicted = forecast(checked, file)
-    try:
-        loops = loop_margins(checked, file)
-    except ModuleNotFoundError as error:
-        missing = not_installed(error)
-        if missing is None:
-            raise
-        warn(f"no margins of the loops: {missing}")
-        loops = {}
+    bench = bench_or_own(options.bench, options.plan)
+    checked = check_plan(request_of(CheckRequest, options, choices=choices, bench=bench), TERMINAL)
     if options.as_json:
-        print_json(_json(checked, file.name, predicted) | {"loops": margins_json(loops)})
+        print_json(checked.as_json())
     else:
-        _tell(checked, file.name, predicted, loops)
-    unjudged = (f"not checked: {text}" for text in checked.device_gaps)
-    for text in (*warnings_of(loops), *remarks_on_load(checked), *unjudged):
+        _print(checked)
+    for text in checked.warnings:
         warn(text)
-    return 0 if predicted.fits else 1
+    return 0 if checked.forecast.fits else 1
 
 
-def _loaded(plan: str, choices: Choices, bench: str) -> tuple[Plan, BenchFile]:
-    """Plan and bench file; what is wrong with either is told at once."""
-    refused = []
-    try:
-        checked = load_plan(plan, choices)
-    except BadInputError as error:
-        refused.append(error)
-    try:
-        file = load_bench(bench_or_own(bench, plan))
-    except BadInputError as error:
-        refused.append(error)
-    all_of(refused)
-    return checked, file
-
-
-def _json(plan: Plan, bench: str, predicted: Forecast) -> dict[str, object]:
-    peaks = {name: {"value": value, "limit": limit} for name, (value, limit) in predicted.peaks.items()}
-    return {
-        "plan": plan.name,
-        "bench": bench,
-        "fits": predicted.fits,
-        "duration_s": round(predicted.duration_s, 1),
-        "steps": len(plan.steps),
-        "segments": [segment.id for segment in plan.segments],
-        "predicted": peaks,
-        "bus_loads": {name: round(load, 4) for name, load in predicted.bus_loads.items()},
-        "not_checked": list(plan.device_gaps),
-        "criteria": [
-            {**criterion.model_dump(exclude={"definition"}), "margin": criterion.margin}
-            for criterion in predicted.criteria
-        ],
-    }
-
-
-def _tell(plan: Plan, bench: str, predicted: Forecast, loops: dict[str, Margins]) -> None:
+def _print(checked: Checked) -> None:
+    plan, predicted, loops = checked.plan, checked.forecast, checked.loops
     page = console()
     page.print(
         f"{plan.name}: valid, {len(plan.steps)} steps, {len(plan.segments)} segments, "
-        f"{len(plan.criteria)} criteria, about {predicted.duration_s:.0f} s on the bench '{bench}'",
+        f"{len(plan.criteria)} criteria, about {predicted.duration_s:.0f} s on the bench '{checked.bench}'",
         highlight=False,
     )
     page.print(_table(predicted.peaks))
@@ -106,7 +50,7 @@ def _tell(plan: Plan, bench: str, predicted: Forecast, loops: dict[str, Margins]
     page.print(f"\nload of bus {loads}", highlight=False)
     if loops:
         page.print()
-        page.print(margins_table(loops))
+        page.print(_margins(loops))
     if predicted.criteria:
         page.print("\n[italic]criteria, predicted[/]")
         print_criteria(page, predicted.criteria)
@@ -141,3 +85,32 @@ def _table(peaks: dict[str, tuple[float, float]]) -> Table:
         style = "" if value <= limit else "bold red"
         table.add_row(name, f"{value:.4g}", f"{limit:.4g}", used, CHANNELS[name].unit, style=style)
     return table
+
+
+def _margins(found: Mapping[str, Margins]) -> Table:
+    """A row a controller."""
+    table = plain_table("speed loop on the bench's model")
+    table.add_column("controller")
+    for name in ("gain margin", "phase margin", "delay margin", "|S|max", "at"):
+        table.add_column(name, justify="right")
+    for name, one in found.items():
+        if not one.stable:
+            table.add_row(name, "unstable", "", "", "", "", style="bold red")
+            continue
+        table.add_row(
+            name,
+            _number(one.gain_margin_db, "dB"),
+            _number(one.phase_margin_deg, "°"),
+            _delay(one.delay_margin_s),
+            f"{one.sensitivity_peak:.3g}",
+            f"{one.sensitivity_peak_hz:.3g} Hz",
+        )
+    return table
+
+
+def _delay(seconds: float) -> str:
+    return _number(1e3 * seconds, "ms") if seconds < 1.0 else _number(seconds, "s")
+
+
+def _number(value: float, unit: str) -> str:
+    return f"{value:.3g} {unit}" if math.isfinite(value) else "no crossing"

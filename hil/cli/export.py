@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hil.cli._output import console, print_json, warn_of_damage
-from hil.cli._results_folder import refuse_file, results_in
-from hil.cli._run_inputs import command_again, inputs_of
+from hil.app.feedback import warn_of_damage
+from hil.app.results_folder import refuse_file, results_in
+from hil.app.run_inputs import command_again, inputs_of
+from hil.cli._output import TERMINAL, console, print_json
 from hil.cli.commands.export import Export
 from hil.core.recording import (
     FRAME_LOGS,
@@ -26,7 +27,7 @@ def carry_out(options: Export) -> int:
     for file in written_with(out):
         refuse_file(file, [options.recording], overwrite=options.overwrite)
     table = read_recording(options.recording, any_replay=True)
-    warn_of_damage([table])
+    warn_of_damage(TERMINAL, [table])
     if options.frames or out.suffix.lower() in FRAME_LOGS:
         return _frames(table, out, as_json=options.as_json)
     write_recording(table, out)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from hil.app.results_folder import refuse_file
 from hil.cli._output import console, print_json
-from hil.cli._results_folder import refuse_file
 from hil.cli.commands.export_fmu import ExportFmu
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError

@@ -5,9 +5,9 @@ from __future__ import annotations
 import shlex
 from pathlib import Path
 
+from hil.app.results_folder import results_in
+from hil.app.samples import sample_files
 from hil.cli._output import print_json, progress
-from hil.cli._results_folder import results_in
-from hil.cli._samples import sample_files
 from hil.cli.commands.init import Init
 from hil.core.errors import BadInputError
 from hil.engine.bench.bench_file import DEFAULT_BENCH, shipped

@@ -8,8 +8,9 @@ from typing import Any
 
 from rich.table import Table
 
-from hil.cli._output import console, plain_table, print_json, progress, to_json
-from hil.cli._results_folder import results_in
+from hil.app.result_file import to_json
+from hil.app.results_folder import results_in
+from hil.cli._output import console, plain_table, print_json, progress
 from hil.cli._streams import complain
 from hil.cli._terminal import operators_terminal
 from hil.cli.commands.jog import Jog

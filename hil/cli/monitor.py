@@ -12,7 +12,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from hil.cli._interrupts import EXIT_CODE
+from hil.app.interrupts import EXIT_CODE
 from hil.cli._output import console, plain_table, print_json
 from hil.cli.commands.monitor import Monitor
 from hil.core.printable import printable

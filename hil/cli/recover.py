@@ -6,9 +6,9 @@ import math
 from pathlib import Path
 from typing import Any
 
-from hil.cli._one_run import NAMES
+from hil.app.results_folder import alone_in, refuse_file, refuse_missing
+from hil.app.run import NAMES
 from hil.cli._output import console, print_json
-from hil.cli._results_folder import alone_in, refuse_file, refuse_missing
 from hil.cli.commands.recover import Recover
 from hil.core.errors import BadInputError
 from hil.core.recording import Missing, Recording, missing_of, read_recording, recover_recording, run_of

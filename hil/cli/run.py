@@ -5,11 +5,13 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from hil.app.run import FinishedRun, RunSettings
+from hil.app.series import announce_series, repeated, run_series
 from hil.cli._browser import show_in_browser
 from hil.cli._choices import all_choices
 from hil.cli._default_bench import bench_or_own
-from hil.cli._one_run import Runs
 from hil.cli._output import (
+    TERMINAL,
     console,
     count_in_words,
     expiry_in_words,
@@ -18,14 +20,14 @@ from hil.cli._output import (
     told_identities,
     warn,
 )
-from hil.cli._series import announce_series, carry_out_series, repeated
+from hil.cli._series_output import print_in_series, print_series
 from hil.cli._timing import times_in_words, timing_in_words
 from hil.cli.commands.run import Run
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
 from hil.core.printable import printable
 from hil.core.result import RunResult
-from hil.engine import DEFAULT_BENCH, load_bench
+from hil.engine import DEFAULT_BENCH, BenchFile, load_bench
 from test_plans import Plan, load_plan
 
 
@@ -52,16 +54,16 @@ def carry_out(options: Run) -> int:
         )
         return remote.carry_out(
             options.out,
-            lambda result, folder: _tell(result, folder, show=options.show, as_json=options.as_json),
+            lambda result, folder: _print_run(result, folder, show=options.show, as_json=options.as_json),
         )
     plans = [load_plan(options.plan, choice) for choice in choices]
-    bench_file = load_bench(bench_or_own(options.bench, options.plan, drives=True))
+    bench = load_bench(bench_or_own(options.bench, options.plan, drives=True))
     inputs = [
-        bench_file.source,
+        bench.source,
         *([Path(options.plan)] if Path(options.plan).is_file() else []),
         *([options.model] if options.model else []),
     ]
-    runs = Runs(
+    settings = RunSettings(
         model=load_model(options.model) if options.model else None,
         operator=options.operator,
         confirmed_by=options.yes,
@@ -69,15 +71,28 @@ def carry_out(options: Run) -> int:
         accept_expired=options.accept_expired,
         inputs=(*inputs, *choices[0].controllers.values()),
         overwrite=options.overwrite,
+        feedback=TERMINAL,
     )
     if len(plans) * options.repeat > 1:
-        announce_series(plans, options.repeat, options.out)
-        return carry_out_series(
-            runs, plans, repeated(bench_file, options.repeat), options.out, as_json=options.as_json
-        )
-    with runs.finished(plans[0], bench_file, options.out) as run:
-        _tell(run.result, run.folder, show=options.show, as_json=options.as_json)
+        return _run_series(options, settings, plans, bench)
+    with settings.carry_out(plans[0], bench, options.out) as run:
+        _print_run(run.result, run.folder, show=options.show, as_json=options.as_json)
         return run.exit_code
+
+
+def _run_series(options: Run, settings: RunSettings, plans: list[Plan], bench: BenchFile) -> int:
+    announce_series(plans, options.repeat, options.out, TERMINAL)
+
+    def print_run(run: FinishedRun) -> None:
+        if not options.as_json:
+            print_in_series(run)
+
+    outcome = run_series(settings, plans, repeated(bench, options.repeat), options.out, print_run)
+    if options.as_json:
+        print_json(outcome.summary)
+    else:
+        print_series(outcome.summary, outcome.folder)
+    return outcome.exit_code
 
 
 def _refuse_here_only(*, model: Path | None, controller: list[str] | None, repeat: int, confirm: str) -> None:
@@ -99,11 +114,11 @@ def _refuse_here_only(*, model: Path | None, controller: list[str] | None, repea
             )
 
 
-def _tell(result: RunResult, folder: Path, *, show: bool, as_json: bool) -> None:
+def _print_run(result: RunResult, folder: Path, *, show: bool, as_json: bool) -> None:
     if as_json:
         print_json(result.model_dump(mode="json"))
     else:
-        _print(result, folder)
+        _print_result(result, folder)
     if show and "html" in result.files:
         show_in_browser(folder / result.files["html"])
 
@@ -117,20 +132,20 @@ def _asked_for_name(plan: Plan) -> str:
     return sys.stdin.readline().strip()
 
 
-def _carried_out(result: RunResult) -> str:
+def _recorded_in_words(result: RunResult) -> str:
     """What a run did that judged nothing."""
     count = sum(segment.complete for segment in result.segments)
     whole = "1 segment" if count == 1 else f"{count} segments"
     return f"{whole} recorded, " if result.verdict == "done" else ""
 
 
-def _print(result: RunResult, folder: Path) -> None:
+def _print_result(result: RunResult, folder: Path) -> None:
     page = console()
     if result.criteria:
         print_criteria(page, result.criteria)
     page.print(
         f"\n{result.plan} on {result.bench}: [bold]{result.verdict.upper()}[/], "
-        f"{_carried_out(result)}{count_in_words(result.criteria)}   "
+        f"{_recorded_in_words(result)}{count_in_words(result.criteria)}   "
         f"safe state {result.safe_state.replace('_', ' ')}   "
         f"{result.bench_time_s:.0f} s of bench time, {times_in_words(result.real_time_factor)} x real time",
         highlight=False,

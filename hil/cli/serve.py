@@ -6,13 +6,16 @@ import importlib.util
 import math
 import os
 import sys
+from typing import TYPE_CHECKING
 
-from hil.cli._interrupts import EXIT_CODE
+from hil.app.interrupts import EXIT_CODE
 from hil.cli._output import print_json
-from hil.cli._served_run import HIL, RUNNER
 from hil.cli.commands.serve import Serve
 from hil.core.errors import BadInputError
 from hil.engine import StopRequest
+
+if TYPE_CHECKING:
+    from hil.service.jobs.campaigns import Simulating
 
 
 def carry_out(options: Serve) -> int:
@@ -22,7 +25,7 @@ def carry_out(options: Serve) -> int:
     trusted_proxy = options.trusted_proxy or []
     allow_host = options.allow_host or []
     for_s = options.for_s
-    from hil.service.service import Commands  # the extra 'service' brings what they need
+    # The extra 'service' brings what they need.
     from hil.service.serving import ServeRequest, make_token, serve
 
     if for_s is not None and not for_s > 0:
@@ -37,7 +40,6 @@ def carry_out(options: Serve) -> int:
         else:
             print(f"# token of {made.token.name}, {made.token.role}; it is printed only once\n{made.secret}")
         return 0
-    simulating = _simulating(options.workers, options.scheduler)
     stop = StopRequest()
 
     def ready(url: str) -> None:
@@ -50,7 +52,7 @@ def carry_out(options: Serve) -> int:
     request = ServeRequest(
         folder=data,
         benches=[] if options.no_bench else bench or ["sim"],
-        commands=Commands(HIL, RUNNER, simulating),
+        simulating=_simulating(options.workers, options.scheduler),
         host=options.host,
         port=options.port,
         stop_port=options.stop_port,
@@ -70,17 +72,19 @@ def carry_out(options: Serve) -> int:
     return EXIT_CODE if stop.times else 0
 
 
-def _simulating(workers: int | None, scheduler: str) -> tuple[str, ...]:
-    """Options of `hil campaign`; without a word, all processors but one, which is left to runs.
+def _simulating(workers: int | None, scheduler: str) -> Simulating:
+    """Who simulates; without a word, all processors but one, which is left to runs.
 
     Raises:
         BadInputError: both are named.
     """
+    from hil.service.jobs.campaigns import Simulating
+
     if scheduler and workers is not None:
         raise BadInputError("--workers does not go with --scheduler", where="--workers", fix="leave one out")
     if scheduler:
-        return ("--scheduler", scheduler)
+        return Simulating(scheduler=scheduler)
     if workers is None:
         dask = importlib.util.find_spec("distributed") is not None
         workers = max(1, len(os.sched_getaffinity(0)) - 1) if dask else 0
-    return ("--workers", str(workers))
+    return Simulating(workers=workers)

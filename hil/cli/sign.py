@@ -6,11 +6,11 @@ import datetime
 import getpass
 import sys
 
+from hil.app.result_file import RESULT
+from hil.app.results_folder import alone_in, refuse_missing
+from hil.app.verification import of_run
 from hil.cli._output import console, print_json
-from hil.cli._result_file import RESULT
-from hil.cli._results_folder import alone_in, refuse_missing
 from hil.cli._streams import complain
-from hil.cli._verified import of_run
 from hil.cli.commands.sign import Sign
 from hil.core.errors import BadInputError
 from hil.core.printable import refuse_long

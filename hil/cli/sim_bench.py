@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 
-from hil.cli._interrupts import EXIT_CODE
+from hil.app.interrupts import EXIT_CODE
+from hil.app.results_folder import refuse_file
 from hil.cli._named_values import named_values
 from hil.cli._output import print_json
-from hil.cli._results_folder import refuse_file
 from hil.cli.commands.sim_bench import SimBench
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically

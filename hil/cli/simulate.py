@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from hil.cli._output import console, print_json, warn_of_damage
-from hil.cli._results_folder import refuse_file
+from hil.app.feedback import warn_of_damage
+from hil.app.results_folder import refuse_file
+from hil.cli._output import TERMINAL, console, print_json
 from hil.cli.commands.simulate import Simulate
 from hil.core.model import load_model
 from hil.core.recording import read_recording, write_recording
@@ -16,7 +17,7 @@ def carry_out(options: Simulate) -> int:
     refuse_file(out, [options.source, options.model], overwrite=options.overwrite)
     chosen = load_model(options.model)
     recording = read_recording(options.source)
-    warn_of_damage([recording])
+    warn_of_damage(TERMINAL, [recording])
     simulated = replay(chosen, recording)
     notes = [*recording.notes, *simulated.notes]
     write_recording(simulated, out)

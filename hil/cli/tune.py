@@ -2,121 +2,124 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
+from pathlib import Path
 
-from hil.analysis.tuning import Effort, RefinementBudget, Tuning, tune
+from hil.analysis.diagnosis import Diagnosis
+from hil.analysis.tuning import Tuning
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.requests import SearchRequest, TuneRequest
+from hil.app.result_file import Outcome
+from hil.app.tuning.confirmation import Ran
+from hil.app.tuning.refinement import Refined
+from hil.app.tuning.tune import Reports, tune_controller
 from hil.cli._default_bench import bench_or_own
-from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
-from hil.cli._on_bench import FOLDER, Wanted, WireBench, allowed_on
-from hil.cli._one_run import Runs
-from hil.cli._output import print_json, progress
-from hil.cli._refine_on_bench import Refined, refined
-from hil.cli._results_folder import results_in
-from hil.cli._second_interrupt import at_once
+from hil.cli._named_values import named_numbers
+from hil.cli._output import TERMINAL, console, plain_table, print_json
+from hil.cli._requests import request_of
 from hil.cli._streams import complain
-from hil.cli._then_run import OnTheWire, Ran, refuse_unasked, tell
-from hil.cli._then_run import then_run as run_tuned
-from hil.cli._tuning import NAMES, SUMMARY, asked_of, write_results
 from hil.cli.commands.tune import Tune
+from hil.cli.diagnose import text_of as diagnosis_in_words
+from hil.core.digits import share
 from hil.core.errors import BadInputError
-from hil.engine import StopRequest
+from reports.outputs.refinement import REFINEMENT_HEAD, refinement_rows, refinement_verdict
 from reports.outputs.tuning import text_of
 
 
 def carry_out(options: Tune) -> int:
     """Carry the command out; its exit code."""
-    wanted = Wanted(options.on_bench, options.runs, options.envelope or [], options.confirm)
-    _refuse_together(wanted, options.bench, then_run=options.then_run)
-    used = wanted.bench or bench_or_own(options.bench, options.plan, drives=options.then_run)
-    asked = asked_of(
-        options.plan,
-        options.model,
-        options.free,
-        options.controller,
-        options.start,
-        options.draws,
-        options.seed,
-        used,
+    _refuse_together(options)
+    bench = options.on_bench or bench_or_own(options.bench, options.plan, drives=options.then_run)
+    request = request_of(
+        TuneRequest,
+        options,
+        search=request_of(SearchRequest, options, bench=bench),
+        refine=bool(options.on_bench),
+        envelope=named_numbers(options.envelope or [], "--envelope"),
     )
-    if options.then_run:
-        refuse_unasked(asked.plan)
-    axle = asked.trial.draws[0].model
-    allowed = allowed_on(wanted, asked.bench, asked.trial, axle) if wanted.bench else None
-    carried = Runs(None, options.operator, "", "", "", asked.inputs, options.overwrite)
-    stop, ran, refinement = StopRequest(), None, None
-    with results_in(
-        options.out, NAMES, inputs=asked.inputs, overwrite=options.overwrite, default="tune", summary=SUMMARY
-    ) as place:
-        with progress(f"tune {asked.plan.name}") as show, stop.by_signals(), stop.telling(at_once(stop)):
-            try:
-                found = tune(
-                    asked.trial,
-                    seed=options.seed,
-                    effort=Effort(starts=options.starts),
-                    processes=options.processes,
-                    show=lambda text, share: show(text, share),
-                    stopped=_stopped(stop, options.at_most),
-                )
-            except BadInputError as error:  # nothing that was tried is worth keeping
-                if not stop.times:
-                    raise
-                complain("note", str(error))
-                INTERRUPTS.tell()
-                return EXIT_CODE
-            show("figures and report")
-            summary = write_results(asked, found, place.write)
-        if not options.json_:
-            print(text_of(found, str(place.folder)))
-        tried, every = len(found.trial.draws), len(asked.trial.draws)
-        if tried < every:
-            complain(
-                "note", f"stopped: compared on {tried} of {every} vehicles, those that the search had used"
-            )
-        if options.then_run and not stop.times:
-            wire = OnTheWire(asked.bench, options.differ / 100, carried)
-            ran = run_tuned(found, options.plan, place.folder, wire, options.model)
-            summary = write_results(asked, found, place.write, ran)
-        if allowed is not None and not stop.times:
-            on = WireBench(options.plan, asked.trial, axle, allowed, carried, place.folder / FOLDER)
-            with stop.by_signals():
-                budget = RefinementBudget(allowed.envelope.runs)
-                refinement = refined(found, on, budget, options.processes, lambda: stop.times > 0)
-                summary = write_results(asked, found, place.write, refinement=refinement)
-        if options.json_:
-            print_json(summary)
-        elif ran is not None:
-            tell(ran)
-        elif refinement is not None:
-            refinement.tell()
-    code = _exit_code(found, ran, refinement)
-    if stop.times or code == EXIT_CODE:
+    outcome = tune_controller(request, TERMINAL, _Prints(options))
+    tuned = outcome.found
+    if options.json_:
+        print_json(outcome.summary)
+    elif tuned.ran is not None:
+        _print_run(tuned.ran)
+    elif tuned.refined is not None:
+        _print_refined(tuned.refined)
+    if tuned.stopped or tuned.exit_code == EXIT_CODE:
         INTERRUPTS.tell()
         return EXIT_CODE
-    return code
+    return tuned.exit_code
 
 
-def _refuse_together(wanted: Wanted, bench: str, *, then_run: bool) -> None:
+class _Prints(Reports):
+    """Prints each stage when it has ended, unless one JSON object is wanted."""
+
+    def __init__(self, options: Tune) -> None:
+        self._options = options
+
+    def found(self, tuning: Tuning, folder: Path, drawn: int) -> None:
+        """The search's table."""
+        if not self._options.json_:
+            print(text_of(tuning, str(folder)))
+        tried = len(tuning.trial.draws)
+        if tried < drawn:
+            text = f"stopped: compared on {tried} of {drawn} vehicles, those that the search had used"
+            complain("note", text)
+
+    def diagnosed(self, outcome: Outcome[Diagnosis]) -> None:
+        """The diagnosis of the run."""
+        if not self._options.json_:
+            print(diagnosis_in_words(outcome.found, outcome.folder))
+
+
+def _refuse_together(options: Tune) -> None:
     """Raises:
     BadInputError: an option without the one that it goes with, or beside one that it does not go with.
     """
-    wanted.refuse_alone()
-    if wanted.bench and (bench or then_run):
-        option = "--bench" if bench else "--then-run"
+    given = {"--runs": options.runs is not None, "--envelope": options.envelope, "--confirm": options.confirm}
+    for option, is_given in given.items():
+        if is_given and not options.on_bench:
+            fix = "add --on-bench BENCH, or leave it out"
+            raise BadInputError(f"{option} goes with --on-bench", where=option, fix=fix)
+    if options.on_bench and (options.bench or options.then_run):
+        option = "--bench" if options.bench else "--then-run"
         raise BadInputError(f"{option} does not go with --on-bench", where=option, fix="leave it out")
 
 
-def _exit_code(found: Tuning, ran: Ran | None, refinement: Refined | None) -> int:
-    if refinement is not None:
-        best = refinement.found.best
-        return refinement.exit_code or int(best is None or best.worst < 0)
-    if ran is None:
-        return int(found.chosen.worst.worst < 0)
-    if ran.exit_code > 1:
-        return ran.exit_code
-    return int(not (ran.confirmation.agrees and ran.confirmation.passed))
+def _print_refined(refined: Refined) -> None:
+    """The runs as a table."""
+    page, table = console(), plain_table("\non the bench: worst margins")
+    for number, name in enumerate(REFINEMENT_HEAD):
+        table.add_column(name, justify="right" if number < 5 else "left", no_wrap=number < 6)
+    for row in refinement_rows(refined.found):
+        table.add_row(*row)
+    page.print(table)
+    page.print(refinement_verdict(refined.found), highlight=False, markup=False, soft_wrap=True)
 
 
-def _stopped(stop: StopRequest, at_most_min: float | None) -> Callable[[], bool]:
-    end_s = float("inf") if at_most_min is None else time.monotonic() + 60 * at_most_min
-    return lambda: stop.times > 0 or time.monotonic() > end_s
+def _print_run(ran: Ran) -> None:
+    """Predicted and measured side by side."""
+    page, table = console(), plain_table("\npredicted and measured")
+    table.add_column("criterion", no_wrap=True)
+    for name in ("predicted", "measured", "difference"):
+        table.add_column(name, justify="right")
+    table.add_column("unit")
+    table.add_column("of the limit", justify="right")
+    table.add_column("run")
+    for one in ran.confirmation.criteria:
+        difference = "-" if one.difference is None else f"{one.difference:+.3g}"
+        apart = share(one.apart, 2) if one.of_limit and one.apart is not None else "-"
+        style = "bold red" if one in ran.confirmation.beyond else ""
+        values = ("-" if v is None else f"{v:.5g}" for v in (one.predicted.value, one.measured.value))
+        table.add_row(one.id, *values, difference, one.unit, apart, one.measured.verdict, style=style)
+    page.print(table)
+    page.print(_verdict(ran), highlight=False, markup=False, soft_wrap=True)
+
+
+def _verdict(ran: Ran) -> str:
+    allowed = f"{100 * ran.confirmation.allowed:g} % of the limit (of the larger value where there is none)"
+    if ran.confirmation.agrees:
+        return f"As predicted, within {allowed}."
+    names = ", ".join(one.id for one in ran.confirmation.beyond)
+    return (
+        f"Deviation from the prediction by more than {allowed}: {names}. Diagnosis: {ran.diagnosed or 'none'}"
+    )

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from hil.cli._output import console, print_json
-from hil.cli._results_folder import refuse_missing
-from hil.cli._verified import (
+from hil.app.results_folder import refuse_missing
+from hil.app.verification import (
     RECORDINGS,
     REPORTS,
     Finding,
-    is_service,
-    of_audit_log,
     of_recording,
     of_report,
     of_run,
     of_signatures,
 )
+from hil.cli._output import console, print_json
 from hil.cli.commands.verify import Verify
 from hil.core.errors import BadInputError
 from hil.core.signatures import public_key
@@ -50,11 +49,25 @@ def carry_out(options: Verify) -> int:
     return 0 if holds else 1
 
 
+def _is_service(folder: Path) -> bool:
+    """Whether it is the folder of a bench service (`hil serve --data`)."""
+    return (folder / "service.id").is_file()
+
+
+def _of_audit_log(folder: Path) -> Finding:
+    """A service's folder: its audit log, row by row."""
+    from hil.service.audit import checked
+
+    found = checked(folder, os.environ.get("HIL_DATABASE", ""))
+    said = found.problem or f"its {found.rows} rows form an unbroken chain up to row {found.head.id}"
+    return Finding(not found.problem, folder, f"audit log: {said}")
+
+
 def _findings(sources: list[Path], key: bytes | None) -> Iterator[Finding]:
     recordings = [path for path in sources if path.suffix.lower() in RECORDINGS and not path.is_dir()]
     for source in sources:
-        if source.is_dir() and is_service(source):
-            yield of_audit_log(source)
+        if source.is_dir() and _is_service(source):
+            yield _of_audit_log(source)
         elif source.is_dir():
             yield from of_run(source)
             yield from of_signatures(source, key)

@@ -1,4 +1,4 @@
-"""What is known of a run beforehand: `hil check` in a process of its own, so that nothing waits for it."""
+"""What is known of a run beforehand: a check in a process of its own, so that nothing waits for it."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ import contextlib
 import json
 import tempfile
 from collections import OrderedDict
-from collections.abc import Sequence
 from pathlib import Path
 
+from hil.app.requests import CheckRequest
+from hil.app.worker.job import JOB, write_request
 from hil.core.errors import BadInputError, BenchError
 from hil.core.files import read_bytes
 from hil.engine import BenchFile
@@ -27,8 +28,7 @@ _NICENESS = 10
 class Forecasts:
     """Forecasts by plan and bench; the newest ones are kept."""
 
-    def __init__(self, command: Sequence[str]) -> None:
-        self._command = command
+    def __init__(self) -> None:
         self._turn = asyncio.Semaphore(_AT_ONCE)
         self._known: OrderedDict[tuple[str, str], ForecastData] = OrderedDict()
 
@@ -56,18 +56,19 @@ class Forecasts:
             for loaded in files_of(plan):  # the service's controllers lie beside its plans
                 if loaded.parent == plan.source.parent:
                     (file.parent / loaded.name).write_bytes(read_bytes(loaded))
-            code, out, said = await self._carried_out("check", str(file), f"--bench={bench.source}", "--json")
+            write_request(file.parent, CheckRequest(plan=str(file), bench=str(bench.source)))
+            code, out, complaint = await self._carry_out(file.parent)
         if code in (0, 1):
             found = json.loads(out)
             return ForecastData.model_validate({name: found[name] for name in ForecastData.model_fields})
-        what = said.removeprefix("error: ").strip().replace(str(file), plan.name)
+        what = complaint.removeprefix("error: ").strip().replace(str(file), plan.name)
         kind = BadInputError if code == BadInputError.exit_code else BenchError
         raise kind(what or "the forecast was ended", where="forecast")
 
-    async def _carried_out(self, *arguments: str) -> tuple[int, bytes, str]:
+    async def _carry_out(self, folder: Path) -> tuple[int, bytes, str]:
         process = await begun(
-            *self._command,
-            *arguments,
+            *JOB,
+            str(folder),
             niceness=_NICENESS,
             most_bytes=FORECAST_BYTES,
             stdin=asyncio.subprocess.DEVNULL,
@@ -75,7 +76,7 @@ class Forecasts:
             stderr=asyncio.subprocess.PIPE,
         )
         try:
-            out, said = await asyncio.wait_for(process.communicate(), _WITHIN_S)
+            out, complaint = await asyncio.wait_for(process.communicate(), _WITHIN_S)
         except BaseException as error:
             with contextlib.suppress(ProcessLookupError):
                 process.kill()
@@ -83,4 +84,4 @@ class Forecasts:
             if isinstance(error, TimeoutError):
                 raise BenchError(f"took more than {_WITHIN_S:g} s", where="forecast") from error
             raise
-        return process.returncode or 0, out, said.decode("utf-8", "replace")
+        return process.returncode or 0, out, complaint.decode("utf-8", "replace")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, Protocol
@@ -72,7 +72,6 @@ class RunExecution(RunningRun):
     @classmethod
     async def begin(
         cls,
-        command: Sequence[str],
         taken: TakenRun,
         bench: Bench,
         folder: Path,
@@ -81,7 +80,6 @@ class RunExecution(RunningRun):
         """Start its process.
 
         Args:
-            command: starts a process that carries a run out (`hil.cli._served_run`).
             folder: for what the run leaves; made.
             stop_line: a descriptor from which it takes emergency stops, too.
 
@@ -90,7 +88,7 @@ class RunExecution(RunningRun):
         """
         make_directory(folder)
         write_atomically(folder / PLAN, taken.plan_text)
-        process = await RunProcess.begin(command, _asked(taken, bench, folder), stop_line)
+        process = await RunProcess.begin(_asked(taken, bench, folder), stop_line)
         run = cls(taken.data, folder, process)
         process.answered = run._asks_no_more
         return run

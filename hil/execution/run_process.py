@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator, Callable
 from pathlib import Path
 
+from hil.app.worker.served_run import RUNNER
 from hil.core.errors import BenchError
 from hil.core.locks import HeldError, lock_on
 from hil.core.result import RunResult
@@ -30,7 +31,7 @@ class RunProcess:
         self.answered: Callable[[], None] = lambda: None
 
     @classmethod
-    async def begin(cls, command: Sequence[str], asked: RunAsked, stop_line: int | None = None) -> RunProcess:
+    async def begin(cls, asked: RunAsked, stop_line: int | None = None) -> RunProcess:
         """Start the process and tell it what to do.
 
         Args:
@@ -43,7 +44,7 @@ class RunProcess:
         alive.touch()
         with lock_on(alive) as lock:
             process = await begun(
-                *command,
+                *RUNNER,
                 Path(asked.out).name,
                 *([] if stop_line is None else [str(stop_line)]),
                 stdin=asyncio.subprocess.PIPE,

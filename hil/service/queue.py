@@ -11,7 +11,7 @@ import contextlib
 import logging
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -52,7 +52,6 @@ class Queue:
 
     Args:
         folder: where each run has a folder of its own, by its number.
-        command: starts a process that carries a run out (`hil.cli._served_run`).
         source: where a plan lies here by its name, with what it loads beside it.
         changed: called whenever something is to be shown anew, with the bench's name.
         stop_post: has a stop line of each run from before its process begins until it has ended.
@@ -65,7 +64,6 @@ class Queue:
         leases: LeaseStore,
         held: BenchStore,
         folder: Path,
-        command: Sequence[str],
         source: Callable[[str], Path],
         changed: Callable[[str], None],
         stop_post: StopPost | None = None,
@@ -73,7 +71,7 @@ class Queue:
         self._stop_post = stop_post
         self._places = {name: _Place(bench) for name, bench in benches.items()}
         self._runs, self._leases, self._held = runs, leases, held
-        self._folder, self._command = folder, command
+        self._folder = folder
         self._source, self._changed = source, changed
         self._wake = asyncio.Event()
         self._tasks: set[asyncio.Task[None]] = set()
@@ -213,10 +211,10 @@ class Queue:
         """Begin a run with its stop line."""
         run, folder, post = taken.data.id, self.folder_of(taken.data.id), self._stop_post
         if post is None:
-            return await RunExecution.begin(self._command, taken, bench, folder)
+            return await RunExecution.begin(taken, bench, folder)
         line = post.add_line(bench.name, run, folder)
         try:
-            return await RunExecution.begin(self._command, taken, bench, folder, line.reading)
+            return await RunExecution.begin(taken, bench, folder, line.reading)
         except BaseException:
             post.drop_line(run)
             raise

@@ -7,7 +7,7 @@ import contextlib
 import logging
 import time
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -34,7 +34,7 @@ from hil.service.files.legacy_import import LegacyImport
 from hil.service.files.plans import Plans
 from hil.service.files.upload_reader import UploadReader
 from hil.service.files.uploads import Uploads
-from hil.service.jobs.campaigns import Campaigns, Places
+from hil.service.jobs.campaigns import Campaigns, Places, Simulating
 from hil.service.jobs.shared_results import SharedResults
 from hil.service.jobs.studies import Studies
 from hil.service.live.live_hub import LiveHub
@@ -62,19 +62,6 @@ _MOST_SHOWN = 100
 _LAST = 2**31 - 1
 
 logger = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Commands:
-    """How the service starts what it does not do itself.
-
-    `hil`: the command line. `run`: a process that carries out one run (`hil.cli._served_run`).
-    `simulating`: options of `hil campaign` that say who simulates.
-    """
-
-    hil: Sequence[str]
-    run: Sequence[str]
-    simulating: Sequence[str] = ()
 
 
 @dataclass
@@ -106,7 +93,7 @@ class Service:
         engine: Engine,
         held: BenchStore,
         benches: dict[str, Bench],
-        commands: Commands,
+        simulating: Simulating,
         archive: Archive | None = None,
         local_days: float = 30.0,
         stop_post: StopPost | None = None,
@@ -122,16 +109,15 @@ class Service:
         self.models, self.controllers = model_catalogue(models), controller_catalogue(controllers)
         earlier = LegacyImport(folder, given, self.log, self.plans, self.controllers, self.models)
         self.kept_apart = earlier.take_in()
-        self.forecasts = Forecasts(commands.hil)
+        self.forecasts = Forecasts()
         results, elsewhere = ResultStore(engine, held.service, held.place), folder / "elsewhere"
         studies = SharedResults(results, "study", StudyData, archive, elsewhere / "studies")
         campaigns = SharedResults(results, "campaign", CampaignData, archive, elsewhere / "campaigns")
-        self.studies = Studies(folder / "studies", commands.hil, studies)
+        self.studies = Studies(folder / "studies", studies)
         # One worker reads recordings, so that a design in the other does not wait.
         self.worker_pool, self.drawing = WorkerPool(niceness=10), WorkerPool(niceness=0)
         self.upload_reader = UploadReader(self.plans)
-        campaign = (*commands.hil, "campaign", *commands.simulating)
-        self.campaigns = Campaigns(folder / "campaigns", campaign, self.worker_pool, campaigns)
+        self.campaigns = Campaigns(folder / "campaigns", simulating, self.worker_pool, campaigns)
         self.sharing = Rounds(self._share, "files of studies and campaigns")
         self._held = held
         self.live_hub = LiveHub(lambda: self.benches, self.running)
@@ -141,9 +127,7 @@ class Service:
             files = FileStore(engine)
             self.keeper = Keeper(archive, files, held.service, runs_folder, self.live_hub.runs, local_days)
         source, changed = self.plans.source, self.live_hub.changed
-        self.queue = Queue(
-            benches, self.runs, self.leases, held, runs_folder, commands.run, source, changed, stop_post
-        )
+        self.queue = Queue(benches, self.runs, self.leases, held, runs_folder, source, changed, stop_post)
         self.owners = OwnersKnown(self.tokens, stop_post)
         self.stops = Stops(self, stop_post)
         self.began_s = time.monotonic()

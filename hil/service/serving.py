@@ -25,7 +25,8 @@ from hil.execution.data_folder import alone_in, make_private, name_in
 from hil.messages.api import ROLES, Role, TokenMade
 from hil.service.api import Guarding, Rates, StopAddress, application, bounded
 from hil.service.archive import Archive
-from hil.service.service import Commands, Service
+from hil.service.jobs.campaigns import Simulating
+from hil.service.service import Service
 from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, LogStore, TokenStore, in_turns, open_database
 
@@ -51,7 +52,7 @@ class ServeRequest:
     Attributes:
         folder: where everything is kept; made if it is not there.
         benches: bench files, or names of shipped ones.
-        commands: how processes for runs and forecasts are started.
+        simulating: who simulates campaigns.
         database: by URL; '' for SQLite in the folder.
         store: of files of runs, by URL; '' keeps them in the folder only.
         local_days: how long files that the store has stay in the folder.
@@ -67,7 +68,7 @@ class ServeRequest:
 
     folder: Path
     benches: Sequence[str]
-    commands: Commands
+    simulating: Simulating = field(default_factory=Simulating)
     host: str = "127.0.0.1"
     port: int = 8080
     stop_port: int | None = None
@@ -103,7 +104,14 @@ def serve(request: ServeRequest) -> None:
                 held = BenchStore(engine, name_in(request.folder, "service.id"), _place_of(request.folder))
                 post = StopPost(stop_listening, _names(request), request.trusted_proxies)
                 service = Service(
-                    request.folder, engine, held, benches, request.commands, archive, request.local_days, post
+                    request.folder,
+                    engine,
+                    held,
+                    benches,
+                    request.simulating,
+                    archive,
+                    request.local_days,
+                    post,
                 )
                 asyncio.run(_served(request, service, listening, post))
         finally:

@@ -248,7 +248,7 @@ def in_recorder(failing: Callable[[], None]) -> None:
 
 
 def in_reports(failing: Callable[[], None]) -> None:
-    command: Any = importlib.import_module("hil.cli._one_run")
+    command: Any = importlib.import_module("hil.app.run")
 
     def write_documents(*arguments: object) -> object:
         failing()

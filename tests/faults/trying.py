@@ -129,7 +129,7 @@ def _warm_up(folder: Path) -> None:
     Stage("stepping", Injection(), REQUEST.id).begin()
     outcome = run_plan(RunRequest(load_plan(str(plan)), load_bench(str(bench)), folder / "out"))
     assert outcome.error is None, outcome.error
-    importlib.import_module("hil.cli._one_run")
+    importlib.import_module("hil.app.run")
 
 
 def carry_out(fault: FaultRow, phase: str, folder: Path) -> Outcome:
@@ -197,7 +197,7 @@ def _awaited(write: Callable[[GrowingFile, bytes], int]) -> Callable[[GrowingFil
 
 
 def _carried_out(fault: FaultRow, phase: str, folder: Path, *, reports: bool) -> Outcome:
-    command: Any = importlib.import_module("hil.cli._one_run")
+    command: Any = importlib.import_module("hil.app.run")
     guarded = importlib.import_module("hil.cli._app").guarded
 
     folder.mkdir(parents=True, exist_ok=True)

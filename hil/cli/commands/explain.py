@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from hil.app.worker.lean_imports import import_python_can
 from hil.cli._completion import shipped_model
-from hil.cli._lean_imports import import_python_can
 from hil.cli.commands._options import OverwriteResult, SimulatedBenchName, found_model, found_targets
 
 

@@ -20,7 +20,7 @@ class Identify:
         Path | None,
         typer.Option("--out", help="directory for the results; default: out/identify-001 and so on"),
     ] = None
-    segment: Annotated[
+    segments: Annotated[
         list[str] | None,
         typer.Option("--segment", help="id of a segment to use; default: every chirp and multisine"),
     ] = None

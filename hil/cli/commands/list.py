@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from hil.app.worker.lean_imports import import_python_can
 from hil.cli._completion import one_of
-from hil.cli._lean_imports import import_python_can
 from hil.cli.commands._options import JsonObject
 
 

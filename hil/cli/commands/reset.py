@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from hil.cli._lean_imports import import_python_can
+from hil.app.worker.lean_imports import import_python_can
 from hil.cli.commands._options import BenchArgument, JsonObject
 
 

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
+from hil.app.worker.lean_imports import import_python_can
 from hil.cli._completion import shipped_bench
-from hil.cli._lean_imports import import_python_can
 
 SEVERAL = ("--hide", "--interface")
 

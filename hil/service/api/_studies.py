@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Body, Query
 from fastapi.responses import FileResponse
 from starlette.responses import Response
 
+from hil.app.requests import DiagnoseRequest, IdentifyRequest
 from hil.core.files import read_text
 from hil.engine import RECORDING
 from hil.messages.api import OVER, Me, RunId
@@ -36,8 +38,8 @@ async def identify(
     wanted: Annotated[IdentificationWanted, Body()], service: TheService, me: Engineer
 ) -> StudyData:
     """Identify a model from runs, as `hil identify`; takes seconds to minutes."""
-    arguments = ["identify", *await _recordings(service, wanted.runs)]
-    found = service.studies.begin("identification", wanted.runs, "", me.name, arguments, _IDENTIFIED_WITHIN_S)
+    request = IdentifyRequest(recordings=await _recordings(service, wanted.runs))
+    found = service.studies.add("identification", wanted.runs, "", me.name, request, _IDENTIFIED_WITHIN_S)
     return _begun(service, me, found)
 
 
@@ -49,13 +51,15 @@ async def diagnose(
     model = service.models.path(wanted.model)
     if model is None:
         raise missing("model", wanted.model)
-    arguments = ["diagnose", *await _recordings(service, wanted.runs), "--model", str(model.resolve())]
-    for held in await _recordings(service, wanted.holdout):
-        arguments += ["--holdout", held]
-    arguments += ["--at-most", f"{wanted.at_most_min:g}"]
+    request = DiagnoseRequest(
+        recordings=await _recordings(service, wanted.runs),
+        model=model.resolve(),
+        holdout=await _recordings(service, wanted.holdout),
+        at_most=wanted.at_most_min,
+    )
     within_s = 60.0 * wanted.at_most_min + _WRITTEN_WITHIN_S
     runs = [*wanted.runs, *wanted.holdout]
-    found = service.studies.begin("diagnosis", runs, wanted.model, me.name, arguments, within_s)
+    found = service.studies.add("diagnosis", runs, wanted.model, me.name, request, within_s)
     return _begun(service, me, found)
 
 
@@ -65,7 +69,7 @@ async def list_studies(
 ) -> list[StudyData]:
     """Identifications and diagnoses of all services, newest first."""
     del me
-    return service.studies.all(kind)
+    return service.studies.of_kind(kind)
 
 
 @router.get("/studies/{study}", name="get_study")
@@ -141,7 +145,7 @@ def _findings(content: dict[str, Any]) -> dict[str, Any]:
     return {**{name: content[name] for name in same}, **told}
 
 
-async def _recordings(service: Service, runs: list[int]) -> list[str]:
+async def _recordings(service: Service, runs: list[int]) -> list[Path]:
     found = []
     for number in runs:
         run = service.runs.get(number)
@@ -149,7 +153,7 @@ async def _recordings(service: Service, runs: list[int]) -> list[str]:
             raise missing("run", number)
         if run.state not in OVER or RECORDING not in service.with_progress(run).files:
             raise RefusedError(409, f"run {number} has no recording", fix="choose runs that have a recording")
-        found.append(str((await service.file_of(number, RECORDING)).resolve()))
+        found.append((await service.file_of(number, RECORDING)).resolve())
     return found
 
 

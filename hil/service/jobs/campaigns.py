@@ -1,8 +1,7 @@
-"""Campaigns of the service: `hil campaign` in a process of its own, gone on with after any end.
+"""Campaigns of the service, resumed after any end.
 
-Each has a folder: what was asked (`given/`, a copy of every file that it names), how it stands
-(`state.json`) and what comes of it (`results/`). A campaign that was under way when the service ended, or was
-killed, waits again when the next one begins, and simulates what is missing.
+A campaign's folder has a copy of every file that it names (`given/`). One that was under way when the service
+ended, or was killed, waits again when the next one begins, and simulates what is missing.
 """
 
 from __future__ import annotations
@@ -14,37 +13,42 @@ import json
 import logging
 import shutil
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hil.core.errors import BadInputError, BenchError, HilError
+from hil.app.requests import CampaignRequest
+from hil.core.errors import BenchError, HilError
 from hil.core.files import make_directory
 from hil.core.locks import HeldError, lock_on
 from hil.messages.campaign import (
-    CAMPAIGN_OVER,
     TABLE,
     CampaignData,
     CampaignExample,
     CampaignWanted,
     PassedShare,
 )
-from hil.service.jobs.command_process import CommandProcess, kill_left
-from hil.service.jobs.job_repository import JobRepository, files_in_results
+from hil.service.jobs.job_process import kill_left
+from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults
-from hil.service.store import in_turns
 from hil.service.worker_pool import WorkerPool
 
-_AT_ONCE = 1  # each has every processor that campaigns may use
-_MOST_WAITING = 20
 _LOOK_S = 1.0
 _FREE_WITHIN_S = 30.0  # processes of a killed one end by themselves
 _LAST_WORDS_S = 5.0
-_GIVEN, _RESULTS, _SUMMARY = "given", "results", "campaign.json"
+_GIVEN, _SUMMARY = "given", "campaign.json"
 _INTERRUPTED = 130
 
 logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Simulating:
+    """Who simulates: processes of this machine, or the workers of a dask scheduler."""
+
+    workers: int | None = None
+    scheduler: str = ""
 
 
 @dataclass(frozen=True)
@@ -57,20 +61,19 @@ class Places:
 
 
 @dataclass
-class _Going:
-    """One under way: its process once there is one, how far it was when that began, and how far it is now."""
+class _Pace:
+    """Of one under way: when and with how many it began, and how far it is now."""
 
-    process: CommandProcess | None = None
     began: tuple[float, int] | None = None
-    told: dict[str, Any] = field(default_factory=dict)
+    changes: dict[str, Any] = field(default_factory=dict)
 
 
-class Campaigns:
+class Campaigns(Jobs[CampaignData]):
     """All of them, by number.
 
     Args:
         folder: where each has a folder of its own.
-        command: starts `hil campaign`, with what says who simulates.
+        simulating: who simulates.
         worker_pool: reads campaigns and their tables.
         shared: those of other services.
     """
@@ -78,71 +81,25 @@ class Campaigns:
     def __init__(
         self,
         folder: Path,
-        command: Sequence[str],
+        simulating: Simulating,
         worker_pool: WorkerPool,
         shared: SharedResults[CampaignData],
     ) -> None:
-        self._command, self._worker_pool, self._shared = command, worker_pool, shared
-        self._turn = asyncio.Semaphore(_AT_ONCE)
-        self._tasks: dict[int, asyncio.Task[None]] = {}
-        self._going: dict[int, _Going] = {}
-        self._closing = False
-        self._records = JobRepository(folder, "state.json", CampaignData, shared.draw)
+        super().__init__(folder, "state.json", CampaignData, shared, "campaign", "campaigns")
+        self._simulating, self._worker_pool = simulating, worker_pool
+        self._paces: dict[int, _Pace] = {}
 
     def go_on(self) -> None:
-        """Begin anew what was under way when the service before this one ended, oldest first."""
+        """Resume what was under way when the service before this one ended, oldest first."""
         for campaign in reversed(list(self._records)):
-            if campaign.state in CAMPAIGN_OVER:
+            if self.is_over(campaign):
                 continue
-            kill_left(self._records.folder_of(campaign.id), self.results(campaign.id))
+            kill_left(self._records.folder_of(campaign.id))
             stopped = campaign.state == "stopping"
             state = "cancelled" if stopped else "waiting"
             self._records.change(campaign.id, state=state, reason="cancelled" if stopped else "")
             if not stopped:
-                self._begin(campaign.id)
-
-    def all(self) -> list[CampaignData]:
-        """Newest first, also those of other services."""
-        return self._shared.with_others(self.own())
-
-    def get(self, number: int) -> CampaignData | None:
-        """One of them."""
-        found = self._records.get(number)
-        return self._shared.other(number) if found is None else self._shown(found)
-
-    def own(self) -> list[CampaignData]:
-        """Those of this service, newest first."""
-        return [self._shown(one) for one in self._records]
-
-    def to_tell(self) -> list[CampaignData]:
-        """Those of this service as they are now, without the names of their files."""
-        return [one if self.is_over(one) else self._shown(one) for one in self._records]
-
-    def is_over(self, one: CampaignData) -> bool:
-        """Whether it leaves no more files, unless it is gone on with."""
-        return one.state in CAMPAIGN_OVER
-
-    def is_removed(self, number: int) -> bool:
-        """Whether one was here and is removed."""
-        return self._records.is_removed(number)
-
-    async def file(self, number: int, name: str) -> Path:
-        """A file of one, brought here if it is another service's.
-
-        Raises:
-            ArchiveAwayError: the archive does not give it.
-        """
-        here = self._records.get(number) is not None
-        return self.results(number) / name if here else await self._shared.bring(number, name)
-
-    async def share(self) -> str:
-        """Tell other services of them, and keep their files for all; what keeps one from it."""
-        return await self._shared.share(self)
-
-    @property
-    def not_stored(self) -> int:
-        """How many that are over have files which the archive has not."""
-        return self._shared.waiting
+                self._begin(campaign.id, self._carry_out(campaign.id))
 
     async def examples(self) -> list[CampaignExample]:
         """The built-in ones."""
@@ -180,21 +137,20 @@ class Campaigns:
             **found,
         )
         self._records.keep(campaign)
-        self._begin(number)
+        self._begin(number, self._carry_out(number))
         return campaign
 
     async def cancel(self, number: int) -> bool:
         """End one: what is under way is awaited and kept; asked twice, it is not. False if it is over."""
-        task, going = self._tasks.get(number), self._going.get(number)
-        if task is None:
-            return False
-        if going is not None and going.process is not None:
-            self._records.change(number, state="stopping")
-            going.process.interrupt()
-            return True
-        task.cancel()
-        with contextlib.suppress(asyncio.CancelledError):
-            await task
+        process = self._processes.get(number)
+        if process is None:
+            cancelled = await super().cancel(number)
+            found = self._records.get(number)
+            if cancelled and found is not None and not self.is_over(found):  # it had not begun
+                self._end(number, _INTERRUPTED)
+            return cancelled
+        self._records.change(number, state="stopping")
+        process.interrupt()
         return True
 
     def resume(self, number: int) -> bool:
@@ -208,56 +164,26 @@ class Campaigns:
             return False
         self._refuse_too_many()
         self._records.change(number, state="waiting", reason="", ended_at=None)
-        self._begin(number)
+        self._begin(number, self._carry_out(number))
         return True
 
-    def remove(self, number: int) -> bool:
-        """Remove one that is over, with its files; False if it is not over."""
-        found = self._records.get(number)
-        if found is None or found.state not in CAMPAIGN_OVER or number in self._tasks:
-            return False
-        self._records.remove(number)
-        return True
-
-    async def close(self) -> None:
-        """End all that are under way: a service that begins again goes on with them."""
-        self._closing = True
-        for number, going in self._going.items():
-            if going.process is not None:
-                logger.info("campaign %d is ended with the service", number)
-                going.process.kill()
-        for task in self._tasks.values():
-            task.cancel()
-        await asyncio.gather(*self._tasks.values(), return_exceptions=True)
-
-    def _refuse_too_many(self) -> None:
-        if len(self._tasks) >= _MOST_WAITING:
-            raise BadInputError(
-                f"{_MOST_WAITING} campaigns are already queued", where="campaign", fix="cancel one of them"
-            )
-
-    def _begin(self, number: int) -> None:
-        self._tasks[number] = asyncio.create_task(in_turns(self._carried_out(number)))
-
-    async def _carried_out(self, number: int) -> None:
+    async def _carry_out(self, number: int) -> None:
+        pace = self._paces[number] = _Pace()
         try:
-            async with self._turn:
-                going = self._going[number] = _Going()
-                make_directory(self.results(number))
-                await self._free(number)
-                self._records.change(number, state="running")
-                code, said = await self._simulated(number, going)
-                await self._look(number, going)
-                await self._write_table(number)
-            self._end(number, code, said, going.told)
+            make_directory(self.results(number))
+            await self._free(number)
+            self._records.change(number, state="running")
+            code, reason = await self._simulate(number, pace)
+            await self._look(number, pace)
+            await self._write_table(number)
+            self._end(number, code, reason, pace.changes)
         except asyncio.CancelledError:
             self._end(number, _INTERRUPTED)
             raise
         except (HilError, OSError) as error:
             self._end(number, HilError.exit_code, str(error))
         finally:
-            self._going.pop(number, None)
-            self._tasks.pop(number, None)
+            self._paces.pop(number, None)
 
     async def _free(self, number: int) -> None:
         """Wait until nobody writes there: processes that a killed service has left may still be ending.
@@ -275,21 +201,24 @@ class Campaigns:
                     raise BenchError(f"its folder is in use: {error}", fix="end that process") from error
             await asyncio.sleep(_LOOK_S)
 
-    async def _simulated(self, number: int, going: _Going) -> tuple[int, str]:
-        folder = self._records.folder_of(number)
-        file = folder / _GIVEN / "campaign.yaml"
-        command = [*self._command, str(file.resolve()), "--resume"]
-        process = await CommandProcess.begin(command, folder, self.results(number))
-        going.process = process
-        over = asyncio.ensure_future(process.over())
-        try:
-            while not over.done():
-                await self._look(number, going)
-                await asyncio.wait([over], timeout=_LOOK_S)
-            return over.result()
-        finally:
-            over.cancel()
-            await process.end(_LAST_WORDS_S)
+    async def _simulate(self, number: int, pace: _Pace) -> tuple[int, str]:
+        """Exit code, and why it failed."""
+        request = CampaignRequest(
+            campaign=str((self._records.folder_of(number) / _GIVEN / "campaign.yaml").resolve()),
+            workers=self._simulating.workers,
+            scheduler=self._simulating.scheduler,
+            resume=True,
+            out=self.results(number).resolve(),
+        )
+        async with self._process(number, request, _LAST_WORDS_S) as process:
+            over = asyncio.ensure_future(process.over())
+            try:
+                while not over.done():
+                    await self._look(number, pace)
+                    await asyncio.wait([over], timeout=_LOOK_S)
+                return over.result()
+            finally:
+                over.cancel()
 
     async def _write_table(self, number: int) -> None:
         try:
@@ -299,7 +228,7 @@ class Campaigns:
         except HilError as error:
             logger.warning("campaign %d has its table in parts only: %s", number, error)
 
-    async def _look(self, number: int, going: _Going) -> None:
+    async def _look(self, number: int, pace: _Pace) -> None:
         """What is on disk by now, and how many a second came since it began."""
         try:
             found = await self._worker_pool.ask("campaign_so_far", folder=self._at(number))
@@ -307,26 +236,25 @@ class Campaigns:
             logger.warning("campaign %d: %s", number, error)
             return
         now_s, done = time.monotonic(), found["done"]
-        going.began = going.began or (now_s, done)
-        rate_hz = (done - going.began[1]) / max(now_s - going.began[0], _LOOK_S)
+        pace.began = pace.began or (now_s, done)
+        rate_hz = (done - pace.began[1]) / max(now_s - pace.began[0], _LOOK_S)
         shares = [PassedShare(**one) for one in found["controllers"]]
         campaign = self._records.get(number)
         if campaign is not None and campaign.draws == 0:  # chosen values are no sample
             shares = [share.model_copy(update={"interval": None}) for share in shares]
-        going.told = {"done": done, "rate_hz": rate_hz, "controllers": shares}
+        pace.changes = {"done": done, "rate_hz": rate_hz, "controllers": shares}
 
-    def _end(self, number: int, code: int, said: str = "", told: Mapping[str, Any] | None = None) -> None:
-        """Write down what came of it; a service that is closing leaves it to the next one."""
-        if self._closing:
-            return
-        changes = {**(told or {}), "rate_hz": 0.0, "ended_at": datetime.datetime.now(datetime.UTC)}
+    def _end(
+        self, number: int, code: int, reason: str = "", progress: Mapping[str, Any] | None = None
+    ) -> None:
+        changes = {**(progress or {}), "rate_hz": 0.0}
         if code in (0, 1):
             changes |= {"state": "ended", "reason": "", "passed": self._passed(number)}
         elif code == _INTERRUPTED:
             changes |= {"state": "cancelled", "reason": "cancelled"}
         else:
-            changes |= {"state": "failed", "reason": said}
-        self._records.change(number, **changes)
+            changes |= {"state": "failed", "reason": reason}
+        self._change(number, **changes)
 
     def _passed(self, number: int) -> bool | None:
         with contextlib.suppress(OSError, ValueError):
@@ -334,15 +262,9 @@ class Campaigns:
             return found if isinstance(found, bool) else None
         return None
 
-    def _shown(self, campaign: CampaignData) -> CampaignData:
-        if campaign.state in CAMPAIGN_OVER:
-            return campaign.model_copy(update={"files": files_in_results(self.results(campaign.id))})
-        going = self._going.get(campaign.id)
-        return campaign if going is None else campaign.model_copy(update=going.told)
-
-    def results(self, number: int) -> Path:
-        """Where the files of one of this service are."""
-        return self._records.folder_of(number) / _RESULTS
+    def _progress(self, number: int) -> dict[str, Any]:
+        pace = self._paces.get(number)
+        return {} if pace is None else pace.changes
 
     def _at(self, number: int, name: str = "") -> str:
         return str((self.results(number) / name).resolve())

@@ -100,7 +100,7 @@ def holder_of(run: subprocess.Popen[Any]) -> int:
     """The process that holds the bench for a command."""
     for _ in range(600):
         for child in Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split():
-            if b"hil.cli._hold" in Path(f"/proc/{child}/cmdline").read_bytes():
+            if b"hil.app.worker.hold" in Path(f"/proc/{child}/cmdline").read_bytes():
                 return int(child)
         assert run.poll() is None, run.communicate()
         time.sleep(0.05)

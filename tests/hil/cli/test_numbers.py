@@ -9,8 +9,9 @@ import pytest
 from rich.console import Console
 
 from hil.analysis.tuning import confirmation
-from hil.cli import _then_run
-from hil.cli._autotune_loop import _off
+from hil.app.autotune.loop import _off
+from hil.app.tuning.confirmation import Ran
+from hil.cli import tune
 from hil.cli._output import print_criteria
 from hil.core.recording import Recording
 from hil.core.result import CriterionResult
@@ -39,11 +40,11 @@ def test_a_difference_stands_in_its_unit_and_against_the_limit(
     predicted = [_result("a.peak", 300.0, 600.0), _result("b.energy", 1e-9)]
     measured = [_result("a.peak", 330.0, 600.0), _result("b.energy", 0.3952982)]
     page = Console(file=io.StringIO(), width=200)
-    monkeypatch.setattr(_then_run, "console", lambda: page)
-    ran = _then_run.Ran(
+    monkeypatch.setattr(tune, "console", lambda: page)
+    ran = Ran(
         confirmation(predicted, measured, 0.02), Recording({}, Path("recording.mcap")), (), 0, "diagnosis"
     )
-    _then_run.tell(ran)
+    tune._print_run(ran)
     text = page.file.getvalue()  # type: ignore[attr-defined]
     rows = {
         line.split()[0]: line.split()[1:]

@@ -11,8 +11,9 @@ from typing import get_args
 
 import pytest
 
+from hil.app.feedback import LOGGED
+from hil.app.series import _BADNESS, announce_series
 from hil.cli._choices import all_choices
-from hil.cli._series import _BADNESS, announce_series
 from hil.core.errors import BadInputError
 from hil.core.recording import read_recording
 from hil.core.result import CriterionVerdict
@@ -100,9 +101,9 @@ def test_a_series_says_its_size_and_is_bounded(plan, tmp_path, caplog):
         next(all_choices([f"a={many}", "b=1,2"], None))
     loaded = load_plan(str(plan))
     with pytest.raises(BadInputError, match="3 combinations, 400 times each, are 1200 runs"):
-        announce_series([loaded] * 3, 400, tmp_path / "new")
+        announce_series([loaded] * 3, 400, tmp_path / "new", LOGGED)
     with caplog.at_level(logging.INFO):
-        announce_series([loaded] * 2, 3, tmp_path / "new")
+        announce_series([loaded] * 2, 3, tmp_path / "new", LOGGED)
     assert re.search(r"6 runs, \S+ min of bench time, at most \S+ GB on the disk", caplog.text)
 
 

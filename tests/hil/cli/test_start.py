@@ -100,7 +100,7 @@ def test_checking_a_plan_leaves_out_what_it_does_not_use(tmp_path):
 
 def test_asammdf_can_be_imported_after_python_can(tmp_path):
     code = (
-        "from hil.cli._lean_imports import import_python_can as i; i()\n"
+        "from hil.app.worker.lean_imports import import_python_can as i; i()\n"
         "import can, sys; assert 'asammdf' not in sys.modules\n"
         "import asammdf; print(asammdf.MDF.__name__)"
     )

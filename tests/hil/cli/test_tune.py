@@ -8,8 +8,11 @@ import time
 
 import pytest
 
+from hil.app.feedback import Feedback
+from hil.app.requests import DiagnoseRequest
 from hil.cli._app import guarded
 from hil.core.controller import load_controller
+from hil.core.errors import BadInputError
 from tests.docs.documented import ROOT
 from tests.hil.analysis.tuning.trials import FREE, PLAN
 from tests.hil.cli.test_commands import HIL
@@ -46,8 +49,14 @@ def test_a_controller_with_more_margin_is_written_with_its_reasons(tmp_path, inp
 
 @pytest.mark.slow
 def test_it_is_run_at_once_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path, inputs, monkeypatch):
-    asked: list[dict[str, object]] = []
-    monkeypatch.setattr("hil.cli.diagnose.carry_out", lambda **options: asked.append(options))
+    asked: list[DiagnoseRequest] = []
+
+    def refused(request: DiagnoseRequest, feedback: Feedback) -> None:
+        del feedback
+        asked.append(request)
+        raise BadInputError("not now")
+
+    monkeypatch.setattr("hil.app.tuning.confirmation.diagnose_recordings", refused)
     options = ["--starts", "1", "--at-most", "0.05", "--processes", "1", "--then-run"]
     assert guarded(["tune", *inputs, *options, "--out", str(tmp_path / "same")]) == 0
     told = json.loads((tmp_path / "same" / "tune.json").read_text())["confirmed"]
@@ -66,7 +75,7 @@ def test_it_is_run_at_once_and_a_bench_with_more_dead_time_is_diagnosed(tmp_path
     options += ["--bench", str(tmp_path / "bench.toml"), "--differ", "0.1", "--out", str(out)]
     assert guarded(["tune", *inputs, *options]) == 1
     assert not json.loads((out / "tune.json").read_text())["confirmed"]["agrees"]
-    assert asked[0]["recordings"] == [out / "run" / "recording.mcap"]
+    assert asked[0].recordings == [out / "run" / "recording.mcap"]
     assert (out / "run" / "result.json").is_file()
 
 

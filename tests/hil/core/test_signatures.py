@@ -19,7 +19,7 @@ from cryptography.hazmat.primitives.serialization import (
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil.cli._verified import of_signatures
+from hil.app.verification import of_signatures
 from hil.core.errors import BadInputError
 from hil.core.signatures import (
     fingerprint,

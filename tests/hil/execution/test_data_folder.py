@@ -8,7 +8,6 @@ import pytest
 
 from hil.core.errors import BadInputError
 from hil.execution.data_folder import alone_in, name_in
-from hil.service.service import Commands
 from hil.service.serving import ServeRequest, serve
 
 
@@ -46,6 +45,6 @@ def test_a_second_service_is_refused_before_it_looks_at_what_the_first_is_beginn
         alone_in(tmp_path, who="service", fix="give another"),
         pytest.raises(BadInputError, match="another service keeps its data here"),
     ):
-        serve(ServeRequest(tmp_path, ("sim",), Commands((), ()), database=database, port=0))
+        serve(ServeRequest(tmp_path, ("sim",), database=database, port=0))
     assert made.read_text() == "name: x"
     assert not (tmp_path / "another.sqlite").exists()

@@ -21,7 +21,6 @@ from hil.core.errors import BadInputError
 from hil.messages.campaign import CampaignWanted
 from hil.messages.study import IdentificationWanted
 from hil.service.archive import Archive, ArchiveAwayError, Keeper
-from hil.service.service import Commands
 from hil.service.serving import ServeRequest, serve
 from hil.service.store import BenchStore, FileStore, NewRun, RunStore, open_database
 from tests.hil.analysis.tuning.trials import PLAN
@@ -63,7 +62,7 @@ def test_what_no_store_can_be_is_said_without_its_key(url: str, tmp_path: Path) 
         Archive(url)
     assert (refused.value.where, "secret" in str(refused.value)) == ("--store", False)
     with pytest.raises(BadInputError):
-        serve(ServeRequest(tmp_path / "data", ("sim",), Commands((), ()), store=url))
+        serve(ServeRequest(tmp_path / "data", ("sim",), store=url))
     assert not (tmp_path / "data").exists()
 
 

@@ -12,7 +12,6 @@ import pytest
 
 from hil.core.errors import BadInputError, BenchError
 from hil.core.result import RunResult
-from hil.service.service import Commands
 from hil.service.serving import ServeRequest, make_token, serve
 from tests.hil.service.served import ASKING, SHORT, RefusedError, Served, served
 
@@ -169,7 +168,7 @@ def _wanted(
     port: int = 0,
     database: str = "",
 ) -> ServeRequest:
-    return ServeRequest(folder, benches, Commands((), ()), host, port, database=database)
+    return ServeRequest(folder, benches, host=host, port=port, database=database)
 
 
 def _answer_until_over(service: Served, run: int) -> None:

@@ -40,7 +40,7 @@ from test_plans import Plan, plan_from_text
 from tests.benches_for_tests import SIM
 from tests.operators import Answering, Silent
 
-HOLDER = [sys.executable, "-m", "hil.cli._hold"]
+HOLDER = [sys.executable, "-m", "hil.app.worker.hold"]
 ASKED = """
 name: asked
 steps:

@@ -1,4 +1,4 @@
-"""`python -m hil.cli._hold`: the process that holds the hardware. `hil run` starts it, nobody else."""
+"""`python -m hil.app.worker.hold`: the process that holds the hardware. `hil run` starts it, nobody else."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import contextlib
 import os
 import sys
 
-HOLDER = (sys.executable, "-m", "hil.cli._hold")
+HOLDER = (sys.executable, "-m", "hil.app.worker.hold")
 
 
 def main() -> None:
@@ -14,7 +14,7 @@ def main() -> None:
     reading, writing = os.dup(0), os.dup(1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # what a library prints is no message
-    from hil.cli._lean_imports import import_python_can
+    from hil.app.worker.lean_imports import import_python_can
 
     import_python_can()
     from hil.engine.ipc.ipc_pipe import IpcPipe

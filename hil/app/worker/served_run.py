@@ -1,4 +1,4 @@
-"""`python -m hil.cli._served_run`: one run for the bench service, which starts it; nobody else does.
+"""`python -m hil.app.worker.served_run`: one run for a service or an agent, which starts it.
 
 It does what `hil run` does. In place of a terminal it has two pipes with the messages of
 `hil.engine.ipc.ipc_messages`: asked and typed come in, progress, texts and the outcome go out. A second
@@ -16,29 +16,33 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hil.cli._interrupts import INTERRUPTS
+from hil.app.interrupts import INTERRUPTS
 
 if TYPE_CHECKING:
-    from hil.cli._output import Show
+    from hil.app.feedback import Show
     from hil.engine.ipc.ipc_messages import EmergencyAsked, RunAsked
     from hil.engine.ipc.ipc_pipe import IpcPipe
 
 _ASKED_WITHIN_S = 60.0
 _LAST_WORDS_S = 10.0
 LOG_FILE = "log.txt"
-#: Start the command line, and a run for a service or an agent, as processes of their own.
-HIL = (sys.executable, "-c", "from hil.cli import main; main()")
-RUNNER = (sys.executable, "-m", "hil.cli._served_run")
+#: Starts it.
+RUNNER = (sys.executable, "-m", "hil.app.worker.served_run")
+
+logger = logging.getLogger(__name__)
 
 
 class _Service:
-    """The service at the other end: the operator's terminal, and who is shown the progress."""
+    """The service at the other end: the run's feedback, and the operator's terminal."""
+
+    keys = ""
+    can_ask = False
 
     def __init__(self, pipe: IpcPipe, stop_line: IpcPipe | None) -> None:
         self._pipe, self._stop_line = pipe, stop_line
-        self._told_end = False
+        self._asked_to_end = False
 
-    def asked(self) -> RunAsked | None:
+    def request(self) -> RunAsked | None:
         """The run that is asked for; None if the service is gone before it has asked."""
         from hil.engine.ipc.ipc_messages import RunAsked
 
@@ -66,13 +70,13 @@ class _Service:
                 lines.append(message.line)
             elif isinstance(message, EmergencyAsked):
                 lines.append(message)
-        if self._pipe.gone and not self._told_end:
-            self._told_end = True
+        if self._pipe.gone and not self._asked_to_end:
+            self._asked_to_end = True
             lines.append("q")
         return lines
 
     @contextlib.contextmanager
-    def shown(self, description: str) -> Iterator[Show]:
+    def progress(self, description: str) -> Iterator[Show]:
         """Send the progress on."""
         del description
         from hil.engine.ipc.ipc_messages import Progressed
@@ -83,6 +87,27 @@ class _Service:
 
         yield show
 
+    def note(self, text: str) -> None:
+        """For the run's log."""
+        logger.info(text)
+
+    def warn(self, text: str) -> None:
+        """For the run's log."""
+        logger.warning(text)
+
+    def complain(self, text: str) -> None:
+        """For the run's log; the outcome has it, too."""
+        logger.warning(text)
+
+    def ask_name(self, question: str, given: str) -> str:
+        """Nobody is asked here."""
+        del question
+        return given
+
+    def terminal(self) -> _Service:
+        """This one."""
+        return self
+
 
 def main() -> None:
     """Carry out the run that is asked for on standard input, and exit with the code that `hil run` has."""
@@ -92,10 +117,10 @@ def main() -> None:
     reading, writing = os.dup(0), os.dup(1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # what a library prints is no message
-    from hil.cli._lean_imports import import_python_can
+    from hil.app.worker.lean_imports import import_python_can
 
     import_python_can()
-    from hil.cli._log import LOG
+    from hil.app.log import LOG
     from hil.core.errors import BenchError, HilError
     from hil.engine.ipc.ipc_messages import ErrorData, Refused
     from hil.engine.ipc.ipc_pipe import IpcPipe
@@ -105,16 +130,16 @@ def main() -> None:
     LOG.begin(sys.argv)
     code = 130
     try:
-        asked = service.asked()
-        if asked is not None:
-            code = _carried_out(asked, service, pipe)
+        request = service.request()
+        if request is not None:
+            code = _carry_out(request, service, pipe)
     except HilError as error:
         code = error.exit_code
         pipe.send(Refused(error=ErrorData.of(error)))
     except KeyboardInterrupt:
         INTERRUPTS.answered()
     except Exception as error:
-        logging.getLogger(__name__).exception("internal error")
+        logger.exception("internal error")
         what = f"internal error: {type(error).__name__}: {error}"
         fault = BenchError(what, where=LOG_FILE, fix="please report it with the run's log")
         code = fault.exit_code
@@ -136,15 +161,15 @@ def _stop_line() -> IpcPipe | None:
     return IpcPipe(line, line)
 
 
-def _carried_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
-    from hil.cli._log import LOG
-    from hil.cli._one_run import Runs
+def _carry_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
+    from hil.app.log import LOG
+    from hil.app.run import RunSettings
     from hil.engine.ipc.ipc_data import ended_of, request_of
 
     request = request_of(asked)
     out = Path(asked.out)
     LOG.send(out / LOG_FILE, verbose=False)
-    runs = Runs(
+    settings = RunSettings(
         model=request.model,
         operator=request.operator,
         confirmed_by=request.confirmed_by,
@@ -152,11 +177,10 @@ def _carried_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
         accept_expired=request.accept_expired,
         inputs=(request.bench.source, request.plan.source),
         overwrite=False,
-        terminal=lambda: service,
-        shown=service.shown,
+        feedback=service,
         stops=request.stops,
     )
-    with runs.finished(request.plan, request.bench, out) as run:
+    with settings.carry_out(request.plan, request.bench, out) as run:
         outcome = run.outcome
         outcome.result = run.result
         pipe.send(ended_of(outcome))

@@ -7,9 +7,14 @@ import os
 import signal
 import sys
 import time
+from collections.abc import Callable
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from hil.core.conventions import ENDING_SIGNALS
+
+if TYPE_CHECKING:
+    from hil.engine import StopRequest
 
 EXIT_CODE = 130
 _AT_ONCE_S = 0.002  # nobody presses a key twice so fast
@@ -71,3 +76,14 @@ def _say_nothing(unraisable: object) -> None:
 
 
 INTERRUPTS = Interrupts()
+
+
+def end_at_second(stop: StopRequest) -> Callable[[], None]:
+    """For `stop.telling`: after one Ctrl-C the result so far is still written, a second one ends it."""
+
+    def asked() -> None:
+        if stop.times > 1:
+            INTERRUPTS.arrived = True
+            raise KeyboardInterrupt
+
+    return asked

@@ -1,4 +1,4 @@
-"""A command of `hil` in a process of its own, which the next service finds if this one is killed."""
+"""A use case in a process of its own, which the next service finds if this one is killed."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import asyncio
 import contextlib
 import os
 import signal
-from collections.abc import Sequence
 from pathlib import Path
 
+from hil.app.worker.job import JOB, write_request
 from hil.core.files import write_atomically
 from hil.execution.background import STUDY_BYTES, begun
 
@@ -16,24 +16,24 @@ _NICENESS = 10
 _NUMBER = "process"
 
 
-class CommandProcess:
-    """A command under way; `begin` makes one."""
+class JobProcess:
+    """A job under way; `begin` makes one."""
 
     def __init__(self, process: asyncio.subprocess.Process) -> None:
         self._process = process
 
     @classmethod
-    async def begin(cls, command: Sequence[str], folder: Path, results: Path) -> CommandProcess:
-        """Begin one that gets `--out RESULTS --json` too; its number is kept in `folder`.
+    async def begin(cls, request: object, folder: Path) -> JobProcess:
+        """Begin one; what is wanted, and the number of its process, are kept in `folder`.
 
         Raises:
+            HilError: the folder cannot be written.
             OSError: it cannot be begun.
         """
+        write_request(folder, request)
         process = await begun(
-            *command,
-            "--out",
-            str(results.resolve()),
-            "--json",
+            *JOB,
+            str(folder.resolve()),
             niceness=_NICENESS,
             most_bytes=STUDY_BYTES,
             stdin=asyncio.subprocess.DEVNULL,
@@ -45,9 +45,9 @@ class CommandProcess:
 
     async def over(self) -> tuple[int, str]:
         """Its exit code, and why it failed, once it has ended."""
-        _, said = await self._process.communicate()
+        _, complaint = await self._process.communicate()
         code = self._process.returncode or 0
-        reason = said.decode("utf-8", "replace").removeprefix("error: ").strip() if code else ""
+        reason = complaint.decode("utf-8", "replace").removeprefix("error: ").strip() if code else ""
         return code, reason or f"exit code {code}"
 
     def interrupt(self) -> None:
@@ -72,12 +72,12 @@ class CommandProcess:
             await self._process.wait()
 
 
-def kill_left(folder: Path, results: Path) -> None:
-    """End the process of a service that was killed: the one that writes into these results."""
+def kill_left(folder: Path) -> None:
+    """End the process that a killed service has left at work in this folder."""
     with contextlib.suppress(OSError, ValueError):
         process = int((folder / _NUMBER).read_text("utf-8"))
         called = Path(f"/proc/{process}/cmdline").read_bytes()
-        if os.fsencode(results.resolve()) in called.split(b"\0"):
+        if os.fsencode(folder.resolve()) in called.split(b"\0"):
             _kill_session(process)
 
 

@@ -1,4 +1,4 @@
-"""The stages of `hil autotune`, each in a folder with everything that its own command would have written."""
+"""The stages of autotune, each in a folder with everything that its own command would have written."""
 
 from __future__ import annotations
 
@@ -8,18 +8,19 @@ from pathlib import Path
 
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis, diagnose
 from hil.analysis.tuning import Effort, RefinementBudget, Tuning, tune
-from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
-from hil.cli._on_bench import FOLDER, Allowed, StageOutcome, WireBench
-from hil.cli._one_run import Runs
-from hil.cli._output import progress
-from hil.cli._refine_on_bench import Refined, refined
-from hil.cli._result_file import RESULT
-from hil.cli._results_folder import results_in
-from hil.cli._tuning import NAMES as TUNING_NAMES
-from hil.cli._tuning import SUMMARY as TUNING_SUMMARY
-from hil.cli._tuning import Asked, asked_of, write_results
-from hil.cli.diagnose import FILES as DIAGNOSIS_NAMES
-from hil.cli.diagnose import output_files, stretches_of
+from hil.app.diagnose import FILES as DIAGNOSIS_NAMES
+from hil.app.diagnose import SUMMARY as DIAGNOSIS_SUMMARY
+from hil.app.diagnose import output_files, stretches_of
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.requests import SearchRequest
+from hil.app.result_file import RESULT
+from hil.app.results_folder import results_in
+from hil.app.run import RunSettings
+from hil.app.tuning.bench_runs import FOLDER, Allowed, StageOutcome, WireBench
+from hil.app.tuning.refinement import Refined, refine_on
+from hil.app.tuning.search import NAMES as TUNING_NAMES
+from hil.app.tuning.search import SUMMARY as TUNING_SUMMARY
+from hil.app.tuning.search import Search, load_search, write_results
 from hil.core.errors import HilError
 from hil.core.model import load_model
 from hil.core.recording import Recording, read_recording
@@ -40,13 +41,13 @@ class EndedError(Exception):
 
     @classmethod
     def interrupted(cls) -> EndedError:
-        """Somebody asked."""
+        """Somebody search."""
         return cls("interrupted", EXIT_CODE)
 
 
 @dataclass(frozen=True)
-class Told:
-    """What the loop is told; `given` is the model that was given, `processes` predictions at once.
+class LoopSettings:
+    """What the loop works with; `given` is the model that was given, `processes` predictions at once.
 
     With `resume` plans that were run as they are, within the same envelope, are not run again.
     """
@@ -54,10 +55,10 @@ class Told:
     sequence: Sequence
     given: Path
     bench: str
-    asked: Asked
+    search: Search
     identify: Plan
     allowed: Allowed
-    runs: Runs
+    runs: RunSettings
     processes: int | None
     resume: bool = False
 
@@ -87,20 +88,20 @@ class Stages:
         EndedError: of every stage, where there can be no other.
     """
 
-    def __init__(self, told: Told, place: Path) -> None:
-        self._told, self.place = told, place
+    def __init__(self, settings: LoopSettings, place: Path) -> None:
+        self._settings, self.place = settings, place
         self._spent_s, self._runs = 0.0, 0
 
     def run(self, plan: Plan, name: str) -> StageOutcome:
         """A plan as it is."""
-        told, folder = self._told, self.place / name
+        settings, folder = self._settings, self.place / name
         self._runs += 1
-        bench = told.allowed.watched(self._runs)
-        made = earlier_run(plan, bench, folder) if told.resume else None
+        bench = settings.allowed.watched(self._runs)
+        made = earlier_run(plan, bench, folder) if settings.resume else None
         if made is not None:
             self._spent_s += made.bench_time_s
             return StageOutcome(folder, 0, tuple(made.segments), made.criteria)
-        with told.runs.finished(plan, bench, folder) as run:
+        with settings.runs.carry_out(plan, bench, folder) as run:
             result, code, error = run.result, run.exit_code, run.outcome.error
         self._spent_s += result.bench_time_s
         if code == EXIT_CODE:
@@ -112,66 +113,78 @@ class Stages:
 
     def diagnose(self, runs: Several[Recorded], number: int, folder: Path) -> Diagnosis:
         """What the given model lacks to explain recordings."""
-        told, recordings = self._told, [one.recording for one in runs]
-        base, inputs = load_model(told.given), [told.given, *recordings]
+        settings, recordings = self._settings, [one.recording for one in runs]
+        base, inputs = load_model(settings.given), [settings.given, *recordings]
+        feedback = settings.runs.feedback
         claim = results_in(
-            folder, DIAGNOSIS_NAMES, inputs=inputs, overwrite=told.runs.overwrite, summary="diagnosis.json"
+            folder,
+            DIAGNOSIS_NAMES,
+            inputs=inputs,
+            overwrite=settings.runs.overwrite,
+            summary=DIAGNOSIS_SUMMARY,
         )
-        with claim as place, progress(f"round {number}: diagnosis") as show:
+        with claim as place, feedback.progress(f"round {number}: diagnosis") as show:
             found = diagnose(
                 base,
-                [part for one in runs for part in stretches_of([one.recording], base, show) if one.has(part)],
-                at_most_s=60.0 * told.sequence.diagnose_minutes,
+                [
+                    part
+                    for one in runs
+                    for part in stretches_of([one.recording], base, feedback, show)
+                    if one.has(part)
+                ],
+                at_most_s=60.0 * settings.sequence.diagnose_minutes,
                 show=show,
             )
             if found.unfinished == INTERRUPTED:
                 INTERRUPTS.answered()
             show("writing the report")
-            origin = origin_of({"model": [told.given], "recording": recordings})
-            place.write(output_files(found, told.given.name, origin), inputs)
+            origin = origin_of({"model": [settings.given], "recording": recordings})
+            place.write(output_files(found, settings.given.name, origin), inputs)
         return found
 
-    def asked_on(self, model: Path) -> Asked:
+    def search_on(self, model: Path) -> Search:
         """The plan that accepts, predicted on a model."""
-        return asked_for(self._told.sequence, model, self._told.bench)
+        return search_for(self._settings.sequence, model, self._settings.bench)
 
-    def tune(self, asked: Asked, number: int) -> Tuning:
+    def tune(self, search: Search, number: int) -> Tuning:
         """Search on the model; an interrupt ends it, for nothing of it was measured."""
-        told = self._told
-        with progress(f"round {number}: tune") as show:
+        settings = self._settings
+        with settings.runs.feedback.progress(f"round {number}: tune") as show:
             return tune(
-                asked.trial,
-                seed=told.sequence.seed,
-                effort=Effort(starts=told.sequence.starts),
-                processes=told.processes,
+                search.trial,
+                seed=settings.sequence.seed,
+                effort=Effort(starts=settings.sequence.starts),
+                processes=settings.processes,
                 show=lambda text, share: show(text, share),
             )
 
-    def confirm(self, asked: Asked, found: Tuning, folder: Path) -> tuple[Refined, WireBench]:
+    def confirm(self, search: Search, found: Tuning, folder: Path) -> tuple[Refined, WireBench]:
         """Run what was found, and refine it unless the first run is not as predicted."""
-        told, sequence, stop = self._told, self._told.sequence, StopRequest()
-        budget = RefinementBudget(sequence.runs, sequence.grow_percent / 100, told.agree)
+        settings, sequence, stop = self._settings, self._settings.sequence, StopRequest()
+        budget = RefinementBudget(sequence.runs, sequence.grow_percent / 100, settings.agree)
         claim = results_in(
             folder,
             TUNING_NAMES,
-            inputs=(*told.runs.inputs, *asked.inputs),
-            overwrite=told.runs.overwrite,
+            inputs=(*settings.runs.inputs, *search.inputs),
+            overwrite=settings.runs.overwrite,
             summary=TUNING_SUMMARY,
         )
         with claim as place, stop.by_signals():
             wire = WireBench(
                 sequence.accept_plan,
-                asked.trial,
-                asked.trial.draws[0].model,
-                told.allowed,
-                told.runs,
+                search.trial,
+                search.trial.draws[0].model,
+                settings.allowed,
+                settings.runs,
                 folder / FOLDER,
             )
             wire.bench_time_s, wire.earlier_runs = self._spent_s, self._runs
-            came = refined(found, wire, budget, told.processes, lambda: stop.times > 0)
-            self._spent_s, self._runs = wire.bench_time_s, self._runs + len(wire.carried)
-            write_results(asked, found, place.write, refinement=came)
-        return came, wire
+            refined = refine_on(
+                wire, found, budget, settings.processes, settings.runs.feedback, lambda: stop.times > 0
+            )
+            self._spent_s, self._runs = wire.bench_time_s, self._runs + len(wire.outcomes)
+            write_results(search, found, place.write, refinement=refined)
+        return refined, wire
 
 
 def earlier_run(plan: Plan, bench: BenchFile, folder: Path) -> RunResult | None:
@@ -187,19 +200,20 @@ def earlier_run(plan: Plan, bench: BenchFile, folder: Path) -> RunResult | None:
     return None if result.verdict == "error" or result.safe_state == "not_confirmed" else result
 
 
-def asked_for(sequence: Sequence, model: Path, bench: str) -> Asked:
+def search_for(sequence: Sequence, model: Path, bench: str) -> Search:
     """What a sequence has tuned, on a model.
 
     Raises:
         BadInputError: plan, controller, what is free, model or bench cannot be used.
     """
-    return asked_of(
-        sequence.accept_plan,
-        model,
-        sequence.free_file,
-        sequence.controller,
-        None,
-        sequence.draws,
-        sequence.seed,
-        bench,
+    return load_search(
+        SearchRequest(
+            plan=sequence.accept_plan,
+            model=model,
+            bench=bench,
+            free=sequence.free_file,
+            controller=sequence.controller,
+            draws=sequence.draws,
+            seed=sequence.seed,
+        )
     )

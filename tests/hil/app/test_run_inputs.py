@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hil.cli._run_inputs import command_again, inputs_of
+from hil.app.run_inputs import command_again, inputs_of
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
 from hil.core.result import RunResult, VariableValue

@@ -1,4 +1,4 @@
-"""What a tuning is told, and what it writes: for `hil tune` and for the loop that has it as a part."""
+"""What a tuning searches on, and what it writes: for a tuning alone and as a stage of autotune."""
 
 from __future__ import annotations
 
@@ -21,9 +21,10 @@ from hil.analysis.tuning import (
     refuse_unknown_weights,
     shipped_free,
 )
-from hil.cli._output import to_json
-from hil.cli._refine_on_bench import Refined
-from hil.cli._then_run import Ran, as_json
+from hil.app.requests import SearchRequest
+from hil.app.result_file import json_file
+from hil.app.tuning.confirmation import Ran, as_json
+from hil.app.tuning.refinement import Refined
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
@@ -43,55 +44,53 @@ NAMES = (CONTROLLER, FREE, SUMMARY, HTML, PDF)
 
 
 @dataclass(frozen=True)
-class Asked:
-    """What the command was told, read and checked."""
+class Search:
+    """A search that was read and checked; `facts` stand in its summary."""
 
     plan: Plan
     bench: BenchFile
     free_text: str
     trial: Trial
     inputs: tuple[Path, ...]
-    told: dict[str, Any]
+    facts: dict[str, Any]
 
 
-def asked_of(
-    plan: str,
-    model: Path,
-    free: Path | None,
-    controller: str,
-    start: Path | None,
-    draws: int,
-    seed: int,
-    bench: str,
-) -> Asked:
-    loaded, file, axle = load_plan(plan), load_bench(bench), load_model(model)
-    refuse_model(axle, str(model))
-    wanted = read_free(free)
-    refuse_unknown_weights(wanted, loaded)
-    driven = driven_by(loaded, controller)
-    begun = load_controller(start or driven.file)
-    _refuse_beyond_bench(wanted, begun, file)
-    cars = draws_of(axle, wanted.tolerance, draws, seed)
+def load_search(request: SearchRequest) -> Search:
+    """Read and check all that a search needs.
+
+    Raises:
+        BadInputError: plan, model, bench, controller or free parameters cannot be used together.
+    """
+    plan, bench, axle = load_plan(request.plan), load_bench(request.bench), load_model(request.model)
+    refuse_model(axle, str(request.model))
+    wanted = read_free(request.free)
+    refuse_unknown_weights(wanted, plan)
+    driven = driven_by(plan, request.controller)
+    start_file = request.start or driven.file
+    start = load_controller(start_file)
+    _refuse_beyond_bench(wanted, start, bench)
+    cars = draws_of(axle, wanted.tolerance, request.draws, request.seed)
     trial = Trial(
-        loaded,
+        plan,
         driven,
         wanted,
-        begun,
+        start,
         cars,
-        SpeedLoops([car.model for car in cars], begun.sample_time_s),
-        _runs(loaded, file, driven, wanted),
+        SpeedLoops([car.model for car in cars], start.sample_time_s),
+        _runs(plan, bench, driven, wanted),
     )
-    inputs = [model, file.source, *(path for path in (free, start, loaded.source) if path is not None)]
-    told = {
-        "plan": loaded.name,
-        "model": str(model),
-        "bench": file.name,
-        "start": str(start or driven.file),
-        "draws": draws,
-        "seed": seed,
+    named = (request.free, request.start, plan.source)
+    inputs = [request.model, bench.source, *(path for path in named if path is not None)]
+    facts = {
+        "plan": plan.name,
+        "model": str(request.model),
+        "bench": bench.name,
+        "start": str(start_file),
+        "draws": request.draws,
+        "seed": request.seed,
     }
-    text = shipped_free() if free is None else toml_text(free)
-    return Asked(loaded, file, text, trial, tuple(path for path in inputs if path.is_file()), told)
+    text = shipped_free() if request.free is None else toml_text(request.free)
+    return Search(plan, bench, text, trial, tuple(path for path in inputs if path.is_file()), facts)
 
 
 def _runs(plan: Plan, bench: BenchFile, driven: Driven, free: Free) -> BatchPrediction:
@@ -112,36 +111,36 @@ def _refuse_beyond_bench(free: Free, start: Controller, bench: BenchFile) -> Non
 
 
 def write_results(
-    asked: Asked,
+    search: Search,
     found: Tuning,
     write: Callable[..., None],
     ran: Ran | None = None,
     refinement: Refined | None = None,
 ) -> dict[str, Any]:
-    """Everything of the results; gives the content of tune.json."""
+    """Write all results of a search, and of runs that confirmed or refined it; the content of tune.json."""
     shown = []
     for one in found.shown:
-        predicted = asked.trial.carry_out(found.trial.draws[0].model, one.controller, 0.0, 0, whole=True)
+        predicted = search.trial.carry_out(found.trial.draws[0].model, one.controller, 0.0, 0, whole=True)
         shown.append(Shown(one.name, predicted.recording, predicted.segments))
     if ran is not None:
         shown.insert(1, ran.shown)
     if refinement is not None and refinement.shown is not None:
         shown.insert(1, refinement.shown)
-    came = None if refinement is None else refinement.found
-    files = output_files(found, asked.free_text, None if came is None else came.best)
+    best = None if refinement is None else refinement.found.best
+    files = output_files(found, search.free_text, best)
     listed = sorted([*files, SUMMARY, HTML, PDF])
-    summary = summary_of(found, shown[0].segments, asked.told, listed)
+    summary = summary_of(found, shown[0].segments, search.facts, listed)
     if ran is not None:
         summary["confirmed"] = as_json(ran)
     if refinement is not None:
         summary["refined"] = refinement.as_json()
-    model = Path(asked.told["model"])
-    used = {"model": [model], "bench": [asked.bench.source], "controller": [Path(asked.told["start"])]}
+    model = Path(search.facts["model"])
+    used = {"model": [model], "bench": [search.bench.source], "controller": [Path(search.facts["start"])]}
     confirmed = None if ran is None else ran.confirmation
-    page = tuning_page(found, shown, asked.plan.name, origin_of(used), confirmed)
+    page = tuning_page(found, shown, search.plan.name, origin_of(used), confirmed)
     if refinement is not None:
-        page = refined_page(page, refinement.found, refinement.allowed.told())
+        page = refined_page(page, refinement.found, refinement.allowed.in_words())
     files |= documents(page)
-    files[SUMMARY] = (to_json(summary) + "\n").encode()
-    write(files, asked.inputs)
+    files[SUMMARY] = json_file(summary)
+    write(files, search.inputs)
     return summary

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from hil.cli._result_file import RESULT, text_of
+from hil.app.result_file import RESULT, text_of
 from hil.core.errors import BadInputError
 from hil.core.files import read_bytes, sha256_of
 from hil.core.recording import RUN, Recording, read_recording, run_of
@@ -31,20 +30,6 @@ class Finding:
     holds: bool
     file: Path
     text: str
-
-
-def is_service(folder: Path) -> bool:
-    """Whether it is the folder of a bench service (`hil serve --data`)."""
-    return (folder / "service.id").is_file()
-
-
-def of_audit_log(folder: Path) -> Finding:
-    """A service's folder: its audit log, row by row."""
-    from hil.service.audit import checked
-
-    found = checked(folder, os.environ.get("HIL_DATABASE", ""))
-    said = found.problem or f"its {found.rows} rows form an unbroken chain up to row {found.head.id}"
-    return Finding(not found.problem, folder, f"audit log: {said}")
 
 
 def of_run(folder: Path) -> Iterator[Finding]:

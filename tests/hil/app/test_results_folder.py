@@ -8,8 +8,8 @@ from typing import Any
 
 import pytest
 
-from hil.cli import _results_folder
-from hil.cli._results_folder import refuse_file, results_in
+from hil.app import results_folder as _results_folder
+from hil.app.results_folder import refuse_file, results_in
 from hil.core.errors import BadInputError
 
 NAMES = ("summary.json", "a.txt")
@@ -97,7 +97,7 @@ def test_a_broken_summary_lists_nothing(content: str, tmp_path: Path) -> None:
 
 def test_two_commands_do_not_write_to_one_folder(tmp_path: Path) -> None:
     other = (
-        "import sys, pathlib\nfrom hil.cli._results_folder import results_in\n"
+        "import sys, pathlib\nfrom hil.app.results_folder import results_in\n"
         f"with results_in(pathlib.Path({str(tmp_path)!r}), ('b',)):\n"
         "    print('in', flush=True); sys.stdin.readline()\n"
     )
@@ -148,7 +148,7 @@ def test_the_folder_of_another_command_stays_when_both_come_at_the_same_moment(
 ) -> None:
     """Both have found that it is not there; each order of making and locking it."""
     out = tmp_path / "deep" / "out"
-    holder = "from pathlib import Path; from hil.cli._results_folder import results_in; import sys\n"
+    holder = "from pathlib import Path; from hil.app.results_folder import results_in; import sys\n"
     holder += "with results_in(Path(sys.argv[1]), ['a.txt']) as place: print('in', flush=True); input()\n"
     other: list[subprocess.Popen[str]] = []
     make = Path.mkdir

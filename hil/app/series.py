@@ -3,29 +3,41 @@
 from __future__ import annotations
 
 import statistics
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hil.cli._choices import LARGEST_SERIES
-from hil.cli._one_run import Finished, Runs
-from hil.cli._output import console, count_in_words, note, plain_table, print_json, to_json
-from hil.cli._results_folder import ResultsFolder, results_in
+from hil.app.feedback import Feedback
+from hil.app.result_file import to_json
+from hil.app.results_folder import results_in
+from hil.app.run import FinishedRun, RunSettings
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.result import RunResult
 from hil.engine import BenchFile
 from hil.engine.bench.bench_file import with_seed
 from hil.engine.run.disk_room import needed_bytes, refuse_too_little_room
-from reports.series_report import SERIES_HTML, limit_in_words, series_html, values_in_words
+from reports.series_report import SERIES_HTML, series_html
 from test_plans import Plan, estimate_duration_s
 
 SUMMARY = "series.json"
+#: Runs of one series: some days at a bench.
+LARGEST_SERIES = 1000
 _BADNESS = ("informational", "pass", "did_not_settle", "undecided", "fail", "not_judged", "error")
 
 
-def announce_series(plans: Sequence[Plan], repeat: int, out: Path | None) -> None:
-    """Say on stderr how many runs there will be, how long they take at a bench, and what they need.
+@dataclass(frozen=True)
+class SeriesOutcome:
+    """What a series came to: series.json, its folder, and the largest exit code of its runs."""
+
+    summary: dict[str, Any]
+    folder: Path
+    exit_code: int
+
+
+def announce_series(plans: Sequence[Plan], repeat: int, out: Path | None, feedback: Feedback) -> None:
+    """Report how many runs there will be, how long they take at a bench, and what they need.
 
     Raises:
         BadInputError: they are too many, or the disk has no room for them.
@@ -41,7 +53,9 @@ def announce_series(plans: Sequence[Plan], repeat: int, out: Path | None) -> Non
     refuse_too_little_room(plans, out or Path(), times=repeat)
     bench_time_s = repeat * sum(estimate_duration_s(plan) for plan in plans)
     size = repeat * sum(needed_bytes(plan) for plan in plans)
-    note(f"{runs} runs, {bench_time_s / 60:.3g} min of bench time, at most {size / 1e9:.2g} GB on the disk")
+    feedback.note(
+        f"{runs} runs, {bench_time_s / 60:.3g} min of bench time, at most {size / 1e9:.2g} GB on the disk"
+    )
 
 
 def repeated(bench: BenchFile, times: int) -> list[BenchFile]:
@@ -51,36 +65,41 @@ def repeated(bench: BenchFile, times: int) -> list[BenchFile]:
     return [with_seed(bench, bench.simulation.seed + number) for number in range(times)]
 
 
-def carry_out_series(
-    runs: Runs, plans: Sequence[Plan], benches: Sequence[BenchFile], out: Path | None, *, as_json: bool
-) -> int:
-    """Carry out every plan on every bench, each in a numbered folder; the largest exit code.
+def run_series(
+    settings: RunSettings,
+    plans: Sequence[Plan],
+    benches: Sequence[BenchFile],
+    out: Path | None,
+    report_run: Callable[[FinishedRun], None],
+) -> SeriesOutcome:
+    """Carry every plan out on every bench, each in a numbered folder.
 
     A run that did not come to its end ends the series; what was carried out so far is kept and summed up.
+
+    Args:
+        report_run: called after each run.
     """
-    done: list[tuple[int, Finished]] = []
+    done: list[tuple[int, FinishedRun]] = []
     code = 0
     with results_in(
         out,
         (SUMMARY, SERIES_HTML),
-        inputs=runs.inputs,
-        overwrite=runs.overwrite,
+        inputs=settings.inputs,
+        overwrite=settings.overwrite,
         default=f"{plans[0].name}-series",
     ) as place:
         for number, (group, plan, bench) in enumerate(_each(plans, benches), 1):
-            with runs.finished(plan, bench, place.folder / f"{number:03d}") as run:
+            with settings.carry_out(plan, bench, place.folder / f"{number:03d}") as run:
                 done.append((group, run))
                 write_atomically(place.folder / SUMMARY, to_json(_summary(done)) + "\n")
-                if not as_json:
-                    _tell(run)
+                report_run(run)
                 code = max(code, run.exit_code)
                 if run.outcome.error is not None:
                     break
         summary = _summary(done)
         page = series_html(plans[0].title or plans[0].name, benches[0].name, summary)
         write_atomically(place.folder / SERIES_HTML, page)
-        _tell_all(summary, place, as_json=as_json)
-    return code
+    return SeriesOutcome(summary, place.folder, code)
 
 
 def _each(plans: Sequence[Plan], benches: Sequence[BenchFile]) -> Iterator[tuple[int, Plan, BenchFile]]:
@@ -89,7 +108,7 @@ def _each(plans: Sequence[Plan], benches: Sequence[BenchFile]) -> Iterator[tuple
             yield group, plan, bench
 
 
-def _summary(done: Sequence[tuple[int, Finished]]) -> dict[str, Any]:
+def _summary(done: Sequence[tuple[int, FinishedRun]]) -> dict[str, Any]:
     groups: dict[int, list[RunResult]] = {}
     for group, run in done:
         groups.setdefault(group, []).append(run.result)
@@ -141,40 +160,3 @@ def _common(limits: Iterable[float | None]) -> float | None:
     """The limit that all runs have; None where it differs, as one does that another segment sets."""
     found = set(limits)
     return found.pop() if len(found) == 1 else None
-
-
-def _tell(run: Finished) -> None:
-    values = ", ".join(map(str, run.result.variables))
-    console().print(
-        f"{run.folder.name}  {values}: [bold]{run.result.verdict.upper()}[/], "
-        f"{count_in_words(run.result.criteria)}",
-        highlight=False,
-    )
-
-
-def _tell_all(summary: dict[str, Any], place: ResultsFolder, *, as_json: bool) -> None:
-    if as_json:
-        print_json(summary)
-        return
-    table = plain_table()
-    varied = any(group["variables"] for group in summary["spread"])
-    if varied:
-        table.add_column("variables")
-    table.add_column("criterion", overflow="fold")
-    table.add_column("limit", no_wrap=True)
-    table.add_column("verdict", no_wrap=True)
-    for name in ("runs", "mean", "std. dev.", "lowest", "highest"):
-        table.add_column(name, justify="right", no_wrap=True, min_width=6)
-    table.add_column("unit", no_wrap=True)
-    for group in summary["spread"]:
-        values = values_in_words(group["variables"])
-        for number, (name, spread) in enumerate(group["criteria"].items()):
-            numbers = (spread[key] for key in ("mean", "standard_deviation", "lowest", "highest"))
-            cells = ("-" if value is None else f"{value:.4g}" for value in numbers)
-            said = (name, limit_in_words(spread), spread["verdict"].replace("_", " "), str(spread["count"]))
-            first = (values if number == 0 else "",) if varied else ()
-            table.add_row(*first, *said, *cells, spread["unit"])
-    page = console()
-    page.print()
-    page.print(table)
-    page.print(f"\nsummary: {place.folder / SUMMARY}\nreport: {place.folder / SERIES_HTML}", highlight=False)

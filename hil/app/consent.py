@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import sys
-
+from hil.app.feedback import Feedback
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from hil.engine import BenchFile
@@ -11,16 +10,16 @@ from hil.engine.prediction.envelope import Envelope
 from hil.engine.run.preflight import Rehearsal
 from test_plans import Plan
 
-NOT_NEEDED = "not required: the bench is simulated"
+_ENTER = "Enter your name to authorise these runs:"
 
 
-def refuse_nobody(plan: Plan, bench: BenchFile, confirm: str) -> None:
-    """Say before anything is computed that nobody is there to consent.
+def refuse_nobody(plan: Plan, bench: BenchFile, confirm: str, feedback: Feedback) -> None:
+    """Refuse before anything is computed if nobody is there to consent.
 
     Raises:
-        BadInputError: no name, and no terminal to ask on.
+        BadInputError: no name, and nobody to ask.
     """
-    if _needed(plan, bench) and not confirm.strip() and not sys.stdin.isatty():
+    if _needed(plan, bench) and not confirm.strip() and not feedback.can_ask:
         raise BadInputError(
             f"runs on '{bench.name}' need a person's consent, and there is no terminal to ask on",
             where="--confirm",
@@ -28,19 +27,19 @@ def refuse_nobody(plan: Plan, bench: BenchFile, confirm: str) -> None:
         )
 
 
-def consent(plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope, confirm: str) -> str:
-    """Who takes the runs within the envelope upon them, prompts of the plans included.
+def consent(
+    plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope, confirm: str, feedback: Feedback
+) -> str:
+    """Who takes the runs within the envelope upon them, prompts of the plans included; '' if nobody has to.
 
     Raises:
         BadInputError: nobody does.
     """
     if not any(_needed(plan, bench) for plan in plans):
         return ""
-    print(_question(plans, bench, envelope), file=sys.stderr)
-    if confirm.strip():
-        return confirm.strip()
-    print("Enter your name to authorise these runs:", file=sys.stderr)
-    name = sys.stdin.readline().strip()
+    given = confirm.strip()
+    question = _question(plans, bench, envelope)
+    name = feedback.ask_name(question if given else f"{question}\n{_ENTER}", given)
     if not name:
         raise BadInputError(
             "no consent was given",

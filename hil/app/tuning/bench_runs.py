@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from hil.analysis.tuning import Measured, RefinementBudget, Trial
-from hil.cli._consent import consent, refuse_nobody
-from hil.cli._named_values import named_numbers
-from hil.cli._one_run import Runs
+from hil.app.consent import consent, refuse_nobody
+from hil.app.feedback import Feedback
+from hil.app.run import RunSettings
 from hil.core.controller import Controller, controller_to_toml
-from hil.core.errors import BadInputError
 from hil.core.files import make_directory, write_atomically
 from hil.core.model import Model
 from hil.core.recording import read_recording
@@ -28,26 +28,6 @@ FOLDER = "bench"
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """What a command line says of runs on a bench."""
-
-    bench: str
-    runs: int | None
-    envelope: list[str]
-    confirm: str
-
-    def refuse_alone(self) -> None:
-        """Raises:
-        BadInputError: how the bench is used is said, but not which.
-        """
-        given = {"--runs": self.runs is not None, "--envelope": self.envelope, "--confirm": self.confirm}
-        for option, is_given in given.items():
-            if is_given and not self.bench:
-                fix = "add --on-bench BENCH, or leave it out"
-                raise BadInputError(f"{option} goes with --on-bench", where=option, fix=fix)
-
-
-@dataclass(frozen=True)
 class Allowed:
     """A bench, what may be done on it, and who said so."""
 
@@ -61,12 +41,14 @@ class Allowed:
         bench = self.bench if simulation is None else with_seed(self.bench, simulation.seed + run)
         return self.envelope.watched_on(bench)
 
-    def answered(self, runs: Runs) -> Runs:
+    def answered(self, settings: RunSettings) -> RunSettings:
         """Runs for which it was answered beforehand, prompts and hazards included."""
         name = self.name
-        return replace(runs, confirmed_by=name, hazard_confirmed_by=name) if name else runs
+        if not name:
+            return settings
+        return replace(settings, confirmed_by=name, hazard_confirmed_by=name)
 
-    def told(self) -> str:
+    def in_words(self) -> str:
         """To what somebody consented, and who."""
         by = (
             f"{self.name} consented to"
@@ -86,18 +68,30 @@ class Allowed:
         return {"bench": self.bench.name, "consent": self.name, "envelope": stated}
 
 
-def allowed_on(wanted: Wanted, bench: BenchFile, trial: Trial, model: Model) -> Allowed:
+def allowed_on(
+    bench: BenchFile,
+    trial: Trial,
+    model: Model,
+    runs: int | None,
+    largest: Mapping[str, float],
+    confirm: str,
+    feedback: Feedback,
+) -> Allowed:
     """Predict the plan as it is, draw an envelope around it, and have somebody consent to that.
+
+    Args:
+        runs: at most so many; None for the default.
+        largest: magnitudes that are allowed, by channel, in place of those that are drawn.
+        confirm: name of who consents; '' if the person at the terminal is asked.
 
     Raises:
         BadInputError: the envelope makes no sense or leaves no room, or nobody consents.
     """
-    refuse_nobody(trial.plan, bench, wanted.confirm)
-    asked = named_numbers(wanted.envelope, "--envelope")
+    refuse_nobody(trial.plan, bench, confirm, feedback)
     predicted = predicted_run(trial, model, None)
     lasts_s = float(predicted.recording.time_s[-1])
-    envelope = envelope_of(bench, predicted.peaks, wanted.runs or RefinementBudget.runs, lasts_s, asked)
-    return Allowed(bench, envelope, consent((trial.plan,), bench, envelope, wanted.confirm))
+    envelope = envelope_of(bench, predicted.peaks, runs or RefinementBudget.runs, lasts_s, dict(largest))
+    return Allowed(bench, envelope, consent((trial.plan,), bench, envelope, confirm, feedback))
 
 
 @dataclass(frozen=True)
@@ -125,7 +119,7 @@ class WireBench:
         trial: what is tuned; it predicts runs.
         model: of the axle, for these predictions.
         allowed: the bench; the envelope is watched on it beside its own limits.
-        runs: whether results are replaced, and what must not be.
+        settings: whether results are replaced, and what must not be.
     """
 
     def __init__(
@@ -134,14 +128,14 @@ class WireBench:
         trial: Trial,
         model: Model,
         allowed: Allowed,
-        runs: Runs,
+        settings: RunSettings,
         place: Path,
     ) -> None:
         self._plan, self._name = plan, name_in(plan, trial.driven.file)
         self._trial, self._model = trial, model
         self.allowed, self._envelope, self._place = allowed, allowed.envelope, place
-        self._runs = allowed.answered(runs)
-        self.carried: dict[int, StageOutcome] = {}
+        self._settings = allowed.answered(settings)
+        self.outcomes: dict[int, StageOutcome] = {}
         self.bench_time_s, self.earlier_runs = 0.0, 0
 
     def refused(self, controller: Controller) -> str:
@@ -164,9 +158,9 @@ class WireBench:
         write_atomically(file, controller_to_toml(controller))
         plan = load_plan(self._plan, Choices({self._name: file}))
         bench = self.allowed.watched(self.earlier_runs + number)
-        with self._runs.finished(plan, bench, folder) as run:
+        with self._settings.carry_out(plan, bench, folder) as run:
             result = run.result
-            self.carried[number] = StageOutcome(
+            self.outcomes[number] = StageOutcome(
                 folder, run.exit_code, tuple(result.segments), result.criteria
             )
             error = run.outcome.error
@@ -183,7 +177,7 @@ class WireBench:
     @property
     def exit_code(self) -> int:
         """The largest of runs that failed or were interrupted; 0 if none was."""
-        return max((one.exit_code for one in self.carried.values() if one.exit_code > 1), default=0)
+        return max((one.exit_code for one in self.outcomes.values() if one.exit_code > 1), default=0)
 
 
 def predicted_run(trial: Trial, model: Model, controller: Controller | None) -> Prediction:

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hil.app.log import LOG
 from hil.cli import schema
 from hil.cli._app import guarded
-from hil.cli._log import LOG
 
 RECORDING = "time_s,motor_torque_ref_nm,motor_speed_rad_s\n" + "".join(f"{k / 10},1,2\n" for k in range(20))
 

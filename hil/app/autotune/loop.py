@@ -10,12 +10,11 @@ from pathlib import Path
 
 from hil.analysis.diagnosis import INTERRUPTED, Diagnosis
 from hil.analysis.tuning import Confirmation, confirmation
-from hil.cli._autotune_stages import MODEL, EndedError, Recorded, Stages, Told
-from hil.cli._interrupts import EXIT_CODE, INTERRUPTS
-from hil.cli._on_bench import WireBench
-from hil.cli._refine_on_bench import Refined
-from hil.cli._streams import complain
-from hil.cli._tuning import Asked
+from hil.app.autotune.stages import MODEL, EndedError, LoopSettings, Recorded, Stages
+from hil.app.interrupts import EXIT_CODE, INTERRUPTS
+from hil.app.tuning.bench_runs import WireBench
+from hil.app.tuning.refinement import Refined
+from hil.app.tuning.search import Search
 from hil.core.digits import share
 from hil.core.errors import HilError
 from hil.engine import RECORDING
@@ -30,12 +29,14 @@ class AutotuneLoop:
     responses are worth comparing.
     """
 
-    def __init__(self, told: Told, place: Path, closing: Closing, keep: Callable[[], None]) -> None:
-        self._told, self.closing, self._keep = told, closing, keep
-        self._stages = Stages(told, place)
+    def __init__(
+        self, settings: LoopSettings, place: Path, closing: Closing, keep: Callable[[], None]
+    ) -> None:
+        self._settings, self.closing, self._keep = settings, closing, keep
+        self._stages = Stages(settings, place)
         self._explained: list[Recorded] = []
         self.shown: list[Shown] = []
-        self.model = told.given
+        self.model = settings.given
 
     def carry_out(self) -> int:
         """All stages; the exit code. What ended it stands in `closing`."""
@@ -43,13 +44,13 @@ class AutotuneLoop:
         try:
             self._identify()
             before = self._before()
-            for number in range(1, self._told.sequence.rounds + 1):
+            for number in range(1, self._settings.sequence.rounds + 1):
                 self._round(number, before)
-            raise EndedError(f"all {self._told.sequence.rounds} rounds are complete")
+            raise EndedError(f"all {self._settings.sequence.rounds} rounds are complete")
         except EndedError as ended:
             self.closing.ended, code = str(ended), ended.exit_code
         except HilError as error:  # such as recordings that cannot belong to the model
-            complain("error", str(error))
+            self._settings.runs.feedback.complain(str(error))
             self.closing.ended, code = error.what, error.exit_code
         except KeyboardInterrupt:
             INTERRUPTS.answered()
@@ -57,7 +58,7 @@ class AutotuneLoop:
         return code or int(not self.closing.content)
 
     def _identify(self) -> None:
-        carried = self._stages.run(self._told.identify, "identify")
+        carried = self._stages.run(self._settings.identify, "identify")
         self._explained.append(Recorded(carried.folder / RECORDING))
         what = f"{len(carried.segments)} segments recorded"
         why = "varying torque reveals effects that the model lacks"
@@ -65,9 +66,9 @@ class AutotuneLoop:
 
     def _before(self) -> Confirmation:
         """The plan that accepts as it is: what is to be bettered, and what the given model says of it."""
-        trial, closing = self._told.asked.trial, self.closing
+        trial, closing = self._settings.search.trial, self.closing
         carried = self._stages.run(trial.plan, "before")
-        found = confirmation(trial.tried({}, 0).criteria, carried.criteria, self._told.agree)
+        found = confirmation(trial.tried({}, 0).criteria, carried.criteria, self._settings.agree)
         closing.before_margins = trial.margins_of(carried.criteria)
         self.shown.append(carried.shown("before"))
         what = (
@@ -80,25 +81,25 @@ class AutotuneLoop:
 
     def _round(self, number: int, before: Confirmation) -> None:
         folder = self._stages.place / f"round-{number}"
-        asked = self._better_model(number, folder / "diagnosis")
-        if not self._foretells(before, number, asked):
-            asked = self._better_model(number, folder / "diagnosis-2")
-        found = self._stages.tune(asked, number)
+        search = self._better_model(number, folder / "diagnosis")
+        if not self._predicts(before, number, search):
+            search = self._better_model(number, folder / "diagnosis-2")
+        found = self._stages.tune(search, number)
         worst = found.chosen.worst
         binds = worst.binding.replace(".", " ")
         what = f"predicted worst margin {share(worst.worst)} ({binds}); {found.runs} predictions"
         why = f"the plan's own controller has {share(found.start.worst.worst)} on this model"
         self._decide(number, "tune", what, "confirm it on the bench", why, folder / "tuned")
-        came, wire = self._stages.confirm(asked, found, folder / "tuned")
-        grown = self._weigh(number, came, wire, folder / "tuned")
-        self._refuse_another(came, wire, grown=grown)
+        refined, wire = self._stages.confirm(search, found, folder / "tuned")
+        grown = self._weigh(number, refined, wire, folder / "tuned")
+        self._refuse_another(refined, wire, grown=grown)
 
-    def _better_model(self, number: int, folder: Path) -> Asked:
+    def _better_model(self, number: int, folder: Path) -> Search:
         """What is missing in the given model: an earlier round's name may have been a wrong one."""
         found = self._stages.diagnose(self._explained, number, folder)
         self.closing.diagnosis, self.model = found, folder / MODEL
         self._judge(number, found, folder)
-        return self._stages.asked_on(self.model)
+        return self._stages.search_on(self.model)
 
     def _judge(self, number: int, found: Diagnosis, folder: Path) -> None:
         what = f"verdict {found.verdict}"
@@ -118,11 +119,11 @@ class AutotuneLoop:
         decided = f"add {names}" if names else "keep the model with corrected parameters"
         self._decide(number, "diagnose", what, decided, f"gaps: {gaps}", folder)
 
-    def _foretells(self, before: Confirmation, number: int, asked: Asked) -> bool:
-        """Whether the better model foretells the plan as it was run; if not, that run is explained, too."""
+    def _predicts(self, before: Confirmation, number: int, search: Search) -> bool:
+        """Whether the better model predicts the plan as it was run; if not, that run is explained, too."""
         recording = Recorded(self._stages.place / "before" / RECORDING)
         measured = [one.measured for one in before.criteria]
-        found = confirmation(asked.trial.tried({}, 0).criteria, measured, self._told.agree)
+        found = confirmation(search.trial.tried({}, 0).criteria, measured, self._settings.agree)
         enough = found.agrees or recording in self._explained
         if not enough:
             self._explained.append(recording)
@@ -131,50 +132,50 @@ class AutotuneLoop:
         self._decide(number, "diagnose", what, decided, f"the tolerance is {share(found.allowed)}")
         return enough
 
-    def _weigh(self, number: int, came: Refined, wire: WireBench, folder: Path) -> bool:
+    def _weigh(self, number: int, refined: Refined, wire: WireBench, folder: Path) -> bool:
         """Keep the best; whether this round's is better than those before, by as much as counts."""
-        closing, best = self.closing, came.found.best
+        closing, best = self.closing, refined.found.best
         if best is None:
-            self._decide(number, "confirm", "nothing was measured", "end", came.found.ended, folder)
+            self._decide(number, "confirm", "nothing was measured", "end", refined.found.ended, folder)
             raise (
                 EndedError.interrupted()
-                if came.exit_code == EXIT_CODE
-                else EndedError(came.found.ended, came.exit_code)
+                if refined.exit_code == EXIT_CODE
+                else EndedError(refined.found.ended, refined.exit_code)
             )
-        first = came.found.runs[0].beside_prediction(self._told.agree)
+        first = refined.found.runs[0].beside_prediction(self._settings.agree)
         earlier = (closing.agrees, closing.best.worst) if closing.best is not None else (False, float("-inf"))
         kept = (first.agrees, best.worst) > earlier
         if kept:
             closing.best, closing.best_round, closing.agrees = best, number, first.agrees
-            self.shown[1:] = [wire.carried[best.number].shown("autotuned"), wire.predicted(best.controller)]
-        count = len(came.found.runs)
+            self.shown[1:] = [wire.outcomes[best.number].shown("autotuned"), wire.predicted(best.controller)]
+        count = len(refined.found.runs)
         what = (
             f"{count} run{'s' if count > 1 else ''}, the prediction of the first is {_off(first)}; "
             f"best measured worst margin {share(best.worst)}"
         )
         if first.agrees:
-            decided, why = ("keep it" if kept else "keep the earlier one"), came.found.ended
+            decided, why = ("keep it" if kept else "keep the earlier one"), refined.found.ended
         else:
-            last = number == self._told.sequence.rounds
+            last = number == self._settings.sequence.rounds
             decided = "end" if last else "diagnose that run, too"
             names = ", ".join(one.id.replace(".", " ") for one in first.beyond)
             why = f"deviation from the prediction above {share(first.allowed)}: {names}"
         self._decide(number, "confirm", what, decided, why, folder)
-        return best.worst - earlier[1] >= self._told.sequence.grow_percent / 100
+        return best.worst - earlier[1] >= self._settings.sequence.grow_percent / 100
 
-    def _refuse_another(self, came: Refined, wire: WireBench, *, grown: bool) -> None:
+    def _refuse_another(self, refined: Refined, wire: WireBench, *, grown: bool) -> None:
         """Raise where another round could bring nothing; else say what is to be explained in it."""
-        found = came.found
-        if came.exit_code == EXIT_CODE or found.ended == "stopped":
+        found = refined.found
+        if refined.exit_code == EXIT_CODE or found.ended == "stopped":
             raise EndedError.interrupted()
-        if came.exit_code or found.runs[-1].decision == "refused":
-            raise EndedError(found.ended, came.exit_code)
-        agrees = found.runs[0].beside_prediction(self._told.agree).agrees
-        all_made = len(found.runs) >= self._told.sequence.runs
+        if refined.exit_code or found.runs[-1].decision == "refused":
+            raise EndedError(found.ended, refined.exit_code)
+        agrees = found.runs[0].beside_prediction(self._settings.agree).agrees
+        all_made = len(found.runs) >= self._settings.sequence.runs
         if agrees and not (all_made and grown):
             raise EndedError(f"prediction and run agree, and the margin no longer grows: {found.ended}")
-        segments = self._told.asked.trial.driven.segments  # the others are as they were before
-        self._explained.append(Recorded(wire.carried[1].folder / RECORDING, segments))
+        segments = self._settings.search.trial.driven.segments  # the others are as they were before
+        self._explained.append(Recorded(wire.outcomes[1].folder / RECORDING, segments))
 
     def _decide(
         self, number: int, stage: Stage, found: str, decided: str, why: str, folder: Path | None = None

@@ -9,7 +9,7 @@ import pytest
 
 CODE = """
 import os, signal, time
-from hil.cli._interrupts import INTERRUPTS
+from hil.app.interrupts import INTERRUPTS
 
 class Half:
     def __del__(self):
@@ -38,10 +38,10 @@ def test_what_is_thrown_away_half_made_complains_only_where_nobody_interrupted(a
 
 TWICE = """
 import os, signal, time
-from hil.cli import _interrupts
-from hil.cli._interrupts import INTERRUPTS
+from hil.app import interrupts
+from hil.app.interrupts import INTERRUPTS
 
-_interrupts._AT_ONCE_S = 0.5  # a machine with other work may take its time
+interrupts._AT_ONCE_S = 0.5  # a machine with other work may take its time
 INTERRUPTS.raise_from_now_on()
 raised = 0
 for apart_s in {apart_s}:

@@ -1,28 +1,26 @@
-"""One run from its request to its reports, as `hil run` carries it out once or several times."""
+"""One run, from its request to its reports."""
 
 from __future__ import annotations
 
 import contextlib
 import logging
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from hil.cli._hold import HOLDER
-from hil.cli._interrupts import INTERRUPTS
-from hil.cli._output import Show, progress, warn
-from hil.cli._result_file import RESULT, write_result
-from hil.cli._results_folder import ResultsFolder, results_in
-from hil.cli._streams import complain
-from hil.cli._terminal import KEYS, operators_terminal
+from hil.app.feedback import LOGGED, Feedback, Show
+from hil.app.interrupts import INTERRUPTS
+from hil.app.result_file import RESULT, write_result
+from hil.app.results_folder import ResultsFolder, results_in
+from hil.app.worker.hold import HOLDER
 from hil.core.errors import BenchError, HilError, InterruptError
 from hil.core.model import Model
 from hil.core.recording import Recording, read_recording
 from hil.core.result import RunResult
-from hil.engine import RECORDING, BenchFile, RunOutcome, RunRequest, StopRequest, carry_out
-from hil.engine.ipc.ipc import Terminal, analysed_apart
+from hil.engine import RECORDING, BenchFile, RunOutcome, RunRequest, StopRequest
+from hil.engine import carry_out as carry_out_run
+from hil.engine.ipc.ipc import analysed_apart
 from hil.engine.run.disk_room import remark_on_room
 from reports import HTML, JUNIT, PDF, write_documents, write_junit
 from test_plans import Plan
@@ -33,7 +31,7 @@ NAMES = (RECORDING, RESULT, JUNIT, HTML, PDF)
 
 
 @dataclass(frozen=True)
-class Finished:
+class FinishedRun:
     """A run that has ended, with what is written of it."""
 
     outcome: RunOutcome
@@ -51,8 +49,13 @@ class Finished:
 
 
 @dataclass(frozen=True)
-class Runs:
-    """What the runs of one command have in common."""
+class RunSettings:
+    """What the runs of one request have in common.
+
+    Attributes:
+        inputs: files that are read, none of which is ever written over.
+        stops: where the latch of an emergency stop lies, if not in the default folder.
+    """
 
     model: Model | None
     operator: str
@@ -61,12 +64,11 @@ class Runs:
     accept_expired: str
     inputs: tuple[Path, ...]
     overwrite: bool
-    terminal: Callable[[], Terminal | None] = operators_terminal
-    shown: Callable[[str], AbstractContextManager[Show]] = progress
+    feedback: Feedback = LOGGED
     stops: Path | None = None
 
     @contextlib.contextmanager
-    def finished(self, plan: Plan, bench: BenchFile, out: Path | None) -> Iterator[Finished]:
+    def carry_out(self, plan: Plan, bench: BenchFile, out: Path | None) -> Iterator[FinishedRun]:
         """Carry it out and write its reports; the folder is this command's until the block ends."""
         stop = StopRequest()
         request = RunRequest(
@@ -75,7 +77,7 @@ class Runs:
             out=Path(),
             model=self.model,
             operator=self.operator,
-            terminal=self.terminal(),
+            terminal=self.feedback.terminal(),
             confirmed_by=self.confirmed_by,
             accept_expired=self.accept_expired,
             hazard_confirmed_by=self.hazard_confirmed_by,
@@ -94,27 +96,24 @@ class Runs:
             ) as place,
             stop.by_signals(),  # from here to the result a signal only asks: nothing measured is lost
         ):
-            run = self._carried_out(request, place, stop)
+            run = self._carry_out(request, place, stop)
             if run.outcome.error is not None:
-                complain("error", str(run.outcome.error))
+                self.feedback.complain(str(run.outcome.error))
             yield run
 
-    def _carried_out(self, request: RunRequest, place: ResultsFolder, stop: StopRequest) -> Finished:
+    def _carry_out(self, request: RunRequest, place: ResultsFolder, stop: StopRequest) -> FinishedRun:
         plan, bench = request.plan, request.bench
         request.out, request.replaces = place.folder, place.stale
         remark = remark_on_room(plan, place.folder)
         if remark:
-            warn(remark)
-        with self.shown(f"{plan.name} on {bench.name}{_keys(request)}") as tell:
-            request.progress = lambda share, text: tell(text, share)
-            outcome = carry_out(request, HOLDER, keeps=[place.lock])
-        with self.shown(f"{plan.name} on {bench.name}") as tell:
-            result = _Conclusion(place, outcome, stop).write(tell)
-        return Finished(outcome, result, place.folder)
-
-
-def _keys(request: RunRequest) -> str:
-    return f" ({KEYS})" if request.terminal is not None else ""
+            self.feedback.warn(remark)
+        keys = f" ({self.feedback.keys})" if request.terminal is not None else ""
+        with self.feedback.progress(f"{plan.name} on {bench.name}{keys}") as show:
+            request.progress = lambda share, text: show(text, share)
+            outcome = carry_out_run(request, HOLDER, keeps=[place.lock])
+        with self.feedback.progress(f"{plan.name} on {bench.name}") as show:
+            result = _Conclusion(place, outcome, stop).write(show)
+        return FinishedRun(outcome, result, place.folder)
 
 
 class _Conclusion:

@@ -1,0 +1,106 @@
+"""What a use case reports while it works, to whoever asked for it."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+from collections.abc import Iterable, Iterator
+from contextlib import AbstractContextManager
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from hil.core.recording import Recording
+    from hil.engine.ipc.ipc import Terminal
+
+logger = logging.getLogger(__name__)
+
+
+class Show(Protocol):
+    """Shows what is being done, and how much of it is done if that is known (0 to 1)."""
+
+    def __call__(self, text: str, share: float | None = None) -> None:
+        """Show it."""
+
+
+class Feedback(Protocol):
+    """Where a use case reports to, and who answers there: a terminal, a service, a log.
+
+    Attributes:
+        keys: what the operator may type during a run, for the progress line.
+    """
+
+    keys: str
+
+    @property
+    def can_ask(self) -> bool:
+        """Whether somebody is there who could answer a question."""
+
+    def progress(self, description: str) -> AbstractContextManager[Show]:
+        """Show the progress of a part of the work."""
+
+    def note(self, text: str) -> None:
+        """Report what was decided or skipped."""
+
+    def warn(self, text: str) -> None:
+        """Report what a person must know though the work goes on."""
+
+    def complain(self, text: str) -> None:
+        """Report an error that the outcome also has."""
+
+    def ask_name(self, question: str, given: str) -> str:
+        """Show a question that a name answers; the name that is given, else the one that is typed, or ''."""
+
+    def terminal(self) -> Terminal | None:
+        """The operator's terminal for the length of a run; None where nobody sits at one."""
+
+
+class LoggedFeedback:
+    """Feedback for callers that show nothing: everything goes to the log, and nobody answers."""
+
+    keys = ""
+    can_ask = False
+
+    @contextlib.contextmanager
+    def progress(self, description: str) -> Iterator[Show]:
+        """Log each text once."""
+        last = ""
+
+        def show(text: str, share: float | None = None) -> None:
+            del share
+            nonlocal last
+            if text != last:
+                last = text
+                logger.info("%s: %s", description, text)
+
+        yield show
+
+    def note(self, text: str) -> None:
+        """Log it."""
+        logger.info(text)
+
+    def warn(self, text: str) -> None:
+        """Log it."""
+        logger.warning(text)
+
+    def complain(self, text: str) -> None:
+        """Log it."""
+        logger.error(text)
+
+    def ask_name(self, question: str, given: str) -> str:
+        """Log the question."""
+        logger.info(question)
+        return given
+
+    def terminal(self) -> Terminal | None:
+        """Nobody's."""
+        return None
+
+
+LOGGED: Feedback = LoggedFeedback()
+
+
+def warn_of_damage(feedback: Feedback, recordings: Iterable[Recording]) -> None:
+    """Report what of recordings was lost or cannot be trusted."""
+    for recording in recordings:
+        for sentence in recording.damage:
+            feedback.warn(f"{recording.source}: {sentence}")

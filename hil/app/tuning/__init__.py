@@ -1,0 +1,1 @@
+"""Tuning: a search on the model, a run that confirms it, runs that refine it."""

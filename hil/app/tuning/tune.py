@@ -1,0 +1,153 @@
+"""From a plan's criteria to a controller; then, if asked for, to a bench."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hil.analysis.diagnosis import Diagnosis
+from hil.analysis.tuning import Effort, RefinementBudget, Tuning, tune
+from hil.app.feedback import LOGGED, Feedback
+from hil.app.interrupts import end_at_second
+from hil.app.requests import TuneRequest
+from hil.app.result_file import Outcome
+from hil.app.results_folder import ResultsFolder, results_in
+from hil.app.run import RunSettings
+from hil.app.tuning.bench_runs import FOLDER, Allowed, WireBench, allowed_on
+from hil.app.tuning.confirmation import OnTheWire, Ran, refuse_unasked, run_tuned
+from hil.app.tuning.refinement import Refined, refine_on
+from hil.app.tuning.search import NAMES, SUMMARY, Search, load_search, write_results
+from hil.core.errors import BadInputError, InterruptError
+from hil.engine import StopRequest
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """What a tuning found, and what came of it on a bench; `stopped`: somebody ended it early."""
+
+    tuning: Tuning
+    ran: Ran | None
+    refined: Refined | None
+    stopped: bool
+
+    @property
+    def exit_code(self) -> int:
+        """0 if every criterion that hangs on the controller passes where it was last tried."""
+        if self.refined is not None:
+            best = self.refined.found.best
+            return self.refined.exit_code or int(best is None or best.worst < 0)
+        if self.ran is None:
+            return int(self.tuning.chosen.worst.worst < 0)
+        if self.ran.exit_code > 1:
+            return self.ran.exit_code
+        return int(not (self.ran.confirmation.agrees and self.ran.confirmation.passed))
+
+
+class Reports:
+    """What a tuning reports between its stages; by default nothing."""
+
+    def found(self, tuning: Tuning, folder: Path, drawn: int) -> None:
+        """The search has ended; `drawn` cars were wanted, the model itself among them."""
+
+    def diagnosed(self, outcome: Outcome[Diagnosis]) -> None:
+        """A run was not as predicted, and was diagnosed."""
+
+
+def tune_controller(
+    request: TuneRequest, feedback: Feedback = LOGGED, reports: Reports | None = None
+) -> Outcome[Tuned]:
+    """Search, and write controller, summary and report; then run and refine as asked for.
+
+    Raises:
+        BadInputError: something cannot be used, nobody consents, or no controller keeps the hard limits.
+        InterruptError: it was interrupted before anything worth keeping was found.
+    """
+    search = load_search(request.search)
+    if request.then_run:
+        refuse_unasked(search.plan)
+    allowed = _allowed(request, search, feedback) if request.refine else None
+    settings = RunSettings(
+        None, request.operator, "", "", "", search.inputs, request.overwrite, feedback=feedback
+    )
+    with results_in(
+        request.out,
+        NAMES,
+        inputs=search.inputs,
+        overwrite=request.overwrite,
+        default="tune",
+        summary=SUMMARY,
+    ) as place:
+        stages = _Stages(request, search, settings, place, StopRequest(), reports or Reports())
+        found, summary = stages.search_on_model()
+        ran = refined = None
+        if request.then_run and not stages.stop.times:
+            ran, summary = stages.run(found)
+        if allowed is not None and not stages.stop.times:
+            refined, summary = stages.refine(found, allowed)
+    return Outcome(Tuned(found, ran, refined, stages.stop.times > 0), summary, place.folder)
+
+
+def _allowed(request: TuneRequest, search: Search, feedback: Feedback) -> Allowed:
+    axle = search.trial.draws[0].model
+    wanted = (request.runs, request.envelope, request.confirm)
+    return allowed_on(search.bench, search.trial, axle, *wanted, feedback)
+
+
+@dataclass(frozen=True)
+class _Stages:
+    request: TuneRequest
+    search: Search
+    settings: RunSettings
+    place: ResultsFolder
+    stop: StopRequest
+    reports: Reports
+
+    def search_on_model(self) -> tuple[Tuning, dict[str, Any]]:
+        """The best controller on the model, with what was written of it."""
+        search, request, stop, feedback = self.search, self.request, self.stop, self.settings.feedback
+        progress = feedback.progress(f"tune {search.plan.name}")
+        with progress as show, stop.by_signals(), stop.telling(end_at_second(stop)):
+            try:
+                found = tune(
+                    search.trial,
+                    seed=request.search.seed,
+                    effort=Effort(starts=request.starts),
+                    processes=request.processes,
+                    show=lambda text, share: show(text, share),
+                    stopped=_stopped(stop, request.at_most),
+                )
+            except BadInputError as error:  # nothing that was tried is worth keeping
+                if not stop.times:
+                    raise
+                feedback.note(str(error))
+                raise InterruptError("interrupted") from error
+            show("figures and report")
+            summary = write_results(search, found, self.place.write)
+        self.reports.found(found, self.place.folder, len(search.trial.draws))
+        return found, summary
+
+    def run(self, found: Tuning) -> tuple[Ran, dict[str, Any]]:
+        """One run with the controller that was found."""
+        plan, model = self.request.search.plan, self.request.search.model
+        wire = OnTheWire(self.search.bench, self.request.differ / 100, self.settings)
+        ran = run_tuned(found, plan, self.place.folder, wire, model, self.reports.diagnosed)
+        return ran, write_results(self.search, found, self.place.write, ran)
+
+    def refine(self, found: Tuning, allowed: Allowed) -> tuple[Refined, dict[str, Any]]:
+        """Runs that refine it."""
+        search, stop = self.search, self.stop
+        axle, place = search.trial.draws[0].model, self.place.folder / FOLDER
+        wire = WireBench(self.request.search.plan, search.trial, axle, allowed, self.settings, place)
+        with stop.by_signals():
+            budget = RefinementBudget(allowed.envelope.runs)
+            feedback, processes = self.settings.feedback, self.request.processes
+            refined = refine_on(wire, found, budget, processes, feedback, lambda: stop.times > 0)
+            return refined, write_results(search, found, self.place.write, refinement=refined)
+
+
+def _stopped(stop: StopRequest, at_most_min: float | None) -> Callable[[], bool]:
+    end_s = float("inf") if at_most_min is None else time.monotonic() + 60 * at_most_min
+    return lambda: stop.times > 0 or time.monotonic() > end_s
