@@ -18,7 +18,7 @@ PACE ?= 1
 SERVICE := out/service
 serve: setup
 	@mkdir -p $(SERVICE); place=$$(mktemp -d); file=$$place/sim.toml; \
-	$$(command -v setsid) $(BIN)/hil sim-bench sim --time-scale $(PACE) --port 0 --bench-file $$file >/dev/null & \
+	$$(command -v setsid) $(BIN)/hil bench sim sim --time-scale $(PACE) --port 0 --bench-file $$file >/dev/null & \
 	bench=$$!; trap 'kill $$bench 2>/dev/null; rm -rf "$$place"' EXIT; trap : INT TERM; \
 	while [ ! -s $$file ]; do kill -0 $$bench || exit 3; sleep 0.2; done; \
 	sed 's/^name = .*/name = "rear-axle"/' $$file > $$place/rear-axle.toml; \

@@ -1,6 +1,6 @@
 """How long an emergency stop takes, from the key to no motor torque.
 
-`python -m benchmarks.emergency_stop [COUNT]`: `hil run` at a pseudo-terminal, `hil sim-bench` in another
+`python -m benchmarks.emergency_stop [COUNT]`: `hil run` at a pseudo-terminal, `hil bench sim` in another
 process in real time; `e` and Enter at random moments with torque on. The key's time is that of the computer,
 the rest are stamps of the stand-in's frames; a stand-in that stood still for longer than `LONGEST_STALL_S`
 shifts them, and its run is repeated.

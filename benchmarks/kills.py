@@ -1,7 +1,7 @@
 """Processes of a run are killed or frozen at random moments with torque on: what bench and data make of it.
 
 `python -m benchmarks.kills [COUNT [OTHERS]]`: COUNT times the process that holds the bench is killed, OTHERS
-times each other fault is tried. `hil sim-bench` is another process in real time, a new one for ten runs. When
+times each other fault is tried. `hil bench sim` is another process in real time, a new one for ten runs. When
 torque is at zero is read from the stamps of the RMCU's own frames, which an observer on its bus has heard: on
 the stand-in's clock. A run that ended before (a machine that stood still trips the RMCU, as it should) is
 tried again; a figure that is too large never is.
@@ -122,7 +122,7 @@ def tried(fault: Fault, count: int) -> tuple[list[Moment], list[float], int, lis
 def at_a_stand_in(fault: Fault, folder: Path, after_s: list[float]) -> tuple[list[Moment], float]:
     """The fault at one stand-in, each time so long after the torque came; its longest own stall, s."""
     file = folder / "bench.toml"
-    command = [HIL, "sim-bench", "sim", "--port", "0", "--bench-file", file]
+    command = [HIL, "bench", "sim", "sim", "--port", "0", "--bench-file", file]
     moments = []
     with subprocess.Popen(
         list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True

@@ -1,4 +1,4 @@
-"""The acceptance plan against `hil sim-bench` in a second process, beside the figures of virtual time.
+"""The acceptance plan against `hil bench sim` in a second process, beside the figures of virtual time.
 
 `python -m benchmarks.second_process [TIME_SCALE]`: with the stamps as they are, in bursts of 2 ms, and with
 single frames stamped up to 50 ms late. Peaks may be 2 % off, band energies 5 %.
@@ -54,7 +54,7 @@ def driven(late: str, time_scale: float, out: Path) -> RunResult:
 def served(time_scale: float, file: Path) -> Iterator[BenchFile]:
     """The bench file of a simulated bench in a process of its own."""
     hil = Path(sys.executable).with_name("hil")
-    command = [hil, "sim-bench", "sim", "--port", "0", "--time-scale", time_scale, "--bench-file", file]
+    command = [hil, "bench", "sim", "sim", "--port", "0", "--time-scale", time_scale, "--bench-file", file]
     with subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL) as process:
         while not file.exists() and process.poll() is None:
             time.sleep(0.1)

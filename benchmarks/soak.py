@@ -1,8 +1,8 @@
 """Hours of bench time in virtual time: memory, time, file size, and what the recording takes afterwards.
 
 `python -m benchmarks.soak [HOURS]` (10): `hil run` in a process of its own, whose memory is looked at every
-few seconds; then `hil export`, `hil report`, `hil verify` and `hil diagnose` of the recording, each with its
-time and its largest memory. Only what was run is printed.
+few seconds; then `hil export`, `hil report`, `hil evidence verify` and `hil diagnose` of the recording, each
+with its time and its largest memory. Only what was run is printed.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ def told(hours: float, folder: Path, memory: list[tuple[float, float]]) -> int:
     after: list[list[str | Path]] = [
         ["export", path, "--out", folder / "r.parquet"],
         ["report", path, "--out", folder / "again"],
-        ["verify", folder / "out"],
+        ["evidence", "verify", folder / "out"],
         ["diagnose", path, "--model", model, "--out", folder / "diagnosis"],
     ]
     for arguments in after:

@@ -1,6 +1,6 @@
 """Fifty viewers of a run that records in real time: does the loop that drives the bench notice them?
 
-`python -m benchmarks.viewers [VIEWERS [TURNS]]`: `hil sim-bench` in a process of its own, `hil serve` with
+`python -m benchmarks.viewers [VIEWERS [TURNS]]`: `hil bench sim` in a process of its own, `hil serve` with
 that bench, and runs on it, in turns without viewers and with them. The run's processes have the first
 processor; the stand-in shares the second with service and viewers, which are niced. Asked: no sample lost, no
 cycle missed, 20 updates a second for each viewer, the 99th percentile of the loop's lateness at most twice

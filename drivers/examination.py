@@ -47,7 +47,7 @@ class Examined:
 
 @runtime_checkable
 class Examinable(Protocol):
-    """A device that can be looked at without changing anything: what `hil doctor` asks.
+    """A device that can be looked at without changing anything: what `hil bench doctor` asks.
 
     A `Device` need not be one. It has been listened for some seconds before; `examine` may wait, by stepping
     the loop.

@@ -1,4 +1,4 @@
-"""A bus that `hil sim-bench` serves, as a python-can interface.
+"""A bus that `hil bench sim` serves, as a python-can interface.
 
 `can.Bus(interface="hil-udp", channel="127.0.0.1:47110")`
 """
@@ -157,7 +157,7 @@ class LoopbackBus(can.BusABC):
                     if kind_of(datagram) is Kind.WELCOME:
                         return welcome_of(datagram)
         raise can.CanInitializationError(
-            f"no simulated bench at {self._address}; start one with 'hil sim-bench'"
+            f"no simulated bench at {self._address}; start one with 'hil bench sim'"
         )
 
     def _put(self, datagram: bytes) -> None:

@@ -15,7 +15,7 @@ from hil.engine import DEFAULT_BENCH, RunRequest, load_bench, run_plan
 from hil.engine.commissioning.sim_bench import with_hidden
 from test_plans import load_plan
 
-#: What the axle has and its model has not, as `hil sim-bench --hide` takes it.
+#: What the axle has and its model has not, as `hil bench sim --hide` takes it.
 HIDDEN = {"backlash": "0.01"}
 MODEL = "axle.toml"
 

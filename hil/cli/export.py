@@ -1,4 +1,4 @@
-"""`hil export`: a recording for other tools."""
+"""`hil export`: a recording or a model for other tools."""
 
 from __future__ import annotations
 
@@ -9,6 +9,10 @@ from hil.app.results_folder import refuse_file, results_in
 from hil.app.run_inputs import command_again, inputs_of
 from hil.cli._output import TERMINAL, console, print_json
 from hil.cli.commands.export import Export
+from hil.core.controller import load_controller
+from hil.core.errors import BadInputError
+from hil.core.files import read_text
+from hil.core.model import load_model
 from hil.core.recording import (
     FRAME_LOGS,
     Recording,
@@ -17,11 +21,19 @@ from hil.core.recording import (
     write_recording,
     written_with,
 )
+from hil.core.shipped import shipped_file
+from hil.fmu import export_fmu
 
 
 def carry_out(options: Export) -> int:
     """Carry the command out; its exit code."""
     out = options.out
+    if out.suffix.lower() == ".fmu":
+        return _fmu(options)
+    if options.controller is not None:
+        raise BadInputError(
+            "--controller goes with an FMU", where="--controller", fix="leave it out, or write --out NAME.fmu"
+        )
     if options.inputs:
         return _inputs(options.recording, out, overwrite=options.overwrite, as_json=options.as_json)
     for file in written_with(out):
@@ -68,4 +80,21 @@ def _inputs(recording: Path, out: Path, *, overwrite: bool, as_json: bool) -> in
     else:
         console().print(f"{', '.join(sorted(files))}: {out}", highlight=False, soft_wrap=True)
         console().print(f"run it again: {again}", highlight=False, markup=False, soft_wrap=True)
+    return 0
+
+
+def _fmu(options: Export) -> int:
+    model = shipped_file(options.recording, "model")
+    read = [model, *([options.controller] if options.controller else [])]
+    refuse_file(options.out, read, overwrite=options.overwrite)
+    controller = None
+    if options.controller:
+        controller = load_controller(options.controller), read_text(options.controller)
+    export_fmu(load_model(model), options.out, controller)
+    asked = "driving_torque_ref_nm" if controller else "motor_torque_ref_nm"
+    if options.as_json:
+        print_json({"file": str(options.out), "fmi": "2.0", "kind": "co-simulation", "input": asked})
+        return 0
+    text = f"{options.out}: FMI 2, co-simulation; input {asked}; computes where eaxle-hil is installed"
+    console().print(text, highlight=False, soft_wrap=True, markup=False)
     return 0

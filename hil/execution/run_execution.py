@@ -116,7 +116,7 @@ class RunExecution(RunningRun):
             return RunEnd("queued", reason=str(refused))
         reason = "" if result is not None else str(refused or f"its process ended with code {code}")
         if result is None and recorded:
-            reason += f"\n  hil recover {self.folder} recovers the recording of what was measured"
+            reason += f"\n  hil evidence recover {self.folder} recovers the recording of what was measured"
         dut = bench.file.dut.get("serial", bench.file.dut.get("name", ""))
         return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
 

@@ -1,4 +1,4 @@
-"""Whether the audit log is as it was written: read when a service begins and ends, and by `hil verify`."""
+"""Whether the audit log is as it was written: read when a service begins and ends, and to verify."""
 
 from __future__ import annotations
 

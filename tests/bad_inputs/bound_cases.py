@@ -21,7 +21,7 @@ _PARTS, _MISTAKES, _COLUMNS, _LARGE_BYTES = 60_000, 20_000, 150_000, 3_000_000_0
 #: command, what names the file, the file in a case's folder, arguments beside the usual ones
 _FURTHER = (
     ("report", "DIR's result.json", "done/result.json", ()),
-    ("verify", "DIR's result.json", "done/result.json", ("done",)),
+    ("evidence verify", "DIR's result.json", "done/result.json", ("done",)),
     ("tune", "--free", "free.toml", ("--free", "free.toml")),
     ("replay", "--segments", "segments.json", ("--segments", "segments.json")),
     ("run", "the bench's DBC", "rmcu.dbc", ()),
@@ -39,7 +39,7 @@ def bound_cases() -> Iterator[Case]:
                 command, argument, what, usual(command, argument), functools.partial(_on, name, change)
             )
     for command, argument, name, more in _FURTHER:
-        arguments = more if command == "verify" else (*usual(command), *more)
+        arguments = more if command == "evidence verify" else (*usual(command), *more)
         for what, change in _SHAPES:
             yield _case(command, argument, what, arguments, functools.partial(_on, name, change))
 
@@ -47,8 +47,8 @@ def bound_cases() -> Iterator[Case]:
 def _case(
     command: str, argument: str, what: str, arguments: tuple[str, ...], prepare: Callable[[Path], None]
 ) -> Case:
-    # To `hil verify` a file that cannot be read is evidence that is not there; a report is made again.
-    allowed = {"verify": (FAILED, REFUSED), "report": (0, FAILED, REFUSED)}.get(command, (REFUSED,))
+    # To verify, a file that cannot be read is evidence that is not there; a report is made again.
+    allowed = {"evidence verify": (FAILED, REFUSED), "report": (0, FAILED, REFUSED)}.get(command, (REFUSED,))
     return Case(command, BOUNDS, f"{argument} is {what}", arguments, allowed, prepare, _LIMITED)
 
 

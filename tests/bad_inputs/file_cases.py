@@ -43,8 +43,8 @@ def file_cases() -> Iterator[Case]:
     for command, argument, name, other in FILE_ARGUMENTS:
         arguments = usual(command, argument)
         swap = functools.partial(_swap, name, other)
-        # To `hil verify` a file that cannot be read is evidence that is not there.
-        allowed = (FAILED, REFUSED) if command == "verify" else (REFUSED,)
+        # To `hil evidence verify` a file that cannot be read is evidence that is not there.
+        allowed = (FAILED, REFUSED) if command == "evidence verify" else (REFUSED,)
         yield _case(command, f"{argument} is {other} by name of {name}", arguments, swap, allowed)
         missing = f"missing{Path(name).suffix}"
         yield _case(command, f"{argument} is missing", with_other(arguments, name, missing))

@@ -27,7 +27,7 @@ def option_cases() -> Iterator[Case]:
             yield _case(command, tried, (*usual(command), *surplus))
     for command in COMMANDS:
         if command != "schema":
-            allowed = (DONE,) if command == "doctor" else (REFUSED,)  # it looks at the default bench
+            allowed = (DONE,) if command == "bench doctor" else (REFUSED,)  # it looks at the default bench
             yield _case(command, "no arguments", (), allowed)
     for command in ("simulate", "export"):  # others make a numbered folder
         arguments = USUAL[command]
@@ -48,8 +48,10 @@ def _contradictions() -> Iterator[Case]:
     yield _case("run", "an operator with control characters", named, (DONE, REFUSED))
     for option in ("--operator", "--yes", "--confirm", "--accept-expired"):
         yield _case("run", f"{option} of 5000 letters", (*usual("run"), option, _LONG))
-    yield _case("reset", "--by of 5000 letters", with_other(usual("reset"), "A. Tester", _LONG))
-    yield _case("sign", "--by of 5000 letters", with_other(usual("sign"), "A. Tester", _LONG))
+    yield _case("bench reset", "--by of 5000 letters", with_other(usual("bench reset"), "A. Tester", _LONG))
+    yield _case(
+        "evidence sign", "--by of 5000 letters", with_other(usual("evidence sign"), "A. Tester", _LONG)
+    )
     yield _case("check", "a plan with an unknown step", usual("check"), prepare=_unknown_step)
     yield _case("report", "a folder without a recording", ("empty",), prepare=_empty_folder)
     yield _case("identify", "a segment that there is not", (*usual("identify"), "--segment", "nowhere"))
@@ -75,11 +77,11 @@ def _contradictions() -> Iterator[Case]:
     yield _case("explain", "a target that is no number", with_other(usual("explain"), _TARGET, f"{_TARGET}x"))
     yield _case("explain", "an effect that there is not", with_other(usual("explain"), "dead_time", "magic"))
     for hidden in ("backlash", "backlash=", "backlash=nan", "backlash=-1", "magic=1", "=1", "backlash=x"):
-        yield _case("sim-bench", f"--hide {hidden}", (*usual("sim-bench"), "--hide", hidden))
+        yield _case("bench sim", f"--hide {hidden}", (*usual("bench sim"), "--hide", hidden))
     for seconds in ("nan", "0", "-1", "x"):  # a very long time is one that it serves
-        yield _case("sim-bench", f"--for {seconds}", (*usual("sim-bench"), "--for", seconds))
-    yield _case("sim-bench", "a transport that there is not", (*usual("sim-bench"), "--transport", "pigeon"))
-    yield _case("sim-bench", "--bench-file is the bench", (*usual("sim-bench"), "--bench-file", "bench.toml"))
+        yield _case("bench sim", f"--for {seconds}", (*usual("bench sim"), "--for", seconds))
+    yield _case("bench sim", "a transport that there is not", (*usual("bench sim"), "--transport", "pigeon"))
+    yield _case("bench sim", "--bench-file is the bench", (*usual("bench sim"), "--bench-file", "bench.toml"))
     for command in ("simulate", "export"):
         for ending in (".xyz", "", ".mcap", ".CSV.gz"):
             arguments = with_other(usual(command), "out.csv", f"out{ending}")

@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.bad_inputs.case import BENCH, DONE, PLACES, REFUSED, Case
 from tests.bad_inputs.commands import WRITING, usual, with_other
 
-_OUTPUT = {"simulate": "out.csv", "export": "out.csv", "export-fmu": "out.fmu", "recover": "out.mcap"}
+_OUTPUT = {"simulate": "out.csv", "export": "out.csv", "evidence recover": "out.mcap"}
 _RESULTS = {
     "run": "recording.mcap",
     "report": "report.html",

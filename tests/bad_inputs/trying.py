@@ -45,7 +45,7 @@ def carry_out(case: Case, inputs: Path, folder: Path) -> Outcome:
 
 def _process(case: Case, work: Path, folder: Path) -> tuple[int | None, str, str, float, float]:
     """Exit code, what was printed, seconds, and the largest resident memory in MB."""
-    line = [HIL, *([case.command] if case.command != "hil" else []), *case.arguments]
+    line = [HIL, *(case.command.split() if case.command != "hil" else []), *case.arguments]
     if case.interruption:  # whoever tries this may ignore signals (nohup); a user's terminal does not
         line = ["env", f"--default-signal={_SIGNALS}", *line]
     if case.shell:

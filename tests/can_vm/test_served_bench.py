@@ -1,4 +1,4 @@
-"""Real frames on emulated controllers: `hil sim-bench` at one end, a run and others' tools at the other.
+"""Real frames on emulated controllers: `hil bench sim` at one end, a run and others' tools at the other.
 
 Inside of the machine that `make test-can-vm` boots, with everything ten times slower than real time: its
 processor is that much slower. Time-outs are scaled alike. simcan0 and simcan1 are two controllers on the bus
@@ -47,7 +47,7 @@ pytestmark = [
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BenchFile]:
     """The bench file of a simulated bench in another process, on the odd controllers."""
     file = tmp_path_factory.mktemp("served") / "net.toml"
-    command = [HIL, "sim-bench", "sim", "--transport", "socketcan", "--time-scale", str(TIME_SCALE),
+    command = [HIL, "bench", "sim", "sim", "--transport", "socketcan", "--time-scale", str(TIME_SCALE),
                "--interface", "simcan1:simcan0", "--interface", "simcan3:simcan2",
                "--bench-file", str(file)]  # fmt: skip
     with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:

@@ -18,7 +18,8 @@ import typer
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 from cryptography.hazmat.primitives.serialization import Encoding, NoEncryption, PrivateFormat, PublicFormat
 
-from hil.cli._app import _COMMANDS, _app_of
+from hil.cli._app import app_of
+from hil.cli._commands import command_names, taken_apart
 from tests.docs.documented import ROOT, Documented, blocks_of, documented
 from tests.docs.test_own_plan import PLANS as PLANS_OF_PAGE
 from tests.hil.cli.test_commands import HIL, hil
@@ -50,16 +51,16 @@ SEQUENCE = "name: mine\nidentify: identification\naccept: acceptance\nrounds: 1\
 TARGETS = '[targets]\n"gain_0kmh.peak_shaft_torque" = 300.0\n'
 SEGMENTS = '{"segments": [{"id": "gain_0kmh", "start_s": 1.0, "step_s": 1.5, "end_s": 2.5}]}'
 #: Without end, or with a question: ended by Ctrl-C, or answered by nobody.
-ENDLESS = ("monitor", "sim-bench")
+ENDLESS = ("bench monitor", "bench sim")
 #: What an exit code other than 0 says of the simulated stand-ins.
 CODES = {
     ("explain",): (0, 1),
     ("campaign",): (0, 1),  # its pass share is not reached by every controller
-    ("verify",): (0, 1),  # nobody has signed yet
+    ("evidence verify",): (0, 1),  # nobody has signed yet
     ("replay",): (0, 1),  # segments of one of two criteria
     ("report",): (0, 1),  # of a run that crashed: it never passes
-    ("monitor",): (0, 2, 130),  # a simulated bench has nothing to monitor
-    ("jog",): (0, 1),
+    ("bench monitor",): (0, 2, 130),  # a simulated bench has nothing to monitor
+    ("bench jog",): (0, 1),
     ("autotune",): (0, 1),
 }
 LINES = documented()
@@ -82,13 +83,14 @@ PAGES = [
 
 @pytest.mark.parametrize("line", LINES, ids=str)
 def test_it_is_a_command_line(line: Documented) -> None:
-    name, *arguments = line.arguments
-    if name == "--server":  # with its URL, before the command
-        _, name, *arguments = arguments
-    if name in ("--install-completion", "--version"):
+    words = list(line.arguments)
+    if words[0] == "--server":  # with its URL, before the command
+        words = words[2:]
+    if words[0] in ("--install-completion", "--version"):
         return
-    assert name in _COMMANDS
-    command = typer.main.get_command(_app_of(name))
+    name, arguments = taken_apart(words)
+    assert name in command_names()
+    command = typer.main.get_command(app_of(name))
     several = [argument for argument in arguments if argument != "--holdout"]
     command.make_context(name, several)
 
@@ -181,18 +183,18 @@ def served() -> Iterator[list[subprocess.Popen[str]]]:
 def test_the_commands_of_a_page_work_one_after_the_other(page, stage, served):
     prepare(page, stage)
     for line in (line for line in LINES if line.page == page):
-        name, *arguments = line.arguments
-        if name in ("--install-completion", "--server"):
+        if line.arguments[0] in ("--install-completion", "--server"):
             continue  # test_completion.py has the script, test_client.py the service; neither is set up here
+        name, arguments = taken_apart(list(line.arguments))
         began = time.monotonic()
-        if name == "sim-bench":
+        if name == "bench sim":
             _end(served)
             served.append(_served(line.arguments))
-        elif name == "monitor":
-            assert _interrupted(line.arguments) in CODES["monitor",]
+        elif name == "bench monitor":
+            assert _interrupted(line.arguments) in CODES["bench monitor",]
         elif name == "serve" and "--add-token" not in arguments:
             assert _interrupted((*line.arguments, "--port", "0")) == 130
-        elif name == "agent":
+        elif name == "bench agent":
             assert _interrupted(line.arguments) == 130
         else:
             _carry_out(name, arguments)
@@ -201,7 +203,11 @@ def test_the_commands_of_a_page_work_one_after_the_other(page, stage, served):
 
 def _carry_out(name: str, arguments: list[str]) -> None:
     done = subprocess.run(
-        [HIL, name, *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL, timeout=600
+        [HIL, *name.split(), *arguments],
+        capture_output=True,
+        text=True,
+        stdin=subprocess.DEVNULL,
+        timeout=600,
     )
     assert "Traceback" not in done.stderr
     assert done.returncode in CODES.get((name,), (0,)), done.stdout + done.stderr

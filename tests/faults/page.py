@@ -24,7 +24,7 @@ where torque was on or came later) · what the run says of the safe state. *Not 
 the device that should confirm it cannot be heard: then the run says so, and the device's own time-out
 (50 ms without a request, 200 ms without the host's heartbeat) is what takes the torque away. An empty
 cell: the fault does not exist there. Every cell also has to name its cause, to leave a recording that is
-readable up to the fault (after `hil recover` if need be), and no traceback.
+readable up to the fault (after `hil evidence recover` if need be), and no traceback.
 """
 _GOES_ON = """\
 What ends no run: single frames lost, doubled, swapped or late; garbage among the frames; a pause of the

@@ -83,7 +83,7 @@ def test_a_base_install_runs_a_plan_and_writes_its_reports(folder: Path) -> None
         (["export", "out/recording.mcap", "--out", "out.csv"], "parquet"),
         (["export", "out/recording.mcap", "--out", "out.mf4"], "mdf"),
         (["serve", "--data", "data"], "service"),
-        (["export-fmu", str(ROOT / "benches" / "three_inertia.toml"), "--out", "a.fmu"], "fmu"),
+        (["export", str(ROOT / "benches" / "three_inertia.toml"), "--out", "a.fmu"], "fmu"),
     ],
 )
 def test_what_is_left_out_names_its_extra(arguments: list[str], extra: str, folder: Path) -> None:

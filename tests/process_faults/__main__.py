@@ -21,7 +21,7 @@ _INTRODUCTION = """\
 # Faults of processes
 
 Made by `make process-faults` (`python -m tests.process_faults --write`), in real time: `hil run` at a
-terminal, the process that holds the bench for it, and `hil sim-bench`; one of them is killed (SIGKILL) or
+terminal, the process that holds the bench for it, and `hil bench sim`; one of them is killed (SIGKILL) or
 frozen (SIGSTOP) in one phase.
 
 A cell says: exit code · for how long the RMCU went on asking the inverter for torque after the fault, ms,

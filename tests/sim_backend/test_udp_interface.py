@@ -152,7 +152,7 @@ def test_what_does_not_fit_is_refused_with_words():
         port = taken.getsockname()[1]
         with pytest.raises(OSError, match="in use"):
             UdpHub(port, 500_000, 1.0)
-    with pytest.raises(can.CanInitializationError, match="no simulated bench at .*'hil sim-bench'"):
+    with pytest.raises(can.CanInitializationError, match="no simulated bench at .*'hil bench sim'"):
         can.Bus(interface="hil-udp", channel=f"127.0.0.1:{port}")
 
 

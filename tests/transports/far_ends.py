@@ -35,7 +35,7 @@ class FarEnd(Protocol):
 
 
 class Served:
-    """A bus as `hil sim-bench` serves it; somebody looks at it while it is opened."""
+    """A bus as `hil bench sim` serves it; somebody looks at it while it is opened."""
 
     def __init__(self, server: BusServer) -> None:
         self.server = server

@@ -66,7 +66,7 @@ def pyxcp() -> Path:
 def place(tmp_path: Path) -> Iterator[Path]:
     """A folder with pyxcp's configuration for a bench that is being served."""
     net = tmp_path / "net.toml"
-    command = [sys.executable, "-c", "from hil.cli import main; main()", "sim-bench", "sim_whole"]
+    command = [sys.executable, "-c", "from hil.cli import main; main()", "bench", "sim", "sim_whole"]
     options = ["--transport", "slcan", "--bench-file", str(net), "--for", "60"]
     with subprocess.Popen([*command, *options], stdout=subprocess.DEVNULL) as served:
         try:

@@ -1,4 +1,4 @@
-"""`hil export`: a recording for other tools."""
+"""`hil export`: a recording or a model for other tools."""
 
 from __future__ import annotations
 
@@ -16,15 +16,29 @@ class Export:
     """Write a recording's channels as CSV, Parquet, MDF4 or MAT, or its frames as BLF, ASC, candump or MDF4.
 
     With --inputs: the files with which the run can be carried out again. What was lost is said.
+
+    A model, with its controller, is written as an FMI 2 co-simulation unit (FMU). The unit computes with this
+    package: where it is used, Python with eaxle-hil has to be installed.
     """
 
-    recording: Annotated[Path, typer.Argument(help=".mcap, .csv, .parquet, .mf4 or .mat")]
+    recording: Annotated[
+        Path,
+        typer.Argument(
+            metavar="SOURCE",
+            help="recording (.mcap, .csv, .parquet, .mf4, .mat); for an FMU, a model by file or name",
+        ),
+    ]
     out: Annotated[
         Path,
         typer.Option(
-            help="file to write: .csv, .parquet, .mf4 or .mat; raw frames: .blf, .asc or .log (candump)"
+            help="file to write: .csv, .parquet, .mf4 or .mat; raw frames: .blf, .asc or .log (candump); "
+            "a model: .fmu"
         ),
     ]
+    controller: Annotated[
+        Path | None,
+        typer.Option(help="controller file for an FMU; without it the FMU's input is motor torque"),
+    ] = None
     frames: Annotated[
         bool, typer.Option("--frames", help="write raw frames, not channels, to .mf4 (ASAM bus logging)")
     ] = False

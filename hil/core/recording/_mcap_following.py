@@ -71,7 +71,9 @@ class FollowedRecording:
             opcode, body = found
             record = mcap.parsed(opcode, body)
             if record is None:
-                raise BadInputError("the recording is broken", where=str(self._path), fix="hil recover")
+                raise BadInputError(
+                    "the recording is broken", where=str(self._path), fix="hil evidence recover"
+                )
             self._position += RECORD_HEAD + len(body)
             if isinstance(record, mcap.Chunk):
                 for inside in records_inside(record.content):

@@ -204,7 +204,7 @@ class BenchFile(Table):
     title: Line = ""
     operator: Annotated[str, Field(max_length=LONGEST_NAME)] = ""
     time_scale: float = Field(
-        1.0, ge=0.001, le=1, description="bench seconds per real second; for `hil sim-bench` only"
+        1.0, ge=0.001, le=1, description="bench seconds per real second; for `hil bench sim` only"
     )
     buses: dict[Name, Bus]
     rmcu: SerializeAsAny[DeviceTable]

@@ -1,4 +1,4 @@
-"""Whether a bench measures what its file limits: asked before a run, by `hil check` and `hil doctor`."""
+"""Whether a bench measures what its file limits: asked before a run, by a check and by the doctor."""
 
 from __future__ import annotations
 

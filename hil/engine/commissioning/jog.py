@@ -147,7 +147,7 @@ finally:
   - ramp_down: {{duration_s: 1}}
 criteria: []
 """,
-        "hil jog",
+        "hil bench jog",
         Path(),
     )
 

@@ -87,7 +87,7 @@ def monitor(request: MonitorRequest) -> View:
         raise BadInputError(
             "is simulated: its buses exist only during a run, so there is nothing to monitor",
             where=printable(file.source, 200),
-            fix="serve it with 'hil sim-bench', and give the bench file that it prints",
+            fix="serve it with 'hil bench sim', and give the bench file that it prints",
         )
     for name, value in (("--every", request.every_s), ("--for", request.for_s)):
         if not value > 0:

@@ -243,7 +243,7 @@ class _Supervisor:
         out = self._request.out
         fixes = [_FIX] if "not confirmed" in said else []
         if recorded:
-            fixes.append(f"hil recover {out} recovers the recording of what was measured")
+            fixes.append(f"hil evidence recover {out} recovers the recording of what was measured")
         fix = "; ".join(fixes)
         what = f"{why}; {said}"
         if self._emergency:

@@ -94,7 +94,7 @@ class Arming:
             raise BenchError(
                 f"the RMCU does not confirm that its torque is off: {why}",
                 where="RMCU",
-                fix="check whether another host requests torque: hil monitor shows the frames",
+                fix="check whether another host requests torque: hil bench monitor shows the frames",
             )
 
     def _leave_old_fault(self) -> None:

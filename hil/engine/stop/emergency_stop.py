@@ -179,9 +179,9 @@ def reset(file: BenchFile, by: str, owner: Path | None = None) -> list[LatchedSt
 
 def _how_to_reset(file: BenchFile, owner: Path | None) -> str:
     if not within_process(file):
-        return f"hil reset {file.source} --by NAME"
+        return f"hil bench reset {file.source} --by NAME"
     if owner is not None:
-        return f"reset it at its service, or: hil reset {file.source} --by NAME --data {owner}"
+        return f"reset it at its service, or: hil bench reset {file.source} --by NAME --data {owner}"
     return "start again: the bench is simulated in this process, and its stop ends with the process"
 
 

@@ -51,7 +51,7 @@ async function open() {
   at("me").textContent = me.tokens ? `${me.name}, ${me.role}` : "";
   if (!await showBenches(decodeURIComponent(location.hash.slice(1)))) {
     at("state").textContent = "No bench yet";
-    at("why").textContent = "Agents bring them: hil agent --server URL";
+    at("why").textContent = "Agents bring them: hil bench agent --server URL";
     setTimeout(open, 2000);
     return;
   }

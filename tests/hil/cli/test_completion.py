@@ -26,7 +26,7 @@ def offered(*words: str) -> set[str]:
         (("run", "acc"), {"acceptance"}),
         (("run", "acceptance", "--ben"), {"--bench"}),
         (("run", "acceptance", "--bench", "pa"), {"paper_car"}),
-        (("doctor", "rear"), {"rear_axle_socketcan"}),
+        (("bench", "doctor", "rear"), {"rear_axle_socketcan"}),
         (("schema", "co"), {"controller"}),
         (("campaign", "rob"), {"robustness"}),
         (("run", "./my"), set()),  # then the shell offers files

@@ -10,7 +10,7 @@ import pytest
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
-from hil.cli._app import _app_of
+from hil.cli._app import app_of
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
 from hil.core.model import load_model
@@ -24,7 +24,7 @@ _FIGURES = {f"{n}.{kind}" for n in ("nyquist", "sensitivity", "trade_off") for k
 
 def invoke(*arguments: object) -> str:
     result = CliRunner().invoke(
-        _app_of("identify", "design"), [str(a) for a in arguments], catch_exceptions=False
+        app_of("identify", "design"), [str(a) for a in arguments], catch_exceptions=False
     )
     assert result.exit_code == 0, result.output
     return result.stdout

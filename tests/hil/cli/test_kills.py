@@ -154,13 +154,13 @@ def readable(folder: Path) -> Recording:
 
 
 def assert_verify_tells_a_cut_off_run_from_a_changed_one(out: Path) -> None:
-    said = hil("verify", out, code=1).stdout
+    said = hil("evidence", "verify", out, code=1).stdout
     assert "was changed" not in said
     assert "agrees with what was recorded before the run was cut off" in said
     result = out / "result.json"
     text = result.read_text()
     result.write_text(text.replace('"complete": false', '"complete": true'))
-    assert "result.json: was changed: it contradicts" in hil("verify", out, code=1).stdout
+    assert "result.json: was changed: it contradicts" in hil("evidence", "verify", out, code=1).stdout
     result.write_text(text)
 
 

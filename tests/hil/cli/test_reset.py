@@ -56,14 +56,14 @@ def test_nobody_arms_the_bench_until_it_is_reset(tmp_path: Path, monkeypatch: py
         monkeypatch.setenv("HOME", str(tmp_path / "another"))
         again = hil("run", tmp_path / "quick.yaml", "--bench", second, "--out", tmp_path / "b", code=3)
         assert "emergency stop since" in again.stderr
-        assert "hil reset" in again.stderr
+        assert "hil bench reset" in again.stderr
         hil(
             "run", tmp_path / "quick.yaml", "--bench", "sim", "--out", tmp_path / "simulated"
         )  # another bench
-        assert "--by is empty" in hil("reset", second, "--by", " ", code=2).stderr
-        done = hil("reset", second, "--by", "A. Tester")
+        assert "--by is empty" in hil("bench", "reset", second, "--by", " ", code=2).stderr
+        done = hil("bench", "reset", second, "--by", "A. Tester")
         assert done.stdout.startswith("reset by A. Tester: emergency stop of 20")
-        assert "no emergency stop is latched" in hil("reset", second, "--by", "A. Tester").stdout
+        assert "no emergency stop is latched" in hil("bench", "reset", second, "--by", "A. Tester").stdout
         hil("run", tmp_path / "quick.yaml", "--bench", second, "--out", tmp_path / "b")
 
 
@@ -77,7 +77,7 @@ def test_a_simulated_bench_of_another_process_is_another_bench(bench: Path, tmp_
         stopped = hil(*arguments, code=3)
         assert "emergency stop: motor_speed_rad_s reached" in stopped.stderr
         assert "its stop ends with the process" in stopped.stderr
-    assert "its service keeps" in hil("reset", bench, "--by", "A. Tester").stdout
+    assert "its service keeps" in hil("bench", "reset", bench, "--by", "A. Tester").stdout
 
 
 @pytest.mark.slow

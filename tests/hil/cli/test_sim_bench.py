@@ -1,4 +1,4 @@
-"""`hil sim-bench` in a process of its own, and `hil run` in another that drives it as hardware."""
+"""`hil bench sim` in a process of its own, and `hil run` in another that drives it as hardware."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def serving(tmp_path, *options):
     """A served bench: its process, and the bench file that connects to it."""
     file = tmp_path / "net.toml"
     file.unlink(missing_ok=True)
-    command = [HIL, "sim-bench", "sim", "--port", "0", "--bench-file", file, *options]
+    command = [HIL, "bench", "sim", "sim", "--port", "0", "--bench-file", file, *options]
     process = subprocess.Popen(
         list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -54,7 +54,7 @@ def test_a_signal_ends_it_cleanly_and_it_says_how_it_went(number, tmp_path):
 
 
 def test_it_ends_by_itself_and_tells_programs_what_it_serves():
-    done = hil("sim-bench", "sim", "--port", "0", "--for", "0.2", "--hide", "backlash=0.01", "--json")
+    done = hil("bench", "sim", "sim", "--port", "0", "--for", "0.2", "--hide", "backlash=0.01", "--json")
     told = json.loads(done.stdout)
     assert told["buses"]["rmcu"]["interface"] == "hil-udp"
     assert told["hidden"][0].startswith("backlash: ")
@@ -71,7 +71,7 @@ def test_it_ends_by_itself_and_tells_programs_what_it_serves():
     ],
 )
 def test_bad_input_is_one_message(arguments, said):
-    assert said in hil("sim-bench", *arguments, code=2).stderr
+    assert said in hil("bench", "sim", *arguments, code=2).stderr
 
 
 @pytest.mark.slow

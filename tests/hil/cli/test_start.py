@@ -11,7 +11,8 @@ import pytest
 from hil.analysis.control_design import DesignSpec
 from hil.analysis.identification import ORDERS
 from hil.cli import commands
-from hil.cli._app import _COMMANDS, _command, guarded
+from hil.cli._app import guarded
+from hil.cli._commands import GROUPS, RENAMED, TOPICS, command_names, command_of
 from hil.core.channels import INPUT
 from tests.hil.cli.test_commands import hil
 
@@ -45,25 +46,49 @@ def modules_of(*arguments):
 
 
 def test_every_command_is_listed_and_every_listed_one_is_there(capsys):
-    modules = {name.replace("-", "_") for name in _COMMANDS}
+    modules = {name.replace("-", "_").replace(" ", "_") for name in command_names()}
     there = {module.name for module in pkgutil.iter_modules(commands.__path__)}
     assert modules == {name for name in there if not name.startswith("_")}
     assert guarded(["--help"]) == 0
     told = capsys.readouterr().out
     assert guarded([]) == 0
     assert capsys.readouterr().out == told
-    assert all(f"  {name} " in told and text in told for name, text in _COMMANDS.items())
+    listed = [(name, text) for commands in TOPICS.values() for name, text in commands.items()]
+    assert all(f"  {name} " in told and text in told for name, text in listed)
+    assert len(listed) <= 20
 
 
-@pytest.mark.parametrize("name", _COMMANDS)
+@pytest.mark.parametrize("group", GROUPS)
+def test_a_group_lists_its_commands(group, capsys):
+    for arguments in ([group], [group, "--help"]):
+        assert guarded(arguments) == 0
+        told = capsys.readouterr().out
+        assert f"Usage: hil {group} COMMAND" in told
+        assert all(f"  {name} " in told and text in told for name, text in GROUPS[group].items())
+    assert guarded([group, "docter"]) == 2
+    assert f"there is no command '{group} docter'" in capsys.readouterr().err
+    assert guarded([next(iter(GROUPS[group])), "--help"]) == 0  # its name alone was a command
+
+
+@pytest.mark.parametrize(("earlier", "name"), RENAMED.items())
+def test_an_earlier_name_works_and_tells_the_new_one(earlier, name, capsys):
+    assert guarded([earlier, "--help"]) == 0
+    told = capsys.readouterr()
+    assert f"Usage: hil {name} " in told.out
+    assert f"note: 'hil {earlier}' is now 'hil {name}'" in told.err
+
+
+@pytest.mark.parametrize("name", command_names())
 def test_the_work_takes_the_options_of_its_command(name):
-    work = inspect.signature(importlib.import_module(f"hil.cli.{name.replace('-', '_')}").carry_out)
-    assert [one.annotation for one in work.parameters.values()] == [_command(name).__name__]
+    work = inspect.signature(
+        importlib.import_module(f"hil.cli.{name.replace('-', '_').replace(' ', '_')}").carry_out
+    )
+    assert [one.annotation for one in work.parameters.values()] == [command_of(name).__name__]
 
 
-@pytest.mark.parametrize("name", _COMMANDS)
+@pytest.mark.parametrize("name", command_names())
 def test_help_imports_nothing_slow(name, capsys):
-    assert guarded([name, "--help"]) == 0
+    assert guarded([*name.split(), "--help"]) == 0
     assert f"hil {name}" in capsys.readouterr().out
 
 
@@ -73,7 +98,7 @@ def test_help_of_a_run_imports_nothing_slow():
 
 def test_options_say_the_defaults_that_the_work_would_take():
     def defaults(name):
-        options = inspect.signature(_command(name)).parameters
+        options = inspect.signature(command_of(name)).parameters
         return {key: option.default for key, option in options.items()}
 
     paper, given = DesignSpec(), defaults("design")

@@ -1,4 +1,4 @@
-"""`hil verify` and `hil sign` on the folder of a run."""
+"""`hil evidence verify` and `hil evidence sign` on the folder of a run."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def run(made: Path, tmp_path: Path) -> Path:
 def verified(capsys, *arguments: object) -> dict[str, str]:
     """What does not hold, by file name; the exit code agrees with it."""
     capsys.readouterr()
-    code = guarded(["verify", *map(str, arguments), "--json"])
+    code = guarded(["evidence", "verify", *map(str, arguments), "--json"])
     told = json.loads(capsys.readouterr().out)
     wrong = {Path(f["file"]).name: f["text"] for f in told["findings"] if not f["holds"]}
     assert (code, told["verified"]) == ((1, False) if wrong else (0, True))
@@ -97,7 +97,7 @@ def test_a_signed_run_and_what_changes_later(run: Path, tmp_path: Path, capsys) 
     key, public = tmp_path / "key", tmp_path / "key.pub"
     key.write_bytes(KEY.private_bytes(Encoding.PEM, PrivateFormat.OpenSSH, NoEncryption()))
     public.write_bytes(KEY.public_key().public_bytes(Encoding.OpenSSH, PublicFormat.OpenSSH))
-    sign = ["sign", str(run), "--key", str(key), "--by", "A. Tester"]
+    sign = ["evidence", "sign", str(run), "--key", str(key), "--by", "A. Tester"]
     assert "has no valid signature" in verified(capsys, run, "--by", public)["run"]
     assert guarded(sign) == 0
     assert verified(capsys, run, "--by", public) == {}
@@ -114,13 +114,13 @@ def test_a_signed_run_and_what_changes_later(run: Path, tmp_path: Path, capsys) 
 def test_bad_input_is_one_message(run: Path, tmp_path: Path, capsys) -> None:
     (tmp_path / "key.txt").write_text("no key")
     for arguments, said in (
-        (["verify", tmp_path / "nothing"], "no such file"),
-        (["verify", tmp_path / "key.txt"], "is not a folder, and its name ends in none of"),
-        (["verify", run / "report.pdf", "--by", tmp_path / "key.txt"], "--by goes with a folder"),
-        (["verify", run, "--by", tmp_path / "key.txt"], "is not a public key"),
-        (["sign", run, "--key", tmp_path / "key.txt"], "is not a private key"),
-        (["sign", run / "report.pdf", "--key", tmp_path / "key.txt"], "is not a directory"),
-        (["sign", run, "--key", run / "key"], "the private key is in the folder"),
+        (["evidence", "verify", tmp_path / "nothing"], "no such file"),
+        (["evidence", "verify", tmp_path / "key.txt"], "is not a folder, and its name ends in none of"),
+        (["evidence", "verify", run / "report.pdf", "--by", tmp_path / "key.txt"], "--by goes with a folder"),
+        (["evidence", "verify", run, "--by", tmp_path / "key.txt"], "is not a public key"),
+        (["evidence", "sign", run, "--key", tmp_path / "key.txt"], "is not a private key"),
+        (["evidence", "sign", run / "report.pdf", "--key", tmp_path / "key.txt"], "is not a directory"),
+        (["evidence", "sign", run, "--key", run / "key"], "the private key is in the folder"),
     ):
         assert guarded([str(a) for a in arguments]) == 2
         assert said in capsys.readouterr().err

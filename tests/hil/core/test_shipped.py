@@ -61,7 +61,7 @@ def test_a_bench_file_names_a_shipped_model(tmp_path: Path) -> None:
         ("diagnose", "--model", "NAME", "x.csv"),
         ("explain", "--model", "NAME", "paper_targets"),
         ("simulate", "--model", "NAME", "--input", "x.csv", "--out", "y.csv"),
-        ("export-fmu", "NAME", "--out", "x.fmu"),
+        ("export", "NAME", "--out", "x.fmu"),
     ],
     ids=lambda words: words[0],
 )
@@ -73,5 +73,5 @@ def test_every_command_with_a_model_knows_the_names(command, capsys) -> None:
 
 def test_a_model_by_name_is_a_file_among_the_inputs(tmp_path: Path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)
-    assert guarded(["export-fmu", "three_inertia", "--out", "unit.fmu"]) == 0
+    assert guarded(["export", "three_inertia", "--out", "unit.fmu"]) == 0
     assert (tmp_path / "unit.fmu").is_file()

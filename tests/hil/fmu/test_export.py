@@ -38,7 +38,7 @@ def command(*arguments: object) -> int:
 
 def test_a_unit_holds_what_it_needs(tmp_path: Path, capsys) -> None:
     out = tmp_path / "axle.fmu"
-    assert command("export-fmu", MODEL, "--controller", CONTROLLER, "--out", out, "--json") == 0
+    assert command("export", MODEL, "--controller", CONTROLLER, "--out", out, "--json") == 0
     assert json.loads(capsys.readouterr().out)["input"] == "driving_torque_ref_nm"
     with zipfile.ZipFile(out) as unit:
         names = unit.namelist()
@@ -46,7 +46,7 @@ def test_a_unit_holds_what_it_needs(tmp_path: Path, capsys) -> None:
     assert {"resources/model.toml", "resources/controller.toml", "binaries/linux64/EAxle.so"} <= set(names)
     assert 'fmiVersion="2.0"' in description
     assert "needs Python with the package eaxle-hil" in description
-    assert command("export-fmu", MODEL, "--out", out) == 2
+    assert command("export", MODEL, "--out", out) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["axle.fmu"]
 
 
@@ -60,7 +60,7 @@ def test_a_unit_holds_what_it_needs(tmp_path: Path, capsys) -> None:
 )
 def test_bad_input_is_one_message(tmp_path: Path, capsys, arguments, said: str) -> None:
     named = [tmp_path / str(a) if str(a).startswith("axle") else a for a in arguments]
-    assert command("export-fmu", *named) == 2
+    assert command("export", *named) == 2
     assert said in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
@@ -76,7 +76,7 @@ def test_fmpy_computes_what_our_kernel_does(tmp_path: Path, controlled: bool) ->
         pytest.skip(str(error))
     unit, found = tmp_path / "axle.fmu", tmp_path / "found.json"
     options = ("--controller", CONTROLLER) if controlled else ()
-    assert command("export-fmu", MODEL, *options, "--out", unit) == 0
+    assert command("export", MODEL, *options, "--out", unit) == 0
     asked = "driving_torque_ref_nm" if controlled else "motor_torque_ref_nm"
     done = subprocess.run(
         [sys.executable, "-c", IN_FMPY, str(unit), asked, str(found)],

@@ -104,7 +104,9 @@ def _past_the_guards(data: Path, change: str) -> None:
 
 
 def _verified(data: Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([*HIL, "verify", str(data)], capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [*HIL, "evidence", "verify", str(data)], capture_output=True, text=True, check=False
+    )
 
 
 def _until_told(service: Served) -> None:

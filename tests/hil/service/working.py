@@ -55,6 +55,6 @@ def begun(
 ) -> subprocess.Popen[str]:
     """The process, whatever it says."""
     environment = {**os.environ, "HIL_STATE": str(state), "HIL_TOKEN": token}
-    command = [*HIL, "agent", "--server", url, "--data", str(data), "--json", *arguments]
+    command = [*HIL, "bench", "agent", "--server", url, "--data", str(data), "--json", *arguments]
     command += [part for bench in benches for part in ("--bench", str(bench))]
     return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)

@@ -117,7 +117,7 @@ def test_asking_to_stop_ends_it():
 def test_a_simulated_bench_has_nothing_to_listen_to():
     with pytest.raises(BadInputError) as caught:
         monitor(MonitorRequest(sim_bench()))
-    assert "hil sim-bench" in caught.value.fix
+    assert "hil bench sim" in caught.value.fix
 
 
 def test_senseless_times_are_refused():

@@ -1,4 +1,4 @@
-"""What `hil sim-bench` serves: the file's bench, effects hidden in it, and the file that connects to it."""
+"""What `hil bench sim` serves: the file's bench, effects hidden in it, and the file that connects to it."""
 
 from __future__ import annotations
 

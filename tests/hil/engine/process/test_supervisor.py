@@ -136,7 +136,7 @@ def test_what_it_read_back_before_it_was_lost_counts(tmp_path: Path):
     assert "safe: confirmed" in str(said)
     said = lost(tmp_path, process(TURNED, CONCLUDED.replace("UNSAFE", '["RMCU: no"]'), then="sys.exit(1)"))
     assert "safe: not confirmed (RMCU: no)" in str(said)
-    assert "hil recover" not in str(said)  # nothing was recorded
+    assert "hil evidence recover" not in str(said)  # nothing was recorded
     assert "cut the drives' power" in str(said)
 
 

@@ -1,4 +1,4 @@
-"""`hil agent` as its users have it: real agents and a real service on loopback, killed and begun again."""
+"""Agents as their users have them: real ones and a real service on loopback, killed and begun again."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from hil.cli._app import guarded
-from hil.cli.commands.agent import Agent
+from hil.cli.commands.bench_agent import BenchAgent
 from hil.core.errors import BadInputError
 from hil.core.locks import lock_on
 from tests.hil.service.served import ASKING, HIL, SHORT, RefusedError, Served, environment_of, served
@@ -216,9 +216,9 @@ def test_what_an_agent_cannot_use_is_said(tmp_path: Path) -> None:
         (["sim"], "", 0.0, "--for is 0"),
     ):
         with pytest.raises(BadInputError, match=said):
-            Agent(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual).carry_out()
+            BenchAgent(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual).carry_out()
     with lock_on(tmp_path), pytest.raises(BadInputError, match="another agent keeps its data here"):
-        Agent(data=tmp_path, bench=["sim"], name="", for_s=None, **usual).carry_out()
+        BenchAgent(data=tmp_path, bench=["sim"], name="", for_s=None, **usual).carry_out()
 
 
 def test_a_service_has_benches_of_its_own_or_says_that_it_has_none(

@@ -28,6 +28,6 @@ def test_it_is_a_fault_until_it_is_reset(tmp_path: Path, monkeypatch: pytest.Mon
     latch(bench, by="the operator", why="smoke", run=tmp_path)
     (finding,) = findings_of_stops(bench)
     assert (finding.severity, "by the operator: smoke" in finding.what) == ("fault", True)
-    assert "hil reset" in finding.fix
+    assert "hil bench reset" in finding.fix
     reset(bench, "A. Tester")
     assert list(findings_of_stops(bench)) == []

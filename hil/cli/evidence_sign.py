@@ -1,4 +1,4 @@
-"""`hil sign`: who approved a folder."""
+"""`hil evidence sign`: who approved a folder."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from hil.app.results_folder import alone_in, refuse_missing
 from hil.app.verification import of_run
 from hil.cli._output import console, print_json
 from hil.cli._streams import complain
-from hil.cli.commands.sign import Sign
+from hil.cli.commands.evidence_sign import EvidenceSign
 from hil.core.errors import BadInputError
 from hil.core.printable import refuse_long
 from hil.core.signatures import fingerprint, private_key, sign_folder
 
 
-def carry_out(options: Sign) -> int:
+def carry_out(options: EvidenceSign) -> int:
     """Carry the command out; its exit code."""
     refuse_long(options.by, "--by")
     refuse_missing(options.folder)

@@ -1,9 +1,9 @@
-"""`hil reset`: a bench may be armed again after an emergency stop."""
+"""`hil bench reset`: a bench may be armed again after an emergency stop."""
 
 from __future__ import annotations
 
 from hil.cli._output import console, print_json
-from hil.cli.commands.reset import Reset
+from hil.cli.commands.bench_reset import BenchReset
 from hil.core.errors import BadInputError
 from hil.core.printable import is_printable, printable, refuse_long
 from hil.engine import load_bench
@@ -11,7 +11,7 @@ from hil.engine.bench.bus_identity import within_process
 from hil.engine.stop.emergency_stop import reset
 
 
-def carry_out(options: Reset) -> int:
+def carry_out(options: BenchReset) -> int:
     """Carry the command out; its exit code."""
     refuse_long(options.by, "--by")
     name = options.by.strip()

@@ -1,4 +1,4 @@
-"""`hil agent`: benches of this machine for a bench service elsewhere."""
+"""`hil bench agent`: benches of this machine for a bench service elsewhere."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SEVERAL = ("--bench", "--server")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Agent:
+class BenchAgent:
     """Drive benches of this machine for a bench service on another machine.
 
     The service holds the queue and the page. The agent works until Ctrl-C or SIGTERM; it then ends runs
@@ -54,6 +54,6 @@ class Agent:
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
         import_python_can()
-        from hil.cli.agent import carry_out
+        from hil.cli.bench_agent import carry_out
 
         return carry_out(self)

@@ -1,4 +1,4 @@
-"""`hil monitor`: channels and bus load live, touching nothing."""
+"""`hil bench monitor`: channels and bus load live, touching nothing."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hil.cli.commands._options import BenchArgument
 
 
 @dataclass(frozen=True, kw_only=True)
-class Monitor:
+class BenchMonitor:
     """Show decoded channels and bus load live; no frame is sent, not even a heartbeat.
 
     Prints a table that updates on a terminal, else a line per update. Exit code: 0 the time of --for is over,
@@ -37,6 +37,6 @@ class Monitor:
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
         import_python_can()
-        from hil.cli.monitor import carry_out
+        from hil.cli.bench_monitor import carry_out
 
         return carry_out(self)

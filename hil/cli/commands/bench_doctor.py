@@ -1,4 +1,4 @@
-"""`hil doctor`: what of a bench is there, what is wrong with it, and what to do."""
+"""`hil bench doctor`: what of a bench is there, what is wrong with it, and what to do."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hil.cli.commands._options import DefaultBenchArgument, JsonObject
 
 
 @dataclass(frozen=True, kw_only=True)
-class Doctor:
+class BenchDoctor:
     """Check which devices are connected and answer; report faults and remedies.
 
     Listens first, then reads from every device. Writes nothing to a device and moves nothing. Exit code: 0 no
@@ -29,6 +29,6 @@ class Doctor:
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
         import_python_can()
-        from hil.cli.doctor import carry_out
+        from hil.cli.bench_doctor import carry_out
 
         return carry_out(self)

@@ -1,4 +1,4 @@
-"""`hil recover`: a whole recording from what a crash left."""
+"""`hil evidence recover`: a whole recording from what a crash left."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hil.cli.commands._options import JsonObject, OverwriteFile
 
 
 @dataclass(frozen=True, kw_only=True)
-class Recover:
+class EvidenceRecover:
     """Recover a recording after a crash, a power cut or a disk fault, and list what is missing.
 
     The input is never written over. A recording that is whole is left as it is. `hil report` makes the report
@@ -30,6 +30,6 @@ class Recover:
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
-        from hil.cli.recover import carry_out
+        from hil.cli.evidence_recover import carry_out
 
         return carry_out(self)

@@ -1,4 +1,4 @@
-"""`hil recover`: a whole recording from what a crash left."""
+"""`hil evidence recover`: a whole recording from what a crash left."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from hil.app.results_folder import alone_in, refuse_file, refuse_missing
 from hil.app.run import NAMES
 from hil.cli._output import console, print_json
-from hil.cli.commands.recover import Recover
+from hil.cli.commands.evidence_recover import EvidenceRecover
 from hil.core.errors import BadInputError
 from hil.core.recording import Missing, Recording, missing_of, read_recording, recover_recording, run_of
 from hil.core.result import RunResult
@@ -18,7 +18,7 @@ from hil.engine import RECORDING
 _RECOVERED = ".recovered.mcap"
 
 
-def carry_out(options: Recover) -> int:
+def carry_out(options: EvidenceRecover) -> int:
     """Carry the command out; its exit code."""
     path = options.source / RECORDING if options.source.is_dir() else options.source
     refuse_missing(path)

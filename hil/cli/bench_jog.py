@@ -1,4 +1,4 @@
-"""`hil jog`: what every sensor said when the axle was turned."""
+"""`hil bench jog`: what every sensor said when the axle was turned."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hil.app.results_folder import results_in
 from hil.cli._output import console, plain_table, print_json, progress
 from hil.cli._streams import complain
 from hil.cli._terminal import operators_terminal
-from hil.cli.commands.jog import Jog
+from hil.cli.commands.bench_jog import BenchJog
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
 from hil.core.printable import printable
@@ -26,7 +26,7 @@ _WORDS = {"right": "right", "wrong": "WRONG", "not_seen": "no motion", "not_ther
 _STYLES = {"right": "green", "wrong": "bold red", "not_seen": "bold red", "not_there": "bold red"}
 
 
-def carry_out(options: Jog) -> int:
+def carry_out(options: BenchJog) -> int:
     """Carry the command out; its exit code."""
     file, stop = load_bench(options.bench), StopRequest()
     request = JogRequest(

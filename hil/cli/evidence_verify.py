@@ -1,4 +1,4 @@
-"""`hil verify`: that reports belong to their recordings, that nothing changed, and who signed."""
+"""`hil evidence verify`: that reports belong to their recordings, that nothing changed, and who signed."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from hil.app.verification import (
     of_signatures,
 )
 from hil.cli._output import console, print_json
-from hil.cli.commands.verify import Verify
+from hil.cli.commands.evidence_verify import EvidenceVerify
 from hil.core.errors import BadInputError
 from hil.core.signatures import public_key
 
 
-def carry_out(options: Verify) -> int:
+def carry_out(options: EvidenceVerify) -> int:
     """Carry the command out; its exit code."""
     for source in options.sources:
         refuse_missing(source)

@@ -1,4 +1,4 @@
-"""`hil agent`: benches of this machine for a bench service elsewhere, until somebody ends it."""
+"""`hil bench agent`: benches of this machine for a bench service elsewhere, until somebody ends it."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from hil.agent import AgentRequest, work
 from hil.app.interrupts import EXIT_CODE
 from hil.cli._output import print_json
 from hil.cli._remote_run import TOKEN
-from hil.cli.commands.agent import Agent
+from hil.cli.commands.bench_agent import BenchAgent
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from hil.engine import StopRequest
 
 
-def carry_out(options: Agent) -> int:
+def carry_out(options: BenchAgent) -> int:
     """Carry the command out; its exit code."""
     server = options.server
     data = options.data

@@ -1,4 +1,4 @@
-"""`hil monitor`: a table that renews itself, or a line at each look."""
+"""`hil bench monitor`: a table that renews itself, or a line at each look."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rich.text import Text
 
 from hil.app.interrupts import EXIT_CODE
 from hil.cli._output import console, plain_table, print_json
-from hil.cli.commands.monitor import Monitor
+from hil.cli.commands.bench_monitor import BenchMonitor
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
 from hil.engine.commissioning.monitor import ChannelView, MonitorRequest, View, monitor
@@ -22,7 +22,7 @@ from hil.engine.commissioning.monitor import ChannelView, MonitorRequest, View, 
 _EVERY_S = {True: 0.2, False: 1.0}  # on a terminal, and elsewhere
 
 
-def carry_out(options: Monitor) -> int:
+def carry_out(options: BenchMonitor) -> int:
     """Carry the command out; its exit code."""
     file = load_bench(options.bench)
     terminal = sys.stdout.isatty() and not options.as_json

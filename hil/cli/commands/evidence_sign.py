@@ -1,4 +1,4 @@
-"""`hil sign`: who approved a folder."""
+"""`hil evidence sign`: who approved a folder."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from hil.cli.commands._options import JsonObject
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sign:
-    """Sign every file of a run's directory; write two files there, which hil verify --by checks.
+class EvidenceSign:
+    """Sign every file of a run's directory; write two files there, which hil evidence verify --by checks.
 
     A directory that does not verify is not signed (exit code 1). Several persons can sign.
     """
@@ -33,6 +33,6 @@ class Sign:
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
-        from hil.cli.sign import carry_out
+        from hil.cli.evidence_sign import carry_out
 
         return carry_out(self)

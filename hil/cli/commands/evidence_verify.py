@@ -1,4 +1,4 @@
-"""`hil verify`: that report, recording and signature belong together, and that nothing changed."""
+"""`hil evidence verify`: that report, recording and signature belong together, and that nothing changed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hil.cli.commands._options import JsonObject
 
 
 @dataclass(frozen=True, kw_only=True)
-class Verify:
+class EvidenceVerify:
     """Verify that reports match their recording and that no file changed; check signatures.
 
     In the directory of a bench service (`hil serve --data`) it verifies the audit log: no row was changed,
@@ -36,6 +36,6 @@ class Verify:
 
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
-        from hil.cli.verify import carry_out
+        from hil.cli.evidence_verify import carry_out
 
         return carry_out(self)

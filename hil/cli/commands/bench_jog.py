@@ -1,4 +1,4 @@
-"""`hil jog`: turns the axle a little and checks every sign."""
+"""`hil bench jog`: turns the axle a little and checks every sign."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hil.cli.commands._options import BenchArgument
 
 
 @dataclass(frozen=True, kw_only=True)
-class Jog:
+class BenchJog:
     """Turn the axle at low torque and check the sign of every torque and speed.
 
     The axle moves: an operator is asked before, and whether the wheels turned forwards. Exit code: 0 every
@@ -39,6 +39,6 @@ class Jog:
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
         import_python_can()
-        from hil.cli.jog import carry_out
+        from hil.cli.bench_jog import carry_out
 
         return carry_out(self)

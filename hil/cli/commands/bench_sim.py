@@ -1,4 +1,4 @@
-"""`hil sim-bench`: the simulated bench as a process of its own."""
+"""`hil bench sim`: the simulated bench as a process of its own."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SEVERAL = ("--hide", "--interface")
 
 
 @dataclass(frozen=True, kw_only=True)
-class SimBench:
+class BenchSim:
     """Serve the simulated RMCU and dynos in real time to `hil run` and other processes.
 
     Prints the bench file that connects to it, and serves until Ctrl-C or SIGTERM. Exit code: 0 the
@@ -66,6 +66,6 @@ class SimBench:
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
         import_python_can()
-        from hil.cli.sim_bench import carry_out
+        from hil.cli.bench_sim import carry_out
 
         return carry_out(self)

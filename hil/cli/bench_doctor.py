@@ -1,4 +1,4 @@
-"""`hil doctor`: tells people and programs how a bench was found."""
+"""`hil bench doctor`: tells people and programs how a bench was found."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from rich.table import Table
 
 from hil.cli._default_bench import bench_or_own
 from hil.cli._output import console, plain_table, print_json, progress
-from hil.cli.commands.doctor import Doctor
+from hil.cli.commands.bench_doctor import BenchDoctor
 from hil.core.printable import printable
 from hil.engine import StopRequest, load_bench
 from hil.engine.commissioning.doctor import BusFacts, DoctorRequest, Examination, examine_bench
@@ -21,7 +21,7 @@ _VERDICTS = {
 _COUNTERS = {"state": "", "transmit_errors": "transmit errors ", "receive_errors": "receive errors "}
 
 
-def carry_out(options: Doctor) -> int:
+def carry_out(options: BenchDoctor) -> int:
     """Carry the command out; its exit code."""
     file = load_bench(bench_or_own(options.bench))
     with progress(f"checking {file.name}") as show:

@@ -1,4 +1,4 @@
-"""`hil sim-bench`: the simulated bench in wall-clock time, until somebody ends it."""
+"""`hil bench sim`: the simulated bench in wall-clock time, until somebody ends it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hil.app.interrupts import EXIT_CODE
 from hil.app.results_folder import refuse_file
 from hil.cli._named_values import named_values
 from hil.cli._output import print_json
-from hil.cli.commands.sim_bench import SimBench
+from hil.cli.commands.bench_sim import BenchSim
 from hil.core.errors import BadInputError
 from hil.core.files import write_atomically
 from hil.core.printable import printable
@@ -23,7 +23,7 @@ from hil.engine.commissioning.sim_bench import (
 )
 
 
-def carry_out(options: SimBench) -> int:
+def carry_out(options: BenchSim) -> int:
     """Carry the command out; its exit code."""
     hide = tuple(options.hide or ())
     transport = options.transport

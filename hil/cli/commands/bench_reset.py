@@ -1,4 +1,4 @@
-"""`hil reset`: a bench may be armed again after an emergency stop."""
+"""`hil bench reset`: a bench may be armed again after an emergency stop."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hil.cli.commands._options import BenchArgument, JsonObject
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reset:
+class BenchReset:
     """Reset an emergency stop, so that the bench can be armed again. Nothing moves.
 
     First make sure that nobody is in danger and that the cause of the stop is removed.
@@ -39,6 +39,6 @@ class Reset:
     def carry_out(self) -> int:
         """Carry the command out; its exit code."""
         import_python_can()
-        from hil.cli.reset import carry_out
+        from hil.cli.bench_reset import carry_out
 
         return carry_out(self)
