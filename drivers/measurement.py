@@ -100,17 +100,17 @@ class SampleAssembler:
         for waiting in [base, *(one for one in self._waiting.values() if one is not base)]:
             if waiting.clock is None:
                 continue
-            said = waiting.clock.parted_from(None if waiting is self._base else self._base.clock)
+            text = waiting.clock.parted_from(None if waiting is self._base else self._base.clock)
             if waiting.count and waiting.count.stepped_s:
-                said = f"a gap is {waiting.count.stepped_s * 1e3:.1f} ms off a whole number of samples"
+                text = f"a gap is {waiting.count.stepped_s * 1e3:.1f} ms off a whole number of samples"
             if waiting.moved_s:
-                said = f"its samples and the rows have moved by {abs(waiting.moved_s) * 1e3:.0f} ms at once"
-            if said:
+                text = f"its samples and the rows have moved by {abs(waiting.moved_s) * 1e3:.0f} ms at once"
+            if text:
                 blamed = self._less_in_time(waiting)
                 if blamed is not waiting:
-                    said = f"its counter deviates from the bench clock; beside {waiting.stream.label}: {said}"
+                    text = f"its counter deviates from the bench clock; beside {waiting.stream.label}: {text}"
                 raise BenchError(
-                    f"{blamed.stream.label}: {said}",
+                    f"{blamed.stream.label}: {text}",
                     where=blamed.stream.where,
                     fix="check for lost frames, a restarted device, and the adapter's time stamps",
                 )

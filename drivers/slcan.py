@@ -140,8 +140,8 @@ def _message(line: bytes, stamp: float) -> can.Message | None:
         if kind == "s" and text[1:2] in _STATES:
             return errors.frame(stamp, *_STATES[text[1]], received=int(text[2:5]), sent=int(text[5:8]))
         if kind == "e":
-            told = [_ERRORS[letter] for letter in text[2 : 2 + int(text[1])] if letter in _ERRORS]
-            return errors.joined(stamp, told)
+            texts = [_ERRORS[letter] for letter in text[2 : 2 + int(text[1])] if letter in _ERRORS]
+            return errors.joined(stamp, texts)
         if kind == "\a":
             return errors.frame(stamp, errors.CONTROLLER, errors.TRANSMIT_OVERFLOW)
     except (ValueError, IndexError):

@@ -197,8 +197,8 @@ class Wire:
     def remarks(self) -> list[str]:
         """What was seen on the bus so far that ends no run but belongs to its record."""
         lost = getattr(self._bus, "lost", 0)
-        told = [f"{what} were left out" for what in sorted(self._left_out)] + self._health.remarks
-        return [*told, f"{lost} frames were lost on the way"] if lost else told
+        lines = [f"{what} were left out" for what in sorted(self._left_out)] + self._health.remarks
+        return [*lines, f"{lost} frames were lost on the way"] if lost else lines
 
     def check(self) -> None:
         """Look at what the adapter says of the bus; each fault is raised once.

@@ -21,7 +21,7 @@ def identification_facts(recording: Recording, result: RunResult | None) -> tupl
     for identity in identities:
         part = identity.name.rpartition(": ")[0]
         parts.setdefault(f"{identity.device}, {part}" if part else identity.device, []).append(identity)
-    return tuple(Fact(part, _told(found), _state(found)) for part, found in parts.items())
+    return tuple(Fact(part, _in_words(found), _state(found)) for part, found in parts.items())
 
 
 def _identity(key: str, value: str) -> Identity:
@@ -29,12 +29,12 @@ def _identity(key: str, value: str) -> Identity:
     return Identity(device=device, name=name, value=value)
 
 
-def _told(identities: list[Identity]) -> str:
-    said = []
+def _in_words(identities: list[Identity]) -> str:
+    lines = []
     for identity in identities:
         text = f"{identity.name.rpartition(': ')[2]} {identity.value or 'not said'}"
-        said.append(text if identity.matches else f"{text} ({identity.expected} was expected)")
-    return ", ".join(said)
+        lines.append(text if identity.matches else f"{text} ({identity.expected} was expected)")
+    return ", ".join(lines)
 
 
 def _state(identities: list[Identity]) -> str:

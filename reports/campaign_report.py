@@ -162,15 +162,15 @@ def _distributions(found: Findings) -> dict[str, Drawing]:
 
 def _in_words(first: OfCriterion, each: dict[str, OfCriterion]) -> str:
     """For who cannot see the histogram."""
-    told = [f"Histogram of {first.id} in {first.unit}."]
+    lines = [f"Histogram of {first.id} in {first.unit}."]
     for name, one in each.items():
         low, middle, high = (quantities.number(one.quantile(share)) for share in (0.0, 0.5, 1.0))
-        told.append(f"{name or 'Values'}: from {low} to {high}, median {middle}.")
+        lines.append(f"{name or 'Values'}: from {low} to {high}, median {middle}.")
     if first.upper is not None:
-        told.append(f"At most {quantities.nominal(first.upper)}.")
+        lines.append(f"At most {quantities.nominal(first.upper)}.")
     if first.lower is not None:
-        told.append(f"At least {quantities.nominal(first.lower)}.")
-    return " ".join(told)
+        lines.append(f"At least {quantities.nominal(first.lower)}.")
+    return " ".join(lines)
 
 
 def _correlations(one: OfController, found: Findings) -> Map:

@@ -31,14 +31,14 @@ def comparison_pdf(found: Comparison) -> bytes:
 def lead(found: Comparison) -> str:
     """How far each run is from the first, in one sentence."""
     first, *others = found.runs
-    told = [
+    lines = [
         f"{run.name} {quantities.share(distance)}"
         for run, distance in zip(others, found.distances[1:], strict=True)
         if distance is not None
     ]
-    if not told:
+    if not lines:
         return f"No criterion has a value in every run; the reference is {first.name}."
-    return f"Mean distance of the criteria from {first.name}: {', '.join(told)}."
+    return f"Mean distance of the criteria from {first.name}: {', '.join(lines)}."
 
 
 def value_text(row: CriterionRow, run: int) -> str:

@@ -199,7 +199,7 @@ def _counts(result: RunResult) -> list[str]:
     counts = count_by_verdict(result.criteria)
     failed = sum(criterion.verdict == "fail" for criterion in result.criteria)
     unsettled = counts["did_not_settle"]
-    told = {
+    facts = {
         f"{failed} failed.": failed,
         f"{counts['undecided']} undecided.": counts["undecided"],
         f"{counts['not_judged']} not judged: {_why_not_judged(result)}.": counts["not_judged"],
@@ -207,7 +207,7 @@ def _counts(result: RunResult) -> list[str]:
         f"{counts['informational']} informational.": counts["informational"],
         f"{unsettled} {'response' if unsettled == 1 else 'responses'} did not settle.": unsettled,
     }
-    return [*sentences, *(sentence for sentence, count in told.items() if count)]
+    return [*sentences, *(sentence for sentence, count in facts.items() if count)]
 
 
 def _why_not_judged(result: RunResult) -> str:

@@ -54,12 +54,12 @@ def criteria_table(result: RunResult) -> CriteriaTable:
     definitions = list(dict.fromkeys(c.definition for c in result.criteria if c.definition))
     segments = {segment.id: segment for segment in result.segments}
     grouped: dict[str, list[CriterionRow]] = {}
-    told: set[str] = set()  # a sensor that fails five criteria is told once
+    known: set[str] = set()  # a sensor that fails five criteria is told once
     for criterion in result.criteria:
         title = _group_title(criterion, segments)
         number = definitions.index(criterion.definition) + 1 if criterion.definition else 0
-        grouped.setdefault(title, []).append(_row(criterion, number, told))
-        told.update({criterion.reason} - {""})
+        grouped.setdefault(title, []).append(_row(criterion, number, known))
+        known.update({criterion.reason} - {""})
     groups = tuple(CriterionGroup(title, tuple(rows)) for title, rows in grouped.items())
     return CriteriaTable(groups, tuple(definitions))
 

@@ -178,13 +178,13 @@ def _figures(before: ChannelGap, after: ChannelGap) -> tuple[float, float, float
 
 def _what_stays(found: Diagnosis) -> str:
     """What a name leaves, and where it makes things worse."""
-    said = ""
+    words = ""
     if found.open_channels:
         names = ", ".join(channel_label(c).text.lower() for c in found.open_channels)
-        said += f" What stays is more than noise: {names}."
+        words += f" What stays is more than noise: {names}."
     if found.worse:
-        said += f" Made worse: {'; '.join(found.worse[:_MOST_WORSE])}."
-    return said
+        words += f" Made worse: {'; '.join(found.worse[:_MOST_WORSE])}."
+    return words
 
 
 def _maps(found: Diagnosis) -> tuple[Map, ...]:

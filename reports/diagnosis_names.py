@@ -19,13 +19,13 @@ def effects_text(found: Diagnosis) -> str:
     if not found.effects:
         return "None."
     effects = [EFFECTS[id_] for id_ in dict.fromkeys(e.use.id for e in found.effects)]
-    said = " ".join(f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in effects)
+    text = " ".join(f"{e.title}: {e.summary} Known by: {_lowered(e.signature)}" for e in effects)
     drops = [e.drop for e in found.effects if e.drop is not None]
     if not drops or found.by_chance is None:
-        return said
+        return text
     chance = quantities.number(float(f"{found.by_chance:.2g}"), significant=2)
     return (
-        f"{said} Evidence: each named effect reduces the squared error by {_evidence(min(drops))} noise "
+        f"{text} Evidence: each named effect reduces the squared error by {_evidence(min(drops))} noise "
         f"variances or more; false-alarm level {chance}, the largest of {BOOTSTRAP_DRAWS} noise draws."
     )
 

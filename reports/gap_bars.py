@@ -44,11 +44,11 @@ class GapBars:
 
     def alternative_text(self) -> str:
         """The picture in words."""
-        said = [
+        lines = [
             f"{r.name}: before {_percent(r.before)}, after {_percent(r.after)}, noise {_percent(r.noise)}"
             for r in self.rows
         ]
-        return f"{self.title.plain()}. " + "; ".join(said) + "."
+        return f"{self.title.plain()}. " + "; ".join(lines) + "."
 
     def as_svg(self) -> bytes:
         """The picture in the house style for paper, a whole text line wide or half of one."""

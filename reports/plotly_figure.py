@@ -87,9 +87,9 @@ def _edges(trace: Trace, outline: Outline, figure: Figure) -> list[dict[str, Any
     whole = _trace(trace, figure) | {"x": _packed(outline.x), "legendgroup": trace.label.as_html()}
     whole["line"] = {"width": 1.0}
     unit = html.escape(quantities.unit(figure.y_unit))
-    said = f"%{{y:.4~g}}{quantities.THIN}{unit}"
-    low = {"y": _packed(outline.low), "showlegend": False, "hovertemplate": f"lowest {said}"}
-    high = {"y": _packed(outline.high), "fill": "tonexty", "hovertemplate": f"highest {said}"}
+    words = f"%{{y:.4~g}}{quantities.THIN}{unit}"
+    low = {"y": _packed(outline.low), "showlegend": False, "hovertemplate": f"lowest {words}"}
+    high = {"y": _packed(outline.high), "fill": "tonexty", "hovertemplate": f"highest {words}"}
     return [whole | low, whole | high]
 
 

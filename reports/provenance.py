@@ -202,7 +202,7 @@ def simulated(recording: Recording) -> bool:
 def calibration_facts(recording: Recording, result: RunResult | None = None) -> tuple[Fact, ...]:
     """Until when each sensor's calibration is valid at the start of the run, and who let it run out."""
     accepted = result.accepted_expired if result else None
-    told = f", accepted by {accepted.by}: {accepted.reason}" if accepted else ""
+    words = f", accepted by {accepted.by}: {accepted.reason}" if accepted else ""
     started = _date(recording.metadata.get("run", {}).get("started_at", ""))
     facts = []
     for sensor, until in recording.metadata.get("calibration", {}).items():
@@ -210,7 +210,7 @@ def calibration_facts(recording: Recording, result: RunResult | None = None) -> 
         if started is None or expires is None:
             facts.append(Fact(_words(sensor), until))
         elif expires < started:
-            facts.append(Fact(_words(sensor), f"{until}, expired before the run{told}", "bad"))
+            facts.append(Fact(_words(sensor), f"{until}, expired before the run{words}", "bad"))
         else:
             facts.append(Fact(_words(sensor), until, "good"))
     return tuple(facts)
@@ -288,5 +288,5 @@ def _moment(text: str) -> str:
     except ValueError:
         return text
     zone = moment.strftime("%z")
-    told = moment.replace(tzinfo=None).isoformat(" ", "milliseconds" if moment.microsecond else "seconds")
-    return f"{told} {zone[:3]}:{zone[3:5]}" if zone else told
+    words = moment.replace(tzinfo=None).isoformat(" ", "milliseconds" if moment.microsecond else "seconds")
+    return f"{words} {zone[:3]}:{zone[3:5]}" if zone else words

@@ -132,8 +132,8 @@ class Overlay:
         """Where the criteria's peaks are, as far as the figure reaches."""
         last_s = figure.x_range[1] if figure.x_range else np.inf
         marks = [mark for mark in map(self._peak, self._members) if mark is not None and mark.x <= last_s]
-        told = "; ".join(mark.label for mark in marks)
-        return replace(figure, marks=tuple(marks), caption=f"○ {told}." if marks else figure.caption)
+        text = "; ".join(mark.label for mark in marks)
+        return replace(figure, marks=tuple(marks), caption=f"○ {text}." if marks else figure.caption)
 
     def _peak(self, member: Member) -> Mark | None:
         """The largest sample from the step on, where a criterion asks for it."""

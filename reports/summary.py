@@ -96,9 +96,9 @@ def _figure(
         if figure is not None:
             row = _row(rows[criterion.id])
             word = "Not met" if row.unmet else "Least margin"
-            said = [f"{row.value}", f"limit {row.limit}" + (f" ({criterion.below})" * bool(criterion.below))]
-            said += [f"margin {row.margin}"] if row.margin != quantities.DASH else []
+            lines = [f"{row.value}", f"limit {row.limit}" + (f" ({criterion.below})" * bool(criterion.below))]
+            lines += [f"margin {row.margin}"] if row.margin != quantities.DASH else []
             title = _with_symbol(f"{word}: {row.title}, {row.segment}")
-            caption = f"{row.segment}: {', '.join(said)}. {figure.caption}".strip()
+            caption = f"{row.segment}: {', '.join(lines)}. {figure.caption}".strip()
             return replace(figure, title=title, caption=caption, wide=True)
     return None

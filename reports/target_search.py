@@ -113,15 +113,15 @@ def _rivals(found: Explanation) -> Table:
 
 def _values(rival: Rival) -> str:
     """The numbers of a rival in a sentence."""
-    told = []
+    lines = []
     for id_, values in rival.guess.effects.items():
         units = {p.name: p.unit for p in EFFECTS[id_].parameters}
         numbers = ", ".join(f"{n} {quantities.quantity(v, units[n])}" for n, v in values.items())
-        told.append(f"{EFFECTS[id_].title}: {numbers}.")
+        lines.append(f"{EFFECTS[id_].title}: {numbers}.")
     if rival.guess.held:
         numbers = ", ".join(f"{n} {quantities.number(v)}" for n, v in rival.guess.held.items())
-        told.append(f"The RMCU keeps {numbers}, whatever is written to it.")
-    return " ".join(told)
+        lines.append(f"The RMCU keeps {numbers}, whatever is written to it.")
+    return " ".join(lines)
 
 
 def _conditions(conditions: tuple[Condition, ...]) -> Table:

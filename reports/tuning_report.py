@@ -259,9 +259,9 @@ def _binding_text(found: Tuning) -> str:
         for name, (low, high) in found.trial.free.free.items()
         if min(found.chosen.values[name] - low, high - found.chosen.values[name]) < 1e-3 * (high - low)
     ]
-    told = "The vehicles with the least margins and the binding criterion of each."
+    sentence = "The vehicles with the least margins and the binding criterion of each."
     names = ", ".join(PARAMETERS[name].words for name in at_bound)
-    return f"{told} At a bound: {names}; wider bounds may give more." if at_bound else told
+    return f"{sentence} At a bound: {names}; wider bounds may give more." if at_bound else sentence
 
 
 def _binding(found: Tuning) -> Table:

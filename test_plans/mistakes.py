@@ -56,5 +56,5 @@ class PlanMistakes:
 
 def _on_a_line(mistake: BadInputError, file: str) -> str:
     place = mistake.where.removeprefix(f"{file}: ")
-    said = f"{mistake.what}; {mistake.fix}" if mistake.fix else mistake.what
-    return f"{place}: {said}"
+    text = f"{mistake.what}; {mistake.fix}" if mistake.fix else mistake.what
+    return f"{place}: {text}"

@@ -105,7 +105,7 @@ class Master:
         self.ask(Command.SET_MTA, "xxBI", extension, address)
         return self._uploaded(count)
 
-    def said_of_itself(self) -> str:
+    def own_name(self) -> str:
         """The text by which the slave names itself; '' if it has none.
 
         Raises:

@@ -147,7 +147,7 @@ class RamMonitor:
         try:
             self._connect()
             found["software"] = self._setup.software()
-            found["station"] = self._master.said_of_itself()
+            found["station"] = self._master.own_name()
         except BenchError:  # who does not say so may measure all the same; silence is told by `come_up`
             pass
         return {name: text for name, text in found.items() if text}

@@ -302,7 +302,7 @@ class RmcuDriver:
         """The value of the reply, and the one that was sent, as its signal rounds it."""
         layout = self._layouts["RMCU_ParameterWrite"]
         payload = int(layout.encode(Command=command, Index=index, Value=value)[0])
-        if not self._asked(payload, command, index):
+        if not self._ask_until_answered(payload, command, index):
             raise BenchError(
                 f"no reply to parameter '{name}' within {_REPLY_TIMEOUT_S:g} s",
                 where="RMCU",
@@ -316,7 +316,7 @@ class RmcuDriver:
             raise BenchError(f"refused parameter '{name}' = {value:g}: {reason}", where="RMCU")
         return signals["Value"].value(self._answer), layout.signals["Value"].value(payload)
 
-    def _asked(self, payload: int, command: int, index: int) -> bool:
+    def _ask_until_answered(self, payload: int, command: int, index: int) -> bool:
         """Ask, and again as long as there is time: a frame may be lost, and twice is as once."""
         layout, clock = self._layouts["RMCU_ParameterWrite"], self._loop.clock
         self._answer, self._awaited = None, (command, index)

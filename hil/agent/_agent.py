@@ -154,18 +154,18 @@ class _Agent:
             name=self._request.name,
             machine=socket.gethostname(),
             version=importlib.metadata.version("eaxle-hil"),
-            benches=[bench.told() for bench in self._benches.values()],
+            benches=[bench.report() for bench in self._benches.values()],
             obeyed=self._obeyed,
             leaving=leaving,
         )
         orders = await self._service.ask(lambda client: client.report(self._id, report))
-        told = set(self._obeyed)
+        known = set(self._obeyed)
         self._obeyed = []
         for order in orders.orders:
             bench = self._benches.get(order.bench)
-            if order.id in told or bench is None or bench.obey(order):
+            if order.id in known or bench is None or bench.obey(order):
                 self._obeyed.append(order.id)
-            if order.id not in told and bench is not None and order.kind == "forecast":
+            if order.id not in known and bench is not None and order.kind == "forecast":
                 answer = asyncio.create_task(self._forecasting.answer(order, bench.bench))
                 self._answers.add(answer)
                 answer.add_done_callback(self._answers.discard)

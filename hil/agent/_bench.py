@@ -43,8 +43,8 @@ class DrivenBench:
         """As it is called in its file."""
         return self.bench.name
 
-    def told(self) -> AgentBench:
-        """What is told of it."""
+    def report(self) -> AgentBench:
+        """What the service is told of it."""
         bench, running = self.bench, self.running
         facts = AgentBench(
             name=bench.name,

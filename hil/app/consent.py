@@ -55,7 +55,7 @@ def _needed(plan: Plan, bench: BenchFile) -> bool:
 
 def _question(plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope) -> str:
     names = ", ".join(dict.fromkeys(plan.name for plan in plans))
-    lines = [f"Runs of {names} on {bench.name}, one after the other: {envelope.told()}."]
+    lines = [f"Runs of {names} on {bench.name}, one after the other: {envelope.in_words()}."]
     lines.append(
         "Each run is predicted first. It is refused beyond these limits, and trips if it exceeds them."
     )

@@ -72,14 +72,14 @@ def _of_result(file: Path, text: str, result: RunResult, path: Path) -> Finding:
     """Whether result.json says what the recording says of the run, to the byte."""
     try:
         recording = _read(path)
-        told = [run for run in (run_of(recording), rejudged(recording)) if run is not None]
+        lines = [run for run in (run_of(recording), rejudged(recording)) if run is not None]
     except BadInputError:
         return Finding(False, file, "cannot be compared with the recording")
     if text_of(result) != text:
         return Finding(False, file, "was changed after the run")
-    if RUN not in recording.attachments and told and recording.damage:
-        return _of_a_lost_run(file, result, told)
-    if result.of_the_run not in [run.of_the_run for run in told]:
+    if RUN not in recording.attachments and lines and recording.damage:
+        return _of_a_lost_run(file, result, lines)
+    if result.of_the_run not in [run.of_the_run for run in lines]:
         return Finding(False, file, "was changed: it contradicts the recording")
     if result.samples_sha256 != recording.samples_sha256:
         return Finding(False, file, "was changed: its hash of the samples is not the recording's")
@@ -156,10 +156,10 @@ def of_signatures(folder: Path, by: bytes | None) -> Iterator[Finding]:
         if not changed:
             keys.add(signature.key)
             whose = "the given key" if signature.key == by else f"key {signature.fingerprint}"
-            told = (
+            words = (
                 f"{len(files)} files as {signature.signed_by} signed them at {signature.signed_at}, {whose}"
             )
-            yield Finding(True, manifest, told)
+            yield Finding(True, manifest, words)
     if by is not None and by not in keys:
         yield Finding(False, folder, f"has no valid signature of the key {fingerprint(by)}")
 

@@ -194,14 +194,14 @@ def expiry_in_words(accepted: AcceptedExpiry) -> str:
     return f"calibration expired: {sensors}; accepted by {by}: {reason}"
 
 
-def told_identities(identities: Iterable[Identity]) -> str:
+def identities_in_words(identities: Iterable[Identity]) -> str:
     """Software and calibration of each device, on a line: "rmcu software 1.0.0, calibration 0DA2024A"."""
-    said: dict[str, dict[str, None]] = {}
+    facts: dict[str, dict[str, None]] = {}
     for identity in identities:
         name = identity.name.rpartition(": ")[2]
         if name in ("software", "calibration") and identity.value:
-            said.setdefault(identity.device, {})[f"{name} {printable(identity.value, 60)}"] = None
-    return "; ".join(f"{device} {', '.join(values)}" for device, values in said.items())
+            facts.setdefault(identity.device, {})[f"{name} {printable(identity.value, 60)}"] = None
+    return "; ".join(f"{device} {', '.join(values)}" for device, values in facts.items())
 
 
 def _table(criteria: tuple[CriterionResult, ...]) -> Table:

@@ -57,7 +57,7 @@ class RemoteCampaign:
             results_in(out, names, overwrite=overwrite, default="campaign", summary=SUMMARY) as place,
             stop.by_signals(),
         ):
-            found = _Watching(client, self._begun(client, wanted), stop).until_over()
+            found = _Watching(client, self._queue(client, wanted), stop).until_over()
             if found.state == "cancelled":
                 complain("note", f"{found.done} of {found.simulations} simulations are kept: {_GO_ON}")
                 return EXIT_CODE
@@ -74,7 +74,7 @@ class RemoteCampaign:
                 print(_in_words(found, place.folder))
         return int(found.passed is False)
 
-    def _begun(self, client: Client, wanted: CampaignWanted) -> CampaignData:
+    def _queue(self, client: Client, wanted: CampaignWanted) -> CampaignData:
         """The campaign as the service has it.
 
         Raises:
@@ -186,8 +186,8 @@ def _brought(client: Client, campaign: CampaignData, place: ResultsFolder) -> di
     client.download_of_campaign(campaign.id, TABLE, table / part)
     for name in (BEGUN, HTML, PDF, SUMMARY):
         client.download_of_campaign(campaign.id, name, place.folder / name)
-    begun = json.loads(read_text(place.folder / BEGUN)) | {"batch": campaign.simulations}
-    write_atomically(place.folder / BEGUN, json.dumps(begun, indent=2, ensure_ascii=False) + "\n")
+    content = json.loads(read_text(place.folder / BEGUN)) | {"batch": campaign.simulations}
+    write_atomically(place.folder / BEGUN, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
     found: dict[str, Any] = json.loads(read_text(place.folder / SUMMARY))
     place.remove_stale(found["files"])
     return found

@@ -85,11 +85,11 @@ def _buses(buses: dict[str, BusFacts]) -> Table:
         heard = ("-", "-", "-")
         if facts.opened:
             heard = f"{facts.frames_s:.0f}", f"{facts.load or 0:.0%}", str(facts.error_frames)
-        told = [
+        texts = [
             f"{words}{facts.controller[key]}" for key, words in _COUNTERS.items() if key in facts.controller
         ]
         interface = f"{printable(facts.interface)} {printable(facts.channel)}"
-        state = ", ".join(told) or ("not available from this interface" if facts.opened else "not opened")
+        state = ", ".join(texts) or ("not available from this interface" if facts.opened else "not opened")
         table.add_row(printable(name), interface, str(facts.bit_rate), *heard, state)
     return table
 

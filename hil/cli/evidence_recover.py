@@ -86,14 +86,14 @@ def _tell(path: Path, out: Path | None, found: Recording, absent: list[str]) -> 
 
 
 def _sentences(missing: Missing, run: RunResult | None, absent: list[str]) -> list[str]:
-    said = [f"missing: {before:.3f} s to {after:.3f} s" for before, after in missing.gaps_s]
-    said += [f"missing: {share:.1%} of '{name}'" for name, share in missing.channels.items()]
+    lines = [f"missing: {before:.3f} s to {after:.3f} s" for before, after in missing.gaps_s]
+    lines += [f"missing: {share:.1%} of '{name}'" for name, share in missing.channels.items()]
     if missing.files:
-        said.append(f"missing in the recording: {', '.join(missing.files)}")
+        lines.append(f"missing in the recording: {', '.join(missing.files)}")
     if absent:
-        said.append(f"missing in the folder: {', '.join(absent)}")
-    said += [f"segment '{name}' is incomplete: it is not evaluated" for name in _cut_segments(run)]
-    return said if math.isfinite(missing.until_s) else ["no sample", *said]
+        lines.append(f"missing in the folder: {', '.join(absent)}")
+    lines += [f"segment '{name}' is incomplete: it is not evaluated" for name in _cut_segments(run)]
+    return lines if math.isfinite(missing.until_s) else ["no sample", *lines]
 
 
 def _cut_segments(run: RunResult | None) -> list[str]:

@@ -35,8 +35,8 @@ def carry_out(options: EvidenceSign) -> int:
             [f for f in of_run(options.folder) if not f.holds] if (options.folder / RESULT).exists() else []
         )
         if wrong:
-            told = "\n  ".join(f"{finding.file}: {finding.text}" for finding in wrong)
-            complain("error", f"not signed, because something does not match:\n  {told}")
+            text = "\n  ".join(f"{finding.file}: {finding.text}" for finding in wrong)
+            complain("error", f"not signed, because something does not match:\n  {text}")
             return 1
         name = options.by or getpass.getuser()
         at = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
@@ -46,8 +46,8 @@ def carry_out(options: EvidenceSign) -> int:
         files = {"manifest": str(manifest), "signature": str(signature)}
         print_json({**files, "signed_by": name, "signed_at": at, "key": shown})
     else:
-        told = f"signed by {name} with key {shown}: {manifest}, {signature.name}"
-        console().print(told, highlight=False, markup=False, soft_wrap=True)
+        text = f"signed by {name} with key {shown}: {manifest}, {signature.name}"
+        console().print(text, highlight=False, markup=False, soft_wrap=True)
     return 0
 
 

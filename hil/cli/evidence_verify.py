@@ -38,8 +38,8 @@ def carry_out(options: EvidenceVerify) -> int:
     findings = list(dict.fromkeys(_findings(options.sources, key)))
     holds = all(finding.holds for finding in findings)
     if options.as_json:
-        told = [{"holds": f.holds, "file": str(f.file), "text": f.text} for f in findings]
-        print_json({"verified": holds, "findings": told})
+        lines = [{"holds": f.holds, "file": str(f.file), "text": f.text} for f in findings]
+        print_json({"verified": holds, "findings": lines})
         return 0 if holds else 1
     page = console()
     for finding in findings:

@@ -15,9 +15,9 @@ from hil.cli._output import (
     console,
     count_in_words,
     expiry_in_words,
+    identities_in_words,
     print_criteria,
     print_json,
-    told_identities,
     warn,
 )
 from hil.cli._series_output import print_in_series, print_series
@@ -160,7 +160,7 @@ def _print_result(result: RunResult, folder: Path) -> None:
         warn(text)
     if result.accepted_expired:
         warn(expiry_in_words(result.accepted_expired))
-    said = told_identities(result.identities)
+    said = identities_in_words(result.identities)
     if said:
         page.print(f"devices: {said}", highlight=False, markup=False, soft_wrap=True)
     shown = "html" if "html" in result.files else "recording"

@@ -97,9 +97,10 @@ def _parsed(text: str, where: str) -> _Block:
                 open_.append(_Block(keyword, line))
                 open_[-2].blocks.append(open_[-1])
             elif keyword != open_[-1].keyword or len(open_) == 1:
-                begun = f"'{printable(open_[-1].keyword, 40)}' of line {open_[-1].line}"
+                opened = f"'{printable(open_[-1].keyword, 40)}' of line {open_[-1].line}"
+                ended = opened if len(open_) > 1 else "anything"
                 raise BadInputError(
-                    f"'/end {printable(keyword, 40)}' does not end {begun if len(open_) > 1 else 'anything'}",
+                    f"'/end {printable(keyword, 40)}' does not end {ended}",
                     where=f"{where}, line {line}",
                     fix="is the file whole?",
                 )

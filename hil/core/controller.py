@@ -36,7 +36,7 @@ from hil.core.file_format import FORMAT, FormatNumber
 from hil.core.file_kind import refuse_other_kind
 from hil.core.files import write_atomically
 from hil.core.mistakes import Mistake, keyed, refuse
-from hil.core.table_mistakes import told
+from hil.core.table_mistakes import mistakes_of
 from hil.core.toml_file import parse_toml, toml_text
 
 logger = logging.getLogger(__name__)
@@ -167,7 +167,7 @@ def controller_from_toml(text: str, where: str) -> Controller:
         refuse_other_kind(data, "controller", where)
         controller = Controller.model_validate(data)
     except ValidationError as error:
-        refuse(where, map(keyed, told(error, Controller)), text)
+        refuse(where, map(keyed, mistakes_of(error, Controller)), text)
         raise
     refuse(where, _contradictions(controller), text)
     return controller

@@ -183,9 +183,9 @@ def database_of(path: Path) -> Database:
         # Not strict: what is wrong with messages that nobody needs is no reason to refuse the file.
         database = cantools.database.load_string(text, "dbc", strict=False)
     except Exception as error:  # the parser raises whatever it stumbles over
-        said = " ".join(str(error).removeprefix("DBC: ").strip('"').split())
+        words = " ".join(str(error).removeprefix("DBC: ").strip('"').split())
         raise BadInputError(
-            f"not a DBC file: {printable(said, 200)}", where=str(path), fix="give the RMCU's DBC"
+            f"not a DBC file: {printable(words, 200)}", where=str(path), fix="give the RMCU's DBC"
         ) from error
     if not database.messages:  # type: ignore[union-attr]
         raise BadInputError("is a DBC without messages", where=str(path), fix="give the RMCU's DBC")

@@ -44,9 +44,9 @@ def needed(mistake: Mapping[str, Any]) -> str:
         return "must not be empty" if least == 1 else f"must have at least {least} characters"
     if kind == "string_too_long":
         return f"must have at most {context['max_length']} characters"
-    said = str(mistake["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
-    said = f"{said[:1].lower()}{said[1:]}"
-    return said.replace("input should", "must", 1)
+    text = str(mistake["msg"]).removeprefix("Value error, ").removeprefix("Assertion failed, ")
+    text = f"{text[:1].lower()}{text[1:]}"
+    return text.replace("input should", "must", 1)
 
 
 def _number(value: object) -> str:

@@ -94,10 +94,10 @@ def all_of(errors: Iterable[BadInputError]) -> None:
     if len(found) == 1:
         raise found[0]
     if found:
-        told = "".join(f"\n{error}" for error in found)
-        raise BadInputError(f"{len(found)} files cannot be used{told}")
+        words = "".join(f"\n{error}" for error in found)
+        raise BadInputError(f"{len(found)} files cannot be used{words}")
 
 
 def _on_a_line(mistake: Mistake, line: int) -> str:
-    said = f"{mistake.what}; {mistake.fix}" if mistake.fix else mistake.what
-    return f"line {line}: {said}" if line else said
+    words = f"{mistake.what}; {mistake.fix}" if mistake.fix else mistake.what
+    return f"line {line}: {words}" if line else words

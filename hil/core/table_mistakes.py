@@ -12,7 +12,7 @@ from hil.core.printable import printable
 from hil.core.suggestion import closest
 
 
-def told(
+def mistakes_of(
     error: ValidationError, model: type[BaseModel], key: str = "", known: list[str] | None = None
 ) -> list[str]:
     """Each of pydantic's errors: key, value, and what would be right.

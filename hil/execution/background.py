@@ -15,7 +15,7 @@ FORECAST_BYTES = 3_000_000_000
 STUDY_BYTES = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2
 
 
-async def begun(
+async def start_process(
     *command: str, niceness: int = 0, most_bytes: int = 0, **streams: Any
 ) -> asyncio.subprocess.Process:
     """A process of its own.

@@ -14,7 +14,7 @@ from hil.app.worker.job import JOB, write_request
 from hil.core.errors import BadInputError, BenchError
 from hil.core.files import read_bytes
 from hil.engine import BenchFile
-from hil.execution.background import FORECAST_BYTES, begun
+from hil.execution.background import FORECAST_BYTES, start_process
 from hil.execution.plan_files import files_of
 from hil.messages.api import ForecastData
 from test_plans import Plan
@@ -66,7 +66,7 @@ class Forecasts:
         raise kind(what or "the forecast was ended", where="forecast")
 
     async def _carry_out(self, folder: Path) -> tuple[int, bytes, str]:
-        process = await begun(
+        process = await start_process(
             *JOB,
             str(folder),
             niceness=_NICENESS,

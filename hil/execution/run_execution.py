@@ -11,7 +11,7 @@ from hil.core.errors import HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
 from hil.engine import RECORDING
-from hil.engine.ipc.ipc_messages import EmergencyAsked, Progressed, Refused, RunAsked, Told
+from hil.engine.ipc.ipc_messages import EmergencyAsked, OperatorText, Progressed, Refused, RunAsked
 from hil.execution.benches import Bench
 from hil.execution.run_process import RunProcess, result_in
 from hil.messages.agent import TakenRun
@@ -88,7 +88,7 @@ class RunExecution(RunningRun):
         """
         make_directory(folder)
         write_atomically(folder / PLAN, taken.plan_text)
-        process = await RunProcess.begin(_asked(taken, bench, folder), stop_line)
+        process = await RunProcess.begin(_request_of(taken, bench, folder), stop_line)
         run = cls(taken.data, folder, process)
         process.answered = run._asks_no_more
         return run
@@ -105,7 +105,7 @@ class RunExecution(RunningRun):
             if isinstance(message, Progressed):
                 self.share = message.share if message.share >= 0 else self.share
                 self.doing = message.text
-            elif isinstance(message, Told):
+            elif isinstance(message, OperatorText):
                 self.told = message.text
             elif isinstance(message, Refused):
                 refused = message.error.as_error()
@@ -133,7 +133,7 @@ def end_of_left(folder: Path, who: str) -> RunEnd:
     return RunEnd("interrupted", result=result, reason=reason)
 
 
-def _asked(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:
+def _request_of(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:
     """What the process of a run is told.
 
     Raises:

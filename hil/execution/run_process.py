@@ -13,7 +13,7 @@ from hil.core.locks import HeldError, lock_on
 from hil.core.result import RunResult
 from hil.engine.ipc.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
 from hil.engine.run.operator import END, PAUSE, RESUME
-from hil.execution.background import begun
+from hil.execution.background import start_process
 from hil.execution.run_files import LOCK
 
 RESULT = "result.json"
@@ -43,7 +43,7 @@ class RunProcess:
         alive = Path(asked.out) / LOCK
         alive.touch()
         with lock_on(alive) as lock:
-            process = await begun(
+            process = await start_process(
                 *RUNNER,
                 Path(asked.out).name,
                 *([] if stop_line is None else [str(stop_line)]),

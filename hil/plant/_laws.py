@@ -227,7 +227,7 @@ def _leaping(others: Any, effect: Effect) -> Any:
     return _compile(leap)
 
 
-def _begun(others: Any, effect: Effect) -> Any:
+def _begin_with(others: Any, effect: Effect) -> Any:
     first, last, memory, acts = _place(effect.id)
     law = _law(effect.law.begin)  # type: ignore[arg-type]
     in_series = effect.law.stretch is not None
@@ -286,6 +286,6 @@ _MAKERS: dict[str, Callable[[], Any]] = {
     "remembered": lambda: _in_turn(
         "remember", _remembered, lambda before, after, chain, memories, p, h: memories
     ),
-    "begun": lambda: _in_turn("begin", _begun, lambda torque, chain, p: (_EMPTY, 0.0)),
+    "begun": lambda: _in_turn("begin", _begin_with, lambda torque, chain, p: (_EMPTY, 0.0)),
     "turned": lambda: _in_turn("turned", _turned, lambda speed, chain, memories, p: memories),
 }

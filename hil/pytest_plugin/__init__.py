@@ -94,7 +94,7 @@ class Ran:
             AssertionError: all that is wrong, with values and limits.
         """
         __tracebackhide__ = True
-        wrong = [*_wrong_with(self), *(_told(one) for one in self.result.criteria if _is_bad(one))]
+        wrong = [*_wrong_with(self), *(_in_words(one) for one in self.result.criteria if _is_bad(one))]
         if wrong or self.result.verdict not in ("pass", "done"):
             raise AssertionError("\n".join([*(wrong or [self.result.verdict]), f"in {self.folder}"]))
 
@@ -219,9 +219,9 @@ class PlanItem(pytest.Item):
         self.user_properties += _properties(ran, criterion)
         if _is_bad(criterion) and criterion.verdict != "not_judged":
             definition = f"\n{criterion.definition}" if criterion.definition else ""
-            raise AssertionError(f"{_told(criterion)}{definition}\nin {ran.folder}")
+            raise AssertionError(f"{_in_words(criterion)}{definition}\nin {ran.folder}")
         if criterion.verdict != "pass":  # nothing was demanded, or its segment was not carried out
-            pytest.skip(_told(criterion))
+            pytest.skip(_in_words(criterion))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
         """The message alone: where in this file it was raised helps nobody."""
@@ -305,7 +305,7 @@ def _is_bad(criterion: CriterionResult) -> bool:
     return criterion.failed or criterion.verdict in ("error", "not_judged")
 
 
-def _told(criterion: CriterionResult) -> str:
+def _in_words(criterion: CriterionResult) -> str:
     """A criterion with its value and limits, on a line."""
     from reports import quantities
     from reports.criteria import in_words

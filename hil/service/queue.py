@@ -188,7 +188,7 @@ class Queue:
         run = taken.data
         try:
             taken = taken.model_copy(update={"plan_source": str(self._source(run.plan))})
-            place.running = await self._carried(place.bench, taken)
+            place.running = await self._begin_run(place.bench, taken)
         except DatabaseAwayError:
             place.unsure = run.id
             return
@@ -207,7 +207,7 @@ class Queue:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _carried(self, bench: Bench, taken: TakenRun) -> RunExecution:
+    async def _begin_run(self, bench: Bench, taken: TakenRun) -> RunExecution:
         """Begin a run with its stop line."""
         run, folder, post = taken.data.id, self.folder_of(taken.data.id), self._stop_post
         if post is None:

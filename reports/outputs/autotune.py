@@ -121,12 +121,12 @@ def closing_verdict(closing: Closing) -> str:
 
 def effects_in_words(found: Diagnosis) -> str:
     """Names with their numbers: "backlash (90%): half_gap_rad = 0.01"."""
-    told = []
+    lines = []
     for effect in found.effects:
         numbers = ", ".join(
             f"{name} = {value}" if isinstance(value, str) else f"{name} = {value:.4g}"
             for name, value in effect.use.values.items()
             if name in effect.standard_error or isinstance(value, str)
         )
-        told.append(f"{effect.use.id} ({chance(effect.confidence)}): {numbers}")
-    return "; ".join(told)
+        lines.append(f"{effect.use.id} ({chance(effect.confidence)}): {numbers}")
+    return "; ".join(lines)

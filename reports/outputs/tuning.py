@@ -164,14 +164,14 @@ def text_of(found: Tuning, out: str) -> str:
 def verdict(found: Tuning) -> str:
     """What came out, in a sentence or two."""
     worst, before = found.chosen.worst, found.start.worst
-    told = (
+    text = (
         f"Worst margin {share(worst.worst)} ({worst.binding}, {_car(worst.draw)}); "
         f"the plan's own controller has {_margin(found.start)} ({before.binding or 'not run'}, "
         f"{_car(before.draw)})."
     )
     if found.better_in_every_criterion:
-        return f"{told} Margin increased for every criterion."
-    return f"{told} Margin decreased for: {', '.join(found.traded)}."
+        return f"{text} Margin increased for every criterion."
+    return f"{text} Margin decreased for: {', '.join(found.traded)}."
 
 
 def _margin(one: Standing) -> str:

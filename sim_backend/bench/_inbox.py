@@ -61,7 +61,7 @@ class Inbox:
 
     def requests_before(self, end: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.uint64]]:
         """The samples before which torque requests come, earlier than `end`, and these, taken out."""
-        came = []
+        lines = []
         while self._sent and self._sent[0].sample < end:
-            came.append(self._sent.popleft())
-        return np.array([c.sample for c in came], np.int64), np.array([c.payload for c in came], np.uint64)
+            lines.append(self._sent.popleft())
+        return np.array([c.sample for c in lines], np.int64), np.array([c.payload for c in lines], np.uint64)

@@ -67,10 +67,10 @@ class SocketcandPort:
 
     def give(self, block: FrameBlock) -> None:
         """Frames of the bench to every host, with their stamps."""
-        told = [host for host in self._hosts if host.raw]
-        if told:
+        lines = [host for host in self._hosts if host.raw]
+        if lines:
             text = _orders(block)
-            for host in told:
+            for host in lines:
                 host.put(text, len(block))
 
     def close(self) -> None:

@@ -80,14 +80,14 @@ def _wrong_size(
     """What is swapped or in another unit, and what to do."""
     expected = law.ratio if law.ratio is not None else gear_ratio
     if speeds is not None:
-        said = f"motor over wheel speed is {abs(speeds):.3g}"
+        text = f"motor over wheel speed is {abs(speeds):.3g}"
         if expected is not None and not _near(abs(speeds), abs(expected)):
             whose = "the torques say" if law.ratio is not None else "the gear ratio is"
-            named = _apart(abs(speeds), abs(expected), f"{said}, {whose} {abs(expected):.3g}")
+            named = _apart(abs(speeds), abs(expected), f"{text}, {whose} {abs(expected):.3g}")
             if named is not None:
                 return named
         if not _RATIOS[0] <= abs(speeds) <= _RATIOS[1]:
-            return _alone(abs(speeds), said)
+            return _alone(abs(speeds), text)
     if torque and _SHAFT in frf.outputs:
         largest = float(np.max(np.abs(frf.of(_SHAFT))))
         for channel, beyond in ((_SHAFT, largest < _TORQUE_RATIOS[0]), (INPUT, largest > _TORQUE_RATIOS[1])):

@@ -90,11 +90,11 @@ class Explanation:
         if self.reached:
             held = sum(not rival.missed for rival in self.rivals)
             return f"{held} of {len(self.rivals)} rivals meet every condition; the best is {best.name}."
-        missed = "; ".join(_told(condition) for condition in best.missed)
+        missed = "; ".join(_in_words(condition) for condition in best.missed)
         return f"No rival meets every condition. The closest, {best.name}, misses {missed}."
 
 
-def _told(condition: Condition) -> str:
+def _in_words(condition: Condition) -> str:
     found = "no value" if condition.found is None else f"{condition.found:.4g}"
     return f"{condition.name}: {found}, wanted {condition.limit} {condition.unit}"
 

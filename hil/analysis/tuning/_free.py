@@ -13,7 +13,7 @@ from hil.core.errors import BadInputError
 from hil.core.mistakes import Mistake, keyed, refuse
 from hil.core.model import MODEL_KINDS
 from hil.core.suggestion import did_you_mean
-from hil.core.table_mistakes import told
+from hil.core.table_mistakes import mistakes_of
 from hil.core.toml_file import parse_toml, toml_text
 from test_plans import Plan
 
@@ -108,7 +108,7 @@ def free_from_toml(text: str, where: str) -> Free:
     try:
         found = Free.model_validate({**data, "where": where})
     except ValidationError as error:
-        mistakes = [one.replace("tolerance.relative.", "tolerance.", 1) for one in told(error, Free)]
+        mistakes = [one.replace("tolerance.relative.", "tolerance.", 1) for one in mistakes_of(error, Free)]
         refuse(where, map(keyed, mistakes), text)
         raise
     refuse(where, [*_bounds_mistakes(found), *_weight_mistakes(found), *_tolerance_mistakes(found)], text)

@@ -54,7 +54,7 @@ class Pool:
         """Each candidate on its car, in order; `ask` is called before each, and may raise to end it soon."""
         ask()
         found: list[Tried] = []
-        with contextlib.closing(self._begun(work)) as results:
+        with contextlib.closing(self._results(work)) as results:
             for one in results:  # those that are not begun are taken back where `ask` raises
                 self.runs += 1
                 found.append(one)
@@ -62,7 +62,7 @@ class Pool:
                     ask()
         return found
 
-    def _begun(self, work: Sequence[Work]) -> Generator[Tried]:
+    def _results(self, work: Sequence[Work]) -> Generator[Tried]:
         if self._executor is None:
             yield from (self.trial.tried(values, number) for values, number in work)
         else:

@@ -129,13 +129,13 @@ class Search:
         for first in range(0, len(points), _AT_ONCE):
             scores += [score(cars) for cars in self._tried(points[first : first + _AT_ONCE])]
         order = np.argsort(scores, kind="stable")[::-1]
-        begun = [own, *(points[i] for i in order[: self._effort.starts])]
+        lines = [own, *(points[i] for i in order[: self._effort.starts])]
         whole = _FAR_SHARE if len(self._pool.trial.draws) > 1 else 1.0
         ends = []
-        for number, point in enumerate(begun):
-            self._share = whole * (number + 1) / (len(begun) + 2)
+        for number, point in enumerate(lines):
+            self._share = whole * (number + 1) / (len(lines) + 2)
             ends.append(self._uphill(point, _FAR, self._effort.far))
-        self._share = whole * (len(begun) + 1) / (len(begun) + 2)
+        self._share = whole * (len(lines) + 1) / (len(lines) + 2)
         ends.append(self._uphill(self.best, _NEAR, self._effort.far))
         ends.sort(key=lambda end: -end[0])
         return [point for _, point in ends]

@@ -55,7 +55,7 @@ class Allowed:
             if self.name
             else "The bench is simulated, no consent is needed; allowed:"
         )
-        return f"{by} {self.envelope.told()}."
+        return f"{by} {self.envelope.in_words()}."
 
     def as_json(self) -> dict[str, Any]:
         """Bench, consent and envelope."""

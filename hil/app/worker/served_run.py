@@ -56,9 +56,9 @@ class _Service:
 
     def tell(self, text: str) -> None:
         """Show the operators a text."""
-        from hil.engine.ipc.ipc_messages import Told
+        from hil.engine.ipc.ipc_messages import OperatorText
 
-        self._pipe.send(Told(text=text))
+        self._pipe.send(OperatorText(text=text))
 
     def typed(self) -> list[str | EmergencyAsked]:
         """What operators asked for since the last call; that the service has gone ends the run."""

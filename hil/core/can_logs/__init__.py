@@ -40,12 +40,13 @@ def read_can_log(path: Path) -> CanLog:
                 f"logs of frames end in {', '.join(READ)}", where=str(path), fix="rename or convert the file"
             )
     if not log.channels:
-        raise BadInputError("has no data frames", where=str(path), fix=f"{_told(log)}give a log of frames")
+        fix = f"{_left_out_in_words(log)}give a log of frames"
+        raise BadInputError("has no data frames", where=str(path), fix=fix)
     logger.info("read %s: %d frames, %d channels", path, log.count, len(log.channels))
     return log
 
 
-def _told(log: CanLog) -> str:
+def _left_out_in_words(log: CanLog) -> str:
     left_out = ", ".join(f"{count} {kind}" for kind, count in log.left_out.items())
     return f"it has {left_out}; " if left_out else ""
 

@@ -48,8 +48,8 @@ def _numbers(effect: Effect) -> str:
 
 
 def _section(effect: Effect) -> str:
-    told = " ".join((_module(effect) or "").split("\n\n", 1)[-1].split()) if _has_law(effect) else ""
-    lines = [f"\n## {effect.id}\n", f"{effect.summary} {told}".strip() + "\n\n"]
+    text = " ".join((_module(effect) or "").split("\n\n", 1)[-1].split()) if _has_law(effect) else ""
+    lines = [f"\n## {effect.id}\n", f"{effect.summary} {text}".strip() + "\n\n"]
     lines.append("| parameter | unit | from | to | meaning |\n|---|---|---|---|---|\n")
     lines += [_row(p) for p in effect.parameters]
     lines.append(f"\nIn data: {effect.signature[:1].lower()}{effect.signature[1:]} ")

@@ -92,20 +92,20 @@ def _expected(findings: Findings) -> int | None:
 
 def _breaks(findings: Findings, whole: bool | None) -> list[str]:
     time = findings.sample_times_s
-    said = []
+    lines = []
     for at in dict.fromkeys(findings.breaks):
         if findings.cut and at == len(time):
             continue  # this is where it was cut off
         if whole:
-            said.append(
+            lines.append(
                 f"a block of the file {_near(time, at)} is damaged: raw frames, events or descriptive data "
                 "are lost, the samples are complete"
             )
         elif 0 < at < len(time):
-            said.append(_inner_break(findings, at))
+            lines.append(_inner_break(findings, at))
         else:
-            said.append(_break_at_an_end(findings, at))
-    return said
+            lines.append(_break_at_an_end(findings, at))
+    return lines
 
 
 def _inner_break(findings: Findings, at: int) -> str:
@@ -134,13 +134,13 @@ def _near(time: Times, at: int) -> str:
 def _lost_names(findings: Findings) -> list[str]:
     if not findings.index_agrees:
         return []  # names of a damaged index prove nothing
-    said = []
+    lines = []
     for attachment, name in dict.fromkeys(findings.named):
         if attachment and name not in findings.attachments and not findings.bad_attachments:
-            said.append(f"the attachment '{name}' is lost")
+            lines.append(f"the attachment '{name}' is lost")
         if not attachment and name not in findings.tables:
-            said.append(f"the table '{name}' of descriptive data is lost")
-    return said
+            lines.append(f"the table '{name}' of descriptive data is lost")
+    return lines
 
 
 def _cut(findings: Findings) -> str:

@@ -81,7 +81,7 @@ def recover_recording(source: Path, out: Path) -> Recording:
     with open_regular(source) as file:
         size = os.fstat(file.fileno()).st_size
     lost = {f"lost {number}": text for number, text in enumerate(recording.damage, 1)}
-    told = {"from": source.name, "from_sha256": sha256_of(source), "from_bytes": str(size), **lost}
+    facts = {"from": source.name, "from_sha256": sha256_of(source), "from_bytes": str(size), **lost}
     with replacing(out) as temporary:
         target = GrowingFile(temporary)
         try:
@@ -92,7 +92,7 @@ def recover_recording(source: Path, out: Path) -> Recording:
                 file.seek(len(MAGIC))
                 for record in records(file, size):
                     copy.take(record)
-            copy.finish(told)
+            copy.finish(facts)
         finally:
             target.close()
     logger.info("recovered %s from %s", out, source)

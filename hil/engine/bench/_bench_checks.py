@@ -250,5 +250,5 @@ def _of_loads(bench: BenchFile) -> Iterator[str]:
 def _on_one_line(error: BadInputError) -> str:
     """What an error of a named file says, after the key that names the file."""
     where = error.where.partition(", ")[2]  # behind the path, which the key shows already
-    said = f"{where}: {error.what}" if where else error.what
-    return f"{said}; {error.fix}" if error.fix else said
+    text = f"{where}: {error.what}" if where else error.what
+    return f"{text}; {error.fix}" if error.fix else text

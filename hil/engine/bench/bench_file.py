@@ -17,7 +17,7 @@ from hil.core.mistakes import keyed, refuse
 from hil.core.printable import is_printable, printable
 from hil.core.shipped import shipped_file
 from hil.core.suggestion import did_you_mean
-from hil.core.table_mistakes import told
+from hil.core.table_mistakes import mistakes_of
 from hil.core.toml_file import parse_toml, toml_text
 from hil.engine.bench._bench_checks import contradictions, device_mistakes, file_mistakes, unprintable
 from hil.engine.bench.bench_tables import BenchFile
@@ -61,8 +61,8 @@ def bench_from_dict(data: dict[str, Any], text: str, path: Path) -> BenchFile:
     try:
         bench = BenchFile.model_validate({**data, **devices, "text": text, "source": path.resolve()})
     except ValidationError as error:
-        further = told(error, BenchFile, known=mistakes)
-        further = [told for told in further if not _is_of(told, mistakes)]
+        further = mistakes_of(error, BenchFile, known=mistakes)
+        further = [mistakes_of for mistakes_of in further if not _is_of(mistakes_of, mistakes)]
         _refuse(where, [*mistakes, *further, *of_files], text)
         raise
     _refuse(where, [*(mistakes or contradictions(bench)), *of_files], text)
@@ -110,10 +110,10 @@ def _refuse(where: str, mistakes: list[str], text: str) -> None:
     refuse(where, map(keyed, mistakes), text, _FIX)
 
 
-def _is_of(told: str, of_devices: list[str]) -> bool:
+def _is_of(mistakes_of: str, of_devices: list[str]) -> bool:
     """Whether it is of a device's table that has mistakes: its kind has told them."""
     wrong = {_device(keyed(mistake).key) for mistake in of_devices}
-    return _device(keyed(told).key) in wrong
+    return _device(keyed(mistakes_of).key) in wrong
 
 
 def _device(key: str) -> str:

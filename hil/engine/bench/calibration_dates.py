@@ -37,9 +37,9 @@ def accepted_expiry(bench: BenchFile, today: datetime.date, accepted: str) -> Ac
     if not sensors:
         return None
     if not accepted:
-        told = ", ".join(f"'{printable(name, 60)}' expired on {until}" for name, until in sensors.items())
+        text = ", ".join(f"'{printable(name, 60)}' expired on {until}" for name, until in sensors.items())
         raise BadInputError(
-            f"the calibration of {told}",
+            f"the calibration of {text}",
             where=printable(bench.source, 200),
             fix=f"calibrate it and enter the new date under [calibration]; or accept it by name: {_FORM}",
         )

@@ -14,7 +14,7 @@ from hil.core.files import read_bytes
 from hil.core.printable import printable
 from hil.core.recording import DEVICE
 from hil.core.symbol_files import LARGEST_BYTES
-from hil.core.table_mistakes import told
+from hil.core.table_mistakes import mistakes_of
 from test_plans.registry import Registry
 
 #: Kinds of device by name; those of other packages are entry points of `hil.devices`.
@@ -74,5 +74,5 @@ def _checked(key: str, table: Any, default: str, mistakes: list[str]) -> Any:
     try:
         return found.model_validate({**table, "kind": kind})
     except ValidationError as error:
-        mistakes += told(error, found, key)
+        mistakes += mistakes_of(error, found, key)
         return table

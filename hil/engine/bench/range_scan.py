@@ -65,12 +65,12 @@ class StreamRanges:
             range_ = self.ranges[entry]
             if range_.response == "trip" or self._counts[entry, 1] > self._answered[entry]:
                 self._answered[entry] = self._counts[entry, 1]
-                yield range_, self._told(entry)
+                yield range_, self._in_words(entry)
 
     def stands(self) -> Iterator[tuple[Range, str]]:
         """Ranges that were reached and have not been left again."""
         for entry in np.flatnonzero(self._counts[:, 0] > self._allowed).tolist():
-            yield self.ranges[entry], self._told(entry)
+            yield self.ranges[entry], self._in_words(entry)
 
     def largest(self) -> dict[str, float]:
         """Largest magnitude of each channel so far."""
@@ -100,7 +100,7 @@ class StreamRanges:
                 reached=int(counts[1]),
             )
 
-    def _told(self, entry: int) -> str:
+    def _in_words(self, entry: int) -> str:
         r, unit = self.ranges[entry], self._units[entry]
         lowest, highest = self._extremes[entry]
         if r.below == -r.above:  # a magnitude

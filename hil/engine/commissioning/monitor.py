@@ -216,10 +216,10 @@ class _Stretch:
 
 def _state_of(device: Device) -> str:
     """What a device says of itself without being asked."""
-    said = list(dict.fromkeys(device.troubles()))
+    lines = list(dict.fromkeys(device.troubles()))
     if isinstance(device, MotorControl):
-        said = [device.state or "sends no status", *said]
-    return "; ".join(printable(text, 200) for text in said) or "no trouble"
+        lines = [device.state or "sends no status", *lines]
+    return "; ".join(printable(text, 200) for text in lines) or "no trouble"
 
 
 def _how_it_listens(name: str, bus: Bus) -> list[str]:

@@ -139,7 +139,7 @@ class Progressed(_Data):
     text: str
 
 
-class Told(_Data):
+class OperatorText(_Data):
     """A text for the operator."""
 
     kind: Literal["told"] = "told"
@@ -190,7 +190,7 @@ Message: TypeAlias = (
     | EmergencyAsked
     | Turned
     | Progressed
-    | Told
+    | OperatorText
     | Logged
     | Concluded
     | Refused

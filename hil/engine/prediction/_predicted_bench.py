@@ -150,8 +150,8 @@ class PredictedDyno:
     def come_up(self) -> None:
         """Supervision, vehicle model, SYNC, operation: the objects that are written, and their time."""
         v, closed = self._file.vehicle, self._loop.closed
-        told = [v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2]
-        known = zip(told, closed.plant.vehicle, (1, 2, 3), strict=True)
+        lines = [v.inertia_kg_m2, v.rolling_nm, v.aero_nms2_rad2]
+        known = zip(lines, closed.plant.vehicle, (1, 2, 3), strict=True)
         values = [self._stored(own if own is not None else model, sub) for own, model, sub in known]
         closed.plant.set_vehicle(
             inertia_kg_m2=values[0],
@@ -160,7 +160,7 @@ class PredictedDyno:
             slip=self._stored(v.slip, 4),
             wheel_radius_m=self._stored(v.wheel_radius_m, 5),
         )
-        written = _WATCH_OBJECTS + sum(value is not None for value in (*told, v.slip, v.wheel_radius_m))
+        written = _WATCH_OBJECTS + sum(value is not None for value in (*lines, v.slip, v.wheel_radius_m))
         self._loop.transact(_SDO_TICKS * (len(SIDES) * written + _SYNC_OBJECTS))
         self._loop.transact(1)  # the first values after NMT's 'operational'
 

@@ -66,28 +66,28 @@ class BatchPrediction:
         if whole:
             drawn = self._noise(noise, seed)
             return predict(self.plan, self.bench, model, controllers=tried, noise=drawn, wire=here.wire)
-        begun, controllers = self._begun(here, model, noise, seed), {**here.controllers, **tried}
+        runs_before, controllers = self._run_before(here, model, noise, seed), {**here.controllers, **tried}
         with tempfile.TemporaryDirectory() as folder:
-            run = begun.continued(here.room, Path(folder), controllers)
+            run = runs_before.continued(here.room, Path(folder), controllers)
             run.carry_out(here.after)
         if len(run.rows) > len(here.room):
             samples, columns = run.rows.shape
             here.room = np.zeros((samples + samples // 8, columns))  # others may take a little longer
         return run.ended()
 
-    def _begun(self, here: _Here, model: Model, noise: float, seed: int) -> PredictedRun:
+    def _run_before(self, here: _Here, model: Model, noise: float, seed: int) -> PredictedRun:
         """A car's run as far as it is the same for every controller."""
         key = id(model), noise, seed
-        if key not in here.begun:
+        if key not in here.runs_before:
             step_s = _longest_step_s(model)
             bench = PredictedBench(self.bench, model, self._noise(noise, seed), step_s, here.wire)
             run = PredictedRun(bench, Path(), self.channels, here.controllers)
             run.carry_out(here.before)
-            here.begun[key] = run, model  # the model, so that no other gets its id
-            if len(here.begun) > _CARS_KEPT:
-                here.begun.popitem(last=False)
-        here.begun.move_to_end(key)
-        return here.begun[key][0]
+            here.runs_before[key] = run, model  # the model, so that no other gets its id
+            if len(here.runs_before) > _CARS_KEPT:
+                here.runs_before.popitem(last=False)
+        here.runs_before.move_to_end(key)
+        return here.runs_before[key][0]
 
     def _noise(self, times: float, seed: int) -> Noise | None:
         """As the bench file states it; a bench of hardware is taken for as noisy as the shipped one."""
@@ -121,7 +121,7 @@ class _Here:
     before: tuple[Step, ...]
     after: tuple[Step, ...]
     room: Array = field(default_factory=lambda: np.zeros((0, 0)))
-    begun: OrderedDict[tuple[int, float, int], tuple[PredictedRun, Model]] = field(
+    runs_before: OrderedDict[tuple[int, float, int], tuple[PredictedRun, Model]] = field(
         default_factory=OrderedDict
     )
 

@@ -43,7 +43,7 @@ class Envelope:
         ]
         return ", ".join(over)
 
-    def told(self) -> str:
+    def in_words(self) -> str:
         """The envelope in words."""
         values = (f"{name} {limit:.4g} {CHANNELS[name].unit}" for name, limit in self.largest.items())
         minutes = f"{self.bench_time_s / 60:.3g} min of bench time"

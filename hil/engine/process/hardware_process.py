@@ -18,11 +18,11 @@ from hil.engine.ipc.ipc_messages import (
     ErrorData,
     Logged,
     Message,
+    OperatorText,
     Progressed,
     Refused,
     RunAsked,
     StopAsked,
-    Told,
     Turned,
     Typed,
 )
@@ -53,7 +53,7 @@ def hold_hardware(pipe: IpcPipe) -> str:
         asked = command.asked()
         if asked is None:
             return ""
-        said = "there was no run"
+        words = "there was no run"
         try:
             request = request_of(asked)
             request.stop, request.watched = stop, command
@@ -61,14 +61,14 @@ def hold_hardware(pipe: IpcPipe) -> str:
             request.progress, request.analyse = command.progress, analysed_apart
             command.alone_after_s = request.bench.supervision.alone_after_s / request.bench.time_scale
             outcome = run_plan(request)
-            said = f"{outcome.error or 'the run is over'}\nsafe state {outcome.result.safe_state}"
+            words = f"{outcome.error or 'the run is over'}\nsafe state {outcome.result.safe_state}"
             pipe.send(ended_of(outcome))
         except HilError as error:
             pipe.send(Refused(error=ErrorData.of(error)))
         except Exception as error:
             logger.exception("internal error")
             pipe.send(Refused(error=ErrorData.of(_fault_of_ours(error))))
-        return "" if pipe.push_all(LAST_WORDS_S) else said
+        return "" if pipe.push_all(LAST_WORDS_S) else words
 
 
 class _Command:
@@ -115,7 +115,7 @@ class _Command:
 
     def tell(self, text: str) -> None:
         """Show a text to the operator."""
-        self._pipe.send(Told(text=text))
+        self._pipe.send(OperatorText(text=text))
 
     def typed(self) -> list[str | EmergencyAsked]:
         """What the operator has typed, and others asked for, since the last call."""

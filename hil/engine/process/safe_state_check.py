@@ -62,8 +62,8 @@ def _listen(loop: BusLoop, devices: list[Device], found: dict[str, str]) -> None
             break
         waiting = [device for device in waiting if not _is_powerless(device)]
     for device in waiting:
-        said = "; ".join(dict.fromkeys(device.troubles()))
-        found[device.name] = f"does not confirm that its torque is off{f' ({said})' if said else ''}"
+        text = "; ".join(dict.fromkeys(device.troubles()))
+        found[device.name] = f"does not confirm that its torque is off{f' ({text})' if text else ''}"
 
 
 def _is_powerless(device: Device) -> bool:

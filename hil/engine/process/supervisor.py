@@ -27,10 +27,10 @@ from hil.engine.ipc.ipc_messages import (
     Here,
     Logged,
     Message,
+    OperatorText,
     Progressed,
     Refused,
     StopAsked,
-    Told,
     Turned,
     Typed,
 )
@@ -178,7 +178,7 @@ class _Supervisor:
             self._turning = self._concluded is None
         elif isinstance(message, Progressed):
             self._request.progress(message.share, message.text)
-        elif isinstance(message, Told) and self._request.terminal is not None:
+        elif isinstance(message, OperatorText) and self._request.terminal is not None:
             self._request.terminal.tell(message.text)
         elif isinstance(message, Logged):
             _log(message)

@@ -101,16 +101,16 @@ def chosen_buses(
                 fix=f"there is: {listed(frames, known)}",
             )
     found: dict[str, FrameBlock] = {}
-    told: list[str] = []
+    lines: list[str] = []
     for bus, identifiers in known.items():
         chosen = picked.get(bus) or _guessed(frames, bus, identifiers, names[bus], known)
         block = frames.of(chosen) if chosen else None
         if block is None:
-            told.append(f"no log has frames of bus '{bus}': its channels are missing")
+            lines.append(f"no log has frames of bus '{bus}': its channels are missing")
             continue
         found[bus] = block
         seen = identifiers & _identifiers(block)
-        told.append(
+        lines.append(
             f"bus '{bus}' is channel '{chosen}': {len(block)} frames, "
             f"{len(seen)} of {len(identifiers)} known identifiers"
         )
@@ -119,7 +119,7 @@ def chosen_buses(
             "no frame in the log belongs to a device of the bench",
             fix=f"give the bench file of these logs, or --dbc; there is: {listed(frames, known)}",
         )
-    return found, told
+    return found, lines
 
 
 def _guessed(

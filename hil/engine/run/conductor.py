@@ -138,8 +138,8 @@ class BenchConductor:
         for name, device in self._bench.further.items():
             if isinstance(device, SetsVehicle):
                 self._confirmed |= device.set_vehicle(vehicle)
-                told = ", ".join(f"{key} {value}" for key, value in self._confirmed.items())
-                self._event("vehicle", f"{name} confirms: {told}")
+                words = ", ".join(f"{key} {value}" for key, value in self._confirmed.items())
+                self._event("vehicle", f"{name} confirms: {words}")
                 self._recorder.writer.describe(VEHICLE, self._confirmed)
                 return
         raise BenchError(

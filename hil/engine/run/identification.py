@@ -38,7 +38,7 @@ def _wanted(table: DeviceTable, name: str) -> str:
     return table.expects.get(name, table.expects.get(name.rpartition(": ")[2], ""))
 
 
-def told(identity: Identity) -> str:
+def mismatch_in_words(identity: Identity) -> str:
     """What is wrong with one that does not match."""
     if not identity.value:
         return f"does not report its {identity.name}, the bench file expects {identity.expected}"
@@ -56,5 +56,5 @@ def refuse_others(identities: Iterable[Identity]) -> None:
     """
     wrong = [identity for identity in identities if not identity.matches]
     if wrong:
-        said = "; ".join(f"{identity.device}: {told(identity)}" for identity in wrong)
-        raise BenchError(said, where="identification", fix=what_to_do(wrong[0]))
+        text = "; ".join(f"{identity.device}: {mismatch_in_words(identity)}" for identity in wrong)
+        raise BenchError(text, where="identification", fix=what_to_do(wrong[0]))

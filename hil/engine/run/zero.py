@@ -73,7 +73,7 @@ class ZeroCheck:
         readings = self._means()
         moving = turning(readings)
         self._before = {} if moving else readings
-        self.zeros = self._told({}, moving or _SILENT)
+        self.zeros = self._zeros_after({}, moving or _SILENT)
         refuse_offsets(self.zeros)
 
     def after(self, loop: BusLoop, *, ended_well: bool) -> None:
@@ -85,7 +85,7 @@ class ZeroCheck:
         if not self.zeros:
             return
         if not ended_well:
-            self.zeros = self._told({}, "the bench failed: nothing was read after the run")
+            self.zeros = self._zeros_after({}, "the bench failed: nothing was read after the run")
             return
         loop.run_for(SETTLE_S)
         readings: dict[str, float] = {}
@@ -96,7 +96,7 @@ class ZeroCheck:
             if not turning(readings):
                 break
         moving = turning(readings)
-        self.zeros = self._told({} if moving else readings, moving or _SILENT)
+        self.zeros = self._zeros_after({} if moving else readings, moving or _SILENT)
         refuse_drift(self.zeros)
 
     def _means(self) -> dict[str, float]:
@@ -105,7 +105,7 @@ class ZeroCheck:
         means = {name: total / count for name, (total, count) in self._sums.items() if count}
         return {name: mean for name, mean in means.items() if math.isfinite(mean)}
 
-    def _told(self, after: Mapping[str, float], reason: str) -> tuple[Zero, ...]:
+    def _zeros_after(self, after: Mapping[str, float], reason: str) -> tuple[Zero, ...]:
         return tuple(
             zero_of(name, unit, self._limits.get(name), self._before.get(name), after.get(name), reason)
             for name, unit in self._units.items()
@@ -135,7 +135,7 @@ def turning(readings: Mapping[str, float]) -> str:
     return ""
 
 
-def offset_told(zero: Zero) -> str:
+def offset_in_words(zero: Zero) -> str:
     """What is wrong with the reading before a run."""
     if zero.before is None:
         return f"{zero.channel} cannot be read at rest: {zero.reason}"
@@ -143,7 +143,7 @@ def offset_told(zero: Zero) -> str:
     return f"{reads}, the bench file allows {zero.within:g} {zero.unit}"
 
 
-def drift_told(zero: Zero) -> str:
+def drift_in_words(zero: Zero) -> str:
     """What is wrong with the change since."""
     return (
         f"{zero.channel} has drifted by {zero.drift:.4g} {zero.unit} during the run, "
@@ -160,7 +160,7 @@ def refuse_offsets(zeros: Iterable[Zero]) -> None:
     """Raises:
     BenchError: a sensor reads more at rest than the bench file allows, or cannot be read.
     """
-    wrong = [offset_told(zero) for zero in zeros if not zero.offset_fits]
+    wrong = [offset_in_words(zero) for zero in zeros if not zero.offset_fits]
     if wrong:
         raise BenchError("; ".join(wrong), where="zero check", fix=_FIX)
 
@@ -169,7 +169,7 @@ def refuse_drift(zeros: Iterable[Zero]) -> None:
     """Raises:
     BenchError: a sensor has changed by more than the bench file allows.
     """
-    wrong = [drift_told(zero) for zero in zeros if not zero.drift_fits]
+    wrong = [drift_in_words(zero) for zero in zeros if not zero.drift_fits]
     if wrong:
         raise BenchError(
             "; ".join(wrong), where="zero check", fix="the results of this run are not reliable; " + _FIX

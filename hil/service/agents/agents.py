@@ -119,18 +119,18 @@ class Agents:
         agent.drop_what_came_late()
         agent.heard_s, agent.heard_at = time.monotonic(), _now()
         new, refused = [], {}
-        for told in report.benches:
-            known = self.benches.get(told.name)
+        for one in report.benches:
+            known = self.benches.get(one.name)
             if known is None or known.agent is not agent:
-                why = self._register(agent, told)
+                why = self._register(agent, one)
                 if why:
-                    refused[told.name] = why
+                    refused[one.name] = why
                 else:
-                    new.append(told.name)
-            if told.name not in refused:
-                why = self._take_in(self.benches[told.name], told, report.obeyed)
+                    new.append(one.name)
+            if one.name not in refused:
+                why = self._take_in(self.benches[one.name], one, report.obeyed)
                 if why:
-                    refused[told.name] = why
+                    refused[one.name] = why
         for order in report.obeyed:
             agent.orders.pop(order, None)
         if report.leaving:
@@ -147,17 +147,17 @@ class Agents:
             waiting = [one.name for one in mine if self._may_take(one) and self._next(one) is not None]
         return AgentOrders(orders=list(agent.orders.values()), waiting=waiting, refused=refused)
 
-    async def told(self, agent_id: str, within_s: float) -> None:
+    async def wait_for_orders(self, agent_id: str, within_s: float) -> None:
         """Wait until there is something new for an agent to do."""
         agent = self._agents[agent_id]
-        agent.told.clear()
+        agent.news.clear()
         with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(agent.told.wait(), within_s)
+            await asyncio.wait_for(agent.news.wait(), within_s)
 
     def wake(self, bench: str) -> None:
         """Have a bench's agent told what waits for it."""
         if bench in self.benches:
-            self.benches[bench].agent.told.set()
+            self.benches[bench].agent.news.set()
 
     def take(self, agent_id: str, name: str) -> TakenRun | None:
         """Give an agent the run whose turn it is; one that it was given, and has nothing of, once more.
@@ -247,13 +247,13 @@ class Agents:
             self._agents[agent] = Agent(agent, name, machine, version, heard_at or _now(), held)
         return self._agents[agent]
 
-    def _register(self, agent: Agent, told: AgentBench) -> str:
+    def _register(self, agent: Agent, report: AgentBench) -> str:
         """Have a bench as an agent's; why not, if it is somebody else's."""
-        there = agent.held.hold(told.name)
+        there = agent.held.hold(report.name)
         if there:
-            return _of_another(told.name, there)
-        before = self.benches.get(told.name)
-        bench = self.benches[told.name] = RemoteBench(agent, told)
+            return _of_another(report.name, there)
+        before = self.benches.get(report.name)
+        bench = self.benches[report.name] = RemoteBench(agent, report)
         if before is not None and before.stop_by:
             self._stop(bench, EmergencyAsked(by=before.stop_by))
         self._restore(bench)
@@ -266,22 +266,24 @@ class Agents:
                 folder = folder_of(self._folder, run.id)
                 bench.running = RunningRun(run, folder, AgentsRun(bench), doing="its agent is not connected")
 
-    def _take_in(self, bench: RemoteBench, told: AgentBench, obeyed: list[str]) -> str:
+    def _take_in(self, bench: RemoteBench, report: AgentBench, obeyed: list[str]) -> str:
         """Take what an agent tells of a bench; why it is not the agent's any more, if that is so."""
-        before, there = (bench.told, bench.stop_by), ""
-        bench.told = told
+        before, there = (bench.report, bench.stop_by), ""
+        bench.report = report
         with contextlib.suppress(DatabaseAwayError):
             there = self._keep(bench)
-            if told.running is not None and (bench.running is None or bench.running.data.id != told.running):
+            if report.running is not None and (
+                bench.running is None or bench.running.data.id != report.running
+            ):
                 self._restore(bench)
-        if bench.running is not None and bench.running.data.id == told.running:
-            bench.running.share, bench.running.doing = told.share, told.doing
-            bench.running.told = told.told
+        if bench.running is not None and bench.running.data.id == report.running:
+            bench.running.share, bench.running.doing = report.share, report.doing
+            bench.running.told = report.told
         if bench.stop_by and bench.stops() <= set(obeyed):
             bench.stop_by = ""
             with contextlib.suppress(DatabaseAwayError):
                 self._store.stop(bench.name, "")
-        if before != (bench.told, bench.stop_by):
+        if before != (bench.report, bench.stop_by):
             self._changed(bench.name)
         return _of_another(bench.name, there) if there else ""
 
@@ -291,14 +293,14 @@ class Agents:
         if time.monotonic() - bench.kept_s > _KEPT_AGAIN_S:
             there = agent.held.hold(bench.name)
             if not there:
-                self._store.heard(agent.id, agent.name, agent.machine, agent.version, bench.told)
+                self._store.heard(agent.id, agent.name, agent.machine, agent.version, bench.report)
                 bench.kept_s = time.monotonic()
         return there
 
     def _stop(self, bench: RemoteBench, asked: EmergencyAsked) -> None:
         """One order that nobody has obeyed yet says it: who asks again adds none."""
         if bench.stop_by and bench.stops():
-            bench.agent.told.set()
+            bench.agent.news.set()
             return
         bench.stop_by = asked.by
         bench.order("emergency_stop", asked.by, origin=asked.origin, way=asked.way)
@@ -310,12 +312,12 @@ class Agents:
                 agent.held.give_back(bench.name)
 
     def _may_take(self, bench: RemoteBench) -> bool:
-        return bench.told.state == "free" and not bench.stop_by and bench.told.running is None
+        return bench.report.state == "free" and not bench.stop_by and bench.report.running is None
 
     def _next(self, bench: RemoteBench) -> int | None:
         """The run whose turn it is; None while there is one that the agent has not delivered."""
         if bench.running is not None:
-            return bench.running.data.id if bench.told.running is None else None
+            return bench.running.data.id if bench.report.running is None else None
         lease = self._leases.of(bench.name)
         run = self._runs.next_of(bench.name, lease.holder if lease else None)
         return None if run is None else run.id

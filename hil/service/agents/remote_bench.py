@@ -32,7 +32,7 @@ class Agent:
     held: BenchStore
     heard_s: float = -1e9
     orders: dict[str, Order] = field(default_factory=dict)
-    told: asyncio.Event = field(default_factory=asyncio.Event)
+    news: asyncio.Event = field(default_factory=asyncio.Event)
 
     @property
     def away(self) -> bool:
@@ -48,8 +48,8 @@ class Agent:
 class RemoteBench:
     """A bench of an agent: what it is, and what its agent told last."""
 
-    def __init__(self, agent: Agent, told: AgentBench) -> None:
-        self.agent, self.told = agent, told
+    def __init__(self, agent: Agent, report: AgentBench) -> None:
+        self.agent, self.report = agent, report
         self.running: RunningRun | None = None
         self.stop_by = ""  # of an emergency stop that the agent has not confirmed
         self.kept_s = -1e9
@@ -58,27 +58,27 @@ class RemoteBench:
     @property
     def name(self) -> str:
         """As it is called in its file."""
-        return self.told.name
+        return self.report.name
 
     @property
     def title(self) -> str:
         """What it is called for people."""
-        return self.told.title
+        return self.report.title
 
     @property
     def simulated(self) -> bool:
         """Whether what moves is computed."""
-        return self.told.simulated
+        return self.report.simulated
 
     @property
     def limits(self) -> dict[str, float]:
         """Largest magnitude by channel."""
-        return self.told.limits
+        return self.report.limits
 
     @property
     def units(self) -> dict[str, str]:
         """Units of the limited channels."""
-        return self.told.units
+        return self.report.units
 
     def order(
         self,
@@ -104,7 +104,7 @@ class RemoteBench:
             plan=plan,
         )
         self.agent.orders[order.id] = order
-        self.agent.told.set()
+        self.agent.news.set()
         return order
 
     def stops(self) -> set[str]:
@@ -129,9 +129,9 @@ class RemoteBench:
             if self.running is not None:
                 away += f"; run {self.running.data.id} ends there by itself; its agent uploads it later"
             return "away", away
-        if self.told.state == "free" and self.running is not None:
+        if self.report.state == "free" and self.running is not None:
             return "running", self.running.doing
-        return self.told.state, self.told.why
+        return self.report.state, self.report.why
 
 
 class AgentsRun:

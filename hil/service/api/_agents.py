@@ -56,7 +56,7 @@ async def report_of_agent(
         )
     orders = service.agents.orders(agent, refused)
     if not (orders.orders or orders.waiting or refused or report.leaving or service.closing):
-        await service.agents.told(agent, _WAITS_S)
+        await service.agents.wait_for_orders(agent, _WAITS_S)
         orders = service.agents.orders(agent, refused)
     return orders
 

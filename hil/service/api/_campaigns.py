@@ -25,8 +25,8 @@ async def add_campaign(
 ) -> CampaignData:
     """Queue a campaign, as `hil campaign`; it needs no bench."""
     found = await service.campaigns.add(wanted, service.places(), me.name)
-    told = f"{found.name}: {found.simulations} simulations"
-    service.log.add(me.name, me.role, "campaign", f"campaign {found.id}", told)
+    text = f"{found.name}: {found.simulations} simulations"
+    service.log.add(me.name, me.role, "campaign", f"campaign {found.id}", text)
     return found
 
 
@@ -77,8 +77,8 @@ async def remove_campaign(campaign: RunId, service: TheService, me: Engineer) ->
     found = refuse_elsewhere("campaign", _there(service, campaign))
     if not service.campaigns.remove(campaign):
         raise RefusedError(409, f"campaign {campaign} is {found.state}", fix="cancel it first")
-    told = f"{found.name}: {found.done} of {found.simulations} simulations"
-    service.log.add(me.name, me.role, "campaign removed", str(campaign), told)
+    text = f"{found.name}: {found.done} of {found.simulations} simulations"
+    service.log.add(me.name, me.role, "campaign removed", str(campaign), text)
 
 
 @router.get("/campaigns/{campaign}/files/{name}", name="get_campaign_file", response_class=Response)

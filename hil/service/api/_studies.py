@@ -40,7 +40,7 @@ async def identify(
     """Identify a model from runs, as `hil identify`; takes seconds to minutes."""
     request = IdentifyRequest(recordings=await _recordings(service, wanted.runs))
     found = service.studies.add("identification", wanted.runs, "", me.name, request, _IDENTIFIED_WITHIN_S)
-    return _begun(service, me, found)
+    return _logged(service, me, found)
 
 
 @router.post("/diagnoses", name="diagnose", status_code=201)
@@ -60,7 +60,7 @@ async def diagnose(
     within_s = 60.0 * wanted.at_most_min + _WRITTEN_WITHIN_S
     runs = [*wanted.runs, *wanted.holdout]
     found = service.studies.add("diagnosis", runs, wanted.model, me.name, request, within_s)
-    return _begun(service, me, found)
+    return _logged(service, me, found)
 
 
 @router.get("/studies", name="list_studies")
@@ -141,8 +141,8 @@ def _findings(content: dict[str, Any]) -> dict[str, Any]:
         {name: one.get(name) for name in ("id", "confidence", "separating_test", "plan")}
         for one in content["alternatives"]
     ]
-    told = {"effects": effects, "alternatives": alternatives, "unfinished": content.get("unfinished", "")}
-    return {**{name: content[name] for name in same}, **told}
+    facts = {"effects": effects, "alternatives": alternatives, "unfinished": content.get("unfinished", "")}
+    return {**{name: content[name] for name in same}, **facts}
 
 
 async def _recordings(service: Service, runs: list[int]) -> list[Path]:
@@ -157,7 +157,7 @@ async def _recordings(service: Service, runs: list[int]) -> list[Path]:
     return found
 
 
-def _begun(service: Service, me: Me, study: StudyData) -> StudyData:
+def _logged(service: Service, me: Me, study: StudyData) -> StudyData:
     service.log.add(me.name, me.role, study.kind, f"study {study.id}", f"runs {study.runs} {study.model}")
     return study
 

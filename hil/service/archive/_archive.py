@@ -98,7 +98,7 @@ class Archive:
             else:
                 self._files.pipe_file(place, read_bytes(path))
 
-        self._asked(bring, name)
+        self._ask(bring, name)
         if self._read_back(name, wanted.size) != wanted:
             raise ArchiveAwayError(
                 "the store returned a different file from the one written",
@@ -116,7 +116,7 @@ class Archive:
         place = self._place(name)
         if start >= end:
             return b""
-        found: Any = self._asked(lambda: self._files.cat_file(place, start=start, end=end), name)
+        found: Any = self._ask(lambda: self._files.cat_file(place, start=start, end=end), name)
         if len(found) != end - start:
             raise ArchiveAwayError("the store's file is too short", where=self._where(name))
         return bytes(found)
@@ -146,13 +146,13 @@ class Archive:
             with contextlib.suppress(FileNotFoundError):
                 self._files.rm_file(self._place(name))
 
-        self._asked(drop, name)
+        self._ask(drop, name)
 
     def _read_back(self, name: str, size: int) -> Kept:
         found = hashlib.sha256()
         for start in range(0, size, PIECE_BYTES):
             found.update(self.read(name, start, min(size, start + PIECE_BYTES)))
-        info: Any = self._asked(lambda: self._files.info(self._place(name)), name)
+        info: Any = self._ask(lambda: self._files.info(self._place(name)), name)
         return Kept(int(info["size"]), found.hexdigest())
 
     def _place(self, name: str) -> str:
@@ -161,13 +161,13 @@ class Archive:
     def _where(self, name: str) -> str:
         return f"{self.shown.rstrip('/')}/{name}"
 
-    def _asked(self, ask: Callable[[], T], name: str) -> T:
+    def _ask(self, ask: Callable[[], T], name: str) -> T:
         try:
             return ask()
         except Exception as error:  # each kind of store has errors of its own
-            said = (str(error).strip() or type(error).__name__).splitlines()[0][:_LONGEST]
+            text = (str(error).strip() or type(error).__name__).splitlines()[0][:_LONGEST]
             raise ArchiveAwayError(
-                f"the store cannot be reached: {said}", where=self._where(name), fix=_LATER
+                f"the store cannot be reached: {text}", where=self._where(name), fix=_LATER
             ) from error
 
 

@@ -95,7 +95,7 @@ class Keeper:
 
     async def _round(self) -> str:
         """Bring what waits; what keeps one run's files from it, if anything does."""
-        said, kept = "", False
+        text, kept = "", False
         for run in self._files.to_keep(self._service):
             try:
                 await self._keep(run)
@@ -103,11 +103,11 @@ class Keeper:
             except (ArchiveAwayError, DatabaseAwayError):
                 raise
             except (HilError, OSError) as error:
-                said = f"run {run}: {error}"
+                text = f"run {run}: {error}"
         if kept or time.monotonic() - self._cleared_s > _CLEAR_S:
             await self._clear()
             self._cleared_s = time.monotonic()
-        return said
+        return text
 
     async def _keep(self, run: int) -> None:
         there = {file.name: file for file in self._files.of(run)}

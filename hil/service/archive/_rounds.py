@@ -33,14 +33,14 @@ class Rounds:
         wait_s = _LOOK_S
         while True:
             try:
-                said = await self._once()
+                text = await self._once()
             except (ArchiveAwayError, DatabaseAwayError) as error:
-                said = str(error)
-            wait_s = min(2.0 * wait_s, _LONGEST_S) if said else _LOOK_S
-            if said and said != self.problem:
-                logger.warning("%s wait: %s", self._what, said)
-            elif self.problem and not said:
+                text = str(error)
+            wait_s = min(2.0 * wait_s, _LONGEST_S) if text else _LOOK_S
+            if text and text != self.problem:
+                logger.warning("%s wait: %s", self._what, text)
+            elif self.problem and not text:
                 logger.warning("%s are kept again", self._what)
-            self.problem = said
+            self.problem = text
             self.count += 1
             await asyncio.sleep(wait_s)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from hil.app.worker.job import JOB, write_request
 from hil.core.files import write_atomically
-from hil.execution.background import STUDY_BYTES, begun
+from hil.execution.background import STUDY_BYTES, start_process
 
 _NICENESS = 10
 _NUMBER = "process"
@@ -31,7 +31,7 @@ class JobProcess:
             OSError: it cannot be begun.
         """
         write_request(folder, request)
-        process = await begun(
+        process = await start_process(
             *JOB,
             str(folder.resolve()),
             niceness=_NICENESS,

@@ -20,7 +20,7 @@ from hil.execution.daemon_thread import apart
 from hil.messages.api import Record
 from hil.service.archive import Archive, ArchiveAwayError, Kept
 from hil.service.jobs.job_repository import files_in_results
-from hil.service.store import DatabaseAwayError, KeptFile, ResultKind, ResultStore, Told
+from hil.service.store import DatabaseAwayError, KeptFile, ResultKind, ResultStore, SharedJob
 
 R = TypeVar("R", bound=Record)
 _OF_THE_SERVICE = {"files", "place"}  # what each service says itself
@@ -155,7 +155,7 @@ class SharedResults(Generic[R]):
     async def _keep(self, archive: Archive, wanted: list[R], mine: Own[R], told: dict[int, str]) -> str:
         missing = set(self._store.not_kept(self._kind))
         waiting = sorted(one.id for one in wanted if one.id in missing)
-        self.waiting, said = len(waiting), ""
+        self.waiting, text = len(waiting), ""
         for number in waiting:
             facts = told[number]
             try:
@@ -163,11 +163,11 @@ class SharedResults(Generic[R]):
             except (ArchiveAwayError, DatabaseAwayError):
                 raise
             except (HilError, OSError) as error:
-                said = f"{self._kind} {number}: {error}"
+                text = f"{self._kind} {number}: {error}"
                 continue
             self._store.all_kept(self._kind, number, facts)
             self.waiting -= 1
-        return said
+        return text
 
     async def _keep_files(self, archive: Archive, number: int, results: Path) -> None:
         there = {file.name: file for file in self._files(number)}
@@ -196,7 +196,7 @@ class SharedResults(Generic[R]):
     def _files(self, number: int) -> list[KeptFile]:
         return self._store.files(self._kind, number)
 
-    def _read(self, told: Told, names: list[str]) -> R | None:
+    def _read(self, told: SharedJob, names: list[str]) -> R | None:
         try:
             found = self._data.model_validate_json(told.facts)
         except ValueError:  # of a newer version

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from hil.execution.background import begun
+from hil.execution.background import start_process
 from hil.service.stop_post._messages import (
     Benches,
     Line,
@@ -153,7 +153,7 @@ class StopPost:
             ours.setblocking(False)
             ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _BUFFER_BYTES)
             descriptors = theirs.fileno(), self._listening.fileno()
-            process = await begun(
+            process = await start_process(
                 sys.executable,
                 "-m",
                 __package__,

@@ -10,7 +10,7 @@ from hil.service.store._leases import LeaseStore
 from hil.service.store._opening import open_database
 from hil.service.store._people import SESSION_S, TokenStore
 from hil.service.store._presence import DatabaseAwayError, Presence
-from hil.service.store._results import ResultKind, ResultStore, Told
+from hil.service.store._results import ResultKind, ResultStore, SharedJob
 from hil.service.store._runs import NewRun, RunStore
 from hil.service.store._tables import Base
 
@@ -34,8 +34,8 @@ __all__ = [
     "ResultKind",
     "ResultStore",
     "RunStore",
+    "SharedJob",
     "TokenStore",
-    "Told",
     "asked_apart",
     "in_turns",
     "open_database",

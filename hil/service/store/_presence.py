@@ -107,12 +107,12 @@ def in_words(failure: BaseException) -> str:
     of_system = failure if isinstance(failure, OSError) else failure.__cause__
     first = failure.args[0] if failure.args else ""
     if isinstance(of_system, OSError):
-        said = of_system.strerror or str(of_system)
+        words = of_system.strerror or str(of_system)
     else:
-        said = str(first.get("M", "")) if isinstance(first, dict) else str(failure)
+        words = str(first.get("M", "")) if isinstance(first, dict) else str(failure)
     with contextlib.suppress(IndexError):
-        said = said.strip().splitlines()[0]
-    return said[:_LONGEST] or type(failure).__name__
+        words = words.strip().splitlines()[0]
+    return words[:_LONGEST] or type(failure).__name__
 
 
 def _of_the_server(context: ExceptionContext) -> bool:

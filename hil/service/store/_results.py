@@ -19,7 +19,7 @@ ResultKind = Literal["study", "campaign"]
 
 
 @dataclass(frozen=True)
-class Told:
+class SharedJob:
     """What a service tells of one: `facts` as JSON, and where that service is, in words."""
 
     id: int
@@ -74,17 +74,17 @@ class ResultStore:
         with self._transaction() as session:
             session.execute(update(ResultRow).where(*same).values(kept_at=now()))
 
-    def others(self, kind: ResultKind) -> list[Told]:
+    def others(self, kind: ResultKind) -> list[SharedJob]:
         """Those of other services, newest first."""
         chosen = select(ResultRow).where(ResultRow.kind == kind, ResultRow.service != self._service)
         with self._transaction() as session:
-            return [_told(row) for row in session.scalars(chosen.order_by(ResultRow.id.desc()))]
+            return [_shared_job(row) for row in session.scalars(chosen.order_by(ResultRow.id.desc()))]
 
-    def other(self, kind: ResultKind, number: int) -> Told | None:
+    def other(self, kind: ResultKind, number: int) -> SharedJob | None:
         """One of another service; None if there is none."""
         with self._transaction() as session:
             row = session.get(ResultRow, (kind, number))
-            return None if row is None or row.service == self._service else _told(row)
+            return None if row is None or row.service == self._service else _shared_job(row)
 
     def names(self, kind: ResultKind) -> dict[int, list[str]]:
         """Names of all files that the archive has, by number."""
@@ -121,5 +121,5 @@ class ResultStore:
             session.execute(delete(ResultRow).where(*there))
 
 
-def _told(row: ResultRow) -> Told:
-    return Told(row.id, row.facts, row.place)
+def _shared_job(row: ResultRow) -> SharedJob:
+    return SharedJob(row.id, row.facts, row.place)

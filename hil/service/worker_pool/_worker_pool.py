@@ -10,7 +10,7 @@ import sys
 from typing import Any
 
 from hil.core.errors import BadInputError, BenchError
-from hil.execution.background import FORECAST_BYTES, begun
+from hil.execution.background import FORECAST_BYTES, start_process
 
 _WITHIN_S = 60.0
 #: What an answer begins with; JSON follows.
@@ -75,11 +75,11 @@ class WorkerPool:
     async def _answer(self, question: bytes) -> bytes:
         """The line that answers; a process that had just ended for want of questions is begun anew."""
         was_there = self._process is not None
-        line = await self._asked(question)
-        return line or (await self._asked(question) if was_there else b"")
+        line = await self._ask(question)
+        return line or (await self._ask(question) if was_there else b"")
 
-    async def _asked(self, question: bytes) -> bytes:
-        process = self._process or await self._begun()
+    async def _ask(self, question: bytes) -> bytes:
+        process = self._process or await self._start()
         assert process.stdin is not None
         assert process.stdout is not None
         with contextlib.suppress(ConnectionError):
@@ -93,8 +93,8 @@ class WorkerPool:
                 raise TooLongError(f"took more than {READ_WITHIN_S:g} s of a processor", where="reading")
         return line
 
-    async def _begun(self) -> asyncio.subprocess.Process:
-        self._process = await begun(
+    async def _start(self) -> asyncio.subprocess.Process:
+        self._process = await start_process(
             sys.executable,
             "-m",
             __package__,

@@ -26,9 +26,9 @@ def without_spikes(values: Array, channel: str, dt: float) -> tuple[Array, str]:
     mended = values.copy()
     mended[at] = 0.5 * (values[at - 1] + values[at + 1])
     first = f"{values[at[0]]:.4g} at {at[0] * dt:.4g} s"
-    said = (
+    text = (
         f"a single reading of {first}"
         if at.size == 1
         else f"{at.size} single readings, the first of {first},"
     )
-    return mended, f"{said} in {channel} omitted: no axle can move so far and back in a sample"
+    return mended, f"{text} in {channel} omitted: no axle can move so far and back in a sample"

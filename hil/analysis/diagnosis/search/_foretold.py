@@ -55,9 +55,9 @@ def foretold_where(problem: Problem, base: Fit, one: Fit, *, fitted: bool = Fals
     chaotic = _share([w > CHAOTIC * plain for w in parted])
     if chaotic == 0.0 or (chaotic < UNFORETOLD and not (fitted and _holds_most(problem, one, apart))):
         return None
-    begun = [w > MOST_APART for w in _parted_from_start(problem, one)]
+    lines = [w > MOST_APART for w in _parted_from_start(problem, one)]
     flags = []
-    for trace, pushed, first in zip(problem.traces, apart, begun, strict=True):
+    for trace, pushed, first in zip(problem.traces, apart, lines, strict=True):
         length = len(trace.measured)
         each = _blocks_near(problem, pushed | first, length)
         flags.append(~np.pad(each, (0, length - len(each)), mode="edge"))

@@ -111,8 +111,8 @@ def _promising(problem: Problem, best: Fit, index: int) -> list[_Begun]:
     """Other widths with their best places, and other places with this width; most promising first."""
     own = _middling(problem, best, index, 1.0)
     likely = [width for width in WIDTHS if _middling(problem, best, index, width) < PLACES_MIDDLING * own]
-    begun = [_begun(problem, best, index, width) for width in likely]
-    worth = [one for one in begun if one.total < PLACES_WORTH * best.total]
+    lines = [_begun(problem, best, index, width) for width in likely]
+    worth = [one for one in lines if one.total < PLACES_WORTH * best.total]
     elsewhere = _begun(problem, best, index, 1.0)
     if elsewhere.total < (1.0 - AS_GOOD) * best.total:
         worth.append(elsewhere)

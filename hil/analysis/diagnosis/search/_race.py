@@ -144,8 +144,8 @@ def freed(problem: Problem, parent: Fit, other: Fit) -> Fit:
         return fit(problem, hypothesis, other.starts, theta)
     own = next(i for i, c in enumerate(hypothesis.coordinates()) if c.term == len(hypothesis.terms) - 1)
     sizes = [_sized(hypothesis, theta, own, factor) for factor in FREED_SIZES]
-    begun = [fit(problem, hypothesis, other.starts, one, rounds=RACE_ROUNDS) for one in sizes]
-    best = min(begun, key=rank)
+    lines = [fit(problem, hypothesis, other.starts, one, rounds=RACE_ROUNDS) for one in sizes]
+    best = min(lines, key=rank)
     if best.total - problem.rows > IN_VAIN * (parent.total - problem.rows):
         return best
     return fit(problem, hypothesis, best.starts, best.theta)

@@ -31,7 +31,7 @@ def drifts(problem: Problem, simulated: Sequence[Array]) -> list[str]:
     """
     errors = [_errors(t, shown) for t, shown in zip(problem.traces, simulated, strict=True)]
     slow = [_slow(error, trace) for error, trace in zip(errors, problem.traces, strict=True)]
-    told = []
+    lines = []
     for column in range(3):
         mine = [i for i, t in enumerate(problem.traces) if t.has[column]]
         if not mine or _is_motion(problem, slow, column):
@@ -46,11 +46,11 @@ def drifts(problem: Problem, simulated: Sequence[Array]) -> list[str]:
             continue
         trace = problem.traces[index]
         lasts, noises = len(trace.torque) * trace.dt, swing / float(problem.noise[column])
-        told.append(
+        lines.append(
             f"{OUTPUTS[column]} drifts slowly beside all else: by {swing:.3g} {_UNITS[column]} within the "
             f"{lasts:.3g} s of {trace.name}, {multiple(noises)} its noise"
         )
-    return told
+    return lines
 
 
 def _errors(trace: Trace, shown: Array) -> Array:

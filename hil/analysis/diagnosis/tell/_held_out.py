@@ -63,17 +63,17 @@ class HeldOut:
         """
         if verdict == "unknown":
             return ""
-        said = []
+        lines = []
         if channels := self.open(verdict):
             kept = ", ".join(f"{multiple(self.after[c].noises)} its noise in {c}" for c in channels)
-            said.append(f"held-out recordings leave {kept}")
+            lines.append(f"held-out recordings leave {kept}")
         if verdict == "none" and self.event is not None and self.event.noises > EVENT_NOISES:
             e = self.event
-            said.append(
+            lines.append(
                 f"held-out recording {e.recording} is off by {multiple(e.noises)} the noise in {e.channel} "
                 f"at {e.time_s:.4g} s"
             )
-        return f"{'; '.join(said)}: {_WHAT_TO_DO}" if said else ""
+        return f"{'; '.join(lines)}: {_WHAT_TO_DO}" if lines else ""
 
 
 def held_out(problem: Problem, holdout: Examined, found: Found, kept: Fit) -> HeldOut:

@@ -102,7 +102,7 @@ def lasting(model: Model) -> list[EffectUse]:
 
 def reduced(effects: Sequence[NamedEffect]) -> list[str]:
     """What to say of an effect whose own number is nothing and which is named for another of its numbers."""
-    said = []
+    lines = []
     for one in effects:
         effect, values = EFFECTS[one.use.id], one.use.values
         main = next(iter(effect.sizes), "")  # none where any number alone makes it act
@@ -114,8 +114,8 @@ def reduced(effects: Sequence[NamedEffect]) -> list[str]:
         own = f"{float(values[main]):.2g} ± {error:.2g} {effect.parameter(main).unit}"
         if acting:
             words = "; ".join(acting)
-            said.append(f"of {one.use.id} the {main} itself is nothing ({own}); what acts is {words}")
-    return said
+            lines.append(f"of {one.use.id} the {main} itself is nothing ({own}); what acts is {words}")
+    return lines
 
 
 def clean(use: EffectUse) -> EffectUse:

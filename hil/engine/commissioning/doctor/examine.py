@@ -24,8 +24,8 @@ from hil.engine.commissioning.doctor._clocks import Listener
 from hil.engine.commissioning.doctor._dates import findings_of_dates
 from hil.engine.commissioning.doctor._stops import findings_of_stops
 from hil.engine.commissioning.doctor.examination import BusFacts, DeviceFacts, Examination
-from hil.engine.run.identification import identities_of, told, what_to_do
-from hil.engine.run.zero import SENSORS, offset_told, turning, zero_of
+from hil.engine.run.identification import identities_of, mismatch_in_words, what_to_do
+from hil.engine.run.zero import SENSORS, offset_in_words, turning, zero_of
 from hil.engine.run.zero import what_to_do as what_to_do_about_zero
 from hil.engine.stop.stopping import StopRequest
 
@@ -200,7 +200,7 @@ class _Visit:
                 zero = zero_of(name, unit, limits.get(name), value, None, moving or "nothing came")
                 self._found.zeros.append(zero)
                 if value is not None and not zero.offset_fits:
-                    self._add(Finding("fault", offset_told(zero), "zero check", what_to_do_about_zero()))
+                    self._add(Finding("fault", offset_in_words(zero), "zero check", what_to_do_about_zero()))
         if moving and self._found.asked:
             self._add(
                 Finding("hint", f"{moving}; sensors were not checked", "zero check", "bring it to rest")
@@ -229,4 +229,4 @@ class _Visit:
             if identity.value:
                 facts.facts[identity.name] = identity.value
             if not identity.matches:
-                self._add(Finding("fault", told(identity), device.name, what_to_do(identity)))
+                self._add(Finding("fault", mismatch_in_words(identity), device.name, what_to_do(identity)))

@@ -10,7 +10,7 @@ import pytest
 from pydantic import BaseModel, ValidationError
 
 from drivers import DynoTable, RmcuTable
-from hil.core.table_mistakes import told
+from hil.core.table_mistakes import mistakes_of
 from hil.engine.bench.device_kinds import KINDS, descriptions_of, device_tables
 from tests.benches_for_tests import SIM
 
@@ -82,15 +82,17 @@ class Outer(BaseModel, extra="forbid"):
 def test_pydantics_errors_become_key_value_and_what_would_be_right() -> None:
     with pytest.raises(ValidationError) as caught:
         Outer.model_validate({"rod": {"length_m": "long", "mass": 1}, "tube": {}})
-    mistakes = told(caught.value, Outer, "frame")
+    mistakes = mistakes_of(caught.value, Outer, "frame")
     assert mistakes[0].startswith("frame.rod.length_m = 'long': must be a number")
     assert mistakes[1:] == ["frame.rod.mass: unknown key", "frame.tube.length_m: is missing"]
     # of a table that was told of before, nothing is told again
-    assert told(caught.value, Outer, "", ["rod.length_m = 'long': no"])[-1] == "tube.length_m: is missing"
-    assert len(told(caught.value, Outer, "", ["rod.length_m = 'long': no"])) == 2
+    assert (
+        mistakes_of(caught.value, Outer, "", ["rod.length_m = 'long': no"])[-1] == "tube.length_m: is missing"
+    )
+    assert len(mistakes_of(caught.value, Outer, "", ["rod.length_m = 'long': no"])) == 2
     with pytest.raises(ValidationError) as again:
         Outer.model_validate({"rod": 3, "tube": {"length_m": {}}})
-    assert told(again.value, Outer)[1].startswith("tube.length_m = a table: ")
+    assert mistakes_of(again.value, Outer)[1].startswith("tube.length_m = a table: ")
 
 
 def test_the_largest_description_that_a_reader_takes_is_attached_too(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from hil.core.errors import BenchError
-from hil.engine.ipc.ipc_messages import Here, Message, Told, Turned
+from hil.engine.ipc.ipc_messages import Here, Message, OperatorText, Turned
 from hil.engine.ipc.ipc_pipe import MOST_WAITING_BYTES, IpcPipe
 
 Pair = tuple[IpcPipe, IpcPipe]
@@ -27,10 +27,10 @@ def pair() -> Iterator[Pair]:
 def test_messages_arrive_in_their_order(pair: Pair):
     here, there = pair
     assert there.fetch() == []
-    here.send(Told(text="a"))
+    here.send(OperatorText(text="a"))
     here.send(Turned())
     there.wait(1.0)
-    assert there.fetch() == [Told(text="a"), Turned()]
+    assert there.fetch() == [OperatorText(text="a"), Turned()]
     assert not there.gone
 
 
@@ -38,7 +38,7 @@ def test_a_reader_that_stands_still_holds_up_nobody_and_gets_all_of_it(pair: Pai
     here, there = pair
     texts = [f"{number} " + "x" * 50_000 for number in range(100)]
     for text in texts:
-        here.send(Told(text=text))
+        here.send(OperatorText(text=text))
     assert here.crowded
     here.send_if_idle(Here())  # worth nothing later
     assert not here.push_all(0.05)
@@ -46,7 +46,7 @@ def test_a_reader_that_stands_still_holds_up_nobody_and_gets_all_of_it(pair: Pai
     while len(found) < len(texts):
         found += there.fetch()
         here.push()
-    assert [message.text for message in found if isinstance(message, Told)] == texts
+    assert [message.text for message in found if isinstance(message, OperatorText)] == texts
     assert here.push_all(0.0)
     assert there.fetch() == []
     assert len(texts) * 50_000 > MOST_WAITING_BYTES
@@ -54,7 +54,7 @@ def test_a_reader_that_stands_still_holds_up_nobody_and_gets_all_of_it(pair: Pai
 
 def test_the_last_words_wait_for_a_reader_that_comes_late(pair: Pair):
     here, there = pair
-    here.send(Told(text="y" * 1_000_000))
+    here.send(OperatorText(text="y" * 1_000_000))
     found: list[object] = []
 
     def read() -> None:
@@ -71,9 +71,9 @@ def test_the_last_words_wait_for_a_reader_that_comes_late(pair: Pair):
 
 def test_an_end_that_is_closed_is_noticed_and_what_it_said_is_read(pair: Pair):
     here, there = pair
-    here.send(Told(text="last"))
+    here.send(OperatorText(text="last"))
     here.close()
-    assert there.fetch() == [Told(text="last")]
+    assert there.fetch() == [OperatorText(text="last")]
     assert there.gone
     there.send(Here())
     assert there.push_all(0.1) is False

@@ -69,7 +69,7 @@ def test_of_many_cars_the_one_that_was_tried_longest_ago_is_forgotten(monkeypatc
     for seed in (1, 2, 1, 3):
         runs(MODEL, None, 1.0, seed)
     assert runs._here is not None
-    assert [seed for _, _, seed in runs._here.begun] == [1, 3]
+    assert [seed for _, _, seed in runs._here.runs_before] == [1, 3]
 
 
 def test_steps_of_a_sample_give_the_figures_of_steps_as_short_as_the_wires():

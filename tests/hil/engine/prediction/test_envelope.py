@@ -15,8 +15,8 @@ def test_it_lies_around_what_is_predicted_and_within_the_benchs_limits():
     found = envelope_of(SIM, PEAKS, 20, 60.0, {})
     assert found.largest == {"motor_torque_nm": 52.0, "shaft_torque_left_nm": 600.0}
     assert found.bench_time_s == 1500.0
-    assert "at most 20 runs and 25 min" in found.told()
-    assert "motor_torque_nm 52 N m" in found.told()
+    assert "at most 20 runs and 25 min" in found.in_words()
+    assert "motor_torque_nm 52 N m" in found.in_words()
 
 
 def test_what_somebody_states_takes_its_place():

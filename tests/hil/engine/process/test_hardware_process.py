@@ -25,9 +25,9 @@ from hil.engine.ipc.ipc_messages import (
     Ended,
     Here,
     Message,
+    OperatorText,
     Progressed,
     StopAsked,
-    Told,
     Turned,
     Typed,
 )
@@ -140,7 +140,7 @@ def test_asked_to_stop_from_either_side_it_ends_safe_once(
     ask: Callable[[subprocess.Popen[bytes], IpcPipe], None], tmp_path: Path, heard_hangups: None
 ):
     with held(prompted(tmp_path)) as (process, pipe):
-        heard_until(pipe, Told)
+        heard_until(pipe, OperatorText)
         ask(process, pipe)
         heard = heard_until(pipe, Ended)
     ended = heard[-1]
@@ -155,7 +155,7 @@ def test_asked_to_stop_from_either_side_it_ends_safe_once(
 @pytest.mark.parametrize("how", ["gone", "frozen"])
 def test_a_command_that_is_gone_or_frozen_ends_the_run_in_the_normal_way(how: str, tmp_path: Path):
     with held(prompted(tmp_path, alone_after_s=0.5)) as (process, pipe):
-        heard_until(pipe, Told)
+        heard_until(pipe, OperatorText)
         if how == "gone":
             pipe.close()
         _, said = process.communicate(timeout=60 + LAST_WORDS_S)
