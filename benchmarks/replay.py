@@ -96,7 +96,7 @@ def by_blocks(log: Path) -> Values:
     found: dict[str, np.ndarray[Any, Any]] = {}
     for block in read_can_log(log).channels.values():
         for samples in decoded(block, layouts):
-            name = samples.layout.layout.name
+            name = samples.layout.name
             found |= {f"{name}.{signal}": values for signal, values in samples.values.items()}
     return found
 

@@ -92,6 +92,10 @@ class DeviceTable(BaseModel):
         """Keys of files that cannot be used, and why; paths are absolute by now."""
         return ()
 
+    def remarks(self) -> Iterable[str]:
+        """What of its files was converted, or had to be assumed; a sentence each."""
+        return ()
+
     def identifiers(self) -> Mapping[int, str]:
         """CAN identifiers that the device sends or hears on its bus, with words for each."""
         return {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.dyno._canopen import LoopNetwork
-from drivers.dyno._examination import examine, identify
+from drivers.dyno._examination import OTHER_PDOS, examine, identify
 from drivers.dyno._node import (
     ENABLED,
     FAULT,
@@ -74,6 +75,7 @@ class DynoDriver:
         self.rear = (self.left, self.right)
         self.idle = [DynoNode(network, wire.name, i, name, eds) for name, i in nodes.idle.items()]
         self._watched: list[DynoNode] = [*self.rear, *self.idle]
+        self._other_pdos: list[tuple[DynoNode, str]] | None = None
         self.missing: list[str] = []  # idle nodes that were not there when it came up
         # Both measure at the SYNC, and send what they measured after it.
         sync = CountedBy(wire.name, SYNC, "SYNC", opens=True)
@@ -101,6 +103,7 @@ class DynoDriver:
                 where=f"bus '{self._wire.name}'",
                 fix="switch the dyno controller on, check node ids in the bench file",
             )
+        self._refuse_other_pdos()
         for node in self.rear:
             node.write(0x1017, 0, _NODE_HEARTBEAT_MS, "heartbeat time")
             node.write(0x1016, 1, self._host << 16 | _HOST_SILENCE_MS, "watch on the host's heartbeat")
@@ -224,7 +227,23 @@ class DynoDriver:
 
     def identify(self) -> dict[str, str]:
         """Name, versions and serial number of each node that answers, as far as the EDS has them."""
-        return identify([*self.rear, *self.idle])
+        found = identify([*self.rear, *self.idle])
+        with contextlib.suppress(BenchError):  # who does not answer is missed when it is to come up
+            self._other_pdos = self._read_pdos()
+        return found
+
+    def _read_pdos(self) -> list[tuple[DynoNode, str]]:
+        """Where a device's PDOs are not those of its EDS."""
+        return [(node, text) for node in self.rear for text in node.differences()]
+
+    def _refuse_other_pdos(self) -> None:
+        """Raises:
+        BenchError: a device sends or takes other values than its EDS says: object, and both values.
+        """
+        found = self._read_pdos() if self._other_pdos is None else self._other_pdos
+        if found:
+            node, text = found[0]
+            raise BenchError(text, where=f"dyno '{node.name}' (node {node.id})", fix=OTHER_PDOS)
 
     def examine(self, *, ask: bool) -> Examined:
         """Who is there, and what each says of itself; reads objects, writes none."""

@@ -21,6 +21,7 @@ _BETWEEN_REQUESTS_S = 0.001
 _DRIVE_PROFILE = 402
 _SIDES = ("left", "right")
 _READINGS = 10
+OTHER_PDOS = "give the EDS or DCF of this device, or load the parameters of that file into it"
 _MEASURED = {"Wheel speed": "wheel_speed_{}_rad_s", "Shaft torque": "shaft_torque_{}_nm"}
 # Index, subindex, what it is and how it is shown (CiA 301): texts, and the identity object
 _IDENTITY = (
@@ -101,9 +102,18 @@ def _look_at(node: DynoNode, found: Examined, *, beats: bool, drives: bool, ask:
         found.facts[f"{node.name}: NMT"] = node.nmt_state
     if device_type is not None:
         _read(node, found, device_type, where, drives=drives)
+    if device_type is not None and drives:
+        _compare_pdos(node, found, where)
     for text in node.emergencies:
         found.findings.append(Finding("fault", text, where, "look the code up in the dyno's manual"))
     return True
+
+
+def _compare_pdos(node: DynoNode, found: Examined, where: str) -> None:
+    """Add where the device's PDOs are not those of its EDS."""
+    with contextlib.suppress(BenchError):
+        for text in node.differences():
+            found.findings.append(Finding("fault", text, where, OTHER_PDOS))
 
 
 def _read(node: DynoNode, found: Examined, device_type: int, where: str, *, drives: bool) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,8 @@ from drivers.dyno._canopen import SDO_TIMEOUT_S, BrokenOffError, LoopNetwork, Lo
 from drivers.frame_source import Binding
 from drivers.newest_frames import NewestFrames
 from hil.core.errors import BenchError
-from hil.core.pdo import layout_of_pdo, read_eds
-from hil.core.signals import FrameLayout
+from hil.core.pdo import identifier_of, layout_of_pdo, mapping_of, read_eds
+from hil.core.signals import FrameLayout, in_units
 
 # CiA 402: statusword bits 6, 5, 3, 2, 1, 0
 STATE_MASK = 0x6F
@@ -31,39 +32,69 @@ _STATE_NAMES = {
 # What is written by SDO: index and subindex
 _OBJECTS = ((0x1005, 0), (0x1006, 0), (0x1016, 1), (0x1017, 0), (0x6060, 0), (0x6083, 0))
 _VEHICLE_OBJECTS = tuple((0x2000, subindex) for subindex in range(1, 7))
+#: Mapping, communication parameter, identifier less the node id where the EDS says none, what is needed
+_PDOS: tuple[tuple[int, int, int, tuple[str, ...]], ...] = (
+    (0x1600, 0x1400, 0x200, ("Controlword", "Target velocity")),
+    (0x1A00, 0x1800, 0x180, ("Wheel speed", "Shaft torque")),
+    (0x1A01, 0x1801, 0x280, ("Statusword", "Torque actual value", "Vehicle speed")),
+)
+_UNITS = {
+    "Target velocity": "rad/s",
+    "Wheel speed": "rad/s",
+    "Shaft torque": "N m",
+    "Torque actual value": "N m",
+    "Vehicle speed": "m/s",
+}
+_OF_COB_ID = 0xBFFF_FFFF  # all but whether a PDO may be asked for (bit 30)
 _FRESH_S = 0.05
 _REPEATS = 2
 HEARTBEAT_LOST_S = 0.35
 
 
-def read_dyno(eds: Path, node_id: int) -> tuple[Any, tuple[FrameLayout, FrameLayout, FrameLayout]]:
-    """canopen's dictionary of a dyno, and the layouts of its command, values and status PDOs.
+@dataclass(frozen=True)
+class DynoFile:
+    """What a dyno's EDS says: canopen's dictionary, the layouts of three PDOs, and remarks on their units."""
+
+    dictionary: Any
+    command: FrameLayout
+    values: FrameLayout
+    status: FrameLayout
+    remarks: tuple[str, ...]
+
+
+def read_dyno(eds: Path, node_id: int) -> DynoFile:
+    """What the driver uses of a dyno's EDS.
 
     Raises:
         BadInputError: not an EDS, or it lacks an object or a mapping that is used.
     """
     dictionary = read_eds(eds, node_id, _OBJECTS, floats=_VEHICLE_OBJECTS)
-    layouts = (
-        layout_of_pdo(dictionary, 0x1600, 0x200 + node_id, ("Controlword", "Target velocity"), str(eds)),
-        layout_of_pdo(dictionary, 0x1A00, 0x180 + node_id, ("Wheel speed", "Shaft torque"), str(eds)),
+    command, values, status = (
         layout_of_pdo(
             dictionary,
-            0x1A01,
-            0x280 + node_id,
-            ("Statusword", "Torque actual value", "Vehicle speed"),
+            mapping,
+            identifier_of(dictionary, communication, usual + node_id, str(eds)),
+            needed,
             str(eds),
-        ),
+        )
+        for mapping, communication, usual, needed in _PDOS
     )
-    return dictionary, layouts
+    remarks: list[str] = []
+    command, values, status = (in_units(one, _UNITS, str(eds), remarks) for one in (command, values, status))
+    return DynoFile(dictionary, command, values, status, tuple(remarks))
 
 
-def identifiers_of(node_id: int, name: str) -> dict[int, str]:
-    """What a dyno sends or hears on its bus (CiA 301's predefined connections), with words for each."""
-    services = {0x80: "EMCY", 0x180: "values", 0x200: "command", 0x280: "status", 0x580: "SDO answer",
-                0x600: "SDO request", 0x700: "heartbeat"}  # fmt: skip
-    return {0x000: "NMT", 0x080: "SYNC"} | {
-        base + node_id: f"{what} of {name}" for base, what in services.items()
-    }
+def identifiers_of(node_id: int, name: str, pdos: tuple[int, int, int] | None = None) -> dict[int, str]:
+    """What a dyno sends or hears on its bus, with words for each.
+
+    Args:
+        pdos: identifiers of its values, command and status; None for those of CiA 301.
+    """
+    services = {0x80: "EMCY", 0x580: "SDO answer", 0x600: "SDO request", 0x700: "heartbeat"}
+    found = {base + node_id: what for base, what in services.items()}
+    ids = pdos or (0x180 + node_id, 0x200 + node_id, 0x280 + node_id)
+    found |= dict(zip(ids, ("values", "command", "status"), strict=True))
+    return {0x000: "NMT", 0x080: "SYNC"} | {one: f"{what} of {name}" for one, what in sorted(found.items())}
 
 
 def _object(index: int, subindex: int) -> str:
@@ -77,8 +108,10 @@ class DynoNode:
     def __init__(self, network: LoopNetwork, bus: str, node_id: int, name: str, eds: Path) -> None:
         self.id, self.name, self.bus = node_id, name, bus
         self._network = network
-        dictionary, (self._command, self._values, self._status) = read_dyno(eds, node_id)
-        self._node: Any = LoopNode(node_id, dictionary)
+        file = read_dyno(eds, node_id)
+        self._command, self._values, self._status = self._layouts = file.command, file.values, file.status
+        self._eds = eds
+        self._node: Any = LoopNode(node_id, file.dictionary)
         network.add_node(self._node)
         self._newest = NewestFrames({f.id: f.signals.values() for f in (self._status, self._values)})
         self._target_speed = 0.0
@@ -184,7 +217,34 @@ class DynoNode:
         if variable is None or hasattr(variable, "subindices"):
             return None
         raw = self.read(variable.index)
-        return None if raw is None else float(raw) * float(variable.factor)
+        signal = self._values.signals[name]
+        return None if raw is None else float(raw) * signal.scale + signal.offset
+
+    def differences(self) -> list[str]:
+        """Where the device maps other objects or uses other identifiers than its EDS says; sentences.
+
+        What the device does not let be read is taken from the EDS.
+
+        Raises:
+            BenchError: no answer.
+        """
+        found = []
+        for (mapping, communication, _, _), layout in zip(_PDOS, self._layouts, strict=True):
+            expected = mapping_of(self._node.object_dictionary, mapping, str(self._eds))
+            for subindex, value in enumerate([len(expected), *expected]):
+                found.append(self._difference(mapping, subindex, value, 0xFFFF_FFFF))
+            found.append(self._difference(communication, 1, layout.id, _OF_COB_ID))
+        return [one for one in found if one]
+
+    def _difference(self, index: int, subindex: int, expected: int, mask: int) -> str:
+        value = self.read(index, subindex)
+        if not isinstance(value, int) or value & mask == expected:
+            return ""
+        width = 2 if subindex == 0 else 8
+        return (
+            f"{_object(index, subindex)} is 0x{value:0{width}X} in the device, "
+            f"0x{expected:0{width}X} in {self._eds.name}"
+        )
 
     def _entry(self, index: int, subindex: int) -> Any | None:
         if index not in self._node.object_dictionary:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field
@@ -14,6 +16,7 @@ from hil.core.conventions import TICK_S
 from hil.core.errors import BadInputError
 from hil.core.frames import most_frame_bits
 
+_REAR = ("rear_left", "rear_right")
 _PDOS = 4  # values and status, left and right
 NodeId = Annotated[int, Field(ge=1, le=127)]
 
@@ -75,7 +78,7 @@ class DynoTable(LoadTable):
         """What the nodes send or hear."""
         taken: dict[int, str] = {}
         for key, node in self.nodes.items():
-            taken |= identifiers_of(node, key)
+            taken |= identifiers_of(node, key, self._pdo_ids(node) if key in _REAR else None)
         return taken
 
     def bits_each_second(self) -> float:
@@ -95,4 +98,20 @@ class DynoTable(LoadTable):
     def asked_by_hosts(self) -> tuple[int, ...]:
         """The host's heartbeat, NMT, commands and SDO requests."""
         rear = (self.rear_left, self.rear_right)
-        return (0x000, 0x700 + self.host_node, *(base + node for base in (0x200, 0x600) for node in rear))
+        commands = [self._pdo_ids(node)[1] for node in rear]
+        return (0x000, 0x700 + self.host_node, *commands, *(0x600 + node for node in rear))
+
+    def remarks(self) -> tuple[str, ...]:
+        """Units of the EDS."""
+        return read_dyno(self.eds, self.rear_left).remarks
+
+    def _pdo_ids(self, node: int) -> tuple[int, int, int]:
+        return _ids_in(self.eds, self.eds.stat().st_mtime_ns, node)
+
+
+@functools.lru_cache(64)
+def _ids_in(eds: Path, changed_ns: int, node: int) -> tuple[int, int, int]:
+    """Identifiers of a node's values, command and status, as a file says them that was changed then."""
+    del changed_ns
+    file = read_dyno(eds, node)
+    return file.values.id, file.command.id, file.status.id

@@ -9,9 +9,11 @@ from pydantic import Field
 from drivers.ram._monitor import RamMonitor
 from drivers.ram._packing import bits_of, packed
 from drivers.table import Connections, DeviceTable, File
+from hil.core.channels import unit_of
 from hil.core.errors import BadInputError
 from hil.core.symbol_files import read_symbols
 from hil.core.symbols import Symbol, Symbols, refuse_extended
+from hil.core.units import has_unit
 from hil.core.xcp import MOST_BYTES
 
 _STAMP_BYTES = 2  # of most slaves on CAN
@@ -38,7 +40,10 @@ class RamTable(DeviceTable):
             BadInputError: the file cannot be used or lacks a symbol, or nobody gives identifiers.
         """
         file = read_symbols(self.symbols)
-        found = {channel: file.find(symbol) for channel, symbol in self.channels.items()}
+        found = {
+            channel: file.find(symbol).in_unit(unit_of(channel), str(self.symbols))
+            for channel, symbol in self.channels.items()
+        }
         ids = []
         for key, theirs in (("request_id", file.request_id), ("answer_id", file.answer_id)):
             ours = getattr(self, key)
@@ -84,6 +89,16 @@ class RamTable(DeviceTable):
             self.read()
         except BadInputError as error:
             yield "symbols", error
+
+    def remarks(self) -> Iterator[str]:
+        """Units of the file of symbols."""
+        file = read_symbols(self.symbols)
+        for channel, name in self.channels.items():
+            symbol, wanted = file.find(name), unit_of(channel)
+            if wanted and not has_unit(symbol.unit):
+                yield f"{self.symbols}: symbol '{name}' says no unit and is taken in {wanted}"
+            elif wanted and symbol.in_unit(wanted, str(self.symbols)) is not symbol:
+                yield f"{self.symbols}: symbol '{name}' was converted from {symbol.unit} to {wanted}"
 
     def identifiers(self) -> Mapping[int, str]:
         """Those of XCP."""

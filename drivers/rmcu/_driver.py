@@ -38,14 +38,21 @@ _IDENTIFICATION = (*_VERSION, "HardwareRevision", "CalibrationId")
 _IDENTIFIES_WITHIN_S = 1.2
 _NEEDED = {
     "RMCU_Request": Needed(
-        ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
+        ("Counter", "Mode", "TorqueRequest", "Crc"),
+        whole=("Counter", "Mode", "Crc"),
+        checksum="Crc",
+        units={"TorqueRequest": "N m"},
     ),
     "RMCU_Status": Needed(
-        ("MotorSpeed", "MotorTorqueRef", "MotorTorque"), whole=("Counter", "Crc"), optional=("Counter", "Crc")
+        ("MotorSpeed", "MotorTorqueRef", "MotorTorque"),
+        whole=("Counter", "Crc"),
+        optional=("Counter", "Crc"),
+        units={"MotorSpeed": "rad/s", "MotorTorqueRef": "N m", "MotorTorque": "N m"},
     ),
     "RMCU_Control": Needed(
         ("DrivingTorqueRef", "DrivingTorqueEst", "State", "RequestFault"),
         whole=("State", "RequestFault", "Counter", "Crc"),
+        units={"DrivingTorqueRef": "N m", "DrivingTorqueEst": "N m"},
         texts={"State": ("off",)},
         optional=("Counter", "Crc"),
     ),
@@ -54,7 +61,7 @@ _NEEDED = {
     "RMCU_ParameterReply": Needed(
         ("Command", "Result", "Index", "Value"), whole=("Command", "Result", "Index")
     ),
-    "RCS_Vehicle": Needed(("VehicleSpeed",)),
+    "RCS_Vehicle": Needed(("VehicleSpeed",), units={"VehicleSpeed": "m/s"}),
 }
 
 

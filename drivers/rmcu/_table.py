@@ -68,6 +68,10 @@ class RmcuTable(DeviceTable):
         layouts = read_rmcu(self.dbc, self.names).layouts
         return {layout.id: f"'{layout.name}'" for layout in layouts.values()}
 
+    def remarks(self) -> tuple[str, ...]:
+        """Units of the DBC."""
+        return read_rmcu(self.dbc, self.names).remarks
+
     def bits_each_second(self) -> float:
         """Requests, status, and the dyno controller's vehicle speed, one each millisecond."""
         layouts = read_rmcu(self.dbc, self.names).layouts

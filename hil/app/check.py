@@ -34,18 +34,22 @@ _WARN_SENSITIVITY = 3.0
 
 @dataclass(frozen=True)
 class Checked:
-    """What is known of a plan: its forecast, and the margins of the loop that each controller closes."""
+    """What is known of a plan: its forecast, and the margins of the loop that each controller closes.
+
+    `remarks`: what of the bench's files was converted or had to be assumed.
+    """
 
     plan: Plan
     bench: str
     forecast: Forecast
     loops: Mapping[str, Margins]
+    remarks: tuple[str, ...] = ()
 
     @property
     def warnings(self) -> list[str]:
-        """What to say of loops, of held wheels, and of what no check covers."""
+        """What to say of loops, of held wheels, of the bench's files, and of what no check covers."""
         unjudged = (f"not checked: {text}" for text in self.plan.device_gaps)
-        return [*_of_loops(self.loops), *_of_held_wheels(self.plan), *unjudged]
+        return [*_of_loops(self.loops), *_of_held_wheels(self.plan), *self.remarks, *unjudged]
 
     def as_json(self) -> dict[str, object]:
         """The JSON object of `hil check --json`."""
@@ -65,6 +69,7 @@ class Checked:
                 {**criterion.model_dump(exclude={"definition"}), "margin": criterion.margin}
                 for criterion in predicted.criteria
             ],
+            "remarks": list(self.remarks),
             "loops": _margins_json(self.loops),
         }
 
@@ -92,7 +97,8 @@ def check_plan(request: CheckRequest, feedback: Feedback = LOGGED) -> Checked:
             raise
         feedback.warn(f"no margins of the loops: {missing}")
         loops = {}
-    return Checked(plan, bench.name, predicted, loops)
+    remarks = tuple(text for table in bench.device_tables.values() for text in table.remarks())
+    return Checked(plan, bench.name, predicted, loops, remarks)
 
 
 def _loaded(request: CheckRequest) -> tuple[Plan, BenchFile]:

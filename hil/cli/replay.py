@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import cast, get_args
 
 from hil.app.replay import replay_logs
 from hil.cli._output import TERMINAL, console, count_in_words, print_criteria, print_json
 from hil.cli._streams import complain
 from hil.cli.commands.replay import Replay
+from hil.core.can_logs import Stamps
 from hil.core.errors import BadInputError
 from hil.core.printable import printable, refuse_long
 from hil.engine import load_bench
@@ -21,12 +23,14 @@ def carry_out(options: Replay) -> int:
     outcome = replay_logs(_request(options), options.out, TERMINAL, overwrite=options.overwrite)
     replayed, result = outcome.replayed, outcome.result
     if options.as_json:
-        counts = {"frames": replayed.frames, "samples": replayed.samples, "channels": list(replayed.channels)}
         print_json(
             {
                 "verdict": None,
                 **(result.model_dump(mode="json") if result else {"files": dict(outcome.files)}),
-                **counts,
+                "frames": replayed.counts.all,
+                "frame_counts": replayed.counts.as_json(),
+                "samples": replayed.samples,
+                "channels": list(replayed.channels),
                 "remarks": list(replayed.remarks),
             }
         )
@@ -34,7 +38,8 @@ def carry_out(options: Replay) -> int:
         page = console()
         for remark in replayed.remarks:
             page.print(f"note: {remark}", highlight=False, markup=False, soft_wrap=True)
-        count = f"{replayed.frames} frames: {replayed.samples} samples of {len(replayed.channels)} channels"
+        channels = f"{replayed.samples} samples of {len(replayed.channels)} channels"
+        count = f"{replayed.counts.all} frames, {replayed.counts.decoded} decoded: {channels}"
         page.print(count, highlight=False)
         if result is not None:
             print_criteria(page, result.criteria)
@@ -64,7 +69,15 @@ def _request(options: Replay) -> ReplayRequest:
         plan=load_plan(plan) if plan is not None else None,
         segments=options.segments,
         operator=options.operator,
+        stamps=_stamps(options.stamps),
     )
+
+
+def _stamps(given: str) -> Stamps:
+    for known in get_args(Stamps):
+        if given == known:
+            return cast(Stamps, known)
+    raise BadInputError(f"--stamps is '{printable(given, 40)}'", fix="one of: append, sort")
 
 
 def _pairs(given: list[str], option: str, *, needs_key: bool) -> Mapping[str, str]:

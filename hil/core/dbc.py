@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING
 
 import cantools
 
+from hil.core.dbc_text import Ranges, prepared
 from hil.core.device_text import read_device_text
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
-from hil.core.signals import FrameLayout, layout_of
+from hil.core.signals import FrameLayout, in_units, layout_of
 
 if TYPE_CHECKING:
     from cantools.database.can import Database, Message
@@ -37,6 +38,7 @@ class Needed:
     `whole` are counters and enumerations, which have no scaling; `texts` are values that a signal's value
     table must name; `checksum` is the signal of the frame's CRC, which covers the first seven bytes;
     `optional` signals are used if the message has them; `may_miss`: the file need not have the message.
+    `units`: in which values of a signal are wanted; they are converted from what the file says.
     """
 
     signals: tuple[str, ...]
@@ -45,6 +47,7 @@ class Needed:
     checksum: str = ""
     optional: tuple[str, ...] = ()
     may_miss: bool = False
+    units: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -82,10 +85,14 @@ class Names:
 
 @dataclass(frozen=True)
 class Dbc:
-    """Layouts by message; value tables (text to number) by message and signal; all by our names."""
+    """Layouts by message; value tables (text to number) by message and signal; all by our names.
+
+    `remarks`: units that were converted, or that the file does not say, a sentence each.
+    """
 
     layouts: dict[str, FrameLayout]
     texts: dict[tuple[str, str], dict[str, int]]
+    remarks: tuple[str, ...] = ()
 
 
 def read_dbc(path: Path, needed: Mapping[str, Needed], names: Names | None = None) -> Dbc:
@@ -100,8 +107,12 @@ def read_dbc(path: Path, needed: Mapping[str, Needed], names: Names | None = Non
             signal, as the file calls them.
     """
     names = names or Names()
-    database = database_of(path)
+    file = described(path)
+    database = file.database
     found: dict[str, Message] = {}
+    for remark in file.remarks:
+        if any(f"'{names.message(ours)}'" in remark for ours in needed):
+            raise BadInputError(remark.removesuffix(": left out"), where=str(path), fix=_FIX)
     there = {message.name: message for message in database.messages}
     _refuse_missing(there, needed, names, str(path))
     for ours, parts in needed.items():
@@ -120,7 +131,11 @@ def read_dbc(path: Path, needed: Mapping[str, Needed], names: Names | None = Non
                 fix=_FIX,
             )
     layouts = {ours: _renamed(layout_of(message), names.ours(ours)) for ours, message in found.items()}
-    return Dbc(layouts, dict(_texts(found, names)))
+    remarks: list[str] = []
+    for ours, layout in layouts.items():
+        called = f"message '{found[ours].name}', "
+        layouts[ours] = in_units(layout, needed[ours].units, str(path), remarks, called)
+    return Dbc(layouts, dict(_texts(found, names)), tuple(remarks))
 
 
 def _refuse_missing(there: Container[str], needed: Mapping[str, Needed], names: Names, where: str) -> None:
@@ -150,7 +165,8 @@ def _as_called(needed: Needed, names: Names, message: str) -> Needed:
     }
     checksum = names.signal(message, needed.checksum) if needed.checksum else ""
     optional = called(needed.optional)
-    return Needed(called(needed.signals), called(needed.whole), texts, checksum, optional, needed.may_miss)
+    whole = called(needed.whole)
+    return Needed(called(needed.signals), whole, texts, checksum, optional, needed.may_miss, needed.units)
 
 
 def _renamed(layout: FrameLayout, ours: Mapping[str, str]) -> FrameLayout:
@@ -172,16 +188,34 @@ def _texts(found: Mapping[str, Message], names: Names) -> Iterator[tuple[tuple[s
                 )
 
 
+@dataclass(frozen=True)
+class Described:
+    """A DBC as cantools has it, what was left out, and ranges of selector values by message and signal."""
+
+    database: Database
+    ranges: Mapping[tuple[int, str], Ranges]
+    remarks: tuple[str, ...]
+
+
 def database_of(path: Path) -> Database:
     """A DBC as cantools has it.
 
     Raises:
         BadInputError: it cannot be read, is no DBC, or has no messages.
     """
-    text = read_device_text(path, "check [rmcu] dbc")
+    return described(path).database
+
+
+def described(path: Path) -> Described:
+    """A DBC with all that is known of its messages.
+
+    Raises:
+        BadInputError: it cannot be read, is no DBC, or has no messages.
+    """
+    text = prepared(read_device_text(path, "check [rmcu] dbc"))
     try:
         # Not strict: what is wrong with messages that nobody needs is no reason to refuse the file.
-        database = cantools.database.load_string(text, "dbc", strict=False)
+        database = cantools.database.load_string(text.text, "dbc", strict=False)
     except Exception as error:  # the parser raises whatever it stumbles over
         words = " ".join(str(error).removeprefix("DBC: ").strip('"').split())
         raise BadInputError(
@@ -189,7 +223,7 @@ def database_of(path: Path) -> Database:
         ) from error
     if not database.messages:  # type: ignore[union-attr]
         raise BadInputError("is a DBC without messages", where=str(path), fix="give the RMCU's DBC")
-    return database  # type: ignore[return-value]
+    return Described(database, text.ranges, text.remarks)  # type: ignore[arg-type]
 
 
 def _mistakes(message: Message, needed: Needed) -> Iterator[str]:

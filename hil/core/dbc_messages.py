@@ -5,7 +5,7 @@ For logs of any bus: `hil.core.dbc` reads the few messages that a bench needs, a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,49 +13,86 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.dbc import database_of, signal_mistakes
+from hil.core.dbc import described, signal_mistakes
+from hil.core.dbc_text import Ranges
 from hil.core.errors import BadInputError
 from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
-from hil.core.signals import FrameLayout, Signal, layout_of
+from hil.core.signals import Signal, signal_of
 
 if TYPE_CHECKING:
     from cantools.database.can import Message
+    from cantools.database.can.signal import Signal as DbcSignal
 
 Array = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
 _LONGEST_BYTES = 8
 _EXTENDED_BIT = 1 << 31
+_NOT_A_KEY = 0xFFFFFFFF
 
 
 @dataclass(frozen=True)
 class Selector:
-    """A signal is in a frame only if this one has one of these raw values there (multiplexing)."""
+    """A signal is in a frame only if this one's raw value there lies in one of these ranges."""
 
     signal: Signal
-    values: tuple[int, ...]
+    ranges: Ranges
     above: Selector | None = None
+
+    def selects(self, payloads: npt.NDArray[np.uint64]) -> Bools:
+        """Which frames have the signal."""
+        signal = self.signal
+        words = payloads.byteswap() if signal.big_endian else payloads
+        raw = words >> np.uint64(signal.shift) & np.uint64((1 << signal.length) - 1)
+        chosen = np.zeros(len(raw), bool)
+        for low, high in self.ranges:
+            chosen |= (raw >= np.uint64(low)) & (raw <= np.uint64(high))
+        return chosen & self.above.selects(payloads) if self.above else chosen
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Where a signal lies: in every frame of its message, or in those that a selector names."""
+
+    signal: Signal
+    selector: Selector | None = None
+
+    @property
+    def needed_bytes(self) -> int:
+        """How many bytes a frame must have for all of the signal to be in it."""
+        signal = self.signal
+        return 8 - signal.shift // 8 if signal.big_endian else -(-(signal.shift + signal.length) // 8)
 
 
 @dataclass(frozen=True)
 class MessageLayout:
-    """A message's signals, and which of them are not in every frame of it."""
+    """A message's signals: each in one place, or by its selector in several."""
 
-    layout: FrameLayout
+    name: str
+    id: int
     extended: bool
-    selectors: dict[str, Selector]
+    signals: Mapping[str, tuple[Branch, ...]]
 
     @property
     def key(self) -> int:
         """Its identifier, one of 29 bits apart from one of 11."""
-        return self.layout.id | (_EXTENDED_BIT if self.extended else 0)
+        return self.id | (_EXTENDED_BIT if self.extended else 0)
+
+    def unit(self, signal: str) -> str:
+        """The unit of a signal."""
+        return self.signals[signal][0].signal.unit
 
 
 @dataclass(frozen=True)
 class MessageSamples:
-    """Frames of a message: times (s), shape (n,), and values of each signal, NaN where the frame has none."""
+    """Frames of a message: times (s), shape (n,), and values of each signal, NaN where the frame has none.
+
+    `short`: how many of them end before a signal that should be in them.
+    """
 
     layout: MessageLayout
     time_s: Array
     values: dict[str, Array]
+    short: int
 
 
 def read_messages_of(path: Path) -> tuple[list[MessageLayout], list[str]]:
@@ -65,49 +102,56 @@ def read_messages_of(path: Path) -> tuple[list[MessageLayout], list[str]]:
         BadInputError: not a DBC, or no message in it can be decoded.
     """
     found: list[MessageLayout] = []
-    remarks: list[str] = []
-    for message in database_of(path).messages:
+    file = described(path)
+    remarks = list(file.remarks)
+    for message in file.database.messages:
         if not 0 < message.length <= _LONGEST_BYTES:
             remarks.append(f"message '{message.name}' has {message.length} bytes: its frames are left out")
             continue
-        broken = {s.name: next(signal_mistakes(s, message), "") for s in message.signals}
-        remarks += [
-            f"message '{message.name}', signal '{name}' {mistake}: left out"
-            for name, mistake in broken.items()
-            if mistake
-        ]
-        layout = layout_of(message)
-        signals = {name: signal for name, signal in layout.signals.items() if not broken[name]}
+        signals: dict[str, list[Branch]] = {}
+        for signal in message.signals:
+            mistake = next(signal_mistakes(signal, message), "")
+            if mistake:
+                remarks.append(f"message '{message.name}', signal '{signal.name}' {mistake}: left out")
+            else:
+                branch = Branch(signal_of(signal), _selector(signal, message, file.ranges))
+                signals.setdefault(signal.name, []).append(branch)
         if signals:
-            whole = FrameLayout(layout.name, layout.id, layout.length, signals)
-            found.append(MessageLayout(whole, message.is_extended_frame, _selectors(message, layout)))
+            whole = {name: tuple(branches) for name, branches in signals.items()}
+            layout = MessageLayout(message.name, message.frame_id, message.is_extended_frame, whole)
+            found.append(layout)
     if not found:
         raise BadInputError("has no message with a signal", where=str(path), fix="give a DBC with signals")
     return found, remarks
 
 
-def _selectors(message: Message, layout: FrameLayout) -> dict[str, Selector]:
-    described = {signal.name: signal for signal in message.signals}
+def _selector(
+    signal: DbcSignal, message: Message, ranges: Mapping[tuple[int, str], Ranges], depth: int = 0
+) -> Selector | None:
+    """By what a signal is selected; None if it is in every frame."""
+    above = next((s for s in message.signals if s.name == signal.multiplexer_signal), None)
+    if not signal.multiplexer_ids or above is None or depth > len(message.signals):
+        return None
+    own = tuple((value, value) for value in signal.multiplexer_ids)
+    extended = _EXTENDED_BIT if message.is_extended_frame else 0
+    chosen = ranges.get((message.frame_id | extended, signal.name), own)
+    return Selector(signal_of(above), chosen, _selector(above, message, ranges, depth + 1))
 
-    def of(name: str, depth: int = 0) -> Selector | None:
-        signal = described[name]
-        if not signal.multiplexer_ids or not signal.multiplexer_signal or depth > len(described):
-            return None
-        above = signal.multiplexer_signal
-        return Selector(layout.signals[above], tuple(signal.multiplexer_ids), of(above, depth + 1))
 
-    found = {name: of(name) for name in described}
-    return {name: selector for name, selector in found.items() if selector is not None}
+def keys_of(block: FrameBlock) -> npt.NDArray[np.uint32]:
+    """By frame the key of a message that it could be of; error frames have no message's key."""
+    flags = np.ascontiguousarray(block["flags"])
+    keys = block["id"] | np.where(flags & EXTENDED != 0, np.uint32(_EXTENDED_BIT), np.uint32(0))
+    keys[flags & ERROR_FRAME != 0] = np.uint32(_NOT_A_KEY)
+    return np.asarray(keys, np.uint32)
 
 
 def decoded(block: FrameBlock, layouts: Sequence[MessageLayout]) -> Iterator[MessageSamples]:
     """Samples of each message that the block has frames of, in the order of `layouts`.
 
-    Frames that are shorter than a message's last signal says are left out: half a frame says nothing.
+    A frame that is shorter than its message gives the signals that it holds.
     """
-    flags = np.ascontiguousarray(block["flags"])
-    keys = block["id"] | np.where(flags & EXTENDED != 0, np.uint32(_EXTENDED_BIT), np.uint32(0))
-    keys[flags & ERROR_FRAME != 0] = np.uint32(0xFFFFFFFF)  # no frame's
+    keys = keys_of(block)
     order = np.argsort(keys, kind="stable")
     keys = keys[order]
     times, data = np.ascontiguousarray(block["time_s"]), np.ascontiguousarray(block["data"])
@@ -115,30 +159,30 @@ def decoded(block: FrameBlock, layouts: Sequence[MessageLayout]) -> Iterator[Mes
     for message in layouts:
         first, last = np.searchsorted(keys, message.key), np.searchsorted(keys, message.key, side="right")
         its = order[first:last]
-        its = its[lengths[its] >= _bytes_of(message.layout)]
         if len(its):
-            yield MessageSamples(message, times[its], _values(message, data[its]))
+            values, short = _values(message, data[its], lengths[its])
+            yield MessageSamples(message, times[its], values, short)
 
 
-def _values(message: MessageLayout, payloads: npt.NDArray[np.uint64]) -> dict[str, Array]:
-    values = message.layout.decode(payloads)
-    for name, selector in message.selectors.items():
-        if name in values:
-            values[name][~_selected(selector, payloads)] = np.nan
-    return values
-
-
-def _selected(selector: Selector, payloads: npt.NDArray[np.uint64]) -> npt.NDArray[np.bool_]:
-    signal = selector.signal
-    words = payloads.byteswap() if signal.big_endian else payloads
-    raw = words >> np.uint64(signal.shift) & np.uint64((1 << signal.length) - 1)
-    chosen = np.isin(raw, np.array(selector.values, np.uint64))
-    return chosen & _selected(selector.above, payloads) if selector.above else chosen
-
-
-def _bytes_of(layout: FrameLayout) -> int:
-    """How many bytes a frame must have for every signal to be in it."""
-    return max(
-        8 - signal.shift // 8 if signal.big_endian else -(-(signal.shift + signal.length) // 8)
-        for signal in layout.signals.values()
-    )
+def _values(
+    message: MessageLayout, payloads: npt.NDArray[np.uint64], lengths: npt.NDArray[np.uint8]
+) -> tuple[dict[str, Array], int]:
+    """Values by signal, and how many frames end before a signal that should be in them."""
+    found = {}
+    cut = np.zeros(len(payloads), bool)
+    shortest = int(lengths.min())
+    for name, branches in message.signals.items():
+        values: Array | None = None
+        for branch in branches:
+            read = branch.signal.decode(payloads)
+            there = branch.selector.selects(payloads) if branch.selector else None
+            if shortest < branch.needed_bytes:
+                held = lengths >= branch.needed_bytes
+                cut |= ~held if there is None else there & ~held
+                there = held if there is None else there & held
+            if there is not None:
+                read[~there] = np.nan
+            values = read if values is None else np.where(np.isnan(read), values, read)
+        assert values is not None
+        found[name] = values
+    return found, int(np.count_nonzero(cut))

@@ -7,7 +7,8 @@ this class, and tests hold it against cantools frame by frame.
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -15,10 +16,13 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.compiled import compiled
+from hil.core.errors import BadInputError
 from hil.core.printable import printable
+from hil.core.units import UnitError, conversion, has_unit
 
 if TYPE_CHECKING:
     from cantools.database.can import Message
+    from cantools.database.can.signal import Signal as DbcSignal
 
 Payloads = npt.NDArray[np.uint64]
 
@@ -52,6 +56,20 @@ class Signal:
     def place(self) -> tuple[int, int, bool, bool, bool]:
         """Where and how its number lies, for compiled code."""
         return (self.shift, self.length, self.signed, self.big_endian, self.is_float)
+
+    def in_unit(self, wanted: str) -> Signal:
+        """The same signal with values in another unit; one that says no unit is taken to be in it.
+
+        Raises:
+            UnitError: its unit is not known, or is of another quantity.
+        """
+        if not has_unit(self.unit):
+            return self
+        found = conversion(self.unit, wanted)
+        if found.is_none:
+            return self
+        scale, offset = self.scale * found.factor, self.offset * found.factor + found.offset
+        return replace(self, scale=scale, offset=offset, unit=wanted)
 
     def raw(self, payload: int) -> int:
         """Unsigned raw value in one payload."""
@@ -202,23 +220,61 @@ class FrameLayout:
         return payloads
 
 
+def in_units(
+    layout: FrameLayout, wanted: Mapping[str, str], where: str, remarks: list[str], called: str = ""
+) -> FrameLayout:
+    """A layout of which some signals have values in units that are wanted.
+
+    Args:
+        wanted: units by signal, by the layout's names; of signals that it has not, nothing happens.
+        where: the file, for messages.
+        remarks: what was converted, and what says no unit, is added here.
+        called: what stands before a signal in messages.
+
+    Raises:
+        BadInputError: a signal is in a unit that cannot be converted: file, signal, and what to do.
+    """
+    signals = dict(layout.signals)
+    for name, unit in wanted.items():
+        if name not in signals:
+            continue
+        given = signals[name]
+        try:
+            signals[name] = given.in_unit(unit)
+        except UnitError as error:
+            what = f"{called}signal '{given.name}' {error.what}"
+            raise BadInputError(what, where=where, fix=error.fix) from None
+        if not has_unit(given.unit):
+            remarks.append(f"{where}: {called}signal '{given.name}' says no unit and is taken in {unit}")
+        elif signals[name] is not given:
+            remarks.append(
+                f"{where}: {called}signal '{given.name}' was converted from {given.unit} to {unit}"
+            )
+    return replace(layout, signals=signals)
+
+
 def layout_of(message: Message) -> FrameLayout:
     """Layout of a message from a DBC."""
-    signals = {}
-    for s in message.signals:
-        shift = s.start
-        if s.byte_order == "big_endian":
-            msb_first = 8 * (s.start // 8) + (7 - s.start % 8)  # position counted from the frame's first bit
-            shift = 64 - msb_first - s.length
-        signals[s.name] = Signal(
-            s.name,
-            shift,
-            s.length,
-            s.is_signed,
-            float(s.scale),
-            float(s.offset),
-            printable(s.unit or ""),
-            s.is_float,
-            s.byte_order == "big_endian",
-        )
+    signals = {one.name: signal_of(one) for one in message.signals}
     return FrameLayout(message.name, message.frame_id, message.length, signals)
+
+
+def signal_of(described: DbcSignal) -> Signal:
+    """A signal from a DBC."""
+    shift = described.start
+    big_endian = described.byte_order == "big_endian"
+    if big_endian:
+        # position counted from the frame's first bit
+        msb_first = 8 * (described.start // 8) + (7 - described.start % 8)
+        shift = 64 - msb_first - described.length
+    return Signal(
+        described.name,
+        shift,
+        described.length,
+        described.is_signed,
+        float(described.scale),
+        float(described.offset),
+        printable(described.unit or ""),
+        described.is_float,
+        big_endian,
+    )

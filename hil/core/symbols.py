@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy.typing as npt
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 from hil.core.suggestion import did_you_mean
+from hil.core.units import UnitError, conversion, has_unit
 
 #: Data types by their names in A2L files, as numpy calls them without their byte order.
 TYPES = {
@@ -51,6 +52,28 @@ class Symbol:
     def size(self) -> int:
         """Bytes that it takes."""
         return np.dtype(self.kind).itemsize
+
+    def in_unit(self, wanted: str, where: str) -> Symbol:
+        """The same symbol with values in another unit; one that says no unit is taken to be in it.
+
+        Args:
+            wanted: '' if none is.
+            where: its file, for messages.
+
+        Raises:
+            BadInputError: its unit is not known, or is of another quantity.
+        """
+        if not wanted or not has_unit(self.unit):
+            return self
+        try:
+            found = conversion(self.unit, wanted)
+        except UnitError as error:
+            what = f"symbol '{printable(self.name, 60)}' {error.what}"
+            raise BadInputError(what, where=where, fix=error.fix) from None
+        if found.is_none:
+            return self
+        offset = self.offset * found.factor + found.offset
+        return replace(self, scale=self.scale * found.factor, offset=offset, unit=wanted)
 
     def dtype(self, order: str) -> np.dtype[np.generic]:
         """Its type in memory, on a control unit that counts in `order`."""

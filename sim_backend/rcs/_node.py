@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 from canopen.objectdictionary import SIGNED_TYPES, ODVariable
 
-from hil.core.pdo import ObjectDictionary, layout_of_pdo, read_eds
-from hil.core.signals import FrameLayout
+from hil.core.pdo import ObjectDictionary, identifier_of, layout_of_pdo, read_eds
+from hil.core.signals import FrameLayout, in_units
 from hil.plant.closed_loop import drive as law
 from sim_backend.rcs._objects import INVALID_VALUE, ServedNode, check_value
 from sim_backend.rcs._power_states import PowerStates, State
@@ -88,6 +88,15 @@ class _Network(canopen.Network):  # type: ignore[misc]
         return timer
 
 
+_UNITS = {
+    "Target velocity": "rad/s",
+    "Wheel speed": "rad/s",
+    "Shaft torque": "N m",
+    "Torque actual value": "N m",
+    "Vehicle speed": "m/s",
+}
+
+
 def read_node(
     eds: Path, node_id: int
 ) -> tuple[ObjectDictionary, tuple[FrameLayout, FrameLayout, FrameLayout]]:
@@ -100,10 +109,15 @@ def read_node(
     command = ("Controlword", "Target velocity", "Target torque")
     status = ("Statusword", "Vehicle speed", "Torque actual value")
     where = str(eds)
+
+    def layout(mapping: int, communication: int, usual: int, needed: tuple[str, ...]) -> FrameLayout:
+        identifier = identifier_of(dictionary, communication, usual + node_id, where)
+        return in_units(layout_of_pdo(dictionary, mapping, identifier, needed, where), _UNITS, where, [])
+
     layouts = (
-        layout_of_pdo(dictionary, 0x1600, 0x200 + node_id, command, where),
-        layout_of_pdo(dictionary, 0x1A00, 0x180 + node_id, ("Wheel speed", "Shaft torque"), where),
-        layout_of_pdo(dictionary, 0x1A01, 0x280 + node_id, status, where),
+        layout(0x1600, 0x1400, 0x200, command),
+        layout(0x1A00, 0x1800, 0x180, ("Wheel speed", "Shaft torque")),
+        layout(0x1A01, 0x1801, 0x280, status),
     )
     return dictionary, layouts
 

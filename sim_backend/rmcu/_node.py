@@ -29,10 +29,16 @@ IDENTIFICATION = tuple(IDENTITY)
 # What the emulated RMCU and the dyno controller on its bus put into frames or take from them.
 NEEDED = {
     "RMCU_Request": Needed(
-        ("Counter", "Mode", "TorqueRequest", "Crc"), whole=("Counter", "Mode", "Crc"), checksum="Crc"
+        ("Counter", "Mode", "TorqueRequest", "Crc"),
+        whole=("Counter", "Mode", "Crc"),
+        checksum="Crc",
+        units={"TorqueRequest": "N m"},
     ),
     "RMCU_Status": Needed(
-        ("MotorSpeed", "MotorTorqueRef", "MotorTorque"), whole=("Counter", "Crc"), optional=("Counter", "Crc")
+        ("MotorSpeed", "MotorTorqueRef", "MotorTorque"),
+        whole=("Counter", "Crc"),
+        optional=("Counter", "Crc"),
+        units={"MotorSpeed": "rad/s", "MotorTorqueRef": "N m", "MotorTorque": "N m"},
     ),
     "RMCU_Control": Needed(
         (
@@ -47,6 +53,7 @@ NEEDED = {
         ),
         whole=("State", "RequestFault", "Saturated", "ParametersValid", "Counter", "Crc"),
         checksum="Crc",
+        units={"DrivingTorqueRef": "N m", "DrivingTorqueEst": "N m"},
     ),
     "RMCU_Identification": Needed((), whole=IDENTIFICATION, optional=IDENTIFICATION, may_miss=True),
     "RMCU_ParameterWrite": Needed(("Command", "Index", "Value"), whole=("Command", "Index")),
@@ -54,7 +61,10 @@ NEEDED = {
         ("Command", "Result", "Index", "Value"), whole=("Command", "Result", "Index")
     ),
     "RCS_Vehicle": Needed(
-        ("VehicleSpeed", "Counter", "Valid", "Crc"), whole=("Counter", "Valid", "Crc"), checksum="Crc"
+        ("VehicleSpeed", "Counter", "Valid", "Crc"),
+        whole=("Counter", "Valid", "Crc"),
+        checksum="Crc",
+        units={"VehicleSpeed": "m/s"},
     ),
 }
 

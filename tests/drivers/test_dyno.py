@@ -201,3 +201,39 @@ def test_a_frame_too_short_for_canopen_is_told_and_stops_nothing_else(identifier
         assert bench.dyno.troubles() == [
             f"frame 0x{identifier:03X} with {length} bytes: too short for CANopen"
         ]
+
+
+def test_a_device_that_maps_otherwise_than_its_eds_is_refused(tmp_path):
+    path = tmp_path / "swapped.eds"
+    text = SIM.dyno.eds.read_text()
+    speed, torque = "DefaultValue=0x21010020", "DefaultValue=0x21000020"
+    assert speed in text
+    assert torque in text
+    path.write_text(text.replace(speed, "X").replace(torque, speed).replace("X", torque))
+    with running("swapped"):
+        world = attached("swapped")
+        wire = Wire("dyno", SimulatedBus("swapped/dyno"), world)
+        nodes = DynoNodes(3, 4)
+        driver = DynoDriver(BusLoop(world, [wire]), wire, path, nodes, VehicleParameters())
+        with pytest.raises(BenchError, match=r"0x1A00, subindex 1 is 0x21010020 in the device"):
+            driver.come_up()
+        assert {text for _, text in driver._read_pdos()} == {
+            "object 0x1A00, subindex 1 is 0x21010020 in the device, 0x21000020 in swapped.eds",
+            "object 0x1A00, subindex 2 is 0x21000020 in the device, 0x21010020 in swapped.eds",
+        }
+        wire.close()
+
+
+def test_pdos_elsewhere_are_used_as_the_eds_says(tmp_path):
+    path = tmp_path / "elsewhere.eds"
+    text = SIM.dyno.eds.read_text()
+    assert "DefaultValue=$NODEID+0x180" in text
+    path.write_text(text.replace("DefaultValue=$NODEID+0x180", "DefaultValue=$NODEID+0x380"))
+    table = SIM.dyno.model_copy(update={"eds": path})
+    assert 0x383 in table.identifiers()
+    assert 0x183 not in table.identifiers()
+    with running("elsewhere", dyno=table) as bench:
+        bench.dyno.enable(50.0)
+        bench.dyno.hold_speed(4.0)
+        bench.loop.run_for(1.0)
+        assert bench.dyno.wheel_speed_rad_s == pytest.approx(4.0, abs=0.1)

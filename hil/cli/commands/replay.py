@@ -51,6 +51,13 @@ class Replay:
         Path | None,
         typer.Option(help="the run's recording.mcap, or JSON with segments; default: those of a .mcap LOG"),
     ] = None
+    stamps: Annotated[
+        str,
+        typer.Option(
+            help="where stamps of a log go back: append (what follows was recorded later) or sort "
+            "(it was written out of order); default: such a log is refused"
+        ),
+    ] = ""
     operator: Annotated[
         str, typer.Option(help="name of the person who ran the bench; printed in the report")
     ] = ""

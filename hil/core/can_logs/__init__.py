@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from pathlib import Path
 
-from hil.core.can_logs._log import CanLog
+from hil.core.can_logs._log import CanLog, Stamps
 from hil.core.errors import BadInputError
 from hil.core.recording import refuse_unless_regular
 
@@ -15,8 +15,11 @@ logger = logging.getLogger(__name__)
 READ = (".mcap", ".asc", ".blf", ".trc", ".log", ".mf4")
 
 
-def read_can_log(path: Path) -> CanLog:
+def read_can_log(path: Path, stamps: Stamps = "") -> CanLog:
     """Read the frames of a log, by the channels that it has.
+
+    Args:
+        stamps: what it means that stamps go back in a log that is written frame by frame.
 
     Raises:
         BadInputError: there is no such file, it is of another kind, or not one frame of it can be read.
@@ -34,7 +37,7 @@ def read_can_log(path: Path) -> CanLog:
         case ".asc" | ".blf" | ".trc" | ".log":
             from hil.core.can_logs._messages import read_messages
 
-            log = read_messages(path)
+            log = read_messages(path, stamps)
         case _:
             raise BadInputError(
                 f"logs of frames end in {', '.join(READ)}", where=str(path), fix="rename or convert the file"
@@ -51,4 +54,4 @@ def _left_out_in_words(log: CanLog) -> str:
     return f"it has {left_out}; " if left_out else ""
 
 
-__all__ = ["READ", "CanLog", "read_can_log"]
+__all__ = ["READ", "CanLog", "Stamps", "read_can_log"]

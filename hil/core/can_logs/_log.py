@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.errors import BadInputError
 from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock
 
 #: What no recording has a place for; names as users are told them.
@@ -16,6 +19,53 @@ REMOTE, LONG = "remote frames", "CAN FD frames of more than 8 bytes"
 IMPOSSIBLE = "frames with an identifier or a stamp that none can have"
 SHORT = "frames with fewer bytes than they say"
 LONGEST_DATA = 8
+
+
+#: What stamps that go back mean: nobody says, what follows was recorded later, or was written out of order.
+Stamps = Literal["", "append", "sort"]
+_UNREMARKABLE_S = 10.0  # that frames were sorted which stand so close need not be said
+_LATE_S = 0.1  # by which a frame may stand behind newer ones
+
+
+class LogClock:
+    """Stamps in the order of the file: a log's writer may be late with some, but none goes back for long."""
+
+    def __init__(self, stamps: Stamps) -> None:
+        self._stamps = stamps
+        self._newest_s, self._offset_s = -math.inf, 0.0
+        self._count = self._backs = self._first = 0
+        self._back_s = 0.0
+
+    def time_s(self, stamp_s: float) -> float:
+        """The time of the next frame."""
+        self._count += 1
+        time_s = stamp_s + self._offset_s
+        if time_s < self._newest_s - _LATE_S:
+            self._backs += 1
+            self._first = self._first or self._count
+            self._back_s = max(self._back_s, self._newest_s - time_s)
+            if self._stamps == "append":
+                self._offset_s += self._newest_s - time_s
+                time_s = self._newest_s
+        self._newest_s = max(self._newest_s, time_s)
+        return time_s
+
+    def settled(self, where: str) -> list[str]:
+        """What was done, a sentence each.
+
+        Raises:
+            BadInputError: stamps go back, and nobody has said what that means.
+        """
+        if not self._backs or (self._stamps == "sort" and self._back_s < _UNREMARKABLE_S):
+            return []
+        what = f"its stamps go back by up to {self._back_s:.3g} s, first at frame {self._first}"
+        if not self._stamps:
+            fix = (
+                "--stamps append: what follows was recorded later; --stamps sort: it was written out of order"
+            )
+            raise BadInputError(what, where=where, fix=fix)
+        done = "what follows was put behind" if self._stamps == "append" else "frames were sorted"
+        return [f"{what}: {done}"]
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,8 @@ from hil.core.can_logs._log import (
     REMOTE,
     SHORT,
     CanLog,
+    LogClock,
+    Stamps,
     block_of,
     flags_of,
     ordered,
@@ -35,6 +37,12 @@ _SINCE_1970_S = 1e8  # stamps below are none of wall-clock time: a log's own beg
 _COUNTED_FROM_1 = (".asc", ".blf")  # python-can counts the channels of these from 0
 _LARGEST_ID = 0x1FFF_FFFF
 _LONGEST_LINE = 4096
+_MOST_ODD = 1000  # lines of a file that is no candump log at all
+_CANDUMP = re.compile(
+    r"(\(\d+\.\d+\)\s+\S+\s+[0-9A-Fa-f]{3,8}#(?:#[0-9A-Fa-f]*|R[0-9A-Fa-f]?|(?:[0-9A-Fa-f]{2})*))(_[0-9A-Fa-f])?"
+    r"(\s+[RT])?"
+)
+_TRIGGER_BLOCK = re.compile(r"^\s*begin\s+triggerblock", re.IGNORECASE | re.MULTILINE)
 _STAMP = re.compile(r"\s*(\d+\.\d+)(?=\s)")
 
 _BLF_HEADER = 16  # bytes that every object of a BLF has: signature, sizes, type
@@ -42,21 +50,29 @@ _BLF_HEADER = 16  # bytes that every object of a BLF has: signature, sizes, type
 logging.getLogger("can").addHandler(logging.NullHandler())
 
 
-def read_messages(path: Path) -> CanLog:
+def read_messages(path: Path, stamps: Stamps = "") -> CanLog:
     """Frames of a log that python-can reads; of a broken one those before the break.
 
+    Args:
+        stamps: what to do where stamps go back: '' refuses, "append" takes what follows as recorded later,
+            "sort" as written out of order.
+
     Raises:
-        BadInputError: not one message of it can be read.
+        BadInputError: not one message of it can be read, or its stamps go back.
     """
     ending = path.suffix.lower()
     columns: dict[str, _Columns] = {}
     left_out: dict[str, int] = {}
     remarks: list[str] = []
     count = 0
+    # A BLF keeps its objects in containers that are written when they are full: their order means nothing.
+    clock = LogClock(stamps or "sort" if ending == ".blf" else stamps)
     try:
         for message in _messages(path, ending, remarks):
             count += 1
             kind = _misfit(message)
+            if math.isfinite(message.timestamp):
+                message.timestamp = clock.time_s(message.timestamp)
             if kind:
                 left_out[kind] = left_out.get(kind, 0) + 1
             else:
@@ -71,6 +87,7 @@ def read_messages(path: Path) -> CanLog:
                 fix="give the log as the tool wrote it; its ending says of which kind it is",
             ) from error
         remarks.append(f"is broken after {count} frames; what came before was read")
+    remarks += clock.settled(str(path))
     began_s = _began_s(columns)
     channels = {name: column.block(began_s or 0.0) for name, column in columns.items()}
     return CanLog(
@@ -100,9 +117,44 @@ def _messages(path: Path, ending: str, remarks: list[str]) -> Iterator[can.Messa
             if size < reader.file_size:
                 remarks.append(f"is cut off: {size} of {reader.file_size} bytes are there")
     else:
-        kind = can.TRCReader if ending == ".trc" else can.CanutilsLogReader
-        with _whole_lines(path, remarks) as text, kind(text) as reader:
-            yield from reader
+        with _whole_lines(path, remarks) as text:
+            lines = text if ending == ".trc" else _CandumpLines(text, remarks)
+            kind = can.TRCReader if ending == ".trc" else can.CanutilsLogReader
+            with kind(lines) as reader:  # type: ignore[arg-type]
+                yield from reader
+
+
+class _CandumpLines(io.TextIOBase):
+    """The lines of a candump log that are frames, as python-can takes them; others are counted.
+
+    A length code above 8, which candump writes behind the data (`_E`), is left out: the data is 8 bytes then.
+    """
+
+    def __init__(self, file: Any, remarks: list[str]) -> None:
+        self._file, self._remarks = file, remarks
+
+    def __iter__(self) -> Iterator[str]:  # type: ignore[override]
+        odd, first, number = 0, 0, 0
+        frames = 0
+        for number, line in enumerate(self._file, 1):
+            found = _CANDUMP.fullmatch(line.rstrip())
+            if found is not None:
+                frames += 1
+                yield f"{found[1]}{found[3] or ''}\n"
+            elif line.strip():
+                odd, first = odd + 1, first or number
+                if not frames and odd >= _MOST_ODD:
+                    raise ValueError(f"line {first} is no frame")
+        if odd and not frames:
+            raise ValueError(f"line {first} is no frame")
+        if odd:
+            lines = "1 line is" if odd == 1 else f"{odd} lines are"
+            self._remarks.append(f"{lines} no frame and left out, the first is line {first}")
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._file.close()
+        super().close()
 
 
 class _BLFReader(can.BLFReader):
@@ -156,6 +208,9 @@ def _of_asc(path: Path, remarks: list[str]) -> Iterator[can.Message]:
     """Messages of an ASC log with the day that its head names, if it is written as python-can knows it."""
     with _whole_lines(path, remarks) as file:
         text = _with_whole_head(_summed(file.read()))
+    blocks = len(_TRIGGER_BLOCK.findall(text))
+    if blocks > 1:
+        remarks.append(f"has {blocks} trigger blocks: stamps were taken to count from the log's beginning")
     try:
         next(iter(can.ASCReader(io.StringIO(text), relative_timestamp=False)), None)
         relative = False

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from hil.core.channels import CHANNELS, TIME
 from hil.core.finding_list import repeated
+from hil.core.units import Conversion, UnitError, conversion, has_unit, is_spelled
 
 #: Spellings of time's unit, and how many of it are a second.
 _PER_SECOND = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
@@ -16,9 +17,6 @@ _SEPARATORS = {",": "comma", ";": "semicolon", "\t": "tab", "|": "bar"}
 _NAMED_WITH_UNIT = re.compile(r"(.+?)\s*[\[(]\s*([^\[\]()]*?)\s*[\])]")
 _TIME_NAMES = ("time", "t", "timestamp", "timestamps")
 _SPELLINGS = {"sec": "s", "second": "s", "seconds": "s", "msec": "ms", "μs": "us", "µs": "us", "usec": "us"}
-_TORQUES, _LENGTHS_PER_TIME = ("nm", "knm", "mnm"), ("m/s", "km/h", "kph", "mph")
-_ANGLES_PER_TIME = ("rad/s", "rpm", "1/min", "min-1", "u/min", "rev/min", "deg/s", "°/s", "1/s", "hz")
-_UNITS = frozenset((*_TORQUES, *_LENGTHS_PER_TIME, *_ANGLES_PER_TIME, "-", "1", *_PER_SECOND))
 _SEPARATOR_LINE = re.compile(rb"\"?sep=(.|\t)\"?", re.IGNORECASE)
 _GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+")
 
@@ -40,6 +38,7 @@ class Layout:
     decimal: str = "."
     units: list[str] = field(default_factory=list)
     per_second: float = 1.0
+    conversions: dict[int, Conversion] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
 
     def cells(self, line: str) -> list[str]:
@@ -52,7 +51,7 @@ class Layout:
         """Take units that stand by the names or in a line of their own.
 
         Raises:
-            LayoutError: a channel is in another unit than it has.
+            LayoutError: a channel is in a unit that cannot be converted to its own.
         """
         for column, (name, unit) in enumerate(zip(self.names, units, strict=True)):
             spelled = _plain(unit)
@@ -60,9 +59,19 @@ class Layout:
                 continue
             if name == TIME:
                 self._take_time(column, spelled, unit)
-            elif spelled != _plain(CHANNELS[name].unit):
-                own = CHANNELS[name].unit
-                raise LayoutError(f"is in '{unit}', the channel in {own}", f"convert it to {own}", name)
+            elif has_unit(unit):
+                self._convert(column, unit)
+
+    def _convert(self, column: int, unit: str) -> None:
+        name = self.names[column]
+        own = CHANNELS[name].unit
+        try:
+            found = conversion(unit, own)
+        except UnitError as error:
+            raise LayoutError(error.what, error.fix, name) from None
+        if not found.is_none:
+            self.conversions[column] = found
+            self.notes.append(f"'{name}' was converted from {unit.strip().strip('[]()')} to {own}")
 
     def _take_time(self, column: int, spelled: str, unit: str) -> None:
         if spelled not in _PER_SECOND:
@@ -78,11 +87,9 @@ class Layout:
 
     def is_of_units(self, cells: Sequence[str]) -> bool:
         """Whether the line below the names gives their units."""
-        units = [_plain(cell) for cell in cells]
-        known = [unit for name, unit in zip(self.names, units, strict=True) if name in CHANNELS]
-        return (
-            any(known) and all(not unit or unit in _UNITS for unit in known) and not any(map(_number, cells))
-        )
+        known = [unit for name, unit in zip(self.names, map(_plain, cells), strict=True) if name in CHANNELS]
+        spelled = any(known) and all(not unit or is_spelled(unit) for unit in known)
+        return spelled and not any(map(_number, cells))
 
     def settle_decimal(self, rows: Sequence[Sequence[str]]) -> None:
         """Find out whether numbers have a decimal comma, from some rows.

@@ -91,7 +91,9 @@ class _Table:
             )
         channels = {}
         for column in list(self._columns):
-            channels[self._header[column]] = np.concatenate([*self._columns.pop(column), np.zeros(0)])
+            values = np.concatenate([*self._columns.pop(column), np.zeros(0)])
+            conversion = self._layout.conversions.get(column)
+            channels[self._header[column]] = values if conversion is None else conversion.of(values)
         self._settle_time(channels)
         return Recording(channels, self._path, notes=self._notes, blank_lines=self._blank_lines)
 

@@ -19,6 +19,7 @@ from hil.core.errors import BadInputError
 from hil.core.files import refuse_unless_regular, replacing
 from hil.core.recording._evidence import evidence_of, has_evidence, take_evidence
 from hil.core.recording._table import LARGEST_VALUES, Array, Recording, refuse_too_large
+from hil.core.units import converted
 
 _EVIDENCE, _UNITS = "hil_recording", "units"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -45,15 +46,17 @@ def read_mat(path: Path) -> Recording:
         raise BadInputError("not a MAT file, or a broken one", where=str(path)) from error
     values = {name: value for name, value in held.items() if not name.startswith("__")}
     evidence = _text(values.pop(_EVIDENCE, None))
-    values.pop(_UNITS, None)
+    units = _units_of(values.pop(_UNITS, None))
     channels: dict[str, Array] = {}
-    notes = []
+    notes: list[str] = []
     vectors = _vectors_of(values)
     refuse_too_large(max((value.size for value in vectors.values()), default=0), len(vectors), str(path))
     for name, value in vectors.items():
         column = _column(value)
         if column is not None:
-            channels[name] = column
+            wanted = CHANNELS[name].unit if name in CHANNELS else ""
+            where = f"{path}: variable '{name}'"
+            channels[name] = converted(column, name, units.get(name, ""), wanted, where, notes)
         elif name in CHANNELS:
             raise BadInputError(
                 "is not a vector of real numbers",
@@ -201,6 +204,14 @@ def _of_one_length(channels: dict[str, Array], path: Path, notes: list[str]) -> 
             )
         notes.append(f"variable '{name}' is not as long as {TIME} and was left out")
     return {name: values for name, values in channels.items() if len(values) == samples}
+
+
+def _units_of(value: Any) -> dict[str, str]:
+    """Units by name, of the structure `units`; none where there is no such structure."""
+    if not _is_structure(value):
+        return {}
+    found = {name: _text(value[name][0, 0]) for name in value.dtype.names}
+    return {name: text for name, text in found.items() if text is not None}
 
 
 def _text(value: Any) -> str | None:

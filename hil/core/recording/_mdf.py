@@ -16,6 +16,7 @@ from hil.core.files import refuse_unless_regular, replacing
 from hil.core.mdf_file import open_mdf
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._table import BLOCK, Array, Recording, refuse_too_large
+from hil.core.units import converted
 
 _EVENT_TICKS = 1_000_000  # in a second
 _MASTERS = (2, 3)  # channel types of the standard: time stamps, stored or counted
@@ -95,7 +96,10 @@ class _Groups:
         values: Array = signal.samples.astype(np.float64)
         if signal.invalidation_bits is not None:
             values[np.asarray(signal.invalidation_bits, bool)] = np.nan
-        return values
+        if name not in CHANNELS:
+            return values
+        where = f"{self._path}: channel '{name}'"
+        return converted(values, name, str(signal.unit or ""), CHANNELS[name].unit, where, self._notes)
 
     def _moved(self, name: str, own_s: Array, values: Array, time_s: Array) -> Array | None:
         """Values between their own time stamps, NaN outside of them."""

@@ -15,6 +15,7 @@ from hil.core.files import refuse_unless_regular, replacing
 from hil.core.finding_list import repeated
 from hil.core.recording._evidence import EVIDENCE, evidence_of, has_evidence, take_evidence
 from hil.core.recording._table import Array, Recording, refuse_too_large
+from hil.core.units import converted
 
 
 def read_parquet(path: Path) -> Recording:
@@ -25,7 +26,7 @@ def read_parquet(path: Path) -> Recording:
     """
     refuse_unless_regular(path)
     channels: dict[str, Array] = {}
-    notes = []
+    notes: list[str] = []
     try:
         with pq.ParquetFile(path, page_checksum_verification=True) as file:
             fields = file.schema_arrow
@@ -34,7 +35,9 @@ def read_parquet(path: Path) -> Recording:
             evidence = (fields.metadata or {}).get(EVIDENCE.encode())
             for field in fields:
                 if _is_number(field.type):
-                    channels[field.name] = _column(file, field.name)
+                    column, where = _column(file, field.name), f"{path}: column '{field.name}'"
+                    wanted = CHANNELS[field.name].unit if field.name in CHANNELS else ""
+                    channels[field.name] = converted(column, field.name, _unit(field), wanted, where, notes)
                 elif field.name in CHANNELS:
                     raise BadInputError(
                         f"holds {field.type}, not numbers",
@@ -74,6 +77,11 @@ def _refuse_twice(names: list[str], path: Path) -> None:
     twice = repeated(names)
     if twice:
         raise BadInputError(f"column '{twice[0]}' stands twice", where=str(path))
+
+
+def _unit(field: Any) -> str:
+    """What the file says of a column's unit; '' if nothing."""
+    return str((field.metadata or {}).get(b"unit", b"").decode("utf-8", "replace"))
 
 
 def _is_number(kind: Any) -> bool:

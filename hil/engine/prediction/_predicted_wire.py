@@ -49,11 +49,11 @@ def wire_of(bench: BenchFile) -> PredictedWire:
         BadInputError: a device file cannot be used.
     """
     dbc, dyno = read_rmcu(rmcu_of(bench).dbc, rmcu_of(bench).names), dyno_of(bench)
-    dictionary, left = read_dyno(dyno.eds, dyno.rear_left)
-    _, right = read_dyno(dyno.eds, dyno.rear_right)
+    left, right = read_dyno(dyno.eds, dyno.rear_left), read_dyno(dyno.eds, dyno.rear_right)
     signals = {name: dbc.layouts[message].signals[signal] for name, (message, signal) in _RMCU.items()}
     frames = {name: dbc.layouts[message].id for name, (message, _) in _RMCU.items()}
-    for side, (_, values, status) in (("left", left), ("right", right)):
+    for side, file in (("left", left), ("right", right)):
+        values, status = file.values, file.status
         shown = {
             f"wheel_speed_{side}_rad_s": (values, "Wheel speed"),
             f"shaft_torque_{side}_nm": (values, "Shaft torque"),
@@ -63,20 +63,20 @@ def wire_of(bench: BenchFile) -> PredictedWire:
             shown["vehicle_speed_m_s"] = (status, "Vehicle speed")
         for name, (layout, signal) in shown.items():
             signals[name], frames[name] = layout.signals[signal], layout.id
-    ends_s = _frame_ends_s(bench, dbc, (*left[1:], *right[1:]))
+    ends_s = _frame_ends_s(bench, dbc, (left.values, left.status, right.values, right.status))
     master_s = ends_s[frames["motor_speed_rad_s"]]
     late = {name: _nearest(ends_s[frame] - master_s) for name, frame in frames.items()}
     rounding = Wire(
         channels=signals,
         request=dbc.layouts["RMCU_Request"].signals["TorqueRequest"],
         parameter=dbc.layouts["RMCU_ParameterWrite"].signals["Value"],
-        target_speed=left[0].signals["Target velocity"],
+        target_speed=left.command.signals["Target velocity"],
         late={name: shift for name, shift in late.items() if shift},
     )
     earliest_s = min(ends_s[frame] for frame in frames.values())
     named = frozenset(dbc.texts.get(("RMCU_ParameterWrite", "Index"), {}))
     loads = _loads(bench)
-    return PredictedWire(rounding, master_s, master_s - earliest_s, named, dictionary, loads)
+    return PredictedWire(rounding, master_s, master_s - earliest_s, named, left.dictionary, loads)
 
 
 def _cyclic(

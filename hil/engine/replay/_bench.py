@@ -13,6 +13,7 @@ from hil.core.errors import BadInputError, BenchError
 from hil.core.frames import FrameBlock
 from hil.engine.bench.bench import connections_of
 from hil.engine.bench.bench_tables import BenchFile
+from hil.engine.bench.bus_tally import known_identifiers
 from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.run.recorder import Recorder
 
@@ -22,16 +23,27 @@ _AT_ONCE_S = 0.25
 class BenchDecoder:
     """Opens the devices of the buses that a log has, listening, and hands the log's frames to them.
 
+    Args:
+        frames: by bus.
+        channels: what the log calls each bus.
+
+    Attributes:
+        short: frames that end before a signal that should be in them; the devices say it of their own.
+
     Raises:
         BadInputError: a file that the bench file names cannot be used.
     """
 
-    def __init__(self, file: BenchFile, frames: Mapping[str, FrameBlock]) -> None:
+    def __init__(
+        self, file: BenchFile, frames: Mapping[str, FrameBlock], channels: Mapping[str, str]
+    ) -> None:
         self._frames, self._clock = frames, _LogClock()
         self._wires = [LogWire(bus, self._clock) for bus in frames]
         self._loop = BusLoop(self._clock, list(self._wires))
         connections = connections_of(file, self._loop)
         self._devices: dict[str, Device] = {}
+        self._file, self._channels = file, channels
+        self.short = 0
         self.remarks: list[str] = []
         self.attachments: dict[str, bytes] = {"bench.toml": file.text.encode()}
         for key, table in file.device_tables.items():
@@ -41,6 +53,11 @@ class BenchDecoder:
             elif bus in frames:
                 self._devices[key] = table.open(key.removeprefix("devices."), connections)
                 self.attachments |= descriptions_of(key, table.files())
+
+    def keys_of(self, file: str, channel: str) -> list[int]:
+        """Identifiers by which a channel of a log is decoded: of the devices on the buses that it is."""
+        buses = [bus for bus, name in self._channels.items() if name in (channel, f"{file}:{channel}")]
+        return sorted({number for bus in buses for number in known_identifiers(self._file, bus)})
 
     def write(self, path: Path, began_ns: int) -> Recorder:
         """Decode all of it into a recording that is not closed yet.

@@ -78,8 +78,8 @@ def merged(logs: Sequence[CanLog]) -> Frames:
 
 def chosen_buses(
     frames: Frames, known: Mapping[str, set[int]], names: Mapping[str, set[str]], picked: Mapping[str, str]
-) -> tuple[dict[str, FrameBlock], list[str]]:
-    """Frames of each bus that the log has, and what was taken for what, a sentence each.
+) -> tuple[dict[str, FrameBlock], list[str], dict[str, str]]:
+    """Frames of each bus that the log has, what was taken for what, a sentence each, and each bus's channel.
 
     Args:
         known: by bus, the identifiers that its devices send or hear.
@@ -102,13 +102,14 @@ def chosen_buses(
             )
     found: dict[str, FrameBlock] = {}
     lines: list[str] = []
+    channels: dict[str, str] = {}
     for bus, identifiers in known.items():
         chosen = picked.get(bus) or _guessed(frames, bus, identifiers, names[bus], known)
         block = frames.of(chosen) if chosen else None
-        if block is None:
+        if block is None or chosen is None:
             lines.append(f"no log has frames of bus '{bus}': its channels are missing")
             continue
-        found[bus] = block
+        found[bus], channels[bus] = block, chosen
         seen = identifiers & _identifiers(block)
         lines.append(
             f"bus '{bus}' is channel '{chosen}': {len(block)} frames, "
@@ -119,7 +120,7 @@ def chosen_buses(
             "no frame in the log belongs to a device of the bench",
             fix=f"give the bench file of these logs, or --dbc; there is: {listed(frames, known)}",
         )
-    return found, lines
+    return found, lines, channels
 
 
 def _guessed(

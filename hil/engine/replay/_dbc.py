@@ -31,6 +31,9 @@ class DbcDecoder:
 
     Raises:
         BadInputError: a DBC that cannot be used, a channel that is not there, or no frame that is known.
+
+    Attributes:
+        short: frames that end before a signal that should be in them.
     """
 
     def __init__(self, frames: Frames, dbcs: Mapping[str, Path]) -> None:
@@ -55,6 +58,8 @@ class DbcDecoder:
             self._frames[_plain(channel)] = block
             own = layouts.get(channel) or layouts.get("", [])
             found += [(_plain(channel), samples) for samples in decoded(block, own)]
+        self.short = sum(samples.short for _, samples in found)
+        self._layouts = layouts
         if not found:
             names = ", ".join(str(path) for path in dbcs.values())
             raise BadInputError(
@@ -62,6 +67,11 @@ class DbcDecoder:
                 fix=f"give the DBC of these logs; there is: {listed(frames, {})}",
             )
         self._found = found
+
+    def keys_of(self, file: str, channel: str) -> list[int]:
+        """Keys of the messages by which a channel of a log is decoded."""
+        del file
+        return [layout.key for layout in self._layouts.get(channel) or self._layouts.get("", [])]
 
     def write(self, path: Path, began_ns: int) -> RecordingWriter:
         """Write frames and channels into a recording that is not closed yet.
@@ -79,12 +89,12 @@ class DbcDecoder:
         for name, samples, signal in self._named():
             columns[name], missed = _placed(rows_s, samples.time_s, samples.values[signal])
             beside += missed
-            self.units[name] = samples.layout.layout.signals[signal].unit
+            self.units[name] = samples.layout.unit(signal)
         if beside:
             self.remarks.append(
                 f"{beside} samples were discarded: none of the rows is near, or another sample is nearer"
             )
-        self.remarks.append(f"the time base is the frames of '{base.layout.layout.name}'")
+        self.remarks.append(f"the time base is the frames of '{base.layout.name}'")
         writer = RecordingWriter(path, list(columns), list(self._frames), clock_0_ns=began_ns)
         writer.row_0_s = float(rows_s[0])
         self._fill(writer, columns, rows_s)
@@ -105,10 +115,10 @@ class DbcDecoder:
         """Each signal with a name of its own, if need be with its message's or with its bus's."""
         every = [(bus, samples, signal) for bus, samples in self._found for signal in samples.values]
         short = Counter(_plain(signal) for _, _, signal in every)
-        middle = Counter(_plain(f"{samples.layout.layout.name}_{signal}") for _, samples, signal in every)
+        middle = Counter(_plain(f"{samples.layout.name}_{signal}") for _, samples, signal in every)
         named = []
         for bus, samples, signal in every:
-            own, longer = _plain(signal), _plain(f"{samples.layout.layout.name}_{signal}")
+            own, longer = _plain(signal), _plain(f"{samples.layout.name}_{signal}")
             name = own if short[own] == 1 else longer if middle[longer] == 1 else f"{bus}_{longer}"
             named.append((name, samples, signal))
         return named

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hil.core.can_logs import CanLog, read_can_log
+from hil.core.can_logs import CanLog, Stamps, read_can_log
 from hil.core.clock import utc
 from hil.core.errors import BadInputError
 from hil.core.files import replacing, sha256_of
@@ -18,6 +18,7 @@ from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import known_identifiers
 from hil.engine.replay._bench import BenchDecoder
 from hil.engine.replay._channels import Frames, chosen_buses, merged
+from hil.engine.replay._counts import FrameCounts, counted
 from hil.engine.replay._dbc import DbcDecoder
 from hil.engine.replay._segments import Segments, segments_from
 from hil.engine.run.provenance import hashes
@@ -35,6 +36,7 @@ class ReplayRequest:
     Attributes:
         buses: by bus of the bench file, the log's channel.
         segments: where the plan's segments lie: a recording of the run, or JSON.
+        stamps: what it means that stamps of a log go back.
     """
 
     logs: Sequence[Path]
@@ -44,6 +46,7 @@ class ReplayRequest:
     plan: Plan | None = None
     segments: Path | None = None
     operator: str = ""
+    stamps: Stamps = ""
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,7 @@ class Replayed:
 
     result: RunResult | None
     remarks: tuple[str, ...]
-    frames: int
+    counts: FrameCounts
     samples: int
     channels: tuple[str, ...]
 
@@ -68,14 +71,17 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
     logs = []
     for log in request.logs:
         show(f"reading {log.name}")
-        logs.append(read_can_log(log))
+        logs.append(read_can_log(log, request.stamps))
     segments = _segments(request)
     frames = merged(logs)
     show("decoding")
     decoder, remarks = _decoder(request, frames)
     with replacing(path) as temporary:
         written = _write(decoder, temporary, frames.began_ns or 0)
-        remarks += [f"{log.path.name}: {remark}" for log in logs for remark in _remarks_of(log)]
+        remarks += [f"{log.path.name}: {remark}" for log in logs for remark in log.remarks]
+        blocks = [(block, decoder.keys_of(*where)) for where, block in frames.channels.items()]
+        counts = counted(logs, blocks, decoder.short)
+        remarks += counts.in_words()
         if frames.began_ns is None:
             remarks.append("the log has no date")
         found = segments.on(written.row_0_ns) if segments else ()
@@ -83,11 +89,9 @@ def replay(request: ReplayRequest, path: Path, show: Callable[[str], None] = lam
         result = _judged(request, written.recording, found, time.perf_counter() - began)
         if result is not None and frames.began_ns is not None:
             result = result.model_copy(update={"started_at": utc(written.row_0_ns)})
-        _describe(written, request, decoder, logs, frames, remarks, result)
+        _describe(written, request, decoder, logs, frames, remarks, result, counts)
     channels = tuple(written.recording.channels)
-    return Replayed(
-        result, tuple(remarks), sum(log.count for log in logs), len(written.recording.time_s), channels
-    )
+    return Replayed(result, tuple(remarks), counts, len(written.recording.time_s), channels)
 
 
 def _segments(request: ReplayRequest) -> Segments | None:
@@ -107,8 +111,8 @@ def _decoder(request: ReplayRequest, frames: Frames) -> tuple[BenchDecoder | Dbc
         return DbcDecoder(frames, request.dbcs), []
     known = {bus: known_identifiers(bench, bus) for bus in bench.buses}
     names = {bus: {bus, str(table.channel)} for bus, table in bench.buses.items()}
-    chosen, told = chosen_buses(frames, known, names, request.buses)
-    return BenchDecoder(bench, chosen), told
+    chosen, lines, channels = chosen_buses(frames, known, names, request.buses)
+    return BenchDecoder(bench, chosen, channels), lines
 
 
 @dataclass(frozen=True)
@@ -178,10 +182,6 @@ def _inside(segment: Segment, recording: Recording) -> Segment:
     return segment if whole else segment.model_copy(update={"complete": False})
 
 
-def _remarks_of(log: CanLog) -> list[str]:
-    return [*log.remarks, *(f"{count} {kind} were left out" for kind, count in log.left_out.items())]
-
-
 def _describe(
     written: _Written,
     request: ReplayRequest,
@@ -190,6 +190,7 @@ def _describe(
     frames: Frames,
     remarks: Sequence[str],
     result: RunResult | None,
+    counts: FrameCounts,
 ) -> None:
     """What the recording carries beside its samples; closes it."""
     writer, bench, plan = written.writer, request.bench, request.plan
@@ -223,6 +224,7 @@ def _describe(
         writer.describe("dut", bench.dut)
         writer.describe("report", bench.report.model_dump())
         writer.describe("calibration", {name: date.isoformat() for name, date in bench.calibration.items()})
+    writer.describe("frames", {name: str(count) for name, count in counts.as_json().items()})
     writer.describe("versions", versions())
     writer.describe("time", written.time)
     writer.describe("hashes", hashes(attachments))

@@ -114,7 +114,10 @@ class Arming:
             if isinstance(device, Incomplete)
             for part in device.missing
         ]
-        self.missing = (*(f"{name} is missing: {why}" for name, why in self._bench.missing.items()), *parts)
+        tables = self._bench.file.device_tables.values()
+        remarks = [text for table in tables for text in table.remarks()]
+        absent = (f"{name} is missing: {why}" for name, why in self._bench.missing.items())
+        self.missing = (*absent, *parts, *remarks)
         for text in self.missing:
             self._event("missing", text)
 

@@ -262,7 +262,7 @@ def test_a_run_that_stands_still_for_good_is_ended_and_what_it_measured_is_kept(
     holder = holder_of(run)
     os.kill(holder, signal.SIGSTOP)
     result = result_of(run, 3)
-    assert "stood still for 2." in result["said"]  # 0.5 s of bench time
+    assert "was stopped (SIGSTOP) for 2." in result["said"]  # 0.5 s of bench time
     assert (result["verdict"], result["safe_state"]) == ("error", "confirmed")
     assert not is_running(holder)
     assert_went_to_zero_by_itself(observer)

@@ -1,5 +1,6 @@
 """DBC files that cannot be used: each is refused with file, message and signal."""
 
+import math
 import os
 import re
 from pathlib import Path
@@ -126,3 +127,28 @@ def test_a_big_endian_signals_bits_lie_as_motorola_counts_them(start, length):
     assert _bits(DbcSignal("S", start, length, byte_order="little_endian")) == list(
         range(start, start + length)
     )
+
+
+def test_values_in_another_unit_are_converted_and_said(tmp_path):
+    path = tmp_path / "some.dbc"
+    text = TEXT.replace('[-2097|2097] "rad/s"', '[-2097|2097] "rpm"').replace(
+        '[-327|327] "Nm"', '[-327|327] "kNm"'
+    )
+    path.write_text(text)
+    units = {"MotorSpeed": "rad/s", "MotorTorqueRef": "N m", "MotorTorque": "N m"}
+    needed = {"RMCU_Status": Needed(tuple(units), units=units)}
+    own, other = (read_dbc(file, needed) for file in (BENCHES / "rmcu.dbc", path))
+    ours, theirs = (read.layouts["RMCU_Status"].signals for read in (own, other))
+    assert theirs["MotorSpeed"].scale == pytest.approx(ours["MotorSpeed"].scale * 2 * math.pi / 60)
+    assert theirs["MotorTorqueRef"].scale == pytest.approx(1000 * ours["MotorTorqueRef"].scale)
+    assert theirs["MotorTorque"] == ours["MotorTorque"]
+    assert [remark.partition("message ")[2] for remark in other.remarks] == [
+        "'RMCU_Status', signal 'MotorSpeed' was converted from rpm to rad/s",
+        "'RMCU_Status', signal 'MotorTorqueRef' was converted from kNm to N m",
+    ]
+    assert own.remarks == ()
+    path.write_text(TEXT.replace('[-2097|2097] "rad/s"', '[-2097|2097] ""'))
+    assert "says no unit and is taken in rad/s" in read_dbc(path, needed).remarks[0]
+    path.write_text(TEXT.replace('[-2097|2097] "rad/s"', '[-2097|2097] "km/h"'))
+    with pytest.raises(BadInputError, match="signal 'MotorSpeed' is in 'km/h', not in rad/s"):
+        read_dbc(path, needed)

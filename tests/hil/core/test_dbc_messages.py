@@ -71,18 +71,19 @@ def test_a_number_of_29_bits_is_another_message_than_one_of_11(dbc: Path) -> Non
             frames(100, 5, 8, 0.0),
             frames(100, 7, 2, 1.0, flags=EXTENDED),
             frames(100, 9, 8, 2.0, flags=ERROR_FRAME),
-            frames(100, 11, 2, 3.0),  # half a frame says nothing
+            frames(100, 11, 2, 3.0),  # half a frame says what it holds
         ]
     )
-    found = {samples.layout.layout.name: samples for samples in decoded(block, layouts)}
-    assert found["Plain"].time_s.tolist() == [0.0]
+    found = {samples.layout.name: samples for samples in decoded(block, layouts)}
+    assert found["Plain"].time_s.tolist() == [0.0, 3.0]
+    assert found["Plain"].short == 1
     assert found["Long"].values["Count"].tolist() == [7.0]
     assert found.keys() == {"Plain", "Long"}
 
 
 def test_what_has_no_place_in_a_recording_is_said(dbc: Path) -> None:
     layouts, remarks = read_messages_of(dbc)
-    assert [message.layout.name for message in layouts] == ["Plain", "Many", "Long"]
+    assert [message.name for message in layouts] == ["Plain", "Many", "Long"]
     assert remarks == [
         "message 'Wide' has 24 bytes: its frames are left out",
         "message 'Exact', signal 'Too' is an integer of 60 bits; at most 53 are counted exactly: left out",
@@ -94,3 +95,47 @@ def test_a_dbc_without_signals_is_refused(tmp_path: Path) -> None:
     path.write_text('VERSION ""\nNS_ :\nBS_:\nBU_: A\nBO_ 100 Plain: 8 A\n')
     with pytest.raises(BadInputError, match="no message with a signal"):
         read_messages_of(path)
+
+
+BRANCHES = """VERSION ""
+NS_ :
+BS_:
+BU_: A
+BO_ 800 Pair: 7 A
+ SG_ Sel M : 0|8@1+ (1,0) [0|0] "" A
+ SG_ First m0 : 8|8@1+ (1,0) [0|0] "" A
+ SG_ First m1 : 16|8@1+ (1,0) [0|0] "" A
+ SG_ Last m1 : 48|8@1+ (1,0) [0|0] "" A
+BO_ 100 Wide: 3 A
+ SG_ Page M : 0|8@1+ (1,0) [0|0] "" A
+ SG_ Level m0 : 8|16@1+ (1,0) [0|0] "" A
+BO_ 3000 Odd: 3 A
+ SG_ x : 0|8@1+ (1,0) [0|0] "" A
+
+CM_ SG_ 3000 x "a comment; of what is left out";
+SG_MUL_VAL_ 100 Level Page 7-200000000, 2-3;
+"""
+
+
+def test_one_name_in_two_branches_is_one_channel(tmp_path: Path) -> None:
+    (tmp_path / "a.dbc").write_text(BRANCHES)
+    layouts, remarks = read_messages_of(tmp_path / "a.dbc")
+    (remark,) = remarks
+    assert "message 'Odd' has the identifier 0xBB8, of more than 11 bits" in remark
+    block = joined([frames(800, 0x1E140A00, 7, 0.0), frames(800, 0x05000000140A01, 7, 1.0)])
+    (samples,) = decoded(block, layouts)
+    assert samples.values["First"].tolist() == [10.0, 20.0]
+    assert samples.short == 0
+    cut = joined([frames(800, 0x0A00, 2, 0.0), frames(800, 0x140A01, 3, 1.0)])  # the second lacks Last
+    (samples,) = decoded(cut, layouts)
+    assert samples.values["First"].tolist() == [10.0, 20.0]
+    assert np.isnan(samples.values["Last"]).all()
+    assert samples.short == 1
+
+
+def test_a_range_of_selector_values_costs_no_list_of_them(tmp_path: Path) -> None:
+    (tmp_path / "a.dbc").write_text(BRANCHES)
+    layouts, _ = read_messages_of(tmp_path / "a.dbc")
+    words = [0x6400 | page for page in (2, 3, 4, 7, 255)]
+    (samples,) = decoded(frames(100, np.array(words, np.uint64), 3, np.arange(5.0)), layouts)
+    assert np.isnan(samples.values["Level"]).tolist() == [False, False, True, False, False]

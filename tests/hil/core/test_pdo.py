@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hil.core.errors import BadInputError
-from hil.core.pdo import layout_of_pdo, read_eds
+from hil.core.pdo import identifier_of, layout_of_pdo, read_eds
 
 BENCHES = Path(__file__).parents[3] / "benches"
 TEXT = (BENCHES / "rcs_dyno.eds").read_text()
@@ -142,3 +142,60 @@ def mapped(dictionary: ObjectDictionary, what: int) -> Any:
     dictionary.add_object(mapping)
     (signal,) = layout_of_pdo(dictionary, 0x1A00, 0x180).signals.values()
     return signal
+
+
+def with_entry(text: str, section: str, line: str) -> str:
+    """The shipped EDS with another DefaultValue line in a section."""
+    head, mark, tail = text.partition(f"[{section}]")
+    assert mark
+    own, end, rest = tail.partition("\n[")
+    lines = [line if one.startswith("DefaultValue=") else one for one in own.splitlines()]
+    return head + mark + "\n".join(lines) + end + rest
+
+
+@pytest.mark.parametrize(
+    ("section", "line", "said"),
+    [
+        ("1A00sub1", "DefaultValue=", "0x1A00 sub 1: has no value"),
+        (
+            "1A00sub1",
+            "DefaultValue=0x21010020h",
+            "0x1A00 sub 1: a mapped object is '0x21010020h', no whole number",
+        ),
+        ("1A00sub1", "DefaultValue=553713696.0", "0x1A00 sub 1: a mapped object is '553713696.0'"),
+        ("1A00sub2", "DefaultValue=0", "0x1A00 sub 2: is 0 and maps nothing"),
+        ("1A00sub0", "DefaultValue=two", "0x1A00 sub 0: the number of mapped objects is 'two'"),
+    ],
+)
+def test_an_entry_that_cannot_be_read_moves_nothing_up(section, line, said, tmp_path):
+    assert said in refused(with_entry(TEXT, section, line), tmp_path)
+
+
+def test_the_value_of_a_dcf_is_what_the_device_has(tmp_path):
+    path = tmp_path / "some.dcf"
+    path.write_text(TEXT.replace("[1A00sub1]", "[1A00sub1]\nParameterValue=0x21020020"))
+    with pytest.raises(BadInputError, match="does not map 'Wheel speed'"):
+        layout(path)
+
+
+def test_pdos_are_where_the_file_says(tmp_path):
+    def identifier(line: str) -> int:
+        path = tmp_path / "some.eds"
+        path.write_text(with_entry(TEXT, "1800sub1", line))
+        return identifier_of(read_eds(path, 3, OBJECTS, FLOATS), 0x1800, 0x183, str(path))
+
+    assert identifier("DefaultValue=$NODEID+0x180") == 0x183
+    assert identifier("DefaultValue=0x3A1") == 0x3A1
+    assert identifier("DefaultValue=0x400003A1") == 0x3A1  # it cannot be asked for
+    with pytest.raises(BadInputError, match=r"0x1800 sub 1: the COB-ID is 0x800003A1: .*switched off"):
+        identifier("DefaultValue=0x800003A1")
+    with pytest.raises(BadInputError, match="of 29 bits"):
+        identifier("DefaultValue=0x200003A1")
+    with pytest.raises(BadInputError, match="the COB-ID is 'here', no whole number"):
+        identifier("DefaultValue=here")
+
+
+def test_a_number_with_zeros_before_it_condemns_nothing(tmp_path):
+    path = tmp_path / "some.eds"
+    path.write_text(TEXT.replace("VendorNumber=0", "VendorNumber=001"))
+    assert "Wheel speed" in layout(path).signals

@@ -101,10 +101,55 @@ def test_a_line_that_has_fewer_bytes_than_it_says_is_no_frame(tmp_path: Path) ->
 
 def test_a_log_that_breaks_in_the_middle_is_read_up_to_there(tmp_path: Path) -> None:
     path = tmp_path / "a.log"
-    path.write_text("(1.0) can0 123#01\n(1.1) can0 123#02\nwhat is this\n(1.2) can0 123#03\n")
+    path.write_text(f"(1.0) can0 123#01\n(1.1) can0 123#02\n{'x' * 5000}\n(1.2) can0 123#03")
     log = read_can_log(path)
     assert log.count == 2
-    assert log.remarks == ["is broken after 2 frames; what came before was read"]
+    assert "is broken after 2 frames; what came before was read" in log.remarks
+
+
+def test_an_odd_line_is_counted_and_a_raw_length_code_is_none(tmp_path: Path) -> None:
+    path = tmp_path / "a.log"
+    path.write_text(
+        "(1.0) can0 123#01\nwhat is this\n(1.1) can0 123#1122334455667788_E\n(1.2) can0 123#R\n\nand this\n"
+    )
+    log = read_can_log(path)
+    assert log.channels["can0"]["length"].tolist() == [1, 8]
+    assert log.left_out == {"remote frames": 1}
+    assert log.remarks == ["2 lines are no frame and left out, the first is line 2"]
+
+
+RESTART = "(1.0) can0 123#01\n(1.3) can0 123#02\n(1.01) can0 123#03\n(1.2) can0 123#04\n"
+
+
+def test_stamps_that_go_back_are_refused_until_somebody_says_what_they_mean(tmp_path: Path) -> None:
+    path = tmp_path / "a.log"
+    path.write_text(RESTART)
+    with pytest.raises(BadInputError, match=r"go back by up to 0.29 s, first at frame 3") as caught:
+        read_can_log(path)
+    assert "--stamps append" in caught.value.fix
+    block = read_can_log(path, "append").channels["can0"]
+    assert block["data"].tolist() == [1, 2, 3, 4]
+    np.testing.assert_allclose(block["time_s"], [1.0, 1.3, 1.3, 1.49])
+    assert read_can_log(path, "sort").channels["can0"]["data"].tolist() == [1, 3, 4, 2]
+
+
+def test_a_log_may_be_late_with_a_frame(tmp_path: Path) -> None:
+    path = tmp_path / "a.log"
+    path.write_text("(1.00) can0 123#01\n(1.05) can1 123#02\n(1.01) can0 123#03\n")
+    log = read_can_log(path)
+    assert log.count == 3
+    assert log.remarks == []
+
+
+def test_what_trigger_blocks_were_taken_for_is_said(tmp_path: Path) -> None:
+    path = tmp_path / "a.asc"
+    head = "date Mon Mar 7 01:21:51.000 pm 2005\nbase hex  timestamps absolute\ninternal events logged\n"
+    begin = "Begin Triggerblock Mon Mar 7 01:2{n}:51.000 pm 2005\n"
+    block = begin + "   {n}.1 1  100  Rx   d 1 0{n}\nEnd TriggerBlock\n"
+    path.write_text(head + "".join(block.format(n=n) for n in (1, 2)))
+    log = read_can_log(path)
+    assert log.count == 2
+    assert log.remarks == ["has 2 trigger blocks: stamps were taken to count from the log's beginning"]
 
 
 def test_a_blf_that_was_cut_says_so(tmp_path: Path) -> None:
@@ -193,7 +238,7 @@ def test_an_mdf_of_channels_is_sent_to_who_reads_it(tmp_path: Path) -> None:
 def test_candump_text_gives_what_was_on_the_bus(tmp_path_factory, frames) -> None:
     path = tmp_path_factory.mktemp("log") / "a.log"
     path.write_text("".join(f"({t:.6f}) {bus} {i:03X}#{d.hex()}\n" for i, d, t, bus in frames))
-    log = read_can_log(path)
+    log = read_can_log(path, "sort")
     for name, block in log.channels.items():
         its = sorted((round(t, 6), i, d) for i, d, t, bus in frames if bus == name)
         read = [

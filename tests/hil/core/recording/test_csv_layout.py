@@ -131,8 +131,9 @@ def test_latin_1_is_read_and_said(tmp_path):
             text(names=("time_s", "motor_speed_rad_s", "MOTOR_SPEED_rad_s")),
             "'motor_speed_rad_s' stands twice",
         ),
-        (text(second="s,Nm,rpm"), "column 'motor_speed_rad_s': is in 'rpm', the channel in rad/s"),
-        (text(names=(*NAMES[:2], "motor_speed_rad_s [rpm]")), "is in 'rpm', the channel in rad/s"),
+        (text(second="s,Nm,km/h"), "column 'motor_speed_rad_s': is in 'km/h', not in rad/s"),
+        (text(names=(*NAMES[:2], "motor_speed_rad_s [V]")), "is in 'V', not in rad/s"),
+        (text(names=(*NAMES[:2], "motor_speed_rad_s [1/s]")), "of radians or of revolutions"),
         ("time_s;motor_torque_ref_nm;motor_speed_rad_s\n0;1,234;2,345\n1;1,234;5\n", "may be 1.234 or 1234"),
         (";".join(NAMES) + "\n0,001;1.234,5;2\n", "'1.234,5' has a point and '0,001' a comma"),
         (";".join(NAMES) + "\n0.001;1,234.5;2\n", "a comma"),
@@ -184,3 +185,13 @@ def test_no_number_becomes_another_one(values, separator, comma):
             assert comma
             return
     np.testing.assert_array_equal(recording["motor_torque_ref_nm"], values)
+
+
+def test_a_unit_of_the_same_quantity_is_converted_and_said(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(text(second="s,kNm,rpm"))
+    found = read_recording(path)
+    np.testing.assert_allclose(found["motor_torque_ref_nm"][0], -1250.0)
+    np.testing.assert_allclose(found["motor_speed_rad_s"][0], 1000.0 * 2 * np.pi / 60)
+    assert "'motor_speed_rad_s' was converted from rpm to rad/s" in found.notes
+    assert "'motor_torque_ref_nm' was converted from kNm to N m" in found.notes

@@ -41,7 +41,7 @@ def test_only_devices_of_the_buses_that_are_there_give_channels(tmp_path: Path) 
     control = LAYOUTS["RMCU_Control"]
     payloads = checked("RMCU_Control", Counter=np.arange(count) % 256, DrivingTorqueRef=np.full(count, 5.0))
     counted = frames(control.id, payloads, 8, 1e-3 * np.arange(float(count)) + 1e-4)
-    decoder = BenchDecoder(SIM, {"rmcu": inserted(counted, status(count))})
+    decoder = BenchDecoder(SIM, {"rmcu": inserted(counted, status(count))}, {"rmcu": "1"})
     recorder = decoder.write(tmp_path / "a.mcap", 0)
     recording = recorder.finish_rows()
     recorder.writer.close()
@@ -62,4 +62,4 @@ def test_only_devices_of_the_buses_that_are_there_give_channels(tmp_path: Path) 
 
 def test_without_the_frames_that_count_there_are_no_rows(tmp_path: Path) -> None:
     with pytest.raises(BadInputError, match="which gives the time base"):
-        BenchDecoder(SIM, {"rmcu": status(10)}).write(tmp_path / "a.mcap", 0)
+        BenchDecoder(SIM, {"rmcu": status(10)}, {"rmcu": "1"}).write(tmp_path / "a.mcap", 0)

@@ -48,8 +48,9 @@ def test_a_bus_of_which_no_log_has_frames_does_not_hide_the_next(tmp_path: Path)
     block = frames(0x183, np.zeros(5, np.uint64), 8, np.arange(5.0))
     found = merged([CanLog(tmp_path / "a.asc", {"1": block}, SECOND)])
     names: dict[str, set[str]] = {"rmcu": set(), "dyno": set()}
-    chosen, told = chosen_buses(found, {"rmcu": {0x110}, "dyno": {0x183, 0x184}}, names, {})
+    chosen, told, channels = chosen_buses(found, {"rmcu": {0x110}, "dyno": {0x183, 0x184}}, names, {})
     assert list(chosen) == ["dyno"]
+    assert channels == {"dyno": "1"}
     assert told == [
         "no log has frames of bus 'rmcu': its channels are missing",
         "bus 'dyno' is channel '1': 5 frames, 1 of 2 known identifiers",

@@ -69,7 +69,7 @@ def test_a_campaign_is_given_carried_out_and_its_table_fetched(there: Served, tm
         one.controller: one.model_dump(mode="json", exclude={"controller"}) for one in found.controllers
     } == shares
     assert ("local", "campaign") in {(one.who, one.action) for one in client.audit()}
-    with pytest.raises(RefusedError, match="is over"):
+    with pytest.raises(RefusedError, match="is finished"):
         client.cancel_campaign(found.id)
     with pytest.raises(RefusedError, match="is ended"):
         client.resume_campaign(found.id)

@@ -74,7 +74,7 @@ def test_a_diagnosis_is_cancelled_and_leaves_the_next_its_turn(there: tuple[Serv
     assert client.study(second.id).state == "waiting"
     assert client.cancel_study(first.id).state == "cancelled"
     assert over(client, second).state == "ended"
-    with pytest.raises(RefusedError, match="is over"):
+    with pytest.raises(RefusedError, match="is finished"):
         client.cancel_study(first.id)
     third = client.identify(IdentificationWanted(runs=[run]))
     with pytest.raises(RefusedError, match=rf"study {third.id} is (waiting|running)"):
