@@ -71,6 +71,7 @@ PARTS: dict[str, Part] = {
     "engine": Part(
         "the bench in real time, forecasts, physics, single faults, tools of others on each wire",
         (
+            "tests/hil/app",
             "tests/hil/engine",
             "tests/hil/core",
             "tests/hil/plant",

@@ -200,6 +200,6 @@ def _in_words(campaign: CampaignData, folder: Path) -> str:
         lines.append(f"{one.controller or OWN}: {share} pass")
     if campaign.pass_share_wanted is not None:
         reached = "reached" if campaign.passed else "not reached"
-        lines.append(f"required {100 * campaign.pass_share_wanted:g} %: {reached}")
+        lines.append(f"required pass rate {100 * campaign.pass_share_wanted:g} %: {reached}")
     lines.append(f"{campaign.done} simulations; in {folder}")
     return "\n".join(lines)

@@ -7,7 +7,7 @@ from pathlib import Path
 from hil.app.feedback import warn_of_damage
 from hil.app.results_folder import refuse_file, results_in
 from hil.app.run_inputs import command_again, inputs_of
-from hil.cli._output import TERMINAL, console, print_json
+from hil.cli._output import TERMINAL, console, print_json, warn
 from hil.cli.commands.export import Export
 from hil.core.controller import load_controller
 from hil.core.errors import BadInputError
@@ -30,6 +30,12 @@ def carry_out(options: Export) -> int:
     out = options.out
     if out.suffix.lower() == ".fmu":
         return _fmu(options)
+    if options.recording.suffix.lower() == ".toml":
+        raise BadInputError(
+            f"a model becomes an FMU, and '{out.name}' is none",
+            where="--out",
+            fix="give a name that ends in .fmu",
+        )
     if options.controller is not None:
         raise BadInputError(
             "--controller goes with an FMU", where="--controller", fix="leave it out, or write --out NAME.fmu"
@@ -90,7 +96,10 @@ def _fmu(options: Export) -> int:
     controller = None
     if options.controller:
         controller = load_controller(options.controller), read_text(options.controller)
-    export_fmu(load_model(model), options.out, controller)
+    chosen = load_model(model)
+    if chosen.doubt:
+        warn(f"the model is doubtful: {chosen.doubt}")
+    export_fmu(chosen, options.out, controller)
     asked = "driving_torque_ref_nm" if controller else "motor_torque_ref_nm"
     if options.as_json:
         print_json({"file": str(options.out), "fmi": "2.0", "kind": "co-simulation", "input": asked})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hil.app.feedback import warn_of_damage
 from hil.app.results_folder import refuse_file
-from hil.cli._output import TERMINAL, console, print_json
+from hil.cli._output import TERMINAL, console, print_json, warn
 from hil.cli.commands.simulate import Simulate
 from hil.core.model import load_model
 from hil.core.recording import read_recording, write_recording
@@ -16,6 +16,8 @@ def carry_out(options: Simulate) -> int:
     out = options.out
     refuse_file(out, [options.source, options.model], overwrite=options.overwrite)
     chosen = load_model(options.model)
+    if chosen.doubt:
+        warn(f"the model is doubtful: {chosen.doubt}")
     recording = read_recording(options.source)
     warn_of_damage(TERMINAL, [recording])
     simulated = replay(chosen, recording)

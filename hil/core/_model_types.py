@@ -104,6 +104,16 @@ class Model:
         delays = [function.delay_s for function in self.transfer_functions.values()]
         return min(delays) if delays else self.parameters["torque_delay"]
 
+    @property
+    def doubt(self) -> str:
+        """What the identification that wrote it says against its use; '' if nothing."""
+        warning = self.meta.get("warning")
+        if isinstance(warning, str) and warning:
+            return warning
+        if self.meta.get("explains_the_data") is False:
+            return "the chain does not explain the data that it was identified from"
+        return ""
+
     def with_parameters(self, **changes: float) -> Model:
         """The same model with other parameter values."""
         parameters = self.parameters | changes

@@ -118,8 +118,7 @@ def _designed(model: Model, spec: DesignSpec, progress: Callable[[str], None], u
 
 def _doubts(model: Model) -> tuple[str, ...]:
     """What the model file itself says against its use."""
-    doubt = model.meta.get("warning")
-    return (f"the model is doubtful: {doubt}",) if isinstance(doubt, str) and doubt else ()
+    return (f"the model is doubtful: {model.doubt}",) if model.doubt else ()
 
 
 def _optimum(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 from hil.analysis.frequency_response import FrequencyResponse
 from hil.analysis.identification._chain import CHAINS, chain_response
 from hil.core.channels import OUTPUTS
+from hil.core.digits import share
 from hil.core.errors import BadInputError
 from hil.core.model import Model, parameter_names
 
@@ -20,7 +21,11 @@ ComplexArray = npt.NDArray[np.complex128]
 #: A chain explains an output when its rms misfit beyond the noise is within these.
 TOLERANCE_DB = 1.5
 TOLERANCE_DEG = 10.0
+#: Rms of the logarithm (0.17 dB and 1.1 degrees) beyond noise, above which parameters are off by more than
+#: their standard errors say: a motor speed that is 1 ms late makes as much.
+TRUSTED_EXCESS = 0.02
 _HALVED = 0.5
+_FAR = 0.3
 _NOTICEABLE = 0.01  # rms of the logarithm: 0.09 dB and 0.6 degrees
 _USUAL_MODEL_ERROR = 0.03  # relative; data less sure than this count less
 _SMALLEST = {"shaft_damping": 1e-3, "tyre_damping": 1e-3, "viscous_drag": 1e-6, "torque_delay": 1e-5}
@@ -44,6 +49,15 @@ class Misfit:
         return bool(beyond_db <= TOLERANCE_DB and beyond_deg <= TOLERANCE_DEG)
 
 
+def size_of(misfit: Mapping[str, Misfit]) -> float:
+    """Rms of the logarithmic misfit over all outputs, noise taken off (1 = a factor e or 57°)."""
+    parts = []
+    for m in misfit.values():
+        parts.append((m.gain_db**2 - m.noise_db**2) * (np.log(10) / 20) ** 2)
+        parts.append((m.phase_deg**2 - m.noise_deg**2) * np.radians(1) ** 2)
+    return float(np.sqrt(max(np.mean(parts), 0.0)))
+
+
 @dataclass(frozen=True)
 class ChainFit:
     """One chain, fitted."""
@@ -52,6 +66,8 @@ class ChainFit:
     standard_errors: dict[str, float]
     misfit: dict[str, Misfit]
     cost: float
+    excess: float = 0.0
+    """Rms of the logarithmic misfit beyond noise, by the weights of the fit: see `excess_of`."""
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -67,14 +83,25 @@ class ChainFit:
         """Whether every output is explained."""
         return all(misfit.explained for misfit in self.misfit.values())
 
+    def doubt(self, *, corrected: bool = False) -> str:
+        """Why its parameters may be off by more than their standard errors; '' if they hold.
+
+        Args:
+            corrected: whether channels were put in step first, which standard errors know nothing of.
+        """
+        allowed = TRUSTED_EXCESS / 2 if corrected else TRUSTED_EXCESS
+        if self.explains and self.excess <= allowed:
+            return ""
+        return (
+            f"the chain misses the measured responses by {share(self.excess)} rms beyond noise "
+            f"({allowed:.0%} is allowed): its parameters may be off by more than their standard "
+            "errors; look for channels out of step, or for an effect that it lacks (hil diagnose)"
+        )
+
     @property
     def size(self) -> float:
         """Rms of the logarithmic misfit over all outputs, noise taken off (1 = a factor e or 57°)."""
-        parts = []
-        for m in self.misfit.values():
-            parts.append((m.gain_db**2 - m.noise_db**2) * (np.log(10) / 20) ** 2)
-            parts.append((m.phase_deg**2 - m.noise_deg**2) * np.radians(1) ** 2)
-        return float(np.sqrt(max(np.mean(parts), 0.0)))
+        return size_of(self.misfit)
 
 
 @dataclass(frozen=True)
@@ -147,11 +174,11 @@ def fit_chain(
             f"a chain needs '{OUTPUTS[0]}' and another output; there are: {', '.join(frf.outputs)}"
         )
     known = {"gear_ratio": gear_ratio, "torque_delay": torque_delay_s}
-    problem = _Problem(frf, kind, {name: value for name, value in known.items() if value is not None})
+    problem = ChainProblem(frf, kind, {name: value for name, value in known.items() if value is not None})
     # Levenberg-Marquardt of MINPACK: for so few unknowns faster than scipy's own bounded search.
     solutions = [
         least_squares(problem.residual, problem.logarithms(start), method="lm", max_nfev=500, ftol=1e-9)
-        for start in _starts(frf, kind, gear_ratio)
+        for start in starts_of(frf, kind, gear_ratio)
     ]
     solution = min(solutions, key=lambda s: float(s.cost))
     values = problem.parameters(solution.x)
@@ -162,10 +189,25 @@ def fit_chain(
         name: float(values[name] * np.sqrt(max(c, 0.0)))
         for name, c in zip(problem.names, np.diag(covariance), strict=True)
     }
-    return ChainFit(Model(kind, values), errors, _misfit(problem.response(values), frf), float(solution.cost))
+    response, cost = problem.response(values), float(solution.cost)
+    found = misfit_of(response, frf)
+    return ChainFit(Model(kind, values), errors, found, cost, excess_of(response, frf))
 
 
-class _Problem:
+def excess_of(model: ComplexArray, frf: FrequencyResponse) -> float:
+    """Rms of the logarithmic misfit beyond noise (1 = a factor e or 57°).
+
+    Values count by how sure they are, as in the fit, and none for more than `_FAR`: at a frequency that the
+    input hardly excites a phase may be anything.
+    """
+    relative = _relative_deviation(frf)
+    weight = 1 / np.hypot(1.0, relative / _USUAL_MODEL_ERROR) ** 2
+    error = np.minimum(np.abs(np.log(model / frf.response)), _FAR)
+    beyond = np.sum(weight * (error**2 - np.minimum(relative, _FAR) ** 2)) / np.sum(weight)
+    return float(np.sqrt(max(beyond, 0.0)))
+
+
+class ChainProblem:
     """Logarithmic misfit as a function of the logarithms of the unknown parameters."""
 
     def __init__(self, frf: FrequencyResponse, kind: str, known: dict[str, float]) -> None:
@@ -191,7 +233,11 @@ class _Problem:
         return np.asarray(chain_response(self._kind, values, self._frf.frequency_hz)[self._rows])
 
     def residual(self, theta: Array) -> Array:
-        error = self._weight * np.log(self.response(self.parameters(theta)) / self._frf.response)
+        return self.residual_of(self.response(self.parameters(theta)))
+
+    def residual_of(self, response: ComplexArray) -> Array:
+        """Of any response of the outputs of the data, weighted, gain before phase."""
+        error = self._weight * np.log(response / self._frf.response)
         return np.concatenate([error.real.ravel(), error.imag.ravel()])
 
 
@@ -199,23 +245,26 @@ def _relative_deviation(frf: FrequencyResponse) -> Array:
     return np.asarray(frf.standard_deviation / np.abs(frf.response))
 
 
-def _misfit(model: ComplexArray, frf: FrequencyResponse) -> dict[str, Misfit]:
+def misfit_of(model: ComplexArray, frf: FrequencyResponse) -> dict[str, Misfit]:
     relative = _relative_deviation(frf)
     logarithm = np.log(model / frf.response)
     found = {}
     for row, name in enumerate(frf.outputs):
+        measured = relative[row] <= _FAR  # elsewhere a phase may be anything
+        measured |= not measured.any()
+        error = logarithm[row, measured]
         # Half of the complex variance lies along the response (gain), half across (phase).
-        noise = float(np.sqrt(np.mean(np.minimum(relative[row], 1.0) ** 2) / 2))
+        noise = float(np.sqrt(np.mean(np.minimum(relative[row, measured], 1.0) ** 2) / 2))
         found[name] = Misfit(
-            float(np.sqrt(np.mean(logarithm[row].real ** 2)) * 20 / np.log(10)),
-            float(np.degrees(np.sqrt(np.mean(logarithm[row].imag ** 2)))),
+            float(np.sqrt(np.mean(error.real**2)) * 20 / np.log(10)),
+            float(np.degrees(np.sqrt(np.mean(error.imag**2)))),
             float(noise * 20 / np.log(10)),
             float(np.degrees(noise)),
         )
     return found
 
 
-def _starts(frf: FrequencyResponse, kind: str, gear_ratio: float | None) -> Iterator[dict[str, float]]:
+def starts_of(frf: FrequencyResponse, kind: str, gear_ratio: float | None) -> Iterator[dict[str, float]]:
     """Starting values: ratio and inertia from the lowest frequencies, stiffness from the gain's peak."""
     omega = 2 * np.pi * frf.frequency_hz
     lowest = slice(0, max(3, len(omega) // 20))
@@ -247,9 +296,9 @@ def _starts(frf: FrequencyResponse, kind: str, gear_ratio: float | None) -> Iter
         if kind == "two_inertia":
             yield chain
             continue
-        for share, softness in ((0.015, 1.0), (0.05, 0.3), (0.015, 10.0)):
+        for part, softness in ((0.015, 1.0), (0.05, 0.3), (0.015, 10.0)):
             yield chain | {
-                "wheel_inertia": share * chain["vehicle_inertia"],
+                "wheel_inertia": part * chain["vehicle_inertia"],
                 "tyre_stiffness": softness * stiffness,
                 "tyre_damping": 0.5 * softness * stiffness / resonance,
             }

@@ -11,6 +11,7 @@ from hil.analysis.identification._fit import Fit
 from hil.analysis.identification._mistakes import refuse_mistakes
 from hil.analysis.identification._order import ORDERS, OrderChoice, choose_order
 from hil.analysis.identification._table import model_of
+from hil.analysis.identification._timing import in_step, moments_of, timings_of
 from hil.analysis.identification._trust import Judgement, Trust, judge
 from hil.analysis.plausible import within_floating_point
 from hil.core.channels import OUTPUTS
@@ -79,9 +80,16 @@ def identify(
     with within_floating_point(", ".join(experiment.name for experiment in experiments)):
         progress("frequency response")
         frf = estimate(experiments, from_hz=from_hz, to_hz=to_hz, method=method)
-        doubts = refuse_mistakes(experiments, frf, gear_ratio)
+        progress("timing of the channels")
+        moment_s = moments_of(experiments, frf.frequency_hz)
+        timings = timings_of(frf, moment_s, gear_ratio)
+        frf = in_step(frf, timings, moment_s)
+        doubts = (
+            *(f"{one.in_words(name)}: corrected" for name, one in timings.items()),
+            *refuse_mistakes(experiments, frf, gear_ratio),
+        )
         orders = choose_order(frf, ORDERS if order is None else (order,), progress=progress)
-        return _identified(experiments, frf, orders, doubts, gear_ratio, progress)
+        return _identified(experiments, frf, orders, doubts, gear_ratio, progress, corrected=bool(timings))
 
 
 def _identified(
@@ -91,22 +99,28 @@ def _identified(
     doubts: tuple[str, ...],
     gear_ratio: float | None,
     progress: Callable[[str], None],
+    *,
+    corrected: bool,
 ) -> Identification:
     """Judgement, chain and models of an order that was taken."""
     fit = orders.best.fit
     judgement = judge(frf, orders.best)
     doubts = (*doubts, *judgement.unseen)
     notes = [*frf.notes, *doubts]
-    chain = None
+    chain, doubt = None, ""
     if OUTPUTS[0] in frf.outputs and len(frf.outputs) > 1:
         chain = choose_chain(frf, gear_ratio=gear_ratio, torque_delay_s=fit.modes.delay_s, progress=progress)
         if not chain.best.explains:
             notes.append(chain.reason)
+        doubt = chain.best.doubt(corrected=corrected)
+        if doubt:
+            doubts = (*doubts, doubt)
+            notes.append(doubt)
     else:
         notes.append(f"no chain was fitted: that needs '{OUTPUTS[0]}' and another output")
     sources = [experiment.name for experiment in experiments]
     model = model_of(fit, _meta(frf, fit, chain, judgement, sources))
-    physical = None if chain is None else _physical(chain, judgement, sources, model.meta["band_hz"])
+    physical = None if chain is None else _physical(chain, doubt, judgement, sources, model.meta["band_hz"])
     return Identification(frf, orders, chain, model, physical, tuple(notes), judgement, doubts)
 
 
@@ -140,18 +154,20 @@ def _standard_errors(fit: Fit) -> dict[str, list[float]]:
     return errors
 
 
-def _physical(chain: ChainChoice, judgement: Judgement, sources: list[str], band_hz: object) -> Model:
+def _physical(
+    chain: ChainChoice, doubt: str, judgement: Judgement, sources: list[str], band_hz: object
+) -> Model:
     best = chain.best
     meta: dict[str, object] = {
         "sources": sources,
         "band_hz": band_hz,
         "reason": chain.reason,
-        "explains_the_data": best.explains,
+        "explains_the_data": not doubt,
         "verdict": judgement.verdict,
         "misfit": {name: {"gain_db": m.gain_db, "phase_deg": m.phase_deg} for name, m in best.misfit.items()},
     }
-    if judgement.verdict == "linear":
+    if judgement.verdict == "linear" and not doubt:
         meta["standard_errors"] = best.standard_errors
     else:
-        meta["warning"] = "; ".join(judgement.warnings)
+        meta["warning"] = "; ".join(filter(None, (*judgement.warnings, doubt)))
     return Model(best.model.kind, dict(best.model.parameters), meta=meta)

@@ -170,16 +170,9 @@ def refuse_model(model: Model, where: str) -> None:
     Raises:
         BadInputError: it does not explain its own recordings, or it cannot be simulated in a closed loop.
     """
-    doubt = model.meta.get("warning")
-    if isinstance(doubt, str) and doubt:
+    if model.doubt:
         raise BadInputError(
-            f"the model does not explain its recordings: {doubt}",
-            where=where,
-            fix="find the cause with hil diagnose, and tune on the model that it writes",
-        )
-    if model.meta.get("explains_the_data") is False:
-        raise BadInputError(
-            "the chain does not explain the data that it was identified from",
+            f"the model does not explain its recordings: {model.doubt}",
             where=where,
             fix="find the cause with hil diagnose, and tune on the model that it writes",
         )

@@ -34,13 +34,12 @@ def model_data(catalogue: Catalogue[Model], name: str, path: Path) -> ModelData:
         BadInputError: it cannot be read any more.
     """
     model = catalogue.read(path)
-    warning = model.meta.get("warning")
     return ModelData(
         name=name,
         kind=model.kind,
         built_in=catalogue.is_built_in(name),
         effects=[use.id for use in model.effects],
-        warning=warning if isinstance(warning, str) else "",
+        warning=model.doubt,
     )
 
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from hil.core.errors import BadInputError, HilError
 from hil.service.worker_pool import _campaigning, _comparing, _designing, _fitting, _reading
-from hil.service.worker_pool._worker_pool import ANSWERED, READ_WITHIN_S, READING, REFUSED
+from hil.service.worker_pool._worker_pool import ANSWERED, READING, REFUSED
 
 _IDLE_S = 600.0
 TASKS: dict[str, Callable[..., dict[str, Any]]] = {
@@ -47,7 +47,7 @@ def main() -> None:
 
 def _answer(question: dict[str, Any]) -> bytes:
     try:
-        with _limited(question["task"]):
+        with _limited(question["task"], question["read_within_s"]):
             return ANSWERED + _json(TASKS[question["task"]](**question["asked"]))
     except HilError as error:
         bad = isinstance(error, BadInputError)
@@ -59,10 +59,10 @@ def _answer(question: dict[str, Any]) -> bytes:
 
 
 @contextlib.contextmanager
-def _limited(task: str) -> Iterator[None]:
+def _limited(task: str, read_within_s: float) -> Iterator[None]:
     """Of what people give, reading takes so much of a processor; the system ends this process after that."""
     if task.startswith(READING):
-        signal.setitimer(signal.ITIMER_VIRTUAL, READ_WITHIN_S)
+        signal.setitimer(signal.ITIMER_VIRTUAL, read_within_s)
     try:
         yield
     finally:

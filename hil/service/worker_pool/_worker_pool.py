@@ -21,7 +21,7 @@ _LONGEST_ANSWER_BYTES = 1 << 26
 
 
 class TooLongError(BenchError):
-    """Reading took more than `READ_WITHIN_S` of a processor, and its process was ended."""
+    """Reading took too much of a processor, and its process was ended."""
 
 
 class WorkerPool:
@@ -29,10 +29,11 @@ class WorkerPool:
 
     Args:
         niceness: added to that of the service.
+        read_within_s: of a processor, for what people give.
     """
 
-    def __init__(self, niceness: int) -> None:
-        self._niceness = niceness
+    def __init__(self, niceness: int, read_within_s: float = READ_WITHIN_S) -> None:
+        self._niceness, self._read_within_s = niceness, read_within_s
         self._turn = asyncio.Lock()
         self._process: asyncio.subprocess.Process | None = None
 
@@ -52,7 +53,9 @@ class WorkerPool:
             BadInputError: what was asked cannot be answered.
             BenchError: it took too long, or its process failed.
         """
-        question = json.dumps({"task": task, "asked": asked}).encode() + b"\n"
+        question = (
+            json.dumps({"task": task, "asked": asked, "read_within_s": self._read_within_s}).encode() + b"\n"
+        )
         async with self._turn:
             try:
                 line = await asyncio.wait_for(self._answer(question), _WITHIN_S)
@@ -90,7 +93,8 @@ class WorkerPool:
             code = await process.wait()
             self._process = None
             if code == -signal.SIGVTALRM:
-                raise TooLongError(f"took more than {READ_WITHIN_S:g} s of a processor", where="reading")
+                what = f"took more than {self._read_within_s:g} s of a processor"
+                raise TooLongError(what, where="reading")
         return line
 
     async def _start(self) -> asyncio.subprocess.Process:

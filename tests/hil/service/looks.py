@@ -25,7 +25,7 @@ def refuse_hard_to_use(page: playwright.Page) -> None:
             page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
             found = page.evaluate("rules => axe.run(document, rules)", _RULES)["violations"]
             told = [(one["id"], [node["html"] for node in one["nodes"]]) for one in found]
-            assert told == [], (width, scheme)
+            assert (told, width, scheme) == ([], width, scheme)
 
 
 def roles_drawn(page: playwright.Page, canvas: str, roles: tuple[str, ...]) -> set[str]:

@@ -44,7 +44,7 @@ def test_a_campaign_is_begun_watched_cancelled_and_gone_on_with(
     page.locator("#campaign-example").select_option("own file")
     page.get_by_label("Campaign file").set_input_files(tmp_path / "campaign.yaml")
     expect(page.locator("#campaign-text")).to_have_value(re.compile(r"name: short_campaign"))
-    page.get_by_label("Plan, model, controllers").set_input_files(tmp_path / "short.yaml")
+    page.get_by_label("Files of plan, model and controllers").set_input_files(tmp_path / "short.yaml")
     page.get_by_role("button", name="Simulate").click()
     expect(page.locator("#campaign-told")).to_contain_text("16 simulations")
     page.locator("#campaign-text").fill(LONG)

@@ -82,7 +82,7 @@ def test_an_armed_bench_stands_still_is_watched_and_its_sensors_have_been_read(t
     ("changes", "fault", "said", "where", "owed"),
     [
         ({}, Fault.RMCU_SILENT, "sends no status", "RMCU", False),
-        ({}, Fault.DYNO_SILENT, "heartbeat time (object 0x1017) was written", "rear left", False),
+        ({}, Fault.DYNO_SILENT, "no answer within 0.3 s while object 0x1600 was read", "rear left", False),
         ({"devices": cage(lambda s: 0.0), "interlocks": shut()}, None, "cage_shut", "interlock 'cage'", True),
         ({"zero": {"shaft_torque_left_nm": ZeroLimit(within=1e-9)}}, None, "at rest", "zero check", False),
     ],
