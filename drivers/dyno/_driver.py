@@ -27,7 +27,7 @@ from drivers.loop import BusLoop
 from drivers.table import VehicleParameters
 from drivers.wire import Wire
 from hil.core.conventions import TICK_S
-from hil.core.errors import BenchError
+from hil.core.errors import BenchError, DeviceError
 
 SPEED_MODE, VEHICLE_MODE = 3, -1
 _SHUTDOWN, _SWITCH_ON, _ENABLE, _DISABLE_VOLTAGE, _FAULT_RESET = 0x06, 0x07, 0x0F, 0x00, 0x80
@@ -228,7 +228,7 @@ class DynoDriver:
     def identify(self) -> dict[str, str]:
         """Name, versions and serial number of each node that answers, as far as the EDS has them."""
         found = identify([*self.rear, *self.idle])
-        with contextlib.suppress(BenchError):  # who does not answer is missed when it is to come up
+        with contextlib.suppress(DeviceError):  # who does not answer is missed when it is to come up
             self._other_pdos = self._read_pdos()
         return found
 

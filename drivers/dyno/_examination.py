@@ -9,7 +9,7 @@ from drivers.dyno._node import ENABLED, FAULT, STATE_MASK, DynoNode
 from drivers.examination import Examined, Finding
 from drivers.loop import BusLoop
 from drivers.wire import Wire
-from hil.core.errors import BenchError
+from hil.core.errors import DeviceError
 from hil.core.frames import SENT_BY_HOST, FrameBlock, standard
 from hil.core.printable import printable
 
@@ -59,7 +59,7 @@ def examine(
 def _measured(node: DynoNode, side: str) -> dict[str, float]:
     """Means of what its sensors read, by channel; before a run has started them they send nothing."""
     readings = {}
-    with contextlib.suppress(BenchError):
+    with contextlib.suppress(DeviceError):
         for name, channel in _MEASURED.items():
             values = [node.measured(name) for _ in range(_READINGS)]
             known = [value for value in values if value is not None]
@@ -72,7 +72,7 @@ def identify(nodes: Sequence[DynoNode]) -> dict[str, str]:
     """What each node says that it is; of one that does not answer nothing."""
     found = {}
     for node in nodes:
-        with contextlib.suppress(BenchError):
+        with contextlib.suppress(DeviceError):
             for index, subindex, name, shown in _IDENTITY:
                 value = node.read(index, subindex)
                 if value not in (None, ""):
@@ -85,7 +85,7 @@ def _look_at(node: DynoNode, found: Examined, *, beats: bool, drives: bool, ask:
     where = f"dyno '{node.name}' (node {node.id})"
     try:
         device_type = node.read(0x1000) if ask else None
-    except BenchError:
+    except DeviceError:
         device_type = None
         if not beats:
             return False
@@ -111,7 +111,7 @@ def _look_at(node: DynoNode, found: Examined, *, beats: bool, drives: bool, ask:
 
 def _compare_pdos(node: DynoNode, found: Examined, where: str) -> None:
     """Add where the device's PDOs are not those of its EDS."""
-    with contextlib.suppress(BenchError):
+    with contextlib.suppress(DeviceError):
         for text in node.differences():
             found.findings.append(Finding("fault", text, where, OTHER_PDOS))
 

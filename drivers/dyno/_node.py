@@ -14,7 +14,7 @@ import numpy.typing as npt
 from drivers.dyno._canopen import SDO_TIMEOUT_S, BrokenOffError, LoopNetwork, LoopNode, abort_in_words
 from drivers.frame_source import Binding
 from drivers.newest_frames import NewestFrames
-from hil.core.errors import BenchError
+from hil.core.errors import DeviceError
 from hil.core.pdo import identifier_of, layout_of_pdo, mapping_of, read_eds
 from hil.core.signals import FrameLayout, in_units
 
@@ -161,7 +161,7 @@ class DynoNode:
         """Write an object by SDO and read it back.
 
         Raises:
-            BenchError: no answer, a refusal, or another value than was written.
+            DeviceError: no answer, a refusal, or another value than was written.
         """
         entry = self._node.sdo[index] if subindex == 0 else self._node.sdo[index][subindex]
         named = f"{what} ({_object(index, subindex)})"
@@ -169,26 +169,26 @@ class DynoNode:
             entry.raw = value
             answer = entry.raw
         except canopen.SdoCommunicationError as error:
-            raise BenchError(
+            raise DeviceError(
                 f"no answer within {SDO_TIMEOUT_S:g} s while {named} was written",
                 where=self._where,
                 fix="check that it is powered and on this bus",
             ) from error
         except canopen.SdoAbortedError as error:
-            raise BenchError(
+            raise DeviceError(
                 f"refused {named} = {value:g}: {abort_in_words(error.code)}",
                 where=self._where,
                 fix="check the value, the drive's state and its manual",
             ) from error
         sent = float(np.float32(value)) if isinstance(answer, float) else value
         if answer != sent:
-            raise BenchError(f"{what} reads back as {answer:g}, {value:g} was written", where=self._where)
+            raise DeviceError(f"{what} reads back as {answer:g}, {value:g} was written", where=self._where)
 
     def read(self, index: int, subindex: int = 0) -> Any:
         """An object's value by SDO; None if the EDS or the node does not have it.
 
         Raises:
-            BenchError: no answer.
+            DeviceError: no answer.
         """
         entry = self._entry(index, subindex)
         if entry is None:
@@ -201,7 +201,7 @@ class DynoNode:
         except canopen.SdoAbortedError:
             return None
         except canopen.SdoCommunicationError as error:
-            raise BenchError(
+            raise DeviceError(
                 f"no answer within {SDO_TIMEOUT_S:g} s while {_object(index, subindex)} was read",
                 where=self._where,
                 fix="check that it is powered and on this bus",
@@ -211,7 +211,7 @@ class DynoNode:
         """What it measures now of an object that its values PDO maps; None if it cannot be read by SDO.
 
         Raises:
-            BenchError: no answer.
+            DeviceError: no answer.
         """
         variable = self._node.object_dictionary.names.get(name)
         if variable is None or hasattr(variable, "subindices"):
@@ -226,7 +226,7 @@ class DynoNode:
         What the device does not let be read is taken from the EDS.
 
         Raises:
-            BenchError: no answer.
+            DeviceError: no answer.
         """
         found = []
         for (mapping, communication, _, _), layout in zip(_PDOS, self._layouts, strict=True):

@@ -7,7 +7,7 @@ from typing import Any
 
 from drivers.loop import BusLoop
 from drivers.wire import Wire
-from hil.core.errors import BenchError
+from hil.core.errors import DeviceError
 from hil.core.printable import printable
 from hil.core.xcp import ANSWER, ERROR, EVENT, MOST_BYTES, Code, Command, Happened, in_words
 
@@ -53,7 +53,7 @@ class Master:
         """Send a command and wait for nothing.
 
         Raises:
-            BenchError: the bus does not take it.
+            DeviceError: the bus does not take it.
         """
         self._wire.send(self._request_id, (bytes([command]) + arguments).ljust(MOST_BYTES, b"\0"))
 
@@ -61,7 +61,7 @@ class Master:
         """One exchange: `values` as `struct` lays them out; the answer, its first byte included.
 
         Raises:
-            BenchError: no answer, or an error.
+            DeviceError: no answer, or an error.
         """
         arguments = struct.pack(f"{self.order}{layout}", *values)
         busy_until_s = self._loop.clock.now_s() + _LONGEST_BUSY_S
@@ -89,7 +89,7 @@ class Master:
         """The numbers of an answer behind its first byte.
 
         Raises:
-            BenchError: it is too short.
+            DeviceError: it is too short.
         """
         try:
             return struct.unpack_from(f"{self.order}x{layout}", answer)
@@ -100,7 +100,7 @@ class Master:
         """Bytes of the slave's memory.
 
         Raises:
-            BenchError: no answer, or it does not let them be read.
+            DeviceError: no answer, or it does not let them be read.
         """
         self.ask(Command.SET_MTA, "xxBI", extension, address)
         return self._uploaded(count)
@@ -109,7 +109,7 @@ class Master:
         """The text by which the slave names itself; '' if it has none.
 
         Raises:
-            BenchError: no answer.
+            DeviceError: no answer.
         """
         answer = self.ask(Command.GET_ID, "B", _TEXT)
         mode, length = self.read(answer, "BxxI")
@@ -117,9 +117,11 @@ class Master:
         data = answer[8 : 8 + count] if mode & _IN_THE_ANSWER else self._uploaded(count)
         return printable(data.decode("ascii", errors="replace").rstrip("\0 "), _LONGEST_TEXT)
 
-    def failed(self, what: str, fix: str = "check the RMCU's XCP, and the file of its symbols") -> BenchError:
+    def failed(
+        self, what: str, fix: str = "check the RMCU's XCP, and the file of its symbols"
+    ) -> DeviceError:
         """An error of this device."""
-        return BenchError(what, where=self._where, fix=fix)
+        return DeviceError(what, where=self._where, fix=fix)
 
     def _uploaded(self, count: int) -> bytes:
         found = b""

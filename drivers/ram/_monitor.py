@@ -15,7 +15,7 @@ from drivers.ram._packing import packed
 from drivers.ram._setup import Setup
 from drivers.samples import Counting, Samples, Stream
 from drivers.wire import Wire
-from hil.core.errors import BenchError
+from hil.core.errors import BenchError, DeviceError
 from hil.core.frames import SENT_BY_HOST, FrameBlock, standard
 from hil.core.symbols import Symbol, Symbols
 from hil.core.xcp import (
@@ -148,7 +148,7 @@ class RamMonitor:
             self._connect()
             found["software"] = self._setup.software()
             found["station"] = self._master.own_name()
-        except BenchError:  # who does not say so may measure all the same; silence is told by `come_up`
+        except DeviceError:  # who does not say so may measure all the same; silence is told by `come_up`
             pass
         return {name: text for name, text in found.items() if text}
 

@@ -19,7 +19,7 @@ from hil.core.checksum import crc8, crc8_many
 from hil.core.controller import Controller
 from hil.core.conventions import TICK_S
 from hil.core.dbc import Dbc, Names, Needed, read_dbc
-from hil.core.errors import BadInputError, BenchError
+from hil.core.errors import BadInputError, BenchError, DeviceError
 from hil.core.printable import printable
 from hil.core.signals import FrameLayout, Payloads
 
@@ -241,7 +241,7 @@ class RmcuDriver:
             try:
                 self._transact(_READ, _FIRST_PARAMETER, 0.0, "number 1")
                 found.facts["answers parameter reads"] = "yes"
-            except BenchError:
+            except DeviceError:
                 found.facts["answers parameter reads"] = "no"
                 what = "sends its status, but does not answer when a parameter is read"
                 fix = "check that the adapter can send (not listen-only), and RMCU_ParameterWrite in the DBC"
@@ -303,14 +303,14 @@ class RmcuDriver:
             )
         answer, sent = self._transact(_WRITE, index, value, name)
         if answer != sent:
-            raise BenchError(f"parameter '{name}' reads back as {answer:g}, {sent:g} was sent", where="RMCU")
+            raise DeviceError(f"parameter '{name}' reads back as {answer:g}, {sent:g} was sent", where="RMCU")
 
     def _transact(self, command: int, index: int, value: float, name: str) -> tuple[float, float]:
         """The value of the reply, and the one that was sent, as its signal rounds it."""
         layout = self._layouts["RMCU_ParameterWrite"]
         payload = int(layout.encode(Command=command, Index=index, Value=value)[0])
         if not self._ask_until_answered(payload, command, index):
-            raise BenchError(
+            raise DeviceError(
                 f"no reply to parameter '{name}' within {_REPLY_TIMEOUT_S:g} s",
                 where="RMCU",
                 fix="check that the RMCU is powered and on this bus",
@@ -320,7 +320,7 @@ class RmcuDriver:
         result = signals["Result"].raw(self._answer)
         if result != 0:
             reason = self._names("RMCU_ParameterReply", "Result").get(result, str(result))
-            raise BenchError(f"refused parameter '{name}' = {value:g}: {reason}", where="RMCU")
+            raise DeviceError(f"refused parameter '{name}' = {value:g}: {reason}", where="RMCU")
         return signals["Value"].value(self._answer), layout.signals["Value"].value(payload)
 
     def _ask_until_answered(self, payload: int, command: int, index: int) -> bool:

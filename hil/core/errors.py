@@ -50,6 +50,14 @@ class BenchError(HilError):
     exit_code = 3
 
 
+class DeviceError(BenchError):
+    """A device does not answer, or refuses what it is asked (exit code 3).
+
+    Who may do without an answer ignores this and nothing wider: while a device is read, a limit may trip, an
+    operator may stop, and the command may be gone, and each of them is a `BenchError` too.
+    """
+
+
 class LimitTripError(BenchError):
     """A measured value went beyond a limit of the bench (exit code 3, unless it was the device's doing)."""
 

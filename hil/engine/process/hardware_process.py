@@ -68,7 +68,8 @@ def hold_hardware(pipe: IpcPipe) -> str:
         except Exception as error:
             logger.exception("internal error")
             pipe.send(Refused(error=ErrorData.of(_fault_of_ours(error))))
-        return "" if pipe.push_all(LAST_WORDS_S) else words
+        pushed = pipe.push_all(LAST_WORDS_S)
+        return "" if pushed and not command.ended else words  # a pipe takes words until its reader is gone
 
 
 class _Command:
@@ -79,6 +80,7 @@ class _Command:
         self._lines: list[str | EmergencyAsked] = []
         self._process = os.getppid()
         self._heard_s = time.monotonic()
+        self.ended = False
         self.alone_after_s = float("inf")
 
     def asked(self) -> RunAsked | None:
@@ -99,7 +101,8 @@ class _Command:
         self._pipe.send_if_idle(Turned())
         for message in self._pipe.fetch():
             self._take(message)
-        if self._pipe.gone or is_ending(self._process):
+        self.ended = self._pipe.gone or is_ending(self._process)
+        if self.ended:
             return "the command of this run has ended"
         silent_s = time.monotonic() - self._heard_s
         return f"the command has been silent for {silent_s:.1f} s" if silent_s > self.alone_after_s else ""

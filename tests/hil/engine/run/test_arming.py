@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from drivers import Connections, Device, DeviceTable
-from hil.core.errors import BenchError
+from hil.core.errors import BenchError, EmergencyStopError
 from hil.core.recording import read_recording
 from hil.engine.bench.bench import open_bench
 from hil.engine.bench.bench_tables import ZeroLimit
@@ -171,3 +171,16 @@ def test_no_drive_is_enabled_before_the_rmcu_says_that_it_is_off(tmp_path: Path)
             at.arming.come_up()
         assert at.arming.armed
         assert not any(node.power.state.name == "OPERATION_ENABLED" for node in attached("on").dynos)
+
+
+def test_a_stop_while_devices_say_who_they_are_is_no_device_that_does_not_answer(tmp_path: Path) -> None:
+    with stage(tmp_path, "asks") as at:
+        pressed = iter([True])
+
+        def press() -> None:
+            if next(pressed, False):
+                raise EmergencyStopError("an emergency stop was pressed", by="a test")
+
+        at.bench.loop.every(0.002, press)
+        with pytest.raises(EmergencyStopError, match="was pressed"):
+            at.bench.dyno.identify()
