@@ -44,10 +44,12 @@ def _pictures(name: str, figure: Figure) -> dict[str, bytes]:
 
 
 def _resonance(found: Identification) -> float | None:
+    """The least damped pole pair; none outside the data, where a fit may put a pole anywhere."""
     try:
-        return resonance_hz(found.fit.polynomials()[1])
+        resonance = resonance_hz(found.fit.polynomials()[1])
     except BadInputError:
         return None
+    return resonance if found.frf.frequency_hz[0] <= resonance <= found.frf.frequency_hz[-1] else None
 
 
 def summary_of(found: Identification, experiments: list[Experiment], files: list[str]) -> dict[str, Any]:

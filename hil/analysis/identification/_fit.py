@@ -216,12 +216,22 @@ class _Problem:
         if np.sum(sure) < 4 * structure.order:
             sure[:] = True
         trials = []
-        for delay in _DELAY_TRIALS_S:
+        for delay in (*_DELAY_TRIALS_S, *self._long_delays(sure)):
             poles = starting_poles(self.frequency_hz[sure], self.response[:, sure], structure, delay)
             found = self.solve(structure, poles, delay, iterations=4)
             trials.append((found.cost, found.poles, found.delay_s))
         _, poles, delay = min(trials, key=lambda trial: trial[0])
         return poles, delay
+
+    def _long_delays(self, sure: npt.NDArray[np.bool_]) -> list[float]:
+        """Dead times beyond the usual trials, of the phase's slope: poles turn it by little."""
+        response, frequency_hz = self.response[:, sure], self.frequency_hz[sure]
+        turn = np.angle(response[:, 1:] * response[:, :-1].conj())
+        slope_s = -turn / (2 * np.pi * np.diff(frequency_hz))
+        said_s = float(np.median(slope_s))
+        if not said_s > _DELAY_TRIALS_S[-1]:
+            return []
+        return [said_s, max(said_s - _DELAY_TRIALS_S[-1], _DELAY_TRIALS_S[-1])]
 
     def evaluate(self, structure: Structure, poles: Array, delay_s: float) -> _Point:
         """Project the data on the modes of these poles."""

@@ -35,7 +35,7 @@ NOISE = dict(zip(OUTPUTS, (0.05, 0.005, 1.0), strict=True))
 MOTOR, WHEEL, SHAFT = OUTPUTS
 
 
-def axle(seed: int, **changes: float) -> Recording:
+def axle(seed: int, *, delay_s: float = DELAY_S, **changes: float) -> Recording:
     """A minute of a chirp: torque, motor speed, wheel speed and shaft torque with noise."""
     p = AXLE | changes
     ratio, k, d = p["gear_ratio"], p["shaft_stiffness"], p["shaft_damping"]
@@ -50,7 +50,7 @@ def axle(seed: int, **changes: float) -> Recording:
     shown = np.vstack([[1, 0, 0, 0, 0], [0, 1, 0, 0, 0], shaft])
     time_s = np.arange(60_000) / 1000.0
     torque = 15.0 * chirp(time_s, 0.2, 60.0, 30.0, "logarithmic", phi=-90)
-    acting = np.interp(time_s - DELAY_S, time_s, torque, left=0.0)
+    acting = np.interp(time_s - delay_s, time_s, torque, left=0.0)
     inputs = np.array([[1 / jm], [0.0], [0.0], [0.0], [0.0]])
     _, found, _ = lsim((dynamics, inputs, shown, np.zeros((3, 1))), acting, time_s)
     noise = np.random.default_rng(seed)
@@ -126,6 +126,13 @@ def test_what_is_out_of_step_is_told_and_put_right(
     notes = [note for note in found.doubts if "corrected" in note]
     assert any(said in note.replace("9.9", "10").replace("10.1", "10") for note in notes), notes
     assert len(notes) == len(names)
+    assert_is_the_axle(found)
+
+
+def test_a_dead_time_of_several_periods_is_found_as_long_as_it_is() -> None:
+    """155 ms are 4.6 periods of the highest frequency."""
+    found = identified(axle(1, delay_s=0.155))
+    assert found.orders.best.fit.modes.delay_s == pytest.approx(0.155, abs=1e-3)
     assert_is_the_axle(found)
 
 
