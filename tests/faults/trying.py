@@ -181,6 +181,7 @@ def _in_child(fault: FaultRow, phase: str, folder: Path, writing: int) -> None:
         code = 0
     except BaseException:
         traceback.print_exc()
+        sys.stderr.flush()
     finally:
         os._exit(code)
 
@@ -202,8 +203,9 @@ def _carried_out(fault: FaultRow, phase: str, folder: Path, *, reports: bool) ->
 
     folder.mkdir(parents=True, exist_ok=True)
     stage = Stage(phase, fault.make(), REQUEST.id)
-    before = command.operators_terminal, command.write_documents
-    command.operators_terminal = lambda: Operator(stage)
+    terminal: Any = importlib.import_module("hil.cli._output").TERMINAL
+    before = command.write_documents
+    terminal.terminal = lambda: Operator(stage)
     if not reports:  # they take longer than all the rest
         command.write_documents = lambda *arguments: {}
     stage.begin()
@@ -214,7 +216,8 @@ def _carried_out(fault: FaultRow, phase: str, folder: Path, *, reports: bool) ->
                 ["run", str(files[0]), "--bench", str(files[1]), "--out", str(folder / "out"), "--json"]
             )
     finally:
-        command.operators_terminal, command.write_documents = before
+        command.write_documents = before
+        del terminal.terminal  # that of the class again
     ended_s = stage.now_s if stage.world is not None else 0.0
     stage.let_time_pass(AFTERWARDS_S)
     result = folder / "out" / "result.json"

@@ -113,7 +113,7 @@ def test_models_side_by_side_show_what_each_shows_alone(name: str) -> None:
 def test_every_test_runs_on_the_simulated_bench_as_it_was_simulated(name: str, tmp_path: Path) -> None:
     test = _test(name, 30.0, NAMES)
     outcome = run_plan(RunRequest(test.plan, sim_bench(name), tmp_path, MODEL))
-    assert (outcome.error, outcome.result.verdict, outcome.result.safe_state) == (None, "pass", "confirmed")
+    assert (outcome.error, outcome.result.verdict, outcome.result.safe_state) == (None, "done", "confirmed")
     (part,) = driven_by_torque(read_recording(outcome.recording))
     simulated = simulate(MODEL, test.torque, 1e-3, Start(test.speed * BASE["gear_ratio"], test.speed))
     for channel, share in (("motor_speed_rad_s", 0.05), ("wheel_speed_rad_s", 0.05)):
@@ -138,9 +138,9 @@ def test_what_one_way_turning_leaves_open_the_plan_decides(tmp_path: Path) -> No
     assert max(e["confidence"] for e in first["effects"]) < 0.9
     plan = next(a["plan"] for a in first["alternatives"] if "plan" in a)
 
-    save_model(MODEL.with_effects(ROLLING), tmp_path / "bench.toml")
-    hil("run", f"why/{plan}", "--model", "bench.toml", "--out", "test", cwd=tmp_path)
-    assert json.loads((tmp_path / "test/result.json").read_text())["verdict"] == "pass"
+    save_model(MODEL.with_effects(ROLLING), tmp_path / "axle.toml")
+    hil("run", f"why/{plan}", "--model", "axle.toml", "--out", "test", cwd=tmp_path)
+    assert json.loads((tmp_path / "test/result.json").read_text())["verdict"] == "done"
 
     hil(
         "diagnose", "--model", "model.toml", "biased.csv", "test/recording.mcap", "--out", "now", cwd=tmp_path
