@@ -106,6 +106,8 @@ def timings_of(frf: FrequencyResponse, moment_s: Array, gear_ratio: float | None
     free = search.all_unknowns
     while free:
         found = search.fit(free)
+        if found.excess > _EXPLAINED:
+            return {}  # with fewer timings no chain explains more
         kept = [one for one in free if found.is_sure(one)]
         if kept == free:
             break
@@ -116,7 +118,7 @@ def timings_of(frf: FrequencyResponse, moment_s: Array, gear_ratio: float | None
     if all(("width", name) in free for name in frf.outputs):
         return {}  # all of them alike: the inverter's lag, which is no channel's
     plain = fit_chain(frf, _KIND, gear_ratio=gear_ratio)
-    if found.excess > _EXPLAINED or found.cost > _SHRUNK * plain.cost:
+    if found.cost > _SHRUNK * plain.cost:
         return {}
     return found.timings()
 
@@ -189,7 +191,7 @@ class _Search:
             chain = self._problem.response(self._problem.parameters(theta[:count]))
             return self._problem.residual_of(chain * self._factors(values))
 
-        def best_from(begin_s: Mapping[str, float]) -> OptimizeResult:
+        def best_from(begin_s: Mapping[str, float], most: int = 600) -> OptimizeResult:
             first = [begin_s.get(name, 0.0) if kind == "late" else 0.0 for kind, name in free] / scale
             common_s = max(0.0, -min(begin_s.values(), default=0.0))
             solutions = [
@@ -197,7 +199,7 @@ class _Search:
                     residual,
                     np.r_[self._delayed(start, common_s), first],
                     method="lm",
-                    max_nfev=600,
+                    max_nfev=most,
                     ftol=1e-9,
                 )
                 for start in self._starts
@@ -207,7 +209,7 @@ class _Search:
         best = best_from({})
         if self._excess(best, free, scale) > _EXPLAINED:
             begins = self._far_apart() if self._begin_s is None else [self._begin_s]
-            far = [best_from(begin_s) for begin_s in begins if begin_s]
+            far = [best_from(begin_s, most=200) for begin_s in begins if begin_s]
             best = min([best, *far], key=lambda one: float(one.cost))
         found_late = dict(zip(free, best.x[count:] * scale, strict=True))
         self._begin_s = {name: float(value) for (kind, name), value in found_late.items() if kind == "late"}
