@@ -61,7 +61,8 @@ def with_backlash(half_gap_rad: float) -> Recording:
 @pytest.mark.parametrize("noise", [0.01, 0.1])
 def test_a_linear_axle_is_trusted_however_noisy(torque: np.ndarray, noise: float) -> None:
     found = identified(paper_plant.recording(torque, noise=noise))
-    assert (found.verdict, found.warnings, found.doubts) == ("linear", (), ())
+    assert (found.verdict, found.warnings) == ("linear", ())
+    assert [doubt[:17] for doubt in found.doubts] == ["the chain misses "]  # (14)-(16) belong to none
     assert "warning" not in found.model.meta
 
 
