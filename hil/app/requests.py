@@ -1,7 +1,7 @@
 """What is asked of each use case, as it passes from a command, a page or a file.
 
-Light: whoever only asks needs none of the analysis. `out` is the folder for results, by default a new one
-that is numbered; `overwrite` replaces an earlier result in it.
+Light: whoever only asks needs none of the analysis. Where no folder is named for results, a new one is
+numbered.
 """
 
 from __future__ import annotations
@@ -19,6 +19,14 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
+class _Writing:
+    """What has results: `out` is the folder for them, and `overwrite` replaces an earlier result in it."""
+
+    out: Path | None = None
+    overwrite: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
 class CheckRequest:
     """A plan and a bench, each by file or name, and what is chosen in place of the plan's own values."""
 
@@ -28,25 +36,21 @@ class CheckRequest:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ReportRequest:
+class ReportRequest(_Writing):
     """A report that is wanted; `source` is a run's folder or a recording, `out` by default its folder."""
 
     source: Path
-    out: Path | None = None
-    overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class CompareRequest:
+class CompareRequest(_Writing):
     """A comparison that is wanted; `runs` are folders or recordings, the first is the reference."""
 
     runs: list[Path]
-    out: Path | None = None
-    overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class IdentifyRequest:
+class IdentifyRequest(_Writing):
     """An identification that is wanted.
 
     Attributes:
@@ -63,12 +67,10 @@ class IdentifyRequest:
     order: int | None = None
     gear_ratio: float | None = None
     hold_ms: float | None = None
-    out: Path | None = None
-    overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class DesignRequest:
+class DesignRequest(_Writing):
     """A design that is wanted.
 
     Attributes:
@@ -79,12 +81,10 @@ class DesignRequest:
     model: Path
     spec: DesignSpec | None = None
     frf: Path | None = None
-    out: Path | None = None
-    overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class DiagnoseRequest:
+class DiagnoseRequest(_Writing):
     """A diagnosis that is wanted.
 
     Attributes:
@@ -100,12 +100,10 @@ class DiagnoseRequest:
     noise: Mapping[str, float] = field(default_factory=dict)
     least: Mapping[str, float] = field(default_factory=dict)
     at_most: float = 10.0
-    out: Path | None = None
-    overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExplainRequest:
+class ExplainRequest(_Writing):
     """An explanation that is wanted.
 
     Attributes:
@@ -124,8 +122,6 @@ class ExplainRequest:
     among: Sequence[str] | None = None
     evaluations: int = 2000
     seed: int = 0
-    out: Path | None = None
-    overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -151,7 +147,7 @@ class SearchRequest:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TuneRequest:
+class TuneRequest(_Writing):
     """A tuning that is wanted.
 
     Attributes:
@@ -175,12 +171,10 @@ class TuneRequest:
     envelope: Mapping[str, float] = field(default_factory=dict)
     confirm: str = ""
     operator: str = ""
-    out: Path | None = None
-    overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class AutotuneRequest:
+class AutotuneRequest(_Writing):
     """A sequence that is wanted.
 
     Attributes:
@@ -200,12 +194,10 @@ class AutotuneRequest:
     operator: str = ""
     processes: int | None = None
     resume: bool = False
-    out: Path | None = None
-    overwrite: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
-class CampaignRequest:
+class CampaignRequest(_Writing):
     """A campaign that is wanted.
 
     Attributes:
@@ -219,8 +211,6 @@ class CampaignRequest:
     workers: int | None = None
     scheduler: str = ""
     resume: bool = False
-    out: Path | None = None
-    overwrite: bool = False
 
     @property
     def processes(self) -> int:

@@ -68,7 +68,7 @@ class Signal:
         found = conversion(self.unit, wanted)
         if found.is_none:
             return self
-        scale, offset = self.scale * found.factor, self.offset * found.factor + found.offset
+        scale, offset = found.of_line(self.scale, self.offset)
         return replace(self, scale=scale, offset=offset, unit=wanted)
 
     def raw(self, payload: int) -> int:

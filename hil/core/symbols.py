@@ -72,8 +72,8 @@ class Symbol:
             raise BadInputError(what, where=where, fix=error.fix) from None
         if found.is_none:
             return self
-        offset = self.offset * found.factor + found.offset
-        return replace(self, scale=self.scale * found.factor, offset=offset, unit=wanted)
+        scale, offset = found.of_line(self.scale, self.offset)
+        return replace(self, scale=scale, offset=offset, unit=wanted)
 
     def dtype(self, order: str) -> np.dtype[np.generic]:
         """Its type in memory, on a control unit that counts in `order`."""

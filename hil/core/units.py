@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
 from hil.core.printable import printable
 
@@ -74,6 +75,10 @@ class Conversion:
             np.add(values, self.offset, out=values)
         return values
 
+    def of_line(self, scale: float, offset: float) -> tuple[float, float]:
+        """Scale and offset of raw values that give values in the unit that is wanted."""
+        return scale * self.factor, offset * self.factor + self.offset
+
     @property
     def is_none(self) -> bool:
         """Whether the value is the same."""
@@ -107,15 +112,18 @@ def conversion(unit: str, wanted: str) -> Conversion:
 
 
 def converted(
-    values: npt.NDArray[np.float64], name: str, unit: str, wanted: str, where: str, notes: list[str]
+    values: npt.NDArray[np.float64], name: str, unit: str, where: str, notes: list[str]
 ) -> npt.NDArray[np.float64]:
-    """A column of a file in the unit that is wanted; a note is added if it was in another one.
+    """A column of a file in the unit of the channel of its name; a note is added if it was in another one.
+
+    What is no channel stays as it is.
 
     Raises:
         BadInputError: it cannot be converted.
     """
-    if not wanted or not has_unit(unit):
+    if name not in CHANNELS or not has_unit(unit):
         return values
+    wanted = CHANNELS[name].unit
     try:
         found = conversion(unit, wanted)
     except UnitError as error:

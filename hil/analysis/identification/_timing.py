@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -19,9 +19,6 @@ import numpy.typing as npt
 from hil.analysis.frequency_response import Experiment, FrequencyResponse
 from hil.analysis.identification._chain_fit import ChainProblem, excess_of, fit_chain, starts_of
 from hil.core.channels import OUTPUTS
-
-if TYPE_CHECKING:
-    from scipy.optimize import OptimizeResult
 
 Array = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
@@ -98,14 +95,14 @@ def moments_of(experiments: Sequence[Experiment], frequency_hz: Array) -> Array:
 def timings_of(frf: FrequencyResponse, moment_s: Array, gear_ratio: float | None = None) -> dict[str, Timing]:
     """Timings of the channels that are surely out of step, by name.
 
-    None if no chain explains the data with them, or if a chain explains as much without.
+    There are none if no chain explains the data with them, or if a chain explains as much without.
     """
     if OUTPUTS[0] not in frf.outputs or len(frf.outputs) < 2 or frf.response.size < _LEAST_VALUES:
         return {}
     search = _Search(frf, moment_s, gear_ratio)
-    free = search.all_unknowns
+    free, begins = search.all_unknowns, search.far_apart()
     while free:
-        found = search.fit(free)
+        found = search.fit(free, begins)
         if found.excess > _EXPLAINED:
             return {}  # with fewer timings no chain explains more
         kept = [one for one in free if found.is_sure(one)]
@@ -113,6 +110,7 @@ def timings_of(frf: FrequencyResponse, moment_s: Array, gear_ratio: float | None
             break
         weakest = min((one for one in free if one not in kept), key=found.sureness)
         free = [one for one in free if one != weakest]
+        begins = [found.late_s] if found.late_s else []
     else:
         return {}
     if all(("width", name) in free for name in frf.outputs):
@@ -144,9 +142,14 @@ class _Fitted:
     def is_sure(self, unknown: _Unknown) -> bool:
         return self.sureness(unknown) >= _SURE
 
+    @property
+    def late_s(self) -> dict[str, float]:
+        """How late each channel is of which that was fitted, after the first channel."""
+        return {name: value for (kind, name), value in self.values.items() if kind == "late"}
+
     def timings(self) -> dict[str, Timing]:
         """Of each channel that is out of step; the earliest one is in step."""
-        late = {name: self.values.get(("late", name), 0.0) for name in self.outputs}
+        late = dict.fromkeys(self.outputs, 0.0) | self.late_s
         earliest = min(late.values())
         error = max((self.errors[one] for one in self.values if one[0] == "late"), default=0.0)
         found = {}
@@ -173,65 +176,58 @@ class _Search:
         known = {} if gear_ratio is None else {"gear_ratio": gear_ratio}
         self._frf, self._problem = frf, ChainProblem(frf, _KIND, known)
         self._moment_s = moment_s
-        self._begin_s: dict[str, float] | None = None  # what the fit before found
         self._starts = [self._problem.logarithms(start) for start in starts_of(frf, _KIND, gear_ratio)]
         late: list[_Unknown] = [("late", name) for name in frf.outputs[1:]]
         drifts: list[_Unknown] = [("drift", name) for name in frf.outputs[1:]] if np.ptp(moment_s) else []
         self.all_unknowns: list[_Unknown] = [*late, *drifts, *(("width", name) for name in frf.outputs)]
 
-    def fit(self, free: list[_Unknown]) -> _Fitted:
-        """The best chain with these timings."""
+    def fit(self, free: list[_Unknown], begins: Sequence[Mapping[str, float]]) -> _Fitted:
+        """The best chain with these timings.
+
+        Args:
+            begins: lateness (s, by channel) to begin with again if a search from 0 explains too little.
+        """
+        found = self._best_from({}, free)
+        if found.excess > _EXPLAINED:
+            again = [self._best_from(begin_s, free, most=200) for begin_s in begins]
+            found = min([found, *again], key=lambda one: one.cost)
+        return found
+
+    def _best_from(self, begin_s: Mapping[str, float], free: list[_Unknown], most: int = 600) -> _Fitted:
         from scipy.optimize import least_squares
 
         count = len(self._starts[0])
         scale = np.array([_SCALE[kind] for kind, _ in free])
 
-        def residual(theta: Array) -> Array:
-            values = dict(zip(free, theta[count:] * scale, strict=True))
+        def response(theta: Array) -> ComplexArray:
             chain = self._problem.response(self._problem.parameters(theta[:count]))
-            return self._problem.residual_of(chain * self._factors(values))
+            return chain * self._factors(dict(zip(free, theta[count:] * scale, strict=True)))
 
-        def best_from(begin_s: Mapping[str, float], most: int = 600) -> OptimizeResult:
-            first = [begin_s.get(name, 0.0) if kind == "late" else 0.0 for kind, name in free] / scale
-            common_s = max(0.0, -min(begin_s.values(), default=0.0))
-            solutions = [
-                least_squares(
-                    residual,
-                    np.r_[self._delayed(start, common_s), first],
-                    method="lm",
-                    max_nfev=most,
-                    ftol=1e-9,
-                )
-                for start in self._starts
-            ]
-            return min(solutions, key=lambda one: float(one.cost))
+        def residual(theta: Array) -> Array:
+            return self._problem.residual_of(response(theta))
 
-        best = best_from({})
-        if self._excess(best, free, scale) > _EXPLAINED:
-            begins = self._far_apart() if self._begin_s is None else [self._begin_s]
-            far = [best_from(begin_s, most=200) for begin_s in begins if begin_s]
-            best = min([best, *far], key=lambda one: float(one.cost))
-        found_late = dict(zip(free, best.x[count:] * scale, strict=True))
-        self._begin_s = {name: float(value) for (kind, name), value in found_late.items() if kind == "late"}
+        first = [begin_s.get(name, 0.0) if kind == "late" else 0.0 for kind, name in free] / scale
+        common_s = max(0.0, -min(begin_s.values(), default=0.0))
+        starts = [np.r_[self._delayed(start, common_s), first] for start in self._starts]
+        solutions = [
+            least_squares(residual, start, method="lm", max_nfev=most, ftol=1e-9) for start in starts
+        ]
+        best = min(solutions, key=lambda one: float(one.cost))
         jacobian = np.asarray(best.jac)
         freedom = max(len(best.fun) - len(best.x), 1)
         covariance = np.linalg.pinv(jacobian.T @ jacobian) * 2 * float(best.cost) / freedom
         errors = np.sqrt(np.maximum(np.diag(covariance)[count:], 0.0)) * scale
-        values = dict(zip(free, (best.x[count:] * scale).tolist(), strict=True))
-        by_unknown = dict(zip(free, errors.tolist(), strict=True))
-        excess = self._excess(best, free, scale)
-        return _Fitted(self._frf.outputs, values, by_unknown, excess, float(best.cost))
+        return _Fitted(
+            self._frf.outputs,
+            dict(zip(free, (best.x[count:] * scale).tolist(), strict=True)),
+            dict(zip(free, errors.tolist(), strict=True)),
+            excess_of(response(best.x), self._frf),
+            float(best.cost),
+        )
 
-    def _excess(self, found: OptimizeResult, free: list[_Unknown], scale: Array) -> float:
-        count = len(self._starts[0])
-        values = dict(zip(free, found.x[count:] * scale, strict=True))
-        chain = self._problem.response(self._problem.parameters(found.x[:count]))
-        return excess_of(chain * self._factors(values), self._frf)
-
-    def _far_apart(self) -> list[dict[str, float]]:
+    def far_apart(self) -> list[dict[str, float]]:
         """Where a search begins when one from 0 ends in another minimum: one channel late, or all but it."""
-        first, *others = self._frf.outputs
-        del first  # `late` counts from it
+        others = self._frf.outputs[1:]  # `late` counts from the first
         alone = [{name: sign * _FAR_S} for name in others for sign in (1.0, -1.0)]
         together = [dict.fromkeys(others, sign * _FAR_S) for sign in (1.0, -1.0)]
         return together if len(others) == 1 else [*together, *alone]

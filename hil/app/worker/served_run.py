@@ -16,6 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hil.app.feedback import LoggedFeedback
 from hil.app.interrupts import INTERRUPTS
 
 if TYPE_CHECKING:
@@ -32,11 +33,8 @@ RUNNER = (sys.executable, "-m", "hil.app.worker.served_run")
 logger = logging.getLogger(__name__)
 
 
-class _Service:
-    """The service at the other end: the run's feedback, and the operator's terminal."""
-
-    keys = ""
-    can_ask = False
+class _Service(LoggedFeedback):
+    """The service at the other end: the operator's terminal and the run's feedback, the rest to its log."""
 
     def __init__(self, pipe: IpcPipe, stop_line: IpcPipe | None) -> None:
         self._pipe, self._stop_line = pipe, stop_line
@@ -86,14 +84,6 @@ class _Service:
                 self._pipe.send(Progressed(share=-1.0 if share is None else share, text=text))
 
         yield show
-
-    def note(self, text: str) -> None:
-        """For the run's log."""
-        logger.info(text)
-
-    def warn(self, text: str) -> None:
-        """For the run's log."""
-        logger.warning(text)
 
     def complain(self, text: str) -> None:
         """For the run's log; the outcome has it, too."""

@@ -54,9 +54,8 @@ def read_mat(path: Path) -> Recording:
     for name, value in vectors.items():
         column = _column(value)
         if column is not None:
-            wanted = CHANNELS[name].unit if name in CHANNELS else ""
             where = f"{path}: variable '{name}'"
-            channels[name] = converted(column, name, units.get(name, ""), wanted, where, notes)
+            channels[name] = converted(column, name, units.get(name, ""), where, notes)
         elif name in CHANNELS:
             raise BadInputError(
                 "is not a vector of real numbers",

@@ -96,10 +96,8 @@ class _Groups:
         values: Array = signal.samples.astype(np.float64)
         if signal.invalidation_bits is not None:
             values[np.asarray(signal.invalidation_bits, bool)] = np.nan
-        if name not in CHANNELS:
-            return values
         where = f"{self._path}: channel '{name}'"
-        return converted(values, name, str(signal.unit or ""), CHANNELS[name].unit, where, self._notes)
+        return converted(values, name, str(signal.unit or ""), where, self._notes)
 
     def _moved(self, name: str, own_s: Array, values: Array, time_s: Array) -> Array | None:
         """Values between their own time stamps, NaN outside of them."""

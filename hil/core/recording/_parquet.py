@@ -36,8 +36,7 @@ def read_parquet(path: Path) -> Recording:
             for field in fields:
                 if _is_number(field.type):
                     column, where = _column(file, field.name), f"{path}: column '{field.name}'"
-                    wanted = CHANNELS[field.name].unit if field.name in CHANNELS else ""
-                    channels[field.name] = converted(column, field.name, _unit(field), wanted, where, notes)
+                    channels[field.name] = converted(column, field.name, _unit(field), where, notes)
                 elif field.name in CHANNELS:
                     raise BadInputError(
                         f"holds {field.type}, not numbers",

@@ -18,19 +18,11 @@ from hil.analysis.identification import Identification, identify
 from hil.core.channels import INPUT, OUTPUTS, TIME
 from hil.core.errors import BadInputError
 from hil.core.recording import Recording
+from tests.hil.analysis.identification.chains import THREE
 
 Array = npt.NDArray[np.float64]
-AXLE = {
-    "motor_inertia": 0.02,
-    "gear_ratio": 8.148,
-    "shaft_stiffness": 6089.0,
-    "shaft_damping": 19.75,
-    "wheel_inertia": 4.355,
-    "tyre_stiffness": 5717.0,
-    "tyre_damping": 351.0,
-    "vehicle_inertia": 303.0,
-}
-DELAY_S = 0.008
+DELAY_S = THREE["torque_delay"]
+AXLE = {name: value for name, value in THREE.items() if name != "torque_delay"}
 NOISE = dict(zip(OUTPUTS, (0.05, 0.005, 1.0), strict=True))
 MOTOR, WHEEL, SHAFT = OUTPUTS
 
