@@ -1,0 +1,137 @@
+"""A hypothesis: the base model's numbers, all free, and a set of effects, as coordinates of one fit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.channels import OUTPUTS
+from hil.core.effects import EFFECTS, Parameter
+from hil.core.model import EffectUse, Model, kind_of
+from hil.plant import pack, sensor_of
+
+Array = npt.NDArray[np.float64]
+
+PRIOR_FACTOR = 3.0
+"""A base's number is right within this factor (one standard deviation of its logarithm)."""
+_LONGEST_DELAY_S = 0.5
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One free number; a fit moves u from 0: value·e^u where `logarithmic`, else value + scale·u.
+
+    `term` is the effect's place in the hypothesis, -1 for a number of the base; `base` is what the base says
+    of it, for the prior (None: no prior).
+    """
+
+    term: int
+    name: str
+    value: float
+    scale: float
+    logarithmic: bool
+    lower: float
+    upper: float
+    base: float | None = None
+    step: float = 1e-3
+
+    def at(self, u: float) -> float:
+        """The number at a coordinate."""
+        return self.value * math.exp(u) if self.logarithmic else self.value + self.scale * u
+
+    def of(self, value: float) -> float:
+        """The coordinate of a number."""
+        if self.logarithmic:
+            return math.log(max(value, 1e-300) / self.value)
+        return (value - self.value) / self.scale
+
+    def slope(self, u: float) -> float:
+        """Change of the number with the coordinate."""
+        return self.value * math.exp(u) if self.logarithmic else self.scale
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """`base` as it came; `numbers` as they are now; effects added, and which of their optional numbers move."""
+
+    base: Model
+    numbers: Mapping[str, float]
+    terms: tuple[EffectUse, ...] = ()
+    opened: tuple[frozenset[str], ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effects, each with the channel that it is about."""
+        return tuple(label_of(use) for use in self.terms)
+
+    def with_term(self, use: EffectUse, opened: frozenset[str] = frozenset()) -> Hypothesis:
+        """The same with one more effect."""
+        complete = EffectUse(use.id, EFFECTS[use.id].completed(use.values))
+        return replace(self, terms=(*self.terms, complete), opened=(*self.opened, opened))
+
+    def without(self, index: int) -> Hypothesis:
+        """The same without one of its effects."""
+        keep = [i for i in range(len(self.terms)) if i != index]
+        return replace(
+            self, terms=tuple(self.terms[i] for i in keep), opened=tuple(self.opened[i] for i in keep)
+        )
+
+    @property
+    def kind(self) -> str:
+        """Kind of the model, its effects included."""
+        return kind_of(self.base.kind, self.terms)
+
+    def model(self) -> Model:
+        """The model that it is, to simulate or to write."""
+        return replace(
+            self.base, parameters=dict(self.numbers), effects=(*self.base.effects, *self.terms), meta={}
+        )
+
+    def coordinates(self, scales: Mapping[str, float]) -> list[Coordinate]:
+        """All free numbers; `scales` gives the size of numbers of the base that may be zero."""
+        found = [self._number(name, scales) for name in self.numbers]
+        for index, use in enumerate(self.terms):
+            for parameter in EFFECTS[use.id].parameters:
+                if parameter.fitted and (not parameter.optional or parameter.name in self.opened[index]):
+                    found.append(_of_effect(index, parameter, float(use.values[parameter.name])))
+        return found
+
+    def _number(self, name: str, scales: Mapping[str, float]) -> Coordinate:
+        value, base = float(self.numbers[name]), float(self.base.parameters[name])
+        if name in scales:  # may be zero
+            highest = _LONGEST_DELAY_S if name == "torque_delay" else math.inf
+            return Coordinate(-1, name, value, scales[name], False, 0.0, highest)
+        return Coordinate(-1, name, value, 1.0, True, value * 1e-3, value * 1e3, base)
+
+    def moved(self, coordinates: Sequence[Coordinate], u: Array) -> Hypothesis:
+        """The hypothesis at a point of its coordinates."""
+        numbers = dict(self.numbers)
+        values = [dict(use.values) for use in self.terms]
+        for one, at in zip(coordinates, u.tolist(), strict=True):
+            (numbers if one.term < 0 else values[one.term])[one.name] = min(max(one.at(at), one.lower), one.upper)
+        terms = tuple(EffectUse(use.id, v) for use, v in zip(self.terms, values, strict=True))
+        return replace(self, numbers=numbers, terms=terms)
+
+    def packed(self) -> tuple[Array, Array]:
+        """(slots, sensors 3 x numbers) for the kernels."""
+        model = self.model()
+        return pack(model), np.stack([sensor_of(model, channel) for channel in OUTPUTS])
+
+
+def label_of(use: EffectUse) -> str:
+    """An effect's name, with the channel or parameter that it is about."""
+    about = [str(use.values[name]) for name in EFFECTS[use.id].text_parameters]
+    return f"{use.id}({', '.join(about)})" if about else use.id
+
+
+def _of_effect(index: int, parameter: Parameter, value: float) -> Coordinate:
+    lower, upper = parameter.within or (parameter.lower, parameter.upper)
+    step = 1e-3 * parameter.step
+    if parameter.typical is None and value > 0.0:
+        return Coordinate(index, parameter.name, value, 1.0, True, max(lower, 1e-9), upper, step=step)
+    scale = max(abs(value), parameter.typical or 1e-3)
+    return Coordinate(index, parameter.name, value, scale, False, lower, upper, step=step)

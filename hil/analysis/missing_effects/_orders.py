@@ -1,0 +1,79 @@
+"""Orders of turning in the misfit: which multiples of an angle a ripple would have to follow.
+
+The slope of the cost by a ripple e^{j·order·angle} is the misfit sent back through the plant (its adjoint),
+transformed over the measured angle in place of time; divided by the ripple's own energy behind the plant it is
+the drop that each order promises. One transform gives all orders.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.missing_effects._fit import Fitted
+from hil.analysis.missing_effects._problem import Problem
+from hil.plant import linear_system_of
+
+Array = npt.NDArray[np.float64]
+
+_HIGHEST = 60.0  # order
+_FINE = 0.02  # distance of orders that are looked at
+_COUNT = 3
+_SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
+
+
+def orders_of(problem: Problem, fitted: Fitted, side: Literal["wheel", "rotor"]) -> list[float]:
+    """The most promising orders, best first; none where nothing turns."""
+    system = linear_system_of(fitted.hypothesis.packed()[0])
+    orders = np.arange(_FINE, _HIGHEST, _FINE)
+    slopes, energy = np.zeros(len(orders), complex), np.zeros(len(orders))
+    for index, one in enumerate(problem.series):
+        error = np.where(one.has, np.nan_to_num(fitted.errors[index]), 0.0)
+        count = len(error)
+        frequency = np.fft.rfftfreq(count, 1.0 / one.rate_hz)
+        response = np.zeros((3, len(frequency)), complex)
+        response[:, 1:] = system.response(frequency[1:], _SOURCES[side])
+        weight = np.where(one.has[:, None], problem.spectrum.weights(count, one.rate_hz).T ** 2, 0.0)
+        weight = np.nan_to_num(weight)
+        back = np.sum(np.conj(response) * weight * np.fft.rfft(error, axis=0).T, axis=0)
+        pushed = np.fft.irfft(back, count)
+        gain = np.sum(np.abs(response) ** 2 * weight, axis=0)
+        angle = problem.angles[index][: count * one.block, 0 if side == "wheel" else 1]
+        angle = angle.reshape(count, one.block).mean(axis=1)
+        slopes += _over_angle(pushed, angle, len(orders))
+        speed = np.abs(np.gradient(angle)) * one.rate_hz / (2 * np.pi)
+        energy += _energy(speed, orders, frequency, gain)
+    promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-3 + 1e-300)
+    return _peaks(orders, promise)
+
+
+def _over_angle(values: Array, angle: Array, count: int) -> npt.NDArray[np.complex128]:
+    """Σ values·e^{-j·order·angle} at orders `_FINE`, 2·`_FINE` …: angles modulo one period of the finest."""
+    period = 2 * np.pi / _FINE
+    bins = 4 * count
+    place = np.floor((angle % period) / period * bins).astype(int) % bins
+    return np.asarray(np.fft.rfft(np.bincount(place, values, bins))[1 : count + 1])
+
+
+def _energy(speed_hz: Array, orders: Array, frequency: Array, gain: Array) -> Array:
+    """Energy behind the plant of a ripple of each order, by how long it has each frequency."""
+    levels = np.linspace(0.0, float(np.max(speed_hz, initial=0.0)), 65)
+    share, _ = np.histogram(speed_hz, levels)
+    middles = 0.5 * (levels[1:] + levels[:-1])
+    total = np.zeros(len(orders))
+    for count, middle in zip(share.tolist(), middles.tolist(), strict=True):
+        if count:
+            total += count * np.interp(orders * middle, frequency, gain, right=0.0)
+    return total
+
+
+def _peaks(orders: Array, promise: Array) -> list[float]:
+    found: list[float] = []
+    for at in np.argsort(promise)[::-1].tolist():
+        if promise[at] <= 0.0 or len(found) == _COUNT:
+            break
+        if all(abs(orders[at] - other) > 0.2 for other in found):
+            found.append(float(orders[at]))
+    return found

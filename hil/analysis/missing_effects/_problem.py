@@ -1,0 +1,137 @@
+"""Errors of hypotheses on all recordings, and how they change with every number."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.missing_effects._hypothesis import PRIOR_FACTOR, Coordinate, Hypothesis
+from hil.analysis.missing_effects._series import Series
+from hil.analysis.missing_effects._spectrum import Spectrum
+from hil.core.model import Model
+from hil.plant import gear_ratio_of, simulate_many
+
+Array = npt.NDArray[np.float64]
+
+STATES = 5  # of a start: motor speed, wheel speed, shaft torque, and two of a motion inside the tyre
+_FAR = 1e9  # a simulation that runs away is so many standard deviations off, not infinitely many
+_RANK = 1e-7  # smallest singular value of a start's sensitivities that counts, of the largest
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is to be explained: recordings, their noise (3,) and the spectrum by which errors are weighed."""
+
+    model: Model
+    series: tuple[Series, ...]
+    noise: Array
+    spectrum: Spectrum
+    scales: dict[str, float] = field(default_factory=dict)
+    angles: tuple[Array, ...] = ()
+
+    def weighed_by(self, spectrum: Spectrum) -> Problem:
+        """The same, errors weighed by another spectrum."""
+        return replace(self, spectrum=spectrum)
+
+    @property
+    def rate_hz(self) -> float:
+        """Of errors."""
+        return self.series[0].rate_hz
+
+    def first_states(self) -> list[Array]:
+        """A first guess of each recording's start."""
+        ratio = gear_ratio_of(self.model) or 1.0
+        return [one.first_state(ratio) for one in self.series]
+
+    def simulated(self, index: int, packed: Sequence[tuple[Array, Array]], starts: Array) -> Array:
+        """Channels of a recording by several models: sets x blocks x 3; NaN where one runs away."""
+        one = self.series[index]
+        slots, sensors = (np.stack([p[i] for p in packed]) for i in range(2))
+        shown = simulate_many(
+            slots, one.torque, one.dt, starts, sensors, one.block, self.angles[index], one.load
+        )
+        return np.asarray(shown)
+
+    def errors(self, hypothesis: Hypothesis, starts: Sequence[Array]) -> list[Array]:
+        """Measured less simulated of each recording, blocks x 3; NaN where a channel was not recorded."""
+        packed = [hypothesis.packed()]
+        return [
+            one.measured - self.simulated(i, packed, starts[i][None])[0] for i, one in enumerate(self.series)
+        ]
+
+    def weighed(self, index: int, values: Array) -> Array:
+        """sets x blocks x 3 as weighed transforms, sets x numbers: half the squares add to -log L."""
+        one = self.series[index]
+        finite = np.where(one.has, np.nan_to_num(values, nan=_FAR, posinf=_FAR, neginf=-_FAR), 0.0)
+        weights = self.spectrum.weights(values.shape[1], one.rate_hz)[:, one.has]
+        transform = np.fft.rfft(np.clip(finite[..., one.has], -_FAR, _FAR), axis=1) * weights
+        flat = transform.reshape(len(values), -1)
+        return np.concatenate([flat.real, flat.imag], axis=1)
+
+    def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
+        """Sensitivities of weighed errors to a recording's start: (numbers x states, sizes, orthonormal basis)."""
+        one = self.series[index]
+        speed = max(float(np.nanmax(np.abs(one.samples[:, :2]))) if one.has[:2].any() else 1.0, 1e-6)
+        torque = max(float(np.max(np.abs(one.torque))), 1e-9)
+        sizes = 1e-3 * np.array([speed, speed, torque, speed, speed / 100.0])
+        starts = np.concatenate([start[None], start + np.diag(sizes)])
+        shown = self.simulated(index, [hypothesis.packed()] * (STATES + 1), starts)
+        change = self.weighed(index, shown[1:] - shown[0])
+        left, values, _ = np.linalg.svd(change.T, full_matrices=False)
+        return change.T, sizes, left[:, values > _RANK * max(values[0], 1e-300)]
+
+    def derivatives(
+        self, index: int, hypothesis: Hypothesis, start: Array, coordinates: Sequence[Coordinate], u: Array
+    ) -> tuple[Array, Array]:
+        """Weighed errors (numbers,) and their derivatives by the coordinates (numbers x coordinates)."""
+        steps = np.array([_step(one, at) for one, at in zip(coordinates, u.tolist(), strict=True)])
+        points = [u, *(u + np.diag(steps))]
+        packed = [hypothesis.moved(coordinates, point).packed() for point in points]
+        shown = self.simulated(index, packed, np.repeat(start[None], len(points), axis=0))
+        errors = self.weighed(index, self.series[index].measured - shown)
+        return errors[0], ((errors[1:] - errors[0]) / steps[:, None]).T
+
+    def prior(self, coordinates: Sequence[Coordinate], u: Array) -> Array:
+        """Numbers of the base away from what the base says, in standard deviations."""
+        sigma = np.log(PRIOR_FACTOR)
+        away = [np.log(one.at(at) / one.base) if one.base else 0.0 for one, at in zip(coordinates, u, strict=True)]
+        return np.asarray(away) / sigma
+
+    def prior_slopes(self, coordinates: Sequence[Coordinate]) -> Array:
+        """Derivatives of `prior`, on the diagonal."""
+        return np.diag([1.0 / np.log(PRIOR_FACTOR) if one.base else 0.0 for one in coordinates])
+
+
+def _step(one: Coordinate, at: float) -> float:
+    """A finite difference that stays inside the bounds."""
+    return one.step if one.at(at + one.step) <= one.upper else -one.step
+
+
+def problem_of(model: Model, series: Sequence[Series], noise: Array, spectrum: Spectrum) -> Problem:
+    """The problem of a base model and recordings."""
+    ratio = gear_ratio_of(model) or 1.0
+    return Problem(
+        model,
+        tuple(series),
+        noise,
+        spectrum,
+        _scales(model, series),
+        tuple(one.angles(ratio) for one in series),
+    )
+
+
+def _scales(model: Model, series: Sequence[Series]) -> dict[str, float]:
+    """Sizes of numbers that may be zero, from the data and the other numbers, not from their own values."""
+    numbers = model.parameters
+    torque = float(np.sqrt(np.mean([np.mean(one.torque**2) for one in series])))
+    speeds = [np.nanmean(one.samples[:, 0] ** 2) for one in series if one.has[0]]
+    speed = float(np.sqrt(np.mean(speeds))) if speeds else 1.0
+    scales = {"torque_delay": 1.0 / series[0].rate_hz, "viscous_drag": torque / max(speed, 1e-12)}
+    load = numbers.get("wheel_inertia", numbers.get("vehicle_inertia", 1.0))
+    for part in ("shaft", "tyre"):
+        if f"{part}_stiffness" in numbers:
+            scales[f"{part}_damping"] = 0.1 * float(np.sqrt(numbers[f"{part}_stiffness"] * load))
+    return {name: size for name, size in scales.items() if name in numbers}

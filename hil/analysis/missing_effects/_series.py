@@ -1,0 +1,123 @@
+"""Recordings on even time grids: what a hypothesis is simulated on and compared with."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.diagnosis import unbroken
+from hil.core.channels import INPUT, OUTPUTS, WHEEL_ANGLE
+from hil.core.errors import BadInputError
+from hil.core.model import Model
+from hil.core.recording import Recording
+from hil.plant import load_of
+
+Array = npt.NDArray[np.float64]
+
+FIT_RATE_HZ = 250.0
+"""Errors are averaged down to this rate: twice the bandwidth of anything mechanical in an axle."""
+_EVEN_SHARE = 0.05  # of a sample, by which stamps may be off their grid and still be taken as they are
+_FIRST_SAMPLES = 5  # whose mean is the first guess of where a recording begins
+
+
+@dataclass(frozen=True)
+class Series:
+    """One stretch of a recording.
+
+    `torque` is held over samples of `dt` seconds; `samples` (n x 3, in the order of `OUTPUTS`) has NaN where a
+    channel was not recorded; `measured` (blocks x 3) are means of `block` samples; `load` brakes the wheels in
+    N m, None where the model takes none.
+    """
+
+    name: str
+    torque: Array
+    dt: float
+    block: int
+    samples: Array
+    measured: Array
+    load: Array | None
+    first_wheel_angle_rad: float
+    notes: tuple[str, ...]
+
+    @property
+    def has(self) -> npt.NDArray[np.bool_]:
+        """Which channels were recorded, shape (3,)."""
+        return np.asarray(np.isfinite(self.samples[0]))
+
+    @property
+    def rate_hz(self) -> float:
+        """Of block means."""
+        return 1.0 / (self.dt * self.block)
+
+    def first_state(self, gear_ratio: float) -> Array:
+        """A first guess of motor speed, wheel speed and shaft torque, and of no motion inside a tyre: (5,)."""
+        motor, wheel, shaft = self.samples[:_FIRST_SAMPLES].mean(axis=0)
+        if not np.isfinite(motor):
+            motor = wheel * gear_ratio
+        if not np.isfinite(wheel):
+            wheel = motor / gear_ratio
+        return np.nan_to_num(np.array([motor, wheel, shaft, 0.0, 0.0]))
+
+    def angles(self, gear_ratio: float) -> Array:
+        """Wheel and rotor angle in rad at every sample (n x 2), integrated from the recorded speeds."""
+        motor, wheel = self.samples[:, 0], self.samples[:, 1]
+        if not self.has[1]:
+            wheel = motor / gear_ratio
+        if not self.has[0]:
+            motor = wheel * gear_ratio
+        speeds = np.nan_to_num(np.column_stack([wheel, motor]))
+        turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
+        first = self.first_wheel_angle_rad * np.array([1.0, gear_ratio])
+        return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]))
+
+
+def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:
+    """The unbroken stretches of all recordings, each on its own even grid.
+
+    Raises:
+        BadInputError: no torque request, none of the model's outputs, too short, or no load that the model takes.
+    """
+    found = []
+    for recording in recordings:
+        for part in unbroken(recording, model.load_input):
+            found.append(_series(model, part))
+    if not any(one.has.any() for one in found):
+        raise BadInputError(f"the recordings have none of {', '.join(OUTPUTS)}", fix="record at least a speed")
+    return found
+
+
+def _series(model: Model, recording: Recording) -> Series:
+    time = recording.time_s
+    count = round(float(time[-1] - time[0]) / recording.sample_time_s)
+    if count < 16:
+        raise BadInputError(f"has {len(time)} samples", where=str(recording.source), fix="record longer")
+    dt = float(time[-1] - time[0]) / count
+    grid = time[0] + dt * np.arange(count + 1)
+    nearest = np.clip(np.searchsorted(time, grid - 0.5 * dt), 0, len(time) - 1)
+    even = bool(np.max(np.abs(time[nearest] - grid)) <= _EVEN_SHARE * dt)
+    held = np.clip(np.searchsorted(time, grid + 1e-9 * dt, side="right") - 1, 0, len(time) - 1)
+
+    def on_grid(values: Array) -> Array:
+        return np.asarray(values[nearest] if even else np.interp(grid, time, values), dtype=float)
+
+    samples = np.full((len(grid), len(OUTPUTS)), np.nan)
+    for column, name in enumerate(OUTPUTS):
+        if name in recording:
+            samples[:, column] = on_grid(recording[name])
+    block = max(1, round(1.0 / (FIT_RATE_HZ * dt)))
+    blocks = len(grid) // block
+    load = load_of(model, recording)
+    return Series(
+        recording.source.stem,
+        np.ascontiguousarray(recording[INPUT][nearest if even else held], dtype=float),
+        dt,
+        block,
+        samples,
+        samples[: blocks * block].reshape(blocks, block, -1).mean(axis=1),
+        None if load is None else on_grid(load),
+        float(recording[WHEEL_ANGLE][0]) if WHEEL_ANGLE in recording else 0.0,
+        () if even else (f"{recording.source.stem}: uneven time stamps, put on a grid of {dt * 1e3:.4g} ms",),
+    )
