@@ -20,70 +20,93 @@ from hil.analysis.missing_effects._spectrum import Powers, powers_of
 
 Array = npt.NDArray[np.float64]
 
-_ROUNDS = 4  # of fits, each with the starts that the one before found
-_SETTLED = 1e-3  # relative change of the cost between rounds that ends them
-_EVALUATIONS = 25
+_START_ROUNDS = 3
+_EVALUATIONS = 12  # of a round: the next one has better starts and weights
 
 
 @dataclass(frozen=True)
-class Fitted:
-    """A hypothesis with the numbers that suit the data best.
-
-    `errors` are those of each recording (blocks x 3); `covariance` is that of `coordinates` at 0, misfit
-    included; `sensitivities` (numbers x coordinates) and `left` (numbers,) are weighed, starts projected out.
-    """
+class Point:
+    """A hypothesis at some numbers, the starts (5,) that go with them and errors of each recording (blocks x 3)."""
 
     hypothesis: Hypothesis
     starts: tuple[Array, ...]
     errors: tuple[Array, ...]
-    cost: float
-    coordinates: tuple[Coordinate, ...]
-    covariance: Array
-    sensitivities: Array
-    left: Array
-    bases: tuple[Array, ...]
 
     def powers(self, problem: Problem) -> Powers:
         """Of the errors."""
         return powers_of(self.errors, problem.rate_hz)
 
+
+@dataclass(frozen=True)
+class Linearised:
+    """A point with its weighed errors `left` (numbers,) and `slopes` (numbers x coordinates), starts projected out.
+
+    `bases` are the starts' directions of each recording; `covariance` is that of the coordinates, by the spectrum
+    of the problem, so that it holds the misfit with its colour.
+    """
+
+    point: Point
+    coordinates: tuple[Coordinate, ...]
+    left: Array
+    slopes: Array
+    covariance: Array
+    bases: tuple[Array, ...]
+
     def standard_error(self, term: int, name: str) -> float:
-        """Of a number; NaN where it was not fitted."""
+        """Of a number, in its unit; NaN where it is not free."""
         for index, one in enumerate(self.coordinates):
             if one.term == term and one.name == name:
                 return float(abs(one.slope(0.0)) * np.sqrt(max(self.covariance[index, index], 0.0)))
         return float("nan")
 
 
-def fit(
-    problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] | None = None, evaluations: int = _EVALUATIONS
-) -> Fitted:
-    """Fit all numbers of a hypothesis from the values that it has."""
+def begun(problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] | None = None) -> Point:
+    """A hypothesis as it is, from given starts or from a first guess of them."""
+    states = tuple(starts or problem.first_states())
+    return Point(hypothesis, states, tuple(problem.errors(hypothesis, states)))
+
+
+def with_better_starts(problem: Problem, point: Point) -> Point:
+    """The same hypothesis from the starts that suit the data best."""
+    for _ in range(_START_ROUNDS):
+        point = begun(problem, point.hypothesis, _better_starts(problem, point.hypothesis, point.starts))
+    return point
+
+
+def fit(problem: Problem, point: Point) -> Point:
+    """One round: all numbers by least squares while the starts' directions stay, then the starts."""
     from scipy.optimize import least_squares
 
-    states = [one.copy() for one in (starts or problem.first_states())]
-    before = np.inf
-    for _ in range(_ROUNDS):
-        coordinates = hypothesis.coordinates(problem.scales)
-        round_ = _Round(problem, hypothesis, states, coordinates)
-        lower, upper = _bounds(coordinates)
-        found = least_squares(
-            round_.residual,
-            np.clip(np.zeros(len(coordinates)), lower, upper),
-            round_.jacobian,
-            (lower, upper),
-            x_scale="jac",
-            ftol=1e-6,
-            xtol=1e-7,
-            gtol=1e-9,
-            max_nfev=evaluations,
-        )
-        hypothesis = hypothesis.moved(coordinates, found.x)
-        states = _better_starts(problem, hypothesis, states)
-        if before - found.cost < _SETTLED * found.cost:
-            break
-        before = float(found.cost)
-    return _finished(problem, hypothesis, states)
+    hypothesis = point.hypothesis
+    coordinates = hypothesis.coordinates(problem.scales)
+    round_ = _Round(problem, hypothesis, point.starts, coordinates)
+    lower, upper = _bounds(coordinates)
+    found = least_squares(
+        round_.residual,
+        np.zeros(len(coordinates)),
+        round_.jacobian,
+        (lower, upper),
+        x_scale="jac",
+        ftol=1e-5,
+        xtol=1e-6,
+        gtol=1e-9,
+        max_nfev=_EVALUATIONS,
+    )
+    hypothesis = hypothesis.moved(coordinates, found.x)
+    return begun(problem, hypothesis, _better_starts(problem, hypothesis, point.starts))
+
+
+def linearised(problem: Problem, point: Point) -> Linearised:
+    """Errors and their derivatives at a point."""
+    coordinates = point.hypothesis.coordinates(problem.scales)
+    round_ = _Round(problem, point.hypothesis, point.starts, coordinates)
+    zero = np.zeros(len(coordinates))
+    left, slopes = round_.residual(zero), round_.jacobian(zero)
+    covariance = np.linalg.pinv(slopes.T @ slopes, hermitian=True)
+    data = len(left) - len(coordinates)  # behind it stands the prior
+    return Linearised(
+        point, tuple(coordinates), left[:data], slopes[:data], covariance, tuple(round_.bases)
+    )
 
 
 def _bounds(coordinates: Sequence[Coordinate]) -> tuple[Array, Array]:
@@ -137,23 +160,3 @@ def _better_starts(problem: Problem, hypothesis: Hypothesis, states: Sequence[Ar
         again = problem.weighed(index, problem.series[index].measured - shown)[0]
         better.append(moved if again @ again <= error @ error else state)
     return better
-
-
-def _finished(problem: Problem, hypothesis: Hypothesis, states: Sequence[Array]) -> Fitted:
-    coordinates = hypothesis.coordinates(problem.scales)
-    round_ = _Round(problem, hypothesis, states, coordinates)
-    zero = np.zeros(len(coordinates))
-    left, slopes = round_.residual(zero), round_.jacobian(zero)
-    errors = problem.errors(hypothesis, states)
-    prior = len(coordinates)
-    return Fitted(
-        hypothesis,
-        tuple(states),
-        tuple(errors),
-        0.5 * float(left @ left),
-        tuple(coordinates),
-        np.linalg.pinv(slopes.T @ slopes, hermitian=True),
-        slopes[: len(slopes) - prior],
-        left[: len(left) - prior],
-        tuple(round_.bases),
-    )

@@ -17,7 +17,7 @@ from math import comb, log
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Fitted
+from hil.analysis.missing_effects._fit import Point
 
 Array = npt.NDArray[np.float64]
 
@@ -28,14 +28,14 @@ _DRAWS = 1000
 class Candidate:
     """A fitted hypothesis, its log likelihood by window (windows,) and what its size costs."""
 
-    fitted: Fitted
+    point: Point
     windows: Array
     penalty: float
 
     @property
     def names(self) -> tuple[str, ...]:
         """Of its effects."""
-        return self.fitted.hypothesis.names
+        return self.point.hypothesis.names
 
     @property
     def score(self) -> float:

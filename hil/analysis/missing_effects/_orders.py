@@ -12,7 +12,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Fitted
+from hil.analysis.missing_effects._fit import Point
 from hil.analysis.missing_effects._problem import Problem
 from hil.plant import linear_system_of
 
@@ -24,13 +24,13 @@ _COUNT = 3
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
 
-def orders_of(problem: Problem, fitted: Fitted, side: Literal["wheel", "rotor"]) -> list[float]:
+def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -> list[float]:
     """The most promising orders, best first; none where nothing turns."""
-    system = linear_system_of(fitted.hypothesis.packed()[0])
+    system = linear_system_of(point.hypothesis.packed()[0])
     orders = np.arange(_FINE, _HIGHEST, _FINE)
     slopes, energy = np.zeros(len(orders), complex), np.zeros(len(orders))
     for index, one in enumerate(problem.series):
-        error = np.where(one.has, np.nan_to_num(fitted.errors[index]), 0.0)
+        error = np.where(one.has, np.nan_to_num(point.errors[index]), 0.0)
         count = len(error)
         frequency = np.fft.rfftfreq(count, 1.0 / one.rate_hz)
         response = np.zeros((3, len(frequency)), complex)

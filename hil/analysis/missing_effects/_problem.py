@@ -65,11 +65,12 @@ class Problem:
     def weighed(self, index: int, values: Array) -> Array:
         """sets x blocks x 3 as weighed transforms, sets x numbers: half the squares add to -log L."""
         one = self.series[index]
-        finite = np.where(one.has, np.nan_to_num(values, nan=_FAR, posinf=_FAR, neginf=-_FAR), 0.0)
-        weights = self.spectrum.weights(values.shape[1], one.rate_hz)[:, one.has]
-        transform = np.fft.rfft(np.clip(finite[..., one.has], -_FAR, _FAR), axis=1) * weights
-        flat = transform.reshape(len(values), -1)
-        return np.concatenate([flat.real, flat.imag], axis=1)
+        seen = values[..., one.has]
+        if not np.all(np.abs(seen) < _FAR):  # NaN as well
+            seen = np.clip(np.nan_to_num(seen, nan=_FAR), -_FAR, _FAR)
+        transform = np.fft.rfft(seen, axis=1)
+        transform *= self.spectrum.weights(values.shape[1], one.rate_hz)[:, one.has]
+        return transform.reshape(len(values), -1).view(float)
 
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
         """Sensitivities of weighed errors to a recording's start: (numbers x states, sizes, orthonormal basis)."""

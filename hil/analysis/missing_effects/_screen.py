@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Fitted, without
+from hil.analysis.missing_effects._fit import Linearised, without
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
@@ -49,7 +49,7 @@ class _Scene:
     """What probes take their sizes from."""
 
     problem: Problem
-    fitted: Fitted
+    at: Linearised
 
     @cached_property
     def torque_nm(self) -> float:
@@ -62,7 +62,7 @@ class _Scene:
 
     @cached_property
     def parameters(self) -> dict[str, float]:
-        return dict(chain_numbers(self.fitted.hypothesis.model())._asdict())
+        return dict(chain_numbers(self.at.point.hypothesis.model())._asdict())
 
     @cached_property
     def channels(self) -> tuple[str, ...]:
@@ -70,19 +70,19 @@ class _Scene:
         return tuple(name for name, there in zip(OUTPUTS, has, strict=True) if there)
 
     def orders(self, side: Literal["wheel", "rotor"]) -> list[float]:
-        return orders_of(self.problem, self.fitted, side)
+        return orders_of(self.problem, self.at.point, side)
 
 
-def promises(problem: Problem, fitted: Fitted) -> list[Promise]:
+def promises(problem: Problem, at: Linearised) -> list[Promise]:
     """The best sizes of every effect that may be added, most promising first, each with its drop."""
-    scene = _Scene(problem, fitted)
-    project = _Projection(problem, fitted)
+    scene = _Scene(problem, at)
+    project = _Projection(problem, at)
     found: list[Promise] = []
     for effect in EFFECTS.values():
-        if may_join(effect, fitted.hypothesis):
+        if may_join(effect, at.point.hypothesis):
             for probe in _probes_of(effect, scene):
                 uses = [EffectUse(effect.id, dict(one.values)) for one in probe.directions]
-                if any(label_of(use) in fitted.hypothesis.names for use in uses):
+                if any(label_of(use) in at.point.hypothesis.names for use in uses):
                     continue
                 factors, drop = project.explained(uses, probe.directions)
                 found.append(Promise(EffectUse(effect.id, dict(probe.start(factors))), drop))
@@ -102,11 +102,12 @@ def may_join(effect: Effect, hypothesis: Hypothesis) -> bool:
 def _probes_of(effect: Effect, scene: _Scene) -> Iterator[Probe]:
     if effect.probes is not None:
         yield from effect.probes(scene)
-        return
     first = effect.parameters[0]
+    if effect.law.load is None and effect.law.dry is None:
+        return  # others have sizes of their own that follow the scene
     for share in (0.01, 0.1):
-        values: dict[str, float | str] = {first.name: share * _size(effect, scene)}
-        values = dict(effect.completed(values))
+        others = {p.name: 0.0 for p in effect.parameters if not p.optional}
+        values = effect.completed(others | {first.name: share * _size(effect, scene)})
         yield Probe(
             (Direction(values, 0.0, 10.0),),
             lambda a, v=values: v | {first.name: max(float(a[0]), 0.1) * float(v[first.name])},
@@ -123,30 +124,30 @@ def _size(effect: Effect, scene: _Scene) -> float:
 class _Projection:
     """Simulates additions to a fitted hypothesis and leaves what its numbers and starts cannot do."""
 
-    def __init__(self, problem: Problem, fitted: Fitted) -> None:
-        self.problem, self.fitted = problem, fitted
-        self.slopes = fitted.sensitivities
+    def __init__(self, problem: Problem, at: Linearised) -> None:
+        self.problem, self.at = problem, at
+        self.slopes = at.slopes
         self.plain = [
-            problem.simulated(i, [fitted.hypothesis.packed()], s[None])[0] for i, s in enumerate(fitted.starts)
+            problem.simulated(i, [at.point.hypothesis.packed()], s[None])[0] for i, s in enumerate(at.point.starts)
         ]
 
     def changes(self, uses: Sequence[EffectUse]) -> Array:
         """Weighed changes (numbers x uses) beside what numbers and starts could do."""
-        packed = [self.fitted.hypothesis.with_term(use).packed() for use in uses]
+        packed = [self.at.point.hypothesis.with_term(use).packed() for use in uses]
         parts = []
-        for index, start in enumerate(self.fitted.starts):
+        for index, start in enumerate(self.at.point.starts):
             shown = self.problem.simulated(index, packed, np.repeat(start[None], len(uses), axis=0))
             change = self.problem.weighed(index, shown - self.plain[index])
-            parts.append(without(self.fitted.bases[index], change.T))
+            parts.append(without(self.at.bases[index], change.T))
         d = np.concatenate(parts)
-        return np.asarray(d - self.slopes @ (self.fitted.covariance @ (self.slopes.T @ d)))
+        return np.asarray(d - self.slopes @ (self.at.covariance @ (self.slopes.T @ d)))
 
     def explained(self, uses: Sequence[EffectUse], directions: Sequence[Direction]) -> tuple[list[float], float]:
         """Factors of the directions within their bounds, and the drop that they bring."""
         d = self.changes(uses)
         if not np.all(np.isfinite(d)):
             return [1.0] * len(uses), -math.inf
-        normal, right = d.T @ d, d.T @ self.fitted.left
+        normal, right = d.T @ d, d.T @ self.at.left
         factors = np.clip(np.ones(len(uses)), [o.lower for o in directions], [o.upper for o in directions])
         for _ in range(_SWEEPS if len(uses) > 1 else 1):
             for i, one in enumerate(directions):

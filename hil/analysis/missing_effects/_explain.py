@@ -1,0 +1,109 @@
+"""The way from recordings to a verdict."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.missing_effects._fit import Point, begun, with_better_starts
+from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._noise import proven_noise
+from hil.analysis.missing_effects._odds import Candidate
+from hil.analysis.missing_effects._outcome import Gap, Outcome
+from hil.analysis.missing_effects._problem import Problem, problem_of
+from hil.analysis.missing_effects._search import Search, search
+from hil.analysis.missing_effects._series import series_of
+from hil.analysis.missing_effects._spectrum import white
+from hil.analysis.missing_effects._verdict import Judged, judged
+from hil.core.channels import OUTPUTS
+from hil.core.model import Model
+from hil.core.recording import Recording
+
+Array = npt.NDArray[np.float64]
+
+
+def explain_gap(
+    model: Model,
+    recordings: Sequence[Recording],
+    holdout: Sequence[Recording] = (),
+    *,
+    noise: Mapping[str, float] | None = None,
+    show: Callable[[str], None] = lambda text: None,
+) -> Outcome:
+    """Say which effects a model lacks to explain recordings, and how sure that is.
+
+    Args:
+        model: a chain; its numbers are a prior, so that any base of the same kind gets the same answer.
+        holdout: recordings that no fit sees: what is left is judged by them.
+        noise: standard deviation of a sample that a channel's sensor is known to have, by channel.
+        show: told what is being fitted.
+
+    Raises:
+        BadInputError: the recordings have none of the model's channels, or are too short.
+    """
+    began = time.perf_counter()
+    series = series_of(model, recordings)
+    levels = proven_noise(series, noise or {})
+    problem = problem_of(model, series, levels, white(levels, series[0].rate_hz))
+    done = search(problem, _starts(model), show)
+    unseen = problem
+    if holdout:
+        held = series_of(model, holdout)
+        unseen = problem_of(model, held, levels, done.problem.spectrum)
+    show("judging")
+    shown = _Shown(problem, unseen, done)
+    return judged(
+        Judged(done, shown.left, shown.gaps(problem), shown.gaps(unseen) if holdout else {}),
+        tuple(note for one in series for note in one.notes),
+        time.perf_counter() - began,
+    )
+
+
+def _starts(model: Model) -> list[Hypothesis]:
+    return [Hypothesis(model, dict(model.parameters))]
+
+
+@dataclass
+class _Shown:
+    """What hypotheses leave of the recordings that are fitted and of those that are not."""
+
+    problem: Problem
+    unseen: Problem
+    done: Search
+
+    def point(self, problem: Problem, hypothesis: Hypothesis) -> Point:
+        """A hypothesis on recordings of a problem, with the starts that suit them best."""
+        for one in self.done.found.values():
+            if problem is self.problem and one.point.hypothesis is hypothesis:
+                return one.point
+        return with_better_starts(problem, begun(problem, hypothesis))
+
+    def left(self, candidate: Candidate) -> Array:
+        """Variance of errors beyond noise in each channel on data not fitted, (3,); NaN where none was recorded."""
+        errors = np.concatenate(self.point(self.unseen, candidate.point.hypothesis).errors)
+        return np.asarray(np.maximum(_mean(errors**2) - self.unseen.noise**2, 0.0))
+
+    def gaps(self, problem: Problem) -> dict[str, Gap]:
+        """Of the base, the numbers alone and the best hypothesis."""
+        base = Hypothesis(problem.model, dict(problem.model.parameters))
+        three = (base, self.done.found[()].point.hypothesis, self.done.best.point.hypothesis)
+        errors = [np.concatenate(self.point(problem, one).errors) for one in three]
+        measured = np.concatenate([one.measured for one in problem.series])
+        spread = np.sqrt(_mean((measured - _mean(measured)) ** 2))
+        rms = [np.sqrt(_mean(one**2)) / spread for one in errors]
+        return {
+            name: Gap(*(float(one[i]) for one in rms), float(problem.noise[i] / spread[i]))
+            for i, name in enumerate(OUTPUTS)
+            if np.isfinite(spread[i])
+        }
+
+
+def _mean(values: Array) -> Array:
+    """Mean over rows of what was recorded, NaN where nothing was."""
+    there = np.isfinite(values)
+    count = there.sum(axis=0)
+    return np.where(count > 0, np.where(there, values, 0.0).sum(axis=0) / np.maximum(count, 1), np.nan)

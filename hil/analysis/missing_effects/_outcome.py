@@ -1,0 +1,102 @@
+"""What was found, in the words of diagnosis.json (docs/reference/diagnosis.md)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.core.model import EffectUse, Model
+
+Array = npt.NDArray[np.float64]
+Verdict = Literal["named", "none", "unknown"]
+
+
+@dataclass(frozen=True)
+class Named:
+    """A name with the probability that it is right; names of one class are those that the data cannot separate."""
+
+    use: EffectUse
+    confidence: float
+    standard_error: dict[str, float]
+    alike: tuple[str, ...] = ()
+    separating_test: str = ""
+
+    @property
+    def id(self) -> str:
+        """The effect's id."""
+        return self.use.id
+
+
+@dataclass(frozen=True)
+class Gap:
+    """rms(measured - simulated) / rms(measured - its mean) of a channel: by the base, by numbers alone, by the result."""
+
+    base: float
+    numbers: float
+    after: float
+    noise_floor: float
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A latent torque over what it follows best: `torque_nm` at `at`, with the share of its variance that this explains."""
+
+    place: str
+    over: str
+    at: Array
+    torque_nm: Array
+    share: float
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """All that `explain_gap` has to say.
+
+    `numbers` by name: base, found, standard error. `something_else` is what the model given back leaves of what the
+    numbers alone leave beyond noise, on data not fitted where there are any (0 to 1). `curves` show what stays.
+    """
+
+    verdict: Verdict
+    effects: tuple[Named, ...]
+    alternatives: tuple[Named, ...]
+    something_else: float
+    numbers: dict[str, tuple[float, float, float]]
+    base_was_far: bool
+    gap: dict[str, Gap]
+    holdout_gap: dict[str, Gap]
+    model: Model
+    curves: tuple[Curve, ...]
+    notes: tuple[str, ...]
+    seconds: float
+
+    def as_json(self) -> dict[str, Any]:
+        """The content of `diagnosis.json`."""
+        key = "start" if self.base_was_far else "parameter_updates"
+        return {
+            "verdict": self.verdict,
+            "effects": [_as_json(one) for one in self.effects],
+            "alternatives": [_as_json(one) for one in self.alternatives],
+            "something_else": round(self.something_else, 3),
+            key: {n: {"from": a, "to": b, "standard_error": s} for n, (a, b, s) in self.numbers.items()},
+            "gap": {name: _gap(one) for name, one in self.gap.items()},
+            "holdout_gap": {name: _gap(one) for name, one in self.holdout_gap.items()},
+            "notes": list(self.notes),
+        }
+
+
+def _as_json(one: Named) -> dict[str, Any]:
+    return {
+        "id": one.id,
+        "parameters": dict(one.use.values),
+        "standard_error": one.standard_error,
+        "confidence": round(one.confidence, 3),
+        **({"class": list(one.alike)} if one.alike else {}),
+        **({"separating_test": one.separating_test} if one.separating_test else {}),
+    }
+
+
+def _gap(one: Gap) -> dict[str, float]:
+    return {"before": one.base, "numbers": one.numbers, "after": one.after, "noise_floor": one.noise_floor}

@@ -1,0 +1,195 @@
+"""The verdict: three lines, every term of which the data set.
+
+- `named`: an effect whose confidence is one half or more. Its confidence is the posterior weight of the hypotheses
+  that hold it, times the share of the misfit beyond noise that goes with it on data not fitted.
+- `none`: numbers alone have half of the weight or more, and what they leave is proven noise.
+- `unknown`: anything else.
+
+The share is what keeps a name modest where something without a name is larger: a discrepancy that stays can make
+up a name that takes off less than itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hil.analysis.missing_effects._fit import Linearised, linearised
+from hil.analysis.missing_effects._odds import Candidate, weights_of
+from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Verdict
+from hil.analysis.missing_effects._search import Search
+from hil.core.effects import EFFECTS
+from hil.core.model import EffectUse
+
+Array = npt.NDArray[np.float64]
+
+HALF = 0.5
+_SLOW_NOISE = 1.2
+"""A sensor's error may be so many times its white noise where nobody proved how slow its noise is."""
+_TOLERANCE = 0.02
+"""A number that is off by less is calibrated, where the model file states no tolerance."""
+_ALIKE = np.log(20.0)
+"""Two hypotheses are alike where the data would give the right one odds below 20:1."""
+_SHOWN = 5  # alternatives
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A search, what its candidates leave on data not fitted, and the gaps of fitted and other recordings."""
+
+    done: Search
+    left: Callable[[Candidate], Array]
+    gap: Mapping[str, Gap]
+    holdout_gap: Mapping[str, Gap]
+
+
+def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
+    """The outcome of a search."""
+    done, best = of.done, of.done.best
+    candidates = list(done.found.values())
+    weights = weights_of(candidates)
+    at = linearised(done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise)), best.point)
+    rivals = _alike(done, best, candidates)
+    effects, doubtful = [], []
+    for index, use in enumerate(best.point.hypothesis.terms):
+        named = _named(of, best, index, use, at, candidates, weights, rivals)
+        (effects if named.confidence >= HALF else doubtful).append(named)
+    numbers = _numbers(done, at)
+    far = _is_far(numbers, done)
+    if not best.names and not far:
+        effects += _mismatches(done, numbers, float(weights[candidates.index(best)]))
+    something_else = _remains(of, done.found[()], best) if best.names else 0.0
+    verdict: Verdict = "unknown"
+    if effects:
+        verdict = "named"
+    elif not best.names and _is_noise(done, best):
+        verdict = "none"
+    others = _others(best, candidates, weights)
+    return Outcome(
+        verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
+        dict(of.gap), dict(of.holdout_gap), best.point.hypothesis.model(), (), notes, seconds,
+    )  # fmt: skip
+
+
+def _named(
+    of: Judged,
+    best: Candidate,
+    index: int,
+    use: EffectUse,
+    at: Linearised,
+    candidates: Sequence[Candidate],
+    weights: Array,
+    rivals: Mapping[str, tuple[str, ...]],
+) -> Named:
+    label = best.names[index]
+    alike = rivals.get(label, ())
+    held = sum(
+        float(w) for one, w in zip(candidates, weights, strict=True) if {label, *alike} & {*one.names}
+    )
+    key = tuple(sorted(name for name in best.names if name != label))
+    without = of.done.found.get(key) or of.done.fitted(best.point.hypothesis.without(index), best)
+    share = 1.0 - _remains(of, without, best)
+    errors = {
+        name: at.standard_error(index, name)
+        for name in use.values
+        if np.isfinite(at.standard_error(index, name))
+    }
+    test = "; or ".join(dict.fromkeys(EFFECTS[name.split("(")[0]].shown_by for name in (label, *alike)))
+    return Named(use, held * share, errors, alike, test if alike else "")
+
+
+def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
+    """Share of the variance beyond noise that stays, channels weighed by how far theirs stood above noise before."""
+    noise = of.done.problem.noise**2
+    had, has = of.left(before), of.left(after)
+    there = np.isfinite(had) & (had > 0.0)
+    if not there.any():
+        return 1.0
+    weight = np.minimum(had[there] / noise[there], 1.0)
+    return float(min(np.sum(weight * np.minimum(has[there] / had[there], 2.0)) / np.sum(weight), 1.0))
+
+
+def _is_noise(done: Search, best: Candidate) -> bool:
+    """Whether errors of samples are at most what is proven, or usual for slow noise."""
+    block = done.problem.series[0].block
+    errors = np.concatenate(best.point.errors)
+    allowed = 1.0 + block * (_SLOW_NOISE**2 - 1.0)
+    for column, level in enumerate(done.problem.noise):
+        seen = errors[np.isfinite(errors[:, column]), column]
+        if len(seen) and np.mean(seen**2) > allowed * level**2:
+            return False
+    return True
+
+
+def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:
+    """Of each name of the best hypothesis: the names that could take its place without the data telling."""
+    problem = done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise))
+    found: dict[str, tuple[str, ...]] = {}
+    for one in candidates:
+        lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
+        if len(lost) != 1 or len(new) != 1 or best.score - one.score > _ALIKE:
+            continue
+        apart = 0.0
+        for index, (a, b) in enumerate(zip(best.point.errors, one.point.errors, strict=True)):
+            apart += 0.5 * float(np.sum(problem.weighed(index, np.nan_to_num(a - b)[None]) ** 2))
+        if apart < _ALIKE:
+            name = lost.pop()
+            found[name] = (*found.get(name, ()), new.pop())
+    return found
+
+
+def _others(best: Candidate, candidates: Sequence[Candidate], weights: Array) -> list[Named]:
+    """Names that stand in other hypotheses only, by their weight."""
+    held: dict[str, tuple[float, EffectUse]] = {}
+    for one, weight in zip(candidates, weights, strict=True):
+        for label, use in zip(one.names, one.point.hypothesis.terms, strict=True):
+            if label not in best.names:
+                held[label] = (held.get(label, (0.0, use))[0] + float(weight), use)
+    ranked = sorted(held.values(), key=lambda pair: -pair[0])
+    return [
+        Named(use, weight, {}, separating_test=EFFECTS[use.id].shown_by) for weight, use in ranked if weight > 0.0
+    ]
+
+
+def _numbers(done: Search, at: Linearised) -> dict[str, tuple[float, float, float]]:
+    """Numbers of the base: as it came, as found, standard error."""
+    hypothesis = at.point.hypothesis
+    return {
+        name: (float(hypothesis.base.parameters[name]), float(value), at.standard_error(-1, name))
+        for name, value in hypothesis.numbers.items()
+    }
+
+
+def _off(name: str, numbers: Mapping[str, tuple[float, float, float]], done: Search) -> tuple[float, float]:
+    """How far a number moved and how sure that is, both in tolerances."""
+    base, found, error = numbers[name]
+    size = abs(base) or done.problem.scales[name]  # only numbers that have a scale may be zero
+    tolerance = done.problem.model.tolerance.get(name, _TOLERANCE) * size
+    return abs(found - base) / tolerance, error / tolerance
+
+
+def _is_far(numbers: Mapping[str, tuple[float, float, float]], done: Search) -> bool:
+    """Whether most of the numbers that the data fix within their tolerance are not what the base says."""
+    known = [_off(name, numbers, done) for name in numbers]
+    fixed = [moved for moved, error in known if error < 1.0]
+    return len(fixed) > 1 and sum(moved > 1.0 for moved in fixed) > HALF * len(fixed)
+
+
+def _mismatches(
+    done: Search, numbers: Mapping[str, tuple[float, float, float]], weight: float
+) -> list[Named]:
+    """Numbers that are wrong by more than their tolerance, each with the probability of that."""
+    from scipy.special import ndtr
+
+    found = []
+    for name, (_, value, error) in numbers.items():
+        moved, doubt = _off(name, numbers, done)
+        sure = weight * float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
+        if sure >= HALF and moved > 1.0:
+            found.append(
+                Named(EffectUse("parameter_mismatch", {"parameter": name, "value": value}), sure, {"value": error})
+            )
+    return found
