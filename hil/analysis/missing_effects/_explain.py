@@ -18,6 +18,7 @@ from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import Search, search
 from hil.analysis.missing_effects._series import series_of
 from hil.analysis.missing_effects._spectrum import white
+from hil.analysis.missing_effects._starts import starts_of
 from hil.analysis.missing_effects._verdict import Judged, judged
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
@@ -49,7 +50,7 @@ def explain_gap(
     series = series_of(model, recordings)
     levels = proven_noise(series, noise or {})
     problem = problem_of(model, series, levels, white(levels, series[0].rate_hz))
-    done = search(problem, _starts(model), show)
+    done = search(problem, starts_of(model, series), show)
     unseen = problem
     if holdout:
         held = series_of(model, holdout)
@@ -61,10 +62,6 @@ def explain_gap(
         tuple(note for one in series for note in one.notes),
         time.perf_counter() - began,
     )
-
-
-def _starts(model: Model) -> list[Hypothesis]:
-    return [Hypothesis(model, dict(model.parameters))]
 
 
 @dataclass

@@ -34,7 +34,7 @@ class Point:
 
     def powers(self, problem: Problem) -> Powers:
         """Of the errors."""
-        return powers_of(self.errors, problem.rate_hz)
+        return powers_of(self.errors, problem.rate_hz, problem.signal)
 
 
 @dataclass(frozen=True)
@@ -73,12 +73,18 @@ def with_better_starts(problem: Problem, point: Point) -> Point:
     return point
 
 
-def fit(problem: Problem, point: Point) -> Point:
-    """One round: all numbers by least squares while the starts' directions stay, then the starts."""
+def fit(problem: Problem, point: Point, held: frozenset[str] = frozenset()) -> Point:
+    """One round: all numbers by least squares while the starts' directions stay, then the starts.
+
+    Args:
+        held: numbers of the base that stay what they are.
+    """
     from scipy.optimize import least_squares
 
     hypothesis = point.hypothesis
-    coordinates = hypothesis.coordinates(problem.scales)
+    coordinates = [
+        one for one in hypothesis.coordinates(problem.scales) if one.term >= 0 or one.name not in held
+    ]
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
     lower, upper = _bounds(coordinates)
     found = least_squares(

@@ -23,12 +23,14 @@ _RANK = 1e-7  # smallest singular value of a start's sensitivities that counts, 
 
 @dataclass(frozen=True)
 class Problem:
-    """What is to be explained: recordings, their noise (3,) and the spectrum by which errors are weighed."""
+    """What is to be explained: recordings, their noise (3,), the spectrum by which errors are
+    weighed, and the mean square of each channel (3,)."""
 
     model: Model
     series: tuple[Series, ...]
     noise: Array
     spectrum: Spectrum
+    signal: Array
     scales: dict[str, float] = field(default_factory=dict)
     angles: tuple[Array, ...] = ()
 
@@ -119,9 +121,17 @@ def problem_of(model: Model, series: Sequence[Series], noise: Array, spectrum: S
         tuple(series),
         noise,
         spectrum,
+        _signal(series),
         _scales(model, series),
         tuple(one.angles(ratio) for one in series),
     )
+
+
+def _signal(series: Sequence[Series]) -> Array:
+    """Mean square of each channel around its mean, 0 where it was not recorded; (3,)."""
+    squares = [np.nan_to_num(np.var(one.measured, axis=0)) * len(one.measured) for one in series]
+    counts = [one.has * len(one.measured) for one in series]
+    return np.asarray(np.sum(squares, axis=0) / np.maximum(np.sum(counts, axis=0), 1))
 
 
 def _scales(model: Model, series: Sequence[Series]) -> dict[str, float]:

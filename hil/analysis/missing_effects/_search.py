@@ -11,10 +11,11 @@ from hil.analysis.missing_effects._fit import Point, begun, fit, linearised
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._odds import Candidate, penalty_of
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._screen import Promise, best_by_name, may_join, promises
+from hil.analysis.missing_effects._screen import best_by_name, may_join, promises
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
+_SHORT = 2  # rounds that tell which start or size is worth more of them
 _TRIED = 6  # names that are fitted at each step, the most promising ones
 _SIZES = 2  # from which each of them starts
 _CARED_FOR = 2  # of these are fitted to their end
@@ -40,8 +41,9 @@ class Search:
         point = begun(self.problem, hypothesis, near.point.starts if near else None)
         best = before = self._candidate(point)
         problem = self.problem
-        for _ in range(rounds):
-            point = fit(problem, point)
+        for number in range(rounds):
+            # slow misfit would trade a dead time for anything: it is known once errors are weighed by their colour
+            point = fit(problem, point, frozenset() if number else frozenset({"torque_delay"}))
             after = self._candidate(point)
             best = max(best, after, key=lambda one: one.score)
             if abs(after.score - before.score) < _SETTLED:
@@ -60,43 +62,51 @@ class Search:
         penalty = penalty_of(
             len(hypothesis.terms), len(hypothesis.coordinates(self.problem.scales)), known, values
         )
-        return Candidate(point, powers.log_likelihood(powers.spectrum(self.problem.noise)), penalty)
+        return Candidate(point, powers.log_likelihood(self.problem.noise), penalty)
 
 
 def search(problem: Problem, starts: Sequence[Hypothesis], show: Callable[[str], None]) -> Search:
     """Fit the numbers alone from each of `starts`, then grow and prune sets of effects."""
     done = Search(problem)
     show("numbers alone")
-    best = max([done.fitted(one, None) for one in starts], key=lambda one: one.score)
+    begun = [done.fitted(one, None, _SHORT) for one in starts]
+    best = max([done.fitted(one.point.hypothesis, one) for one in begun], key=lambda one: one.score)
+    others = [one.point.hypothesis for one in begun] + list(starts[1:])
     while len(best.names) < _MOST_NAMES:
         done.problem = problem.weighed_by(best.point.powers(problem).spectrum(problem.noise))
-        grown = _grown(done, best, show)
+        grown = _grown(done, best, [] if best.names else others, show)
         if grown is None or grown.score <= best.score:
             break
-        best = _pruned(done, _opened(done, grown, show))
+        best = _pruned(done, grown)
     return done
 
 
-def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate | None:
-    """The best hypothesis with one more effect; None where no effect promises more than it costs."""
+def _grown(
+    done: Search, best: Candidate, others: Sequence[Hypothesis], show: Callable[[str], None]
+) -> Candidate | None:
+    """The best hypothesis with one more effect; None where no effect promises more than it costs.
+
+    Args:
+        others: numbers to start from beside the best ones.
+    """
     cost = _cost_of_a_name(done, best)
     promised = [one for one in promises(done.problem, linearised(done.problem, best.point)) if one.drop > cost]
     tried: list[Candidate] = []
     for sizes in best_by_name(promised, _SIZES)[:_TRIED]:
         show(" + ".join([*best.names, sizes[0].label]))
-        tried += [_short(done, best, one) for one in sizes]
+        tried += [
+            done.fitted(start.with_term(one.use), best if start is best.point.hypothesis else None, _SHORT)
+            for one in sizes
+            for start in (best.point.hypothesis, *others)
+        ]
     tried.sort(key=lambda one: -one.score)
     ended: list[Candidate] = []
     for one in tried:
         if one.names not in [other.names for other in ended]:
-            ended.append(done.fitted(one.point.hypothesis, one))
+            ended.append(_opened(done, done.fitted(one.point.hypothesis, one), show))
         if len(ended) == _CARED_FOR:
             break
     return max(ended, key=lambda one: one.score, default=None)
-
-
-def _short(done: Search, best: Candidate, promise: Promise) -> Candidate:
-    return done.fitted(best.point.hypothesis.with_term(promise.use), best, rounds=1)
 
 
 def _cost_of_a_name(done: Search, best: Candidate) -> float:
@@ -119,7 +129,7 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
             wider = hypothesis.without(index).with_term(
                 EffectUse(use.id, {**use.values, parameter.name: value}), opened | {parameter.name}
             )
-            tried.append(done.fitted(wider, best, rounds=1))
+            tried.append(done.fitted(wider, best, _SHORT))
         likeliest = max(tried, key=lambda one: one.score)
         if likeliest.score > best.score:
             best = done.fitted(likeliest.point.hypothesis, likeliest)
