@@ -18,7 +18,6 @@ from hil.analysis.missing_effects._problem import Problem, problem_of
 from hil.analysis.missing_effects._search import Search, search
 from hil.analysis.missing_effects._series import series_of
 from hil.analysis.missing_effects._spectrum import white
-from hil.analysis.missing_effects._starts import starts_of
 from hil.analysis.missing_effects._verdict import Judged, judged
 from hil.core.channels import OUTPUTS
 from hil.core.model import Model
@@ -50,7 +49,7 @@ def explain_gap(
     series = series_of(model, recordings)
     levels = proven_noise(series, noise or {})
     problem = problem_of(model, series, levels, white(levels, series[0].rate_hz))
-    done = search(problem, starts_of(model, series), show)
+    done = search(problem, show)
     unseen = problem
     if holdout:
         held = series_of(model, holdout)

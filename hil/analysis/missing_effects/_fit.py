@@ -102,9 +102,9 @@ def fit(problem: Problem, point: Point, held: frozenset[str] = frozenset()) -> P
     return begun(problem, hypothesis, _better_starts(problem, hypothesis, point.starts))
 
 
-def linearised(problem: Problem, point: Point) -> Linearised:
-    """Errors and their derivatives at a point."""
-    coordinates = point.hypothesis.coordinates(problem.scales)
+def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearised:
+    """Errors and their derivatives at a point; where numbers are not `free`, by starts alone."""
+    coordinates = point.hypothesis.coordinates(problem.scales) if free else []
     round_ = _Round(problem, point.hypothesis, point.starts, coordinates)
     zero = np.zeros(len(coordinates))
     left, slopes = round_.residual(zero), round_.jacobian(zero)
@@ -145,7 +145,8 @@ class _Round:
         for index, state in enumerate(self.states):
             _, slopes = self.problem.derivatives(index, self.hypothesis, state, self.coordinates, u)
             parts.append(without(self.bases[index], slopes))
-        return np.concatenate([*parts, self.problem.prior_slopes(self.coordinates)])
+        prior = self.problem.prior_slopes(self.coordinates)
+        return np.concatenate([*parts, prior.reshape(len(self.coordinates), len(self.coordinates))])
 
 
 def without(basis: Array, values: Array) -> Array:

@@ -26,11 +26,12 @@ _DRAWS = 1000
 
 @dataclass(frozen=True)
 class Candidate:
-    """A fitted hypothesis, its log likelihood by window (windows,) and what its size costs."""
+    """A fitted hypothesis, its log likelihood by window (windows,), its free numbers, and of how many names it chose."""
 
     point: Point
     windows: Array
-    penalty: float
+    free: int
+    known: int
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -38,20 +39,20 @@ class Candidate:
         return self.point.hypothesis.names
 
     @property
-    def score(self) -> float:
-        """Log likelihood less penalty."""
-        return float(np.sum(self.windows)) - self.penalty
+    def log_likelihood(self) -> float:
+        """Of all windows."""
+        return float(np.sum(self.windows))
+
+    def score(self, values: float) -> float:
+        """Log likelihood less what its size costs where the data hold so many independent values."""
+        names = len(self.names)
+        return self.log_likelihood - 0.5 * self.free * log(max(values, 2.0)) - log(comb(self.known, names))
 
 
-def penalty_of(names: int, free: int, known: int, values: float) -> float:
-    """Of a hypothesis with `names` of `known` effects and `free` numbers, by `values` independent values."""
-    return 0.5 * free * log(max(values, 2.0)) + log(comb(max(known, names), names))
-
-
-def weights_of(candidates: Sequence[Candidate]) -> Array:
-    """Posterior weight of each candidate, (candidates,)."""
+def weights_of(candidates: Sequence[Candidate], values: float) -> Array:
+    """Posterior weight of each candidate, (candidates,), where the data hold so many independent values."""
     windows = np.stack([one.windows for one in candidates])
-    penalties = np.array([one.penalty for one in candidates])
+    penalties = np.array([one.log_likelihood - one.score(values) for one in candidates])
     count = windows.shape[1]
     draws = np.random.default_rng(0).exponential(size=(_DRAWS, count))
     draws *= count / draws.sum(axis=1, keepdims=True)

@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Linearised, without
+from hil.analysis.missing_effects._fit import Linearised, Point, without
 from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
@@ -33,10 +33,11 @@ _SWEEPS = 20  # of coordinate descent over at most two bounded factors
 
 @dataclass(frozen=True)
 class Promise:
-    """An effect at a size, and the drop of -log L that it promises to first order."""
+    """An effect at a size beside the numbers of a point, and the growth of log L that it promises to first order."""
 
     use: EffectUse
-    drop: float
+    point: Point
+    gain: float
 
     @property
     def label(self) -> str:
@@ -74,9 +75,10 @@ class _Scene:
 
 
 def promises(problem: Problem, at: Linearised) -> list[Promise]:
-    """The best sizes of every effect that may be added, most promising first, each with its drop."""
+    """All sizes of every effect that may be added to a point, each with what it promises."""
     scene = _Scene(problem, at)
     project = _Projection(problem, at)
+    whole = 0.5 * float(at.left @ at.left)
     found: list[Promise] = []
     for effect in EFFECTS.values():
         if may_join(effect, at.point.hypothesis):
@@ -85,8 +87,14 @@ def promises(problem: Problem, at: Linearised) -> list[Promise]:
                 if any(label_of(use) in at.point.hypothesis.names for use in uses):
                     continue
                 factors, drop = project.explained(uses, probe.directions)
-                found.append(Promise(EffectUse(effect.id, dict(probe.start(factors))), drop))
-    return sorted(found, key=lambda one: -one.drop)
+                use = EffectUse(effect.id, dict(probe.start(factors)))
+                found.append(Promise(use, at.point, _gain(drop, whole)))
+    return found
+
+
+def _gain(drop: float, whole: float) -> float:
+    """Growth of log L where a drop of the weighed squares lets the discrepancy shrink along with them."""
+    return -whole * math.log(max(1.0 - drop / max(whole, 1e-300), 1e-12))
 
 
 def may_join(effect: Effect, hypothesis: Hypothesis) -> bool:
@@ -157,12 +165,9 @@ class _Projection:
         return factors.tolist(), drop
 
 
-def best_by_name(found: Sequence[Promise], each: int = 1) -> list[list[Promise]]:
+def best_by_name(found: Sequence[Promise], each: int) -> list[list[Promise]]:
     """The `each` most promising sizes of every name, names by their best one."""
     names: dict[str, list[Promise]] = {}
-    for one in found:
+    for one in sorted(found, key=lambda one: -one.gain):
         names.setdefault(one.label, []).append(one)
     return [sizes[:each] for sizes in names.values()]
-
-
-

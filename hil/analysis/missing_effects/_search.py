@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from hil.analysis.missing_effects._balance import read_numbers, readings
 from hil.analysis.missing_effects._fit import Point, begun, fit, linearised
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._odds import Candidate, penalty_of
+from hil.analysis.missing_effects._odds import Candidate
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._screen import best_by_name, may_join, promises
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
 _SHORT = 2  # rounds that tell which start or size is worth more of them
+_READ = 4  # names that are taken from the latent torque at each step
 _TRIED = 6  # names that are fitted at each step, the most promising ones
-_SIZES = 2  # from which each of them starts
+_SIZES = 2  # from which an abrupt one starts
 _CARED_FOR = 2  # of these are fitted to their end
 _ROUNDS = 6
 _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
@@ -29,12 +31,23 @@ class Search:
     """All hypotheses that were fitted, best of each set of names, and the problem that they are weighed by."""
 
     problem: Problem
+    values: float = 2.0  # independent ones that the data hold, by the best hypothesis so far
     found: dict[tuple[str, ...], Candidate] = field(default_factory=dict)
 
     @property
     def best(self) -> Candidate:
         """The hypothesis with the highest score."""
-        return max(self.found.values(), key=lambda one: one.score)
+        return max(self.found.values(), key=self.score)
+
+    def score(self, candidate: Candidate) -> float:
+        """Of a candidate, at what the data hold."""
+        return candidate.score(self.values)
+
+    def go_on_from(self, best: Candidate) -> None:
+        """Weigh errors by what the best hypothesis so far leaves."""
+        powers = best.point.powers(self.problem)
+        self.values = powers.values(self.problem.noise)
+        self.problem = self.problem.weighed_by(powers.spectrum(self.problem.noise))
 
     def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = _ROUNDS) -> Candidate:
         """Fit a hypothesis, weighed by the spectrum that it leaves itself, and remember it if it is the best of its names."""
@@ -45,73 +58,67 @@ class Search:
             # slow misfit would trade a dead time for anything: it is known once errors are weighed by their colour
             point = fit(problem, point, frozenset() if number else frozenset({"torque_delay"}))
             after = self._candidate(point)
-            best = max(best, after, key=lambda one: one.score)
-            if abs(after.score - before.score) < _SETTLED:
+            best = max(best, after, key=self.score)
+            if abs(after.log_likelihood - before.log_likelihood) < _SETTLED:
                 break
             before = after
             problem = self.problem.weighed_by(point.powers(problem).spectrum(problem.noise))
         key = tuple(sorted(best.names))
-        self.found[key] = max(self.found.get(key, best), best, key=lambda one: one.score)
+        self.found[key] = max(self.found.get(key, best), best, key=self.score)
         return best
 
     def _candidate(self, point: Point) -> Candidate:
-        powers = point.powers(self.problem)
         hypothesis = point.hypothesis
         known = sum(may_join(effect, Hypothesis(hypothesis.base, {})) for effect in EFFECTS.values())
-        values = 2.0 * float(np.sum(powers.bins))
-        penalty = penalty_of(
-            len(hypothesis.terms), len(hypothesis.coordinates(self.problem.scales)), known, values
-        )
-        return Candidate(point, powers.log_likelihood(self.problem.noise), penalty)
+        free = len(hypothesis.coordinates(self.problem.scales))
+        return Candidate(point, point.powers(self.problem).log_likelihood(self.problem.noise), free, known)
 
 
-def search(problem: Problem, starts: Sequence[Hypothesis], show: Callable[[str], None]) -> Search:
-    """Fit the numbers alone from each of `starts`, then grow and prune sets of effects."""
+def search(problem: Problem, show: Callable[[str], None]) -> Search:
+    """Fit the numbers alone, then grow and prune sets of effects."""
     done = Search(problem)
     show("numbers alone")
-    begun = [done.fitted(one, None, _SHORT) for one in starts]
-    best = max([done.fitted(one.point.hypothesis, one) for one in begun], key=lambda one: one.score)
-    others = [one.point.hypothesis for one in begun] + list(starts[1:])
+    read = read_numbers(problem.model, problem.series)
+    starts = [Hypothesis(problem.model, dict(problem.model.parameters)), *([read] if read else [])]
+    tried = [done.fitted(one, None, _SHORT) for one in starts]
+    best = max([done.fitted(one.point.hypothesis, one) for one in tried], key=done.score)
+    done.go_on_from(best)
     while len(best.names) < _MOST_NAMES:
-        done.problem = problem.weighed_by(best.point.powers(problem).spectrum(problem.noise))
-        grown = _grown(done, best, [] if best.names else others, show)
-        if grown is None or grown.score <= best.score:
+        grown = _grown(done, best, show)
+        if grown is None or done.score(grown) <= done.score(best):
             break
         best = _pruned(done, grown)
+        done.go_on_from(best)
     return done
 
 
-def _grown(
-    done: Search, best: Candidate, others: Sequence[Hypothesis], show: Callable[[str], None]
-) -> Candidate | None:
-    """The best hypothesis with one more effect; None where no effect promises more than it costs.
-
-    Args:
-        others: numbers to start from beside the best ones.
-    """
-    cost = _cost_of_a_name(done, best)
-    promised = [one for one in promises(done.problem, linearised(done.problem, best.point)) if one.drop > cost]
+def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate | None:
+    """The best hypothesis with one more effect; None where no effect promises more than it costs."""
     tried: list[Candidate] = []
-    for sizes in best_by_name(promised, _SIZES)[:_TRIED]:
-        show(" + ".join([*best.names, sizes[0].label]))
-        tried += [
-            done.fitted(start.with_term(one.use), best if start is best.point.hypothesis else None, _SHORT)
-            for one in sizes
-            for start in (best.point.hypothesis, *others)
-        ]
-    tried.sort(key=lambda one: -one.score)
+    for one in _suggested(done, best):
+        show(" + ".join(one.names))
+        tried.append(done.fitted(one, best, _SHORT))
+    tried.sort(key=done.score, reverse=True)
     ended: list[Candidate] = []
-    for one in tried:
-        if one.names not in [other.names for other in ended]:
-            ended.append(_opened(done, done.fitted(one.point.hypothesis, one), show))
+    for candidate in tried:
+        if candidate.names not in [other.names for other in ended]:
+            ended.append(_opened(done, done.fitted(candidate.point.hypothesis, candidate), show))
         if len(ended) == _CARED_FOR:
             break
-    return max(ended, key=lambda one: one.score, default=None)
+    return max(ended, key=done.score, default=None)
 
 
-def _cost_of_a_name(done: Search, best: Candidate) -> float:
-    values = 2.0 * float(np.sum(best.point.powers(done.problem).bins))
-    return penalty_of(1, 1, len(EFFECTS), values)
+def _suggested(done: Search, best: Candidate) -> list[Hypothesis]:
+    """Hypotheses with one more effect: those that the latent torque names, and those that promise more than they cost."""
+    read = readings(best.point.hypothesis, done.problem.series)
+    found = [one.hypothesis for one in read[1 : 1 + _READ]]
+    promised = promises(done.problem, linearised(done.problem, best.point))
+    cost = done.score(best) - done.score(replace(best, free=best.free + 1))
+    promised = [one for one in promised if one.gain > cost]
+    for sizes in best_by_name(promised, _SIZES)[:_TRIED]:
+        abrupt = EFFECTS[sizes[0].use.id].abrupt
+        found += [best.point.hypothesis.with_term(one.use) for one in (sizes if abrupt else sizes[:1])]
+    return found
 
 
 def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate:
@@ -130,8 +137,8 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
                 EffectUse(use.id, {**use.values, parameter.name: value}), opened | {parameter.name}
             )
             tried.append(done.fitted(wider, best, _SHORT))
-        likeliest = max(tried, key=lambda one: one.score)
-        if likeliest.score > best.score:
+        likeliest = max(tried, key=done.score)
+        if done.score(likeliest) > done.score(best):
             best = done.fitted(likeliest.point.hypothesis, likeliest)
     return best
 
@@ -140,6 +147,6 @@ def _pruned(done: Search, best: Candidate) -> Candidate:
     """Without those effects that later ones made needless."""
     for index in reversed(range(len(best.names) - 1)):
         fewer = done.fitted(best.point.hypothesis.without(index), best)
-        if fewer.score >= best.score:
+        if done.score(fewer) >= done.score(best):
             return _pruned(done, fewer)
     return best

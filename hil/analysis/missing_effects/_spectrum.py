@@ -86,6 +86,12 @@ class Powers:
         terms = np.where(self.bins > 0.0, self.bins / inside * (whole + slope * (self.power - p)), 0.0)
         return np.asarray(np.sum(terms, axis=(1, 2)))
 
+    def values(self, noise: Array) -> float:
+        """How many independent values these errors hold: two for each bin of noise, two for a discrepancy's octave."""
+        p, n, d, inside = self._terms(noise)
+        each = -self._slope(p, n, d, inside) * p
+        return float(2.0 * np.sum(self.bins * each))
+
     @staticmethod
     def _slope(p: Array, n: Array, d: Array, inside: Array) -> Array:
         """Of the log likelihood by the power of each bin (3 x bands)."""

@@ -50,7 +50,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
     done, best = of.done, of.done.best
     candidates = list(done.found.values())
-    weights = weights_of(candidates)
+    weights = weights_of(candidates, done.values)
     at = linearised(done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise)), best.point)
     rivals = _alike(done, best, candidates)
     effects, doubtful = [], []
@@ -130,7 +130,7 @@ def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> di
     found: dict[str, tuple[str, ...]] = {}
     for one in candidates:
         lost, new = {*best.names} - {*one.names}, {*one.names} - {*best.names}
-        if len(lost) != 1 or len(new) != 1 or best.score - one.score > _ALIKE:
+        if len(lost) != 1 or len(new) != 1 or done.score(best) - done.score(one) > _ALIKE:
             continue
         apart = 0.0
         for index, (a, b) in enumerate(zip(best.point.errors, one.point.errors, strict=True)):
