@@ -57,7 +57,7 @@ def explain_gap(
     show("judging")
     shown = _Shown(problem, unseen, done)
     return judged(
-        Judged(done, shown.left, shown.gaps(problem), shown.gaps(unseen) if holdout else {}),
+        Judged(done, shown.left, lambda best: (shown.gaps(problem, best), shown.gaps(unseen, best) if holdout else {})),
         tuple(note for one in series for note in one.notes),
         time.perf_counter() - began,
     )
@@ -83,10 +83,10 @@ class _Shown:
         errors = np.concatenate(self.point(self.unseen, candidate.point.hypothesis).errors)
         return np.asarray(np.maximum(_mean(errors**2) - self.unseen.noise**2, 0.0))
 
-    def gaps(self, problem: Problem) -> dict[str, Gap]:
+    def gaps(self, problem: Problem, best: Candidate) -> dict[str, Gap]:
         """Of the base, the numbers alone and the best hypothesis."""
         base = Hypothesis(problem.model, dict(problem.model.parameters))
-        three = (base, self.done.found[()].point.hypothesis, self.done.best.point.hypothesis)
+        three = (base, self.done.found[()].point.hypothesis, best.point.hypothesis)
         errors = [np.concatenate(self.point(problem, one).errors) for one in three]
         measured = np.concatenate([one.measured for one in problem.series])
         spread = np.sqrt(_mean((measured - _mean(measured)) ** 2))

@@ -83,7 +83,7 @@ def fit(problem: Problem, point: Point, held: frozenset[str] = frozenset()) -> P
 
     hypothesis = point.hypothesis
     coordinates = [
-        one for one in hypothesis.coordinates(problem.scales) if one.term >= 0 or one.name not in held
+        one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held
     ]
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
     lower, upper = _bounds(coordinates)
@@ -104,7 +104,7 @@ def fit(problem: Problem, point: Point, held: frozenset[str] = frozenset()) -> P
 
 def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearised:
     """Errors and their derivatives at a point; where numbers are not `free`, by starts alone."""
-    coordinates = point.hypothesis.coordinates(problem.scales) if free else []
+    coordinates = problem.coordinates(point.hypothesis) if free else []
     round_ = _Round(problem, point.hypothesis, point.starts, coordinates)
     zero = np.zeros(len(coordinates))
     left, slopes = round_.residual(zero), round_.jacobian(zero)

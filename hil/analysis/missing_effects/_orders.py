@@ -20,6 +20,7 @@ Array = npt.NDArray[np.float64]
 
 _HIGHEST = 60.0  # order
 _FINE = 0.02  # distance of orders that are looked at
+_PERIODS = 3.0  # of a ripple that a recording must hold
 _COUNT = 3
 _SOURCES = {"wheel": "extra_shaft_torque_nm", "rotor": "rotor_loss_nm"}
 
@@ -46,7 +47,12 @@ def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -
         speed = np.abs(np.gradient(angle)) * one.rate_hz / (2 * np.pi)
         energy += _energy(speed, orders, frequency, gain)
     promise = np.abs(slopes) ** 2 / np.maximum(energy, np.max(energy, initial=0.0) * 1e-3 + 1e-300)
-    return _peaks(orders, promise)
+    turns = max(float(np.ptp(angle)) for angle in _angles(problem, side)) / (2 * np.pi)
+    return _peaks(orders, np.where(orders * turns >= _PERIODS, promise, 0.0))
+
+
+def _angles(problem: Problem, side: str) -> list[Array]:
+    return [both[:, 0 if side == "wheel" else 1] for both in problem.angles]
 
 
 def _over_angle(values: Array, angle: Array, count: int) -> npt.NDArray[np.complex128]:

@@ -24,7 +24,7 @@ _RANK = 1e-7  # smallest singular value of a start's sensitivities that counts, 
 @dataclass(frozen=True)
 class Problem:
     """What is to be explained: recordings, their noise (3,), the spectrum by which errors are
-    weighed, and the mean square of each channel (3,)."""
+    weighed, the mean square of each channel (3,), sizes of numbers that may be zero, numbers that no channel shows."""
 
     model: Model
     series: tuple[Series, ...]
@@ -32,11 +32,16 @@ class Problem:
     spectrum: Spectrum
     signal: Array
     scales: dict[str, float] = field(default_factory=dict)
+    held: frozenset[str] = frozenset()
     angles: tuple[Array, ...] = ()
 
     def weighed_by(self, spectrum: Spectrum) -> Problem:
         """The same, errors weighed by another spectrum."""
         return replace(self, spectrum=spectrum)
+
+    def coordinates(self, hypothesis: Hypothesis) -> list[Coordinate]:
+        """Free numbers of a hypothesis: a gear ratio is one where the wheel side was recorded."""
+        return [one for one in hypothesis.coordinates(self.scales) if one.term >= 0 or one.name not in self.held]
 
     @property
     def rate_hz(self) -> float:
@@ -123,7 +128,8 @@ def problem_of(model: Model, series: Sequence[Series], noise: Array, spectrum: S
         spectrum,
         _signal(series),
         _scales(model, series),
-        tuple(one.angles(ratio) for one in series),
+        angles=tuple(one.angles(ratio) for one in series),
+        held=frozenset() if any(one.has[1:].any() for one in series) else frozenset({"gear_ratio"}),
     )
 
 

@@ -70,7 +70,7 @@ class Search:
     def _candidate(self, point: Point) -> Candidate:
         hypothesis = point.hypothesis
         known = sum(may_join(effect, Hypothesis(hypothesis.base, {})) for effect in EFFECTS.values())
-        free = len(hypothesis.coordinates(self.problem.scales))
+        free = len(self.problem.coordinates(hypothesis))
         return Candidate(point, point.powers(self.problem).log_likelihood(self.problem.noise), free, known)
 
 

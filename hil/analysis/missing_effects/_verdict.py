@@ -38,24 +38,25 @@ _SHOWN = 5  # alternatives
 
 @dataclass(frozen=True)
 class Judged:
-    """A search, what its candidates leave on data not fitted, and the gaps of fitted and other recordings."""
+    """A search, and what a candidate leaves: variance on data not fitted, gaps of fitted and of other recordings."""
 
     done: Search
     left: Callable[[Candidate], Array]
-    gap: Mapping[str, Gap]
-    holdout_gap: Mapping[str, Gap]
+    gaps: Callable[[Candidate], tuple[dict[str, Gap], dict[str, Gap]]]
 
 
 def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
-    done, best = of.done, of.done.best
+    done = of.done
+    best, shares = _worth_telling(of, done.best)
     candidates = list(done.found.values())
     weights = weights_of(candidates, done.values)
     at = linearised(done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise)), best.point)
     rivals = _alike(done, best, candidates)
-    effects, doubtful = [], []
+    effects: list[Named] = []
+    doubtful: list[Named] = []
     for index, use in enumerate(best.point.hypothesis.terms):
-        named = _named(of, best, index, use, at, candidates, weights, rivals)
+        named = _named(best, index, use, at, candidates, weights, rivals, shares[index])
         (effects if named.confidence >= HALF else doubtful).append(named)
     numbers = _numbers(done, at)
     far = _is_far(numbers, done)
@@ -70,12 +71,27 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     others = _others(best, candidates, weights)
     return Outcome(
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
-        dict(of.gap), dict(of.holdout_gap), best.point.hypothesis.model(), (), notes, seconds,
+        *of.gaps(best), best.point.hypothesis.model(), (), notes, seconds,
     )  # fmt: skip
 
 
+def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
+    """Without effects that take off less than half of what stays without them, least first; shares of the others."""
+    while best.names:
+        shares = [1.0 - _remains(of, _without(of.done, best, index), best) for index in range(len(best.names))]
+        least = int(np.argmin(shares))
+        if shares[least] >= HALF:
+            return best, shares
+        best = _without(of.done, best, least)
+    return best, []
+
+
+def _without(done: Search, best: Candidate, index: int) -> Candidate:
+    key = tuple(sorted(name for at, name in enumerate(best.names) if at != index))
+    return done.found.get(key) or done.fitted(best.point.hypothesis.without(index), best)
+
+
 def _named(
-    of: Judged,
     best: Candidate,
     index: int,
     use: EffectUse,
@@ -83,15 +99,13 @@ def _named(
     candidates: Sequence[Candidate],
     weights: Array,
     rivals: Mapping[str, tuple[str, ...]],
+    share: float,
 ) -> Named:
     label = best.names[index]
     alike = rivals.get(label, ())
     held = sum(
         float(w) for one, w in zip(candidates, weights, strict=True) if {label, *alike} & {*one.names}
     )
-    key = tuple(sorted(name for name in best.names if name != label))
-    without = of.done.found.get(key) or of.done.fitted(best.point.hypothesis.without(index), best)
-    share = 1.0 - _remains(of, without, best)
     errors = {
         name: at.standard_error(index, name)
         for name in use.values
