@@ -21,7 +21,7 @@ from hil.analysis.missing_effects._spectrum import Powers, powers_of
 Array = npt.NDArray[np.float64]
 
 _START_ROUNDS = 3
-_EVALUATIONS = 12  # of a round: the next one has better starts and weights
+EVALUATIONS = 12  # of a round: the next one has better starts and weights
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,9 @@ def with_better_starts(problem: Problem, point: Point) -> Point:
     return point
 
 
-def fit(problem: Problem, point: Point, held: frozenset[str] = frozenset()) -> Point:
+def fit(
+    problem: Problem, point: Point, held: frozenset[str] = frozenset(), evaluations: int = EVALUATIONS
+) -> Point:
     """One round: all numbers by least squares while the starts' directions stay, then the starts.
 
     Args:
@@ -96,7 +98,7 @@ def fit(problem: Problem, point: Point, held: frozenset[str] = frozenset()) -> P
         ftol=1e-5,
         xtol=1e-6,
         gtol=1e-9,
-        max_nfev=_EVALUATIONS,
+        max_nfev=evaluations,
     )
     hypothesis = hypothesis.moved(coordinates, found.x)
     return begun(problem, hypothesis, _better_starts(problem, hypothesis, point.starts))

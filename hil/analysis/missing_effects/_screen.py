@@ -22,7 +22,7 @@ from hil.analysis.missing_effects._hypothesis import Hypothesis, label_of
 from hil.analysis.missing_effects._orders import orders_of
 from hil.analysis.missing_effects._problem import Problem
 from hil.core.channels import OUTPUTS
-from hil.core.effects import EFFECTS, Direction, Effect, Probe
+from hil.core.effects import EFFECTS, STRETCH, Direction, Effect, Probe
 from hil.core.model import EffectUse
 from hil.plant import chain_numbers
 
@@ -139,12 +139,12 @@ class _Projection:
             problem.simulated(i, [at.point.hypothesis.packed()], s[None])[0] for i, s in enumerate(at.point.starts)
         ]
 
-    def changes(self, uses: Sequence[EffectUse]) -> Array:
-        """Weighed changes (numbers x uses) beside what numbers and starts could do."""
-        packed = [self.at.point.hypothesis.with_term(use).packed() for use in uses]
+    def changes(self, hypotheses: Sequence[Hypothesis]) -> Array:
+        """Weighed changes (numbers x hypotheses) beside what numbers and starts could do."""
+        packed = [one.packed() for one in hypotheses]
         parts = []
         for index, start in enumerate(self.at.point.starts):
-            shown = self.problem.simulated(index, packed, np.repeat(start[None], len(uses), axis=0))
+            shown = self.problem.simulated(index, packed, np.repeat(start[None], len(packed), axis=0))
             change = self.problem.weighed(index, shown - self.plain[index])
             parts.append(without(self.at.bases[index], change.T))
         d = np.concatenate(parts)
@@ -152,7 +152,7 @@ class _Projection:
 
     def explained(self, uses: Sequence[EffectUse], directions: Sequence[Direction]) -> tuple[list[float], float]:
         """Factors of the directions within their bounds, and the drop that they bring."""
-        d = self.changes(uses)
+        d = self.changes([self.at.point.hypothesis.with_term(use) for use in uses])
         if not np.all(np.isfinite(d)):
             return [1.0] * len(uses), -math.inf
         normal, right = d.T @ d, d.T @ self.at.left
@@ -163,6 +163,17 @@ class _Projection:
                 factors[i] = min(max(rest / max(normal[i, i], 1e-300), one.lower), one.upper)
         drop = float(factors @ right - 0.5 * factors @ normal @ factors)
         return factors.tolist(), drop
+
+
+def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]) -> list[float]:
+    """Growth of log L that each of some neighbours of a point promises to first order, of about their sizes."""
+    project = _Projection(problem, at)
+    d = project.changes(hypotheses)
+    squares, right = np.sum(d * d, axis=0), d.T @ at.left
+    factors = np.clip(right / np.maximum(squares, 1e-300), *STRETCH)
+    drops = np.where(np.isfinite(squares), factors * right - 0.5 * factors**2 * squares, -np.inf)
+    whole = 0.5 * float(at.left @ at.left)
+    return [_gain(float(drop), whole) for drop in drops]
 
 
 def best_by_name(found: Sequence[Promise], each: int) -> list[list[Promise]]:

@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from hil.analysis.missing_effects._balance import read_numbers, readings
-from hil.analysis.missing_effects._fit import Point, begun, fit, linearised
+from hil.analysis.missing_effects._fit import EVALUATIONS, Point, begun, fit, linearised
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._odds import Candidate
 from hil.analysis.missing_effects._problem import Problem
-from hil.analysis.missing_effects._screen import best_by_name, may_join, promises
+from hil.analysis.missing_effects._screen import (
+    best_by_name,
+    may_join,
+    promised_by,
+    promises,
+)
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
+_HOPELESS = 0.5  # of what another name has reached: what promises less is not tried
+_FEW = 6  # evaluations of a short round
 _SHORT = 2  # rounds that tell which start or size is worth more of them
 _READ = 4  # names that are taken from the latent torque at each step
 _TRIED = 6  # names that are fitted at each step, the most promising ones
@@ -43,6 +51,10 @@ class Search:
         """Of a candidate, at what the data hold."""
         return candidate.score(self.values)
 
+    def cost_of_a_number(self, candidate: Candidate) -> float:
+        """What one more free number must let log L grow by."""
+        return self.score(candidate) - self.score(replace(candidate, free=candidate.free + 1))
+
     def go_on_from(self, best: Candidate) -> None:
         """Weigh errors by what the best hypothesis so far leaves."""
         powers = best.point.powers(self.problem)
@@ -56,7 +68,8 @@ class Search:
         problem = self.problem
         for number in range(rounds):
             # slow misfit would trade a dead time for anything: it is known once errors are weighed by their colour
-            point = fit(problem, point, frozenset() if number else frozenset({"torque_delay"}))
+            held = frozenset() if number else frozenset({"torque_delay"})
+            point = fit(problem, point, held, EVALUATIONS if rounds > _SHORT else _FEW)
             after = self._candidate(point)
             best = max(best, after, key=self.score)
             if abs(after.log_likelihood - before.log_likelihood) < _SETTLED:
@@ -95,9 +108,13 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
 def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate | None:
     """The best hypothesis with one more effect; None where no effect promises more than it costs."""
     tried: list[Candidate] = []
-    for one in _suggested(done, best):
-        show(" + ".join(one.names))
-        tried.append(done.fitted(one, best, _SHORT))
+    reached = 0.0
+    for hypothesis, gain in _suggested(done, best):
+        if gain < _HOPELESS * reached:
+            continue
+        show(" + ".join(hypothesis.names))
+        tried.append(done.fitted(hypothesis, best, _SHORT))
+        reached = max(reached, tried[-1].log_likelihood - best.log_likelihood)
     tried.sort(key=done.score, reverse=True)
     ended: list[Candidate] = []
     for candidate in tried:
@@ -108,16 +125,21 @@ def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candid
     return max(ended, key=done.score, default=None)
 
 
-def _suggested(done: Search, best: Candidate) -> list[Hypothesis]:
-    """Hypotheses with one more effect: those that the latent torque names, and those that promise more than they cost."""
+def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
+    """Hypotheses with one more effect, each with the growth of log L that it promises.
+
+    Those that the latent torque names (which promises no number, so they are all tried), and those that promise more
+    than they cost, best first.
+    """
     read = readings(best.point.hypothesis, done.problem.series)
-    found = [one.hypothesis for one in read[1 : 1 + _READ]]
+    found = [(one.hypothesis, math.inf) for one in read[1 : 1 + _READ]]
     promised = promises(done.problem, linearised(done.problem, best.point))
-    cost = done.score(best) - done.score(replace(best, free=best.free + 1))
+    cost = done.cost_of_a_number(best)
     promised = [one for one in promised if one.gain > cost]
     for sizes in best_by_name(promised, _SIZES)[:_TRIED]:
         abrupt = EFFECTS[sizes[0].use.id].abrupt
-        found += [best.point.hypothesis.with_term(one.use) for one in (sizes if abrupt else sizes[:1])]
+        for one in sizes if abrupt else sizes[:1]:
+            found.append((best.point.hypothesis.with_term(one.use), one.gain))
     return found
 
 
@@ -127,19 +149,25 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
     for parameter in EFFECTS[best.point.hypothesis.terms[index].id].parameters:
         hypothesis = best.point.hypothesis
         opened = hypothesis.opened[index]
-        if not parameter.opens or (parameter.beside and parameter.beside not in opened):
+        beside = parameter.beside and parameter.beside not in opened
+        if not parameter.opens or parameter.name in opened or beside:
             continue
-        show(f"{best.names[index]}: {parameter.name}")
-        tried = []
-        for value in parameter.opens:
-            use = hypothesis.terms[index]
-            wider = hypothesis.without(index).with_term(
+        use = hypothesis.terms[index]
+        size = parameter.typical or 0.0
+        wider = [
+            hypothesis.without(index).with_term(
                 EffectUse(use.id, {**use.values, parameter.name: value}), opened | {parameter.name}
             )
-            tried.append(done.fitted(wider, best, _SHORT))
-        likeliest = max(tried, key=done.score)
-        if done.score(likeliest) > done.score(best):
-            best = done.fitted(likeliest.point.hypothesis, likeliest)
+            for value in (*parameter.opens, size, -size)
+            if value and parameter.lower <= value <= parameter.upper
+        ]
+        problem = done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise))
+        gains = promised_by(problem, linearised(problem, best.point), wider)
+        if max(gains) <= done.cost_of_a_number(best):
+            continue
+        show(f"{best.names[index]}: {parameter.name}")
+        tried = done.fitted(wider[int(np.argmax(gains))], best)
+        best = max(best, tried, key=done.score)
     return best
 
 

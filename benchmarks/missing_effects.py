@@ -1,0 +1,229 @@
+"""The diagnosis in use and the one that is to follow it, on the same cases, side by side.
+
+    python -m benchmarks.missing_effects own                    # a turning mass by formulas of its own, four bases each
+    python -m benchmarks.missing_effects real --data DIR        # drives of others, docs/reference/real-data.md; four bases each
+    python -m benchmarks.missing_effects blind [--every 20]     # every so-manieth case of the blind set's plants
+
+`--new` leaves the one in use out. A line has: case, base, truth, answer and confidence of each, seconds of each.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.real_data.__main__ import DATA_SETS, missing
+from hil.analysis.diagnosis import diagnose
+from hil.analysis.missing_effects import explain_gap
+from hil.core.errors import HilError
+from hil.core.model import Model
+from hil.core.recording import Recording, read_recording
+from tests.blind.casefiles import write_case
+from tests.blind.diagnosing import Reply
+from tests.blind.draws import draw
+from tests.blind.fairness import label_of
+from tests.blind.scoring import score
+from tests.blind.specs import Spec, full_set
+from tests.hil.analysis.missing_effects.turning_mass import base, recording
+
+_SURE = 0.9
+#: A number of the base that is an effect by another name: either is right.
+_SAME = {
+    "parameter_mismatch(torque_delay)": "dead_time",
+    "parameter_mismatch(viscous_drag)": "viscous_drag",
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    """One question: a base, recordings, what is hidden (empty: nothing has a name), how to judge an answer."""
+
+    name: str
+    base: str
+    model: Model
+    recordings: Sequence[Recording]
+    holdout: Sequence[Recording]
+    truth: tuple[str, ...]
+    right: Callable[[dict[str, Any]], bool]
+
+
+@dataclass
+class Tally:
+    """Answers of one way: right or not, and each name that was told, with its confidence."""
+
+    right: list[bool] = field(default_factory=list)
+    told: list[tuple[float, bool]] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+
+    def line(self, who: str) -> str:
+        """The figures."""
+        wrong = sum(c >= 0.5 and not ok for c, ok in self.told)
+        sure = [ok for c, ok in self.told if c >= _SURE]
+        middle, high = np.quantile(self.seconds, (0.5, 0.95))
+        return (
+            f"{who}: right {sum(self.right)} of {len(self.right)}; wrong names at 0.5 and more: {wrong}; "
+            f"of {len(sure)} names at 0.9 and more {sum(sure)} right; {middle:.1f} s median, {high:.1f} s 95th"
+        )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print a line for each case and the figures of both; 2 where no case is there."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.missing_effects",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("group", choices=("own", "real", "blind"))
+    parser.add_argument("names", nargs="*", help="only data sets, or subjects, of these names")
+    parser.add_argument("--data", type=Path, default=Path(), help="directory of data sets")
+    parser.add_argument("--every", type=int, default=20, help="of the blind set's cases")
+    parser.add_argument("--seed", type=int, default=11, help="of the blind set")
+    parser.add_argument("--new", action="store_true", help="only the one that is to follow")
+    options = parser.parse_args(arguments)
+    ways = {"old": _old, "new": _new}
+    if options.new:
+        del ways["old"]
+    tallies = {who: Tally() for who in ways}
+    for case in _cases(options):
+        cells = [f"{case.name:<34}{case.base:<12}{' + '.join(case.truth) or '-':<34}"]
+        for who, way in ways.items():
+            began = time.perf_counter()
+            try:
+                answer = way(case)
+            except (HilError, ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+                answer = {"verdict": f"failed ({str(error)[:60]})", "effects": []}
+            took = time.perf_counter() - began
+            cells.append(_cell(who, case, answer, took, tallies[who]))
+        print(" | ".join(cells), flush=True)
+    if not next(iter(tallies.values())).right:
+        print("no case is there", file=sys.stderr)
+        return 2
+    for who, tally in tallies.items():
+        print(tally.line(who))
+    return 0
+
+
+def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tally) -> str:
+    right = case.right(answer)
+    tally.right.append(right)
+    tally.seconds.append(took)
+    named = []
+    for effect in answer["effects"]:
+        label = _label(effect)
+        tally.told.append((float(effect["confidence"]), label in case.truth))
+        named.append(f"{label} {effect['confidence']:.2f}")
+    gaps = answer.get("holdout_gap") or answer.get("gap") or {}
+    left = max((100.0 * float(gap["after"]) for gap in gaps.values()), default=float("nan"))
+    text = " + ".join(named) or str(answer["verdict"])
+    return f"{who} {'right' if right else 'WRONG'} {text}, {left:.2g} % left, {took:.1f} s"
+
+
+def _label(effect: dict[str, Any]) -> str:
+    label = label_of(effect["id"], effect.get("parameters", {}))
+    return _SAME.get(label, label)
+
+
+def _old(case: Case) -> dict[str, Any]:
+    return diagnose(case.model, case.recordings, case.holdout).as_json()
+
+
+def _new(case: Case) -> dict[str, Any]:
+    return explain_gap(case.model, case.recordings, case.holdout).as_json()
+
+
+def _cases(options: argparse.Namespace) -> Iterator[Case]:
+    if options.group == "own":
+        yield from _own()
+    elif options.group == "real":
+        yield from _real(options.data, options.names)
+    else:
+        yield from _blind(options)
+
+
+def _exactly(truth: Sequence[str]) -> Callable[[dict[str, Any]], bool]:
+    """The names alone; where there is none, `none` or `unknown`, numbers apart."""
+
+    def right(answer: dict[str, Any]) -> bool:
+        named = [_label(e) for e in answer["effects"] if e["id"] != "parameter_mismatch"]
+        return sorted(named) == sorted(truth)
+
+    return right
+
+
+def _own() -> Iterator[Case]:
+    for name, numbers, truth in (
+        ("viscous 2.17, Coulomb 1.39", (0.54, 2.17, 1.39, 0.0), ("coulomb_friction",)),
+        ("viscous 2.17 alone", (0.54, 2.17, 0.0, 0.0), ()),
+        ("pendulum 4 N m, Coulomb 0.3", (0.54, 1.0, 0.3, 4.0), ("coulomb_friction", "motor_order_ripple")),
+    ):
+        torque = 6.0 if numbers[3] else 20.0
+        fit, held = (recording(*numbers, torque_nm=torque, seed=seed) for seed in (0, 5))
+        for which, model in _bases(base(numbers[0], numbers[1])).items():
+            yield Case(name, which, model, [fit], [held], truth, _exactly(truth))
+
+
+def _bases(model: Model) -> dict[str, Model]:
+    """A base as it is, without drag, and of half and three times the inertia."""
+
+    def times(factor: float) -> Model:
+        inertias = [name for name in model.parameters if name.endswith("inertia")]
+        return model.with_parameters(**{name: factor * model.parameters[name] for name in inertias})
+
+    return {
+        "as it is": model,
+        "no drag": model.with_parameters(viscous_drag=0.0),
+        "half J": times(0.5),
+        "3 J": times(3.0).with_parameters(viscous_drag=0.0),
+    }
+
+
+def _real(directory: Path, names: Sequence[str]) -> Iterator[Case]:
+    for name in names or DATA_SETS:
+        one = DATA_SETS[name]
+        absent = missing(one, directory / name)
+        if absent:
+            print(f"{name}: {absent[0]} is not in {directory / name}", file=sys.stderr)
+            continue
+        measured = one.read(directory / name)
+        truth = () if one.expected.startswith("unknown") else ("coulomb_friction",)
+        start = next(iter(measured.starts.values()))
+        for which, model in _bases(start).items():
+            yield Case(name, which, model, measured.recordings, measured.holdout, truth, _exactly(truth))
+
+
+def _blind(options: argparse.Namespace) -> Iterator[Case]:
+    specs = [s for s in full_set() if not options.names or s.subject.split(":")[0] in options.names]
+    for spec in specs[:: options.every]:
+        with tempfile.TemporaryDirectory() as place:
+            files, answer = write_case(draw(options.seed, spec), Path(place))
+            model = draw(options.seed, spec).model
+            fit, held = (
+                [replace(read_recording(path), source=path) for path in paths]
+                for paths in (files.recordings, files.holdout)
+            )
+        truth = tuple(_SAME.get(t, t) for t in (label_of(id, values) for id, values in answer.effects))
+
+        def right(told: dict[str, Any], spec: Spec = spec, answer: Any = answer, kind: str = model.kind) -> bool:
+            same = [{**e, **_renamed(e)} for e in told["effects"]]
+            failed = str(told["verdict"]) if str(told["verdict"]).startswith("failed") else ""
+            return score(spec, kind, answer, Reply({**told, "effects": same}, failed, 0.0)).right
+
+        yield Case(f"{spec.key} {model.kind}", "blind", model, fit, held, truth, right)
+
+
+def _renamed(effect: dict[str, Any]) -> dict[str, Any]:
+    """A number of the base that the blind set hides as an effect, under the effect's name."""
+    label = label_of(effect["id"], effect.get("parameters", {}))
+    return {"id": _SAME[label], "parameters": {}} if label in _SAME else {}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

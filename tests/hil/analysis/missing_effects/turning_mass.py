@@ -1,0 +1,75 @@
+"""A turning mass with dry friction and gravity by formulas of its own: data for tests and benchmarks.
+
+Semi-implicit steps of 50 µs; at rest the mass stays where it is while the torque is below its friction.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numba import njit
+
+from hil.core.model import Model
+from hil.core.recording import Recording
+
+_SAMPLE_S, _PARTS = 1e-3, 20
+
+
+@njit(cache=True)
+def _turn(torque, inertia, viscous, dry, gravity, out):  # type: ignore[no-untyped-def]
+    speed, angle = 0.0, 0.0
+    h = _SAMPLE_S / _PARTS
+    for k in range(len(torque)):
+        out[k] = speed
+        for _ in range(_PARTS):
+            drive = torque[k] - viscous * speed - gravity * np.sin(angle)
+            if speed == 0.0 and abs(drive) <= dry:
+                continue
+            way = np.sign(speed) if speed != 0.0 else np.sign(drive)
+            new = speed + h * (drive - dry * way) / inertia
+            if speed * new < 0.0:
+                new = 0.0
+            speed = new
+            angle += h * speed
+
+
+def recording(
+    inertia: float,
+    viscous: float,
+    dry: float = 0.0,
+    gravity: float = 0.0,
+    *,
+    torque_nm: float = 20.0,
+    noise_rad_s: float = 0.02,
+    seconds: float = 30.0,
+    seed: int = 0,
+) -> Recording:
+    """Random steps of torque with reversals, a small 3 Hz tone on them; speed with white noise at 1 kHz."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(round(seconds / _SAMPLE_S)) * _SAMPLE_S
+    torque = np.zeros(len(time))
+    at, way = 0.4, 1.0
+    while at < seconds - 1.0:
+        end = at + rng.uniform(0.5, 1.5)
+        torque[round(at / _SAMPLE_S) : round(end / _SAMPLE_S)] = way * torque_nm * rng.uniform(0.2, 1.0)
+        way = -way if rng.uniform() < 0.7 else way
+        at = end
+    torque += 0.1 * torque_nm * np.sin(2.0 * np.pi * 3.0 * time) * (time > 0.5)
+    speed = np.empty(len(time))
+    _turn(torque, inertia, viscous, dry, gravity, speed)
+    shown = speed + rng.normal(0.0, noise_rad_s, len(time))
+    channels = {"time_s": time, "motor_torque_ref_nm": torque, "motor_speed_rad_s": shown}
+    return Recording(channels, Path(f"turning mass {seed}.csv"))
+
+
+def base(inertia: float, drag: float = 0.0) -> Model:
+    """A rigid model of that inertia and drag; a thousandth of it stands for a load."""
+    parameters = {
+        "motor_inertia": 0.999 * inertia,
+        "gear_ratio": 1.0,
+        "vehicle_inertia": 1e-3 * inertia,
+        "viscous_drag": drag,
+        "torque_delay": 0.0,
+    }
+    return Model("rigid", parameters)
