@@ -1,10 +1,11 @@
 """The diagnosis in use and the one that is to follow it, on the same cases, side by side.
 
-    python -m benchmarks.missing_effects own                    # a turning mass by formulas of its own, four bases each
-    python -m benchmarks.missing_effects real --data DIR        # drives of others, docs/reference/real-data.md; four bases each
-    python -m benchmarks.missing_effects blind [--every 20]     # every so-manieth case of the blind set's plants
+    python -m benchmarks.missing_effects own                 # a turning mass by other formulas
+    python -m benchmarks.missing_effects real --data DIR     # drives of others, docs/reference/real-data.md
+    python -m benchmarks.missing_effects blind [--every 20]  # every 20th case of the blind set's plants
 
-`--new` leaves the one in use out. A line has: case, base, truth, answer and confidence of each, seconds of each.
+`own` and `real` ask from four bases each. `--new` leaves the one in use out. A line has case, base, truth,
+and of each way: right or wrong, names with confidence, the largest gap left, seconds.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ _SAME = {
 
 @dataclass(frozen=True)
 class Case:
-    """One question: a base, recordings, what is hidden (empty: nothing has a name), how to judge an answer."""
+    """One question: a base, recordings, what is hidden (empty: nothing with a name), how to judge."""
 
     name: str
     base: str
@@ -70,7 +71,8 @@ class Tally:
         middle, high = np.quantile(self.seconds, (0.5, 0.95))
         return (
             f"{who}: right {sum(self.right)} of {len(self.right)}; wrong names at 0.5 and more: {wrong}; "
-            f"of {len(sure)} names at 0.9 and more {sum(sure)} right; {middle:.1f} s median, {high:.1f} s 95th"
+            f"of {len(sure)} names at 0.9 and more {sum(sure)} right; "
+            f"{middle:.1f} s median, {high:.1f} s 95th"
         )
 
 
@@ -211,7 +213,9 @@ def _blind(options: argparse.Namespace) -> Iterator[Case]:
             )
         truth = tuple(_SAME.get(t, t) for t in (label_of(id, values) for id, values in answer.effects))
 
-        def right(told: dict[str, Any], spec: Spec = spec, answer: Any = answer, kind: str = model.kind) -> bool:
+        def right(
+            told: dict[str, Any], spec: Spec = spec, answer: Any = answer, kind: str = model.kind
+        ) -> bool:
             same = [{**e, **_renamed(e)} for e in told["effects"]]
             failed = str(told["verdict"]) if str(told["verdict"]).startswith("failed") else ""
             return score(spec, kind, answer, Reply({**told, "effects": same}, failed, 0.0)).right

@@ -4,10 +4,11 @@ Momentum over impulse in short windows,
 
     J·Δω = ∫T dt - b·∫ω dt - Σ c_j·∫g_j(speed, angle) dt,
 
-is linear in 1/J, b/J and the sizes c_j/J of laws g_j, which are those of the effects' own files at size one. Nothing is
-differentiated and nothing drifts, so that inertia, drag and sizes come out the same from any base, and each name gets
-numbers of its own to start a simulation from (an equation error method: L. Ljung, System Identification, 1999, §10.1;
-as momentum balance for robots: M. Gautier, Proc. IEEE CDC 1997, 2170). What no law takes is the latent torque.
+is linear in 1/J, b/J and the sizes c_j/J of laws g_j, which are those of the effects' own files at size one.
+Nothing is differentiated and nothing drifts, so that inertia, drag and sizes come out the same from any base,
+and each name gets numbers of its own to start a simulation from (an equation error method: L. Ljung, System
+Identification, 1999, §10.1; as momentum balance for robots: M. Gautier, Proc. IEEE CDC 1997, 2170). What no
+law takes is the latent torque.
 """
 
 from __future__ import annotations
@@ -105,9 +106,7 @@ def readings(hypothesis: Hypothesis, series: Sequence[Series]) -> list[Reading]:
     if alone is None:
         return []
     found = [
-        reading
-        for wider in _wider(mass, alone.hypothesis)
-        if (reading := _read(mass, wider)) is not None
+        reading for wider in _wider(mass, alone.hypothesis) if (reading := _read(mass, wider)) is not None
     ]
     return [alone, *sorted(found, key=lambda one: one.left)]
 
@@ -123,7 +122,9 @@ def _wider(mass: _Mass, hypothesis: Hypothesis) -> Iterator[Hypothesis]:
             continue
         if law.follows is not None:
             for order in _orders(mass, hypothesis):
-                yield hypothesis.with_term(EffectUse(effect.id, {"order": order, "amplitude_nm": 1.0, "phase_rad": 0.0}))
+                yield hypothesis.with_term(
+                    EffectUse(effect.id, {"order": order, "amplitude_nm": 1.0, "phase_rad": 0.0})
+                )
             continue
         sizes = {name: 1.0 for name in effect.acting() if not effect.parameter(name).optional}
         yield hypothesis.with_term(EffectUse(effect.id, dict(sizes)))
@@ -136,7 +137,10 @@ def _orders(mass: _Mass, hypothesis: Hypothesis) -> list[float]:
     """Multiples of the rotor's angle that the torque left by a hypothesis follows best."""
     columns, right, _ = _regression(mass, hypothesis)
     rest = right - columns @ np.linalg.lstsq(columns, right, rcond=1e-9)[0]
-    angle = mass.windowed([np.cumsum(mass.angle(one)) / one.rate_hz for one in mass.series], sums=False) / _WINDOW_S
+    angle = (
+        mass.windowed([np.cumsum(mass.angle(one)) / one.rate_hz for one in mass.series], sums=False)
+        / _WINDOW_S
+    )
     turns = float(np.ptp(angle)) / (2 * np.pi)
     power = np.array([abs(np.sum(rest * np.exp(-1j * order * angle))) for order in _ORDERS])
     best = np.argsort(power)[::-1]
@@ -155,7 +159,10 @@ def _regression(mass: _Mass, hypothesis: Hypothesis) -> tuple[Array, Array, list
     """Columns (1/J, b/J, then sizes), the change of speed, and (term, number, phase) of each size."""
     chain = chain_numbers(hypothesis.base)
     torque = [_block_means(one, one.torque) for one in mass.series]
-    brakes = [np.zeros_like(t) if one.load is None else _block_means(one, one.load) for one, t in zip(mass.series, torque, strict=True)]
+    brakes = [
+        np.zeros_like(t) if one.load is None else _block_means(one, one.load)
+        for one, t in zip(mass.series, torque, strict=True)
+    ]
     driving = [t - b / mass.ratio for t, b in zip(torque, brakes, strict=True)]
     columns = [
         mass.windowed(driving, sums=True),
@@ -164,8 +171,10 @@ def _regression(mass: _Mass, hypothesis: Hypothesis) -> tuple[Array, Array, list
     sizes: list[tuple[int, str, float]] = []
     for index, use in enumerate(hypothesis.terms):
         effect = EFFECTS[use.id]
-        rest = dict(use.values) | {name: effect.off for name in effect.acting()}
-        names = [n for n in effect.acting() if not effect.parameter(n).optional or n in hypothesis.opened[index]]
+        rest = dict(use.values) | dict.fromkeys(effect.acting(), effect.off)
+        names = [
+            n for n in effect.acting() if not effect.parameter(n).optional or n in hypothesis.opened[index]
+        ]
         for name in names:
             for phase in (0.0, 0.5 * np.pi) if "phase_rad" in use.values else (0.0,):
                 values = rest | {name: 1.0} | ({"phase_rad": phase} if "phase_rad" in use.values else {})
@@ -206,11 +215,13 @@ def _read(mass: _Mass, hypothesis: Hypothesis) -> Reading | None:
             terms[index][name] = max(float(np.hypot(sine, size)), 1e-9)
             terms[index]["phase_rad"] = float(np.arctan2(size, sine))
     uses = tuple(EffectUse(use.id, values) for use, values in zip(hypothesis.terms, terms, strict=True))
-    return Reading(replace(hypothesis, numbers=numbers, terms=uses), float(np.mean(rest**2)) / float(np.mean(right**2)))
+    return Reading(
+        replace(hypothesis, numbers=numbers, terms=uses), float(np.mean(rest**2)) / float(np.mean(right**2))
+    )
 
 
 def read_numbers(model: Model, series: Sequence[Series]) -> Hypothesis | None:
-    """The numbers alone as the balance reads them beside dry friction and an offset, which would bend them."""
+    """The numbers alone as the balance reads them beside dry friction and an offset."""
     alone = Hypothesis(model, dict(model.parameters))
     friction = alone.with_term(EffectUse("coulomb_friction", {"torque_nm": 1.0}), frozenset({"offset_nm"}))
     turning = tuple(one for one in series if one.has[:2].any())

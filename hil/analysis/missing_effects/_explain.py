@@ -57,7 +57,11 @@ def explain_gap(
     show("judging")
     shown = _Shown(problem, unseen, done)
     return judged(
-        Judged(done, shown.left, lambda best: (shown.gaps(problem, best), shown.gaps(unseen, best) if holdout else {})),
+        Judged(
+            done,
+            shown.left,
+            lambda best: (shown.gaps(problem, best), shown.gaps(unseen, best) if holdout else {}),
+        ),
         tuple(note for one in series for note in one.notes),
         time.perf_counter() - began,
     )
@@ -79,9 +83,9 @@ class _Shown:
         return with_better_starts(problem, begun(problem, hypothesis))
 
     def left(self, candidate: Candidate) -> Array:
-        """Variance of errors beyond noise in each channel on data not fitted, (3,); NaN where none was recorded."""
+        """Mean square of errors in each channel on data not fitted, (3,); NaN if not recorded."""
         errors = np.concatenate(self.point(self.unseen, candidate.point.hypothesis).errors)
-        return np.asarray(np.maximum(_mean(errors**2) - self.unseen.noise**2, 0.0))
+        return _mean(errors**2)
 
     def gaps(self, problem: Problem, best: Candidate) -> dict[str, Gap]:
         """Of the base, the numbers alone and the best hypothesis."""
@@ -92,7 +96,9 @@ class _Shown:
         spread = np.sqrt(_mean((measured - _mean(measured)) ** 2))
         rms = [np.sqrt(_mean(one**2)) / spread for one in errors]
         return {
-            name: Gap(*(float(one[i]) for one in rms), float(problem.noise[i] / spread[i]))
+            name: Gap(
+                float(rms[0][i]), float(rms[1][i]), float(rms[2][i]), float(problem.noise[i] / spread[i])
+            )
             for i, name in enumerate(OUTPUTS)
             if np.isfinite(spread[i])
         }

@@ -1,9 +1,9 @@
 """The one optimiser: bounded least squares on weighed errors, starts of recordings projected out.
 
 Starts (speeds, shaft torque) act nearly linearly, so they are eliminated in closed form and the fit sees the
-numbers alone (G. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413; L. Kaufman's derivatives, BIT 15 (1975)
-49). The rest is scipy's trust-region reflective method (M. Branch, T. Coleman, Y. Li, SIAM J. Sci. Comput. 21
-(1999) 1) with derivatives by finite differences of one batch simulation.
+numbers alone (G. Golub, V. Pereyra, SIAM J. Numer. Anal. 10 (1973) 413; L. Kaufman's derivatives, BIT 15
+(1975) 49). The rest is scipy's trust-region reflective method (M. Branch, T. Coleman, Y. Li, SIAM J. Sci.
+Comput. 21 (1999) 1) with derivatives by finite differences of one batch simulation.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ EVALUATIONS = 12  # of a round: the next one has better starts and weights
 
 @dataclass(frozen=True)
 class Point:
-    """A hypothesis at some numbers, the starts (5,) that go with them and errors of each recording (blocks x 3)."""
+    """A hypothesis at some numbers, its start of each recording (5,) and errors of each (blocks x 3)."""
 
     hypothesis: Hypothesis
     starts: tuple[Array, ...]
@@ -39,10 +39,10 @@ class Point:
 
 @dataclass(frozen=True)
 class Linearised:
-    """A point with its weighed errors `left` (numbers,) and `slopes` (numbers x coordinates), starts projected out.
+    """Weighed errors `left` (numbers,) and `slopes` (numbers x coordinates), without the starts' part.
 
-    `bases` are the starts' directions of each recording; `covariance` is that of the coordinates, by the spectrum
-    of the problem, so that it holds the misfit with its colour.
+    `bases` are the starts' directions of each recording; `covariance` is that of the coordinates, by the
+    spectrum of the problem, so that it holds the misfit with its colour.
     """
 
     point: Point
@@ -84,9 +84,7 @@ def fit(
     from scipy.optimize import least_squares
 
     hypothesis = point.hypothesis
-    coordinates = [
-        one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held
-    ]
+    coordinates = [one for one in problem.coordinates(hypothesis) if one.term >= 0 or one.name not in held]
     round_ = _Round(problem, hypothesis, point.starts, coordinates)
     lower, upper = _bounds(coordinates)
     found = least_squares(
@@ -110,11 +108,9 @@ def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearis
     round_ = _Round(problem, point.hypothesis, point.starts, coordinates)
     zero = np.zeros(len(coordinates))
     left, slopes = round_.residual(zero), round_.jacobian(zero)
-    covariance = np.linalg.pinv(slopes.T @ slopes, hermitian=True)
+    covariance: Array = np.asarray(np.linalg.pinv(slopes.T @ slopes, hermitian=True), dtype=float)
     data = len(left) - len(coordinates)  # behind it stands the prior
-    return Linearised(
-        point, tuple(coordinates), left[:data], slopes[:data], covariance, tuple(round_.bases)
-    )
+    return Linearised(point, tuple(coordinates), left[:data], slopes[:data], covariance, tuple(round_.bases))
 
 
 def _bounds(coordinates: Sequence[Coordinate]) -> tuple[Array, Array]:
@@ -127,7 +123,11 @@ class _Round:
     """Residual and derivatives while the starts' directions stay what they are."""
 
     def __init__(
-        self, problem: Problem, hypothesis: Hypothesis, states: Sequence[Array], coordinates: Sequence[Coordinate]
+        self,
+        problem: Problem,
+        hypothesis: Hypothesis,
+        states: Sequence[Array],
+        coordinates: Sequence[Coordinate],
     ) -> None:
         self.problem, self.hypothesis = problem, hypothesis
         self.states, self.coordinates = states, coordinates

@@ -56,7 +56,7 @@ class Coordinate:
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """`base` as it came; `numbers` as they are now; effects added, and which of their optional numbers move."""
+    """`base` as it came; `numbers` as they are now; effects, and which of their optional numbers move."""
 
     base: Model
     numbers: Mapping[str, float]
@@ -112,7 +112,9 @@ class Hypothesis:
         numbers = dict(self.numbers)
         values = [dict(use.values) for use in self.terms]
         for one, at in zip(coordinates, u.tolist(), strict=True):
-            (numbers if one.term < 0 else values[one.term])[one.name] = min(max(one.at(at), one.lower), one.upper)
+            (numbers if one.term < 0 else values[one.term])[one.name] = min(
+                max(one.at(at), one.lower), one.upper
+            )
         terms = tuple(EffectUse(use.id, v) for use, v in zip(self.terms, values, strict=True))
         return replace(self, numbers=numbers, terms=terms)
 

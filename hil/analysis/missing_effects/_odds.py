@@ -1,11 +1,11 @@
 """Odds of hypotheses: what each predicts, window by window, with the doubt of so few windows.
 
-The score of a hypothesis is its log likelihood less half the number of its free numbers times log N (G. Schwarz,
-Ann. Statist. 6 (1978) 461) less the log of how many sets of so many names there are (J. Chen, Z. Chen, Biometrika
-95 (2008) 759). Weights are the mean, over Bayesian bootstraps of the windows, of the softmax of the scores
-(pseudo-BMA+: Y. Yao, A. Vehtari, D. Simpson, A. Gelman, Bayesian Analysis 13 (2018) 917). Two names that leave
-about the same misfit, one better here and the other there, get modest odds by themselves; where every window
-says the same the odds are those of Bayes.
+The score of a hypothesis is its log likelihood less half the number of its free numbers times log N (G.
+Schwarz, Ann. Statist. 6 (1978) 461) less the log of how many sets of so many names there are (J. Chen, Z.
+Chen, Biometrika 95 (2008) 759). Weights are the mean, over Bayesian bootstraps of the windows, of the softmax
+of the scores (pseudo-BMA+: Y. Yao, A. Vehtari, D. Simpson, A. Gelman, Bayesian Analysis 13 (2018) 917). Two
+names that leave about the same misfit, one better here and the other there, get modest odds by themselves;
+where every window says the same the odds are those of Bayes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _DRAWS = 1000
 
 @dataclass(frozen=True)
 class Candidate:
-    """A fitted hypothesis, its log likelihood by window (windows,), its free numbers, and of how many names it chose."""
+    """A fitted hypothesis, log likelihood by window (windows,), free numbers, names to choose from."""
 
     point: Point
     windows: Array

@@ -1,8 +1,8 @@
 """Orders of turning in the misfit: which multiples of an angle a ripple would have to follow.
 
 The slope of the cost by a ripple e^{j·order·angle} is the misfit sent back through the plant (its adjoint),
-transformed over the measured angle in place of time; divided by the ripple's own energy behind the plant it is
-the drop that each order promises. One transform gives all orders.
+transformed over the measured angle in place of time; divided by the ripple's own energy behind the plant it
+is the drop that each order promises. One transform gives all orders.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def orders_of(problem: Problem, point: Point, side: Literal["wheel", "rotor"]) -
     for index, one in enumerate(problem.series):
         error = np.where(one.has, np.nan_to_num(point.errors[index]), 0.0)
         count = len(error)
-        frequency = np.fft.rfftfreq(count, 1.0 / one.rate_hz)
+        frequency: Array = np.fft.rfftfreq(count, 1.0 / one.rate_hz).astype(np.float64)
         response = np.zeros((3, len(frequency)), complex)
         response[:, 1:] = system.response(frequency[1:], _SOURCES[side])
         weight = np.where(one.has[:, None], problem.spectrum.weights(count, one.rate_hz).T ** 2, 0.0)

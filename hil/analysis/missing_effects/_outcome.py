@@ -16,7 +16,7 @@ Verdict = Literal["named", "none", "unknown"]
 
 @dataclass(frozen=True)
 class Named:
-    """A name with the probability that it is right; names of one class are those that the data cannot separate."""
+    """A name with the probability that it is right; `alike` are names that the data cannot tell from it."""
 
     use: EffectUse
     confidence: float
@@ -32,7 +32,7 @@ class Named:
 
 @dataclass(frozen=True)
 class Gap:
-    """rms(measured - simulated) / rms(measured - its mean) of a channel: by the base, by numbers alone, by the result."""
+    """rms(measured - simulated) / rms(measured - its mean) of a channel, by three models, and of noise."""
 
     base: float
     numbers: float
@@ -42,7 +42,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Curve:
-    """A latent torque over what it follows best: `torque_nm` at `at`, with the share of its variance that this explains."""
+    """A latent torque over what it follows best, and the share of its variance that this explains."""
 
     place: str
     over: str
@@ -55,8 +55,9 @@ class Curve:
 class Outcome:
     """All that `explain_gap` has to say.
 
-    `numbers` by name: base, found, standard error. `something_else` is what the model given back leaves of what the
-    numbers alone leave beyond noise, on data not fitted where there are any (0 to 1). `curves` show what stays.
+    `numbers` by name: base, found, standard error. `something_else` is what the model given back leaves of
+    what the numbers alone leave beyond noise, on data not fitted where there are any (0 to 1). `curves` show
+    what stays.
     """
 
     verdict: Verdict

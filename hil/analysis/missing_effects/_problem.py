@@ -23,8 +23,11 @@ _RANK = 1e-7  # smallest singular value of a start's sensitivities that counts, 
 
 @dataclass(frozen=True)
 class Problem:
-    """What is to be explained: recordings, their noise (3,), the spectrum by which errors are
-    weighed, the mean square of each channel (3,), sizes of numbers that may be zero, numbers that no channel shows."""
+    """What is to be explained: a base model and recordings.
+
+    `noise` (3,) is a standard deviation, `signal` (3,) a mean square of each channel, `spectrum` that by which
+    errors are weighed; `scales` has sizes of numbers that may be zero, `held` numbers that no channel shows.
+    """
 
     model: Model
     series: tuple[Series, ...]
@@ -41,7 +44,9 @@ class Problem:
 
     def coordinates(self, hypothesis: Hypothesis) -> list[Coordinate]:
         """Free numbers of a hypothesis: a gear ratio is one where the wheel side was recorded."""
-        return [one for one in hypothesis.coordinates(self.scales) if one.term >= 0 or one.name not in self.held]
+        return [
+            one for one in hypothesis.coordinates(self.scales) if one.term >= 0 or one.name not in self.held
+        ]
 
     @property
     def rate_hz(self) -> float:
@@ -77,10 +82,10 @@ class Problem:
             seen = np.clip(np.nan_to_num(seen, nan=_FAR), -_FAR, _FAR)
         transform = np.fft.rfft(seen, axis=1)
         transform *= self.spectrum.weights(values.shape[1], one.rate_hz)[:, one.has]
-        return transform.reshape(len(values), -1).view(float)
+        return np.asarray(transform.reshape(len(values), -1).view(float), dtype=float)
 
     def start_basis(self, index: int, hypothesis: Hypothesis, start: Array) -> tuple[Array, Array, Array]:
-        """Sensitivities of weighed errors to a recording's start: (numbers x states, sizes, orthonormal basis)."""
+        """Change of weighed errors with a recording's start (numbers x states), sizes, and its basis."""
         one = self.series[index]
         speed = max(float(np.nanmax(np.abs(one.samples[:, :2]))) if one.has[:2].any() else 1.0, 1e-6)
         torque = max(float(np.max(np.abs(one.torque))), 1e-9)
@@ -105,8 +110,10 @@ class Problem:
     def prior(self, coordinates: Sequence[Coordinate], u: Array) -> Array:
         """Numbers of the base away from what the base says, in standard deviations."""
         sigma = np.log(PRIOR_FACTOR)
-        away = [np.log(one.at(at) / one.base) if one.base else 0.0 for one, at in zip(coordinates, u, strict=True)]
-        return np.asarray(away) / sigma
+        away = [
+            np.log(one.at(at) / one.base) if one.base else 0.0 for one, at in zip(coordinates, u, strict=True)
+        ]
+        return np.asarray(np.array(away, dtype=float) / sigma, dtype=float)
 
     def prior_slopes(self, coordinates: Sequence[Coordinate]) -> Array:
         """Derivatives of `prior`, on the diagonal."""

@@ -1,15 +1,15 @@
 """Linear evidence over all names at once: what of the misfit could each effect take away?
 
 Each effect is simulated at the sizes that its own file gives (`probes`). The change d of the weighed outputs,
-beside what all numbers and starts could do (projected out), against the misfit r, has the bounded solution of a
-linear regression; its drop of -log L, α·d·r - ½ α²·d·d, ranks the names (score test, C. R. Rao, 1948). One optimum
-each, no search over simulations.
+beside what all numbers and starts could do (projected out), against the misfit r, has the bounded solution of
+a linear regression; its drop of -log L, α·d·r - ½ α²·d·d, ranks the names (score test, C. R. Rao, 1948). One
+optimum each, no search over simulations.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -33,7 +33,7 @@ _SWEEPS = 20  # of coordinate descent over at most two bounded factors
 
 @dataclass(frozen=True)
 class Promise:
-    """An effect at a size beside the numbers of a point, and the growth of log L that it promises to first order."""
+    """An effect at a size beside a point, and the growth of log L that it promises to first order."""
 
     use: EffectUse
     point: Point
@@ -116,10 +116,12 @@ def _probes_of(effect: Effect, scene: _Scene) -> Iterator[Probe]:
     for share in (0.01, 0.1):
         others = {p.name: 0.0 for p in effect.parameters if not p.optional}
         values = effect.completed(others | {first.name: share * _size(effect, scene)})
-        yield Probe(
-            (Direction(values, 0.0, 10.0),),
-            lambda a, v=values: v | {first.name: max(float(a[0]), 0.1) * float(v[first.name])},
-        )
+        yield Probe((Direction(values, 0.0, 10.0),), _scaled(values, first.name))
+
+
+def _scaled(values: dict[str, float | str], name: str) -> Callable[[Sequence[float]], dict[str, float | str]]:
+    """Values with one of them times a factor, not quite zero."""
+    return lambda factors: values | {name: max(float(factors[0]), 0.1) * float(values[name])}
 
 
 def _size(effect: Effect, scene: _Scene) -> float:
@@ -136,7 +138,8 @@ class _Projection:
         self.problem, self.at = problem, at
         self.slopes = at.slopes
         self.plain = [
-            problem.simulated(i, [at.point.hypothesis.packed()], s[None])[0] for i, s in enumerate(at.point.starts)
+            problem.simulated(i, [at.point.hypothesis.packed()], s[None])[0]
+            for i, s in enumerate(at.point.starts)
         ]
 
     def changes(self, hypotheses: Sequence[Hypothesis]) -> Array:
@@ -150,7 +153,9 @@ class _Projection:
         d = np.concatenate(parts)
         return np.asarray(d - self.slopes @ (self.at.covariance @ (self.slopes.T @ d)))
 
-    def explained(self, uses: Sequence[EffectUse], directions: Sequence[Direction]) -> tuple[list[float], float]:
+    def explained(
+        self, uses: Sequence[EffectUse], directions: Sequence[Direction]
+    ) -> tuple[list[float], float]:
         """Factors of the directions within their bounds, and the drop that they bring."""
         d = self.changes([self.at.point.hypothesis.with_term(use) for use in uses])
         if not np.all(np.isfinite(d)):
@@ -166,7 +171,7 @@ class _Projection:
 
 
 def promised_by(problem: Problem, at: Linearised, hypotheses: Sequence[Hypothesis]) -> list[float]:
-    """Growth of log L that each of some neighbours of a point promises to first order, of about their sizes."""
+    """Growth of log L that neighbours of a point promise to first order, of about their sizes."""
     project = _Projection(problem, at)
     d = project.changes(hypotheses)
     squares, right = np.sum(d * d, axis=0), d.T @ at.left

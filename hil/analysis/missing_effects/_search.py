@@ -36,7 +36,7 @@ _MOST_NAMES = 4
 
 @dataclass
 class Search:
-    """All hypotheses that were fitted, best of each set of names, and the problem that they are weighed by."""
+    """All hypotheses that were fitted, the best of each set of names, and what they are weighed by."""
 
     problem: Problem
     values: float = 2.0  # independent ones that the data hold, by the best hypothesis so far
@@ -62,12 +62,12 @@ class Search:
         self.problem = self.problem.weighed_by(powers.spectrum(self.problem.noise))
 
     def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = _ROUNDS) -> Candidate:
-        """Fit a hypothesis, weighed by the spectrum that it leaves itself, and remember it if it is the best of its names."""
+        """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept."""
         point = begun(self.problem, hypothesis, near.point.starts if near else None)
         best = before = self._candidate(point)
         problem = self.problem
         for number in range(rounds):
-            # slow misfit would trade a dead time for anything: it is known once errors are weighed by their colour
+            # slow misfit would trade a dead time for anything, until errors are weighed by their colour
             held = frozenset() if number else frozenset({"torque_delay"})
             point = fit(problem, point, held, EVALUATIONS if rounds > _SHORT else _FEW)
             after = self._candidate(point)
@@ -128,8 +128,8 @@ def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candid
 def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     """Hypotheses with one more effect, each with the growth of log L that it promises.
 
-    Those that the latent torque names (which promises no number, so they are all tried), and those that promise more
-    than they cost, best first.
+    Those that the latent torque names (which promises no number, so they are all tried), and those that
+    promise more than they cost, best first.
     """
     read = readings(best.point.hypothesis, done.problem.series)
     found = [(one.hypothesis, math.inf) for one in read[1 : 1 + _READ]]

@@ -27,9 +27,9 @@ _FIRST_SAMPLES = 5  # whose mean is the first guess of where a recording begins
 class Series:
     """One stretch of a recording.
 
-    `torque` is held over samples of `dt` seconds; `samples` (n x 3, in the order of `OUTPUTS`) has NaN where a
-    channel was not recorded; `measured` (blocks x 3) are means of `block` samples; `load` brakes the wheels in
-    N m, None where the model takes none.
+    `torque` is held over samples of `dt` seconds; `samples` (n x 3, in the order of `OUTPUTS`) has NaN where
+    a channel was not recorded; `measured` (blocks x 3) are means of `block` samples; `load` brakes the wheels
+    in N m, None where the model takes none.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Series:
     @property
     def has(self) -> npt.NDArray[np.bool_]:
         """Which channels were recorded, shape (3,)."""
-        return np.asarray(np.isfinite(self.samples[0]))
+        return np.asarray(np.isfinite(self.samples[0]), dtype=bool)
 
     @property
     def rate_hz(self) -> float:
@@ -53,13 +53,13 @@ class Series:
         return 1.0 / (self.dt * self.block)
 
     def first_state(self, gear_ratio: float) -> Array:
-        """A first guess of motor speed, wheel speed and shaft torque, and of no motion inside a tyre: (5,)."""
+        """A first guess of motor speed, wheel speed and shaft torque, no motion inside a tyre: (5,)."""
         motor, wheel, shaft = self.samples[:_FIRST_SAMPLES].mean(axis=0)
         if not np.isfinite(motor):
             motor = wheel * gear_ratio
         if not np.isfinite(wheel):
             wheel = motor / gear_ratio
-        return np.nan_to_num(np.array([motor, wheel, shaft, 0.0, 0.0]))
+        return np.asarray(np.nan_to_num(np.array([motor, wheel, shaft, 0.0, 0.0])), dtype=float)
 
     def angles(self, gear_ratio: float) -> Array:
         """Wheel and rotor angle in rad at every sample (n x 2), integrated from the recorded speeds."""
@@ -71,21 +71,24 @@ class Series:
         speeds = np.nan_to_num(np.column_stack([wheel, motor]))
         turned = np.cumsum(0.5 * self.dt * (speeds[1:] + speeds[:-1]), axis=0)
         first = self.first_wheel_angle_rad * np.array([1.0, gear_ratio])
-        return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]))
+        return np.asarray(first + np.concatenate([np.zeros((1, 2)), turned]), dtype=float)
 
 
 def series_of(model: Model, recordings: Sequence[Recording]) -> list[Series]:
     """The unbroken stretches of all recordings, each on its own even grid.
 
     Raises:
-        BadInputError: no torque request, none of the model's outputs, too short, or no load that the model takes.
+        BadInputError: no torque request, none of the model's outputs, too short, or no load that the model
+        takes.
     """
     found = []
     for recording in recordings:
         for part in unbroken(recording, model.load_input):
             found.append(_series(model, part))
     if not any(one.has.any() for one in found):
-        raise BadInputError(f"the recordings have none of {', '.join(OUTPUTS)}", fix="record at least a speed")
+        raise BadInputError(
+            f"the recordings have none of {', '.join(OUTPUTS)}", fix="record at least a speed"
+        )
     return found
 
 

@@ -1,18 +1,18 @@
 """The likelihood of errors: proven noise plus a coloured discrepancy whose scale the data set.
 
-In a window of some seconds each channel c and octave k has n bins of power P, mean over windows. Proven noise of power
-N fills them independently, as in Whittle's likelihood (P. Whittle, Arkiv för Matematik 2 (1953) 423). What no formula
-gets right does not: it comes from a few reversals, steps or slips, so that all bins of an octave rise and fall
-together and hold one independent value; and a part δ of each channel is right in no model. So n values count near
-the noise and one far from it, and nothing counts below δ:
+In a window of some seconds each channel c and octave k has n bins of power P, mean over windows. Proven noise
+of power N fills them independently, as in Whittle's likelihood (P. Whittle, Arkiv för Matematik 2 (1953)
+423). What no formula gets right does not: it comes from a few reversals, steps or slips, so that all bins of
+an octave rise and fall together and hold one independent value; and a part δ of each channel is right in no
+model. So n values count near the noise and one far from it, and nothing counts below δ:
 
     dlog L = -(1 + (n - 1) N/P) dP / (P + δ²),  from log L = 0 at P = N, hence
     log L = -log((P + δ²)/(N + δ²)) - (n - 1) N/δ² (log(1 + δ²/N) - log(1 + δ²/P)).
 
-So misfit counts with its own correlation: a name that ends in noise has odds as sharp as noise allows, two names far
-from it have modest ones, and no hypothesis gets a discrepancy for nothing (M. Kennedy, A. O'Hagan, J. R. Statist.
-Soc. B 63 (2001) 425; J. Brynjarsdóttir, A. O'Hagan, Inverse Problems 30 (2014) 114007; a power likelihood in the
-sense of J. Miller, D. Dunson, J. Am. Statist. Assoc. 114 (2019) 1113).
+So misfit counts with its own correlation: a name that ends in noise has odds as sharp as noise allows, two
+names far from it have modest ones, and no hypothesis gets a discrepancy for nothing (M. Kennedy, A. O'Hagan,
+J. R. Statist. Soc. B 63 (2001) 425; J. Brynjarsdóttir, A. O'Hagan, Inverse Problems 30 (2014) 114007; a power
+likelihood in the sense of J. Miller, D. Dunson, J. Am. Statist. Assoc. 114 (2019) 1113).
 """
 
 from __future__ import annotations
@@ -35,8 +35,10 @@ _LOWEST_HZ = 0.5  # upper edge of the first band; each further band is an octave
 
 @dataclass(frozen=True)
 class Spectrum:
-    """Variance per block mean by channel and band (3 x bands), as errors are weighed by: of noise and discrepancy
-    together, and larger by as much as bins there are of a discrepancy for one independent value."""
+    """Variance per block mean by channel and band (3 x bands), by which errors are weighed.
+
+    It is that of noise and discrepancy together, and larger where bins of a discrepancy hold one value.
+    """
 
     edges_hz: Array
     variance: Array
@@ -79,7 +81,7 @@ class Powers:
         return Spectrum(self.edges_hz, 1.0 / -self._slope(*self._terms(noise)))
 
     def log_likelihood(self, noise: Array) -> Array:
-        """Of each window, shape (windows,): the sum is that of the means, and each window's part is to first order."""
+        """Of each window, (windows,): the sum is that of the means, each window's part is to first order."""
         p, n, d, inside = self._terms(noise)
         whole = -np.log((p + d) / (n + d)) - (inside - 1.0) * n / d * (np.log1p(d / n) - np.log1p(d / p))
         slope = inside * self._slope(p, n, d, inside)
@@ -87,7 +89,7 @@ class Powers:
         return np.asarray(np.sum(terms, axis=(1, 2)))
 
     def values(self, noise: Array) -> float:
-        """How many independent values these errors hold: two for each bin of noise, two for a discrepancy's octave."""
+        """Independent values that errors hold: two for a bin of noise, two for an octave of discrepancy."""
         p, n, d, inside = self._terms(noise)
         each = -self._slope(p, n, d, inside) * p
         return float(2.0 * np.sum(self.bins * each))
@@ -98,7 +100,7 @@ class Powers:
         return np.asarray(-(1.0 + (inside - 1.0) * n / p) / (p + d) / inside)
 
     def _terms(self, noise: Array) -> tuple[Array, Array, Array, Array]:
-        """Mean power, at least that of noise, noise and discrepancy that no model is without; bins of a window."""
+        """Mean power, at least that of noise; noise; what no model is right to; bins of a window."""
         total = np.sum(self.bins, axis=0)
         n = np.where(np.isfinite(noise), noise, 1.0)[:, None] ** 2 * np.ones_like(total)
         p = np.maximum(np.sum(self.bins * self.power, axis=0) / np.maximum(total, 1e-300), n)
@@ -107,7 +109,7 @@ class Powers:
 
 
 def powers_of(errors: Sequence[Array], rate_hz: float, signal: Array) -> Powers:
-    """Powers of errors of each recording (blocks x 3, NaN where a channel is missing), by half-lapped windows."""
+    """Powers of errors of each recording (blocks x 3, NaN where not recorded), by half-lapped windows."""
     edges = edges_hz(rate_hz)
     power, bins = [], []
     for error in errors:

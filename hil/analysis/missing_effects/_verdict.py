@@ -1,12 +1,12 @@
 """The verdict: three lines, every term of which the data set.
 
-- `named`: an effect whose confidence is one half or more. Its confidence is the posterior weight of the hypotheses
-  that hold it, times the share of the misfit beyond noise that goes with it on data not fitted.
+- `named`: an effect whose confidence is one half or more: the posterior weight of the hypotheses that hold
+  it, times the share of the misfit beyond noise that goes with it on data not fitted.
 - `none`: numbers alone have half of the weight or more, and what they leave is proven noise.
 - `unknown`: anything else.
 
-The share is what keeps a name modest where something without a name is larger: a discrepancy that stays can make
-up a name that takes off less than itself.
+The share is what keeps a name modest where something without a name is larger: a discrepancy that stays can
+make up a name that takes off less than itself.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _SHOWN = 5  # alternatives
 
 @dataclass(frozen=True)
 class Judged:
-    """A search, and what a candidate leaves: variance on data not fitted, gaps of fitted and of other recordings."""
+    """A search, and what a candidate leaves: variance on data not fitted, gaps of both kinds of data."""
 
     done: Search
     left: Callable[[Candidate], Array]
@@ -51,14 +51,16 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     best, shares = _worth_telling(of, done.best)
     candidates = list(done.found.values())
     weights = weights_of(candidates, done.values)
-    at = linearised(done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise)), best.point)
+    at = linearised(
+        done.problem.weighed_by(best.point.powers(done.problem).spectrum(done.problem.noise)), best.point
+    )
     rivals = _alike(done, best, candidates)
     effects: list[Named] = []
     doubtful: list[Named] = []
     for index, use in enumerate(best.point.hypothesis.terms):
         named = _named(best, index, use, at, candidates, weights, rivals, shares[index])
         (effects if named.confidence >= HALF else doubtful).append(named)
-    numbers = _numbers(done, at)
+    numbers = _numbers(at)
     far = _is_far(numbers, done)
     if not best.names and not far:
         effects += _mismatches(done, numbers, float(weights[candidates.index(best)]))
@@ -76,9 +78,11 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
 
 
 def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]:
-    """Without effects that take off less than half of what stays without them, least first; shares of the others."""
+    """Without effects that take off less than half of what stays without them; shares of the others."""
     while best.names:
-        shares = [1.0 - _remains(of, _without(of.done, best, index), best) for index in range(len(best.names))]
+        shares = [
+            1.0 - _remains(of, _without(of.done, best, index), best) for index in range(len(best.names))
+        ]
         least = int(np.argmin(shares))
         if shares[least] >= HALF:
             return best, shares
@@ -103,9 +107,7 @@ def _named(
 ) -> Named:
     label = best.names[index]
     alike = rivals.get(label, ())
-    held = sum(
-        float(w) for one, w in zip(candidates, weights, strict=True) if {label, *alike} & {*one.names}
-    )
+    held = sum(float(w) for one, w in zip(candidates, weights, strict=True) if {label, *alike} & {*one.names})
     errors = {
         name: at.standard_error(index, name)
         for name in use.values
@@ -116,9 +118,13 @@ def _named(
 
 
 def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
-    """Share of the variance beyond noise that stays, channels weighed by how far theirs stood above noise before."""
+    """Share of the variance beyond noise that stays; channels near their noise count less.
+
+    What may be slow noise is none of it.
+    """
     noise = of.done.problem.noise**2
-    had, has = of.left(before), of.left(after)
+    had = of.left(before) - noise
+    has = np.maximum(of.left(after) - _slow_noise(of.done) * noise, 0.0)
     there = np.isfinite(had) & (had > 0.0)
     if not there.any():
         return 1.0
@@ -126,14 +132,17 @@ def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
     return float(min(np.sum(weight * np.minimum(has[there] / had[there], 2.0)) / np.sum(weight), 1.0))
 
 
+def _slow_noise(done: Search) -> float:
+    """Largest variance of block means that may be noise, in that of white noise."""
+    return float(1.0 + done.problem.series[0].block * (_SLOW_NOISE**2 - 1.0))
+
+
 def _is_noise(done: Search, best: Candidate) -> bool:
-    """Whether errors of samples are at most what is proven, or usual for slow noise."""
-    block = done.problem.series[0].block
+    """Whether errors are at most what is proven, or usual for slow noise."""
     errors = np.concatenate(best.point.errors)
-    allowed = 1.0 + block * (_SLOW_NOISE**2 - 1.0)
     for column, level in enumerate(done.problem.noise):
         seen = errors[np.isfinite(errors[:, column]), column]
-        if len(seen) and np.mean(seen**2) > allowed * level**2:
+        if len(seen) and np.mean(seen**2) > _slow_noise(done) * level**2:
             return False
     return True
 
@@ -164,11 +173,13 @@ def _others(best: Candidate, candidates: Sequence[Candidate], weights: Array) ->
                 held[label] = (held.get(label, (0.0, use))[0] + float(weight), use)
     ranked = sorted(held.values(), key=lambda pair: -pair[0])
     return [
-        Named(use, weight, {}, separating_test=EFFECTS[use.id].shown_by) for weight, use in ranked if weight > 0.0
+        Named(use, weight, {}, separating_test=EFFECTS[use.id].shown_by)
+        for weight, use in ranked
+        if weight > 0.0
     ]
 
 
-def _numbers(done: Search, at: Linearised) -> dict[str, tuple[float, float, float]]:
+def _numbers(at: Linearised) -> dict[str, tuple[float, float, float]]:
     """Numbers of the base: as it came, as found, standard error."""
     hypothesis = at.point.hypothesis
     return {
@@ -204,6 +215,10 @@ def _mismatches(
         sure = weight * float(ndtr((moved - 1.0) / max(doubt, 1e-12)))
         if sure >= HALF and moved > 1.0:
             found.append(
-                Named(EffectUse("parameter_mismatch", {"parameter": name, "value": value}), sure, {"value": error})
+                Named(
+                    EffectUse("parameter_mismatch", {"parameter": name, "value": value}),
+                    sure,
+                    {"value": error},
+                )
             )
     return found

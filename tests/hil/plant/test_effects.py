@@ -36,6 +36,8 @@ USES = {
     "shaft_hysteresis": {"stiffness_nm_rad": 900.0, "slip_rad": 0.01},
     "shaft_cubic_stiffness": {"coefficient_nm_rad3": 4e5},
     "running_resistance": {"rolling_nm": 30.0, "aero_nms2_rad2": 0.1},
+    "load_coulomb_friction": {"torque_nm": 30.0, "offset_nm": 5.0},
+    "load_viscous_drag": {"coefficient_nms_rad": 4.0},
     "wheel_order_disturbance": {"order": 3.0, "amplitude_nm": 4.0, "phase_rad": 0.3},
     "motor_order_ripple": {"order": 2.0, "amplitude_nm": 0.4, "phase_rad": 0.3},
 }
@@ -174,9 +176,34 @@ def turning(t, x, torque_nm):
     return [*chain(x, torque_nm, x[5], road, x[2] - x[4]), rate]
 
 
+def braked(x, torque_nm, brake):
+    """A torque on the wheel alone: the tyre carries none of it."""
+    p = THREE.parameters
+    road = p["tyre_stiffness"] * x[3] + p["tyre_damping"] * (x[2] - x[4])
+    rates = chain(x, torque_nm, 0.0, road, x[2] - x[4])
+    rates[2] -= brake / p["wheel_inertia"]
+    return rates
+
+
+def rubbing(t, x, torque_nm):
+    """The contract's form: dry friction on the wheel, wheel side."""
+    return braked(x, torque_nm, 30.0 * math.tanh(x[2] / 0.05) + 5.0)
+
+
+def dragging(t, x, torque_nm):
+    """The contract's form: drag proportional to the wheel's speed."""
+    return braked(x, torque_nm, 4.0 * x[2])
+
+
 @pytest.mark.parametrize(
     ("id_", "slope", "states"),
-    [("tyre_slip", slipping, 5), ("dyno_lag", late, 6), ("coulomb_friction", turning, 6)],
+    [
+        ("tyre_slip", slipping, 5),
+        ("dyno_lag", late, 6),
+        ("coulomb_friction", turning, 6),
+        ("load_coulomb_friction", rubbing, 5),
+        ("load_viscous_drag", dragging, 5),
+    ],
 )
 @pytest.mark.parametrize("kernel", [stepped, many])
 def test_an_effect_is_what_its_equation_says(id_, slope, states, kernel):

@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from hil.core.model import Model
@@ -47,7 +48,7 @@ def recording(
 ) -> Recording:
     """Random steps of torque with reversals, a small 3 Hz tone on them; speed with white noise at 1 kHz."""
     rng = np.random.default_rng(seed)
-    time = np.arange(round(seconds / _SAMPLE_S)) * _SAMPLE_S
+    time = np.arange(round(seconds / _SAMPLE_S), dtype=np.float64) * _SAMPLE_S
     torque = np.zeros(len(time))
     at, way = 0.4, 1.0
     while at < seconds - 1.0:
@@ -58,7 +59,7 @@ def recording(
     torque += 0.1 * torque_nm * np.sin(2.0 * np.pi * 3.0 * time) * (time > 0.5)
     speed = np.empty(len(time))
     _turn(torque, inertia, viscous, dry, gravity, speed)
-    shown = speed + rng.normal(0.0, noise_rad_s, len(time))
+    shown: npt.NDArray[np.float64] = speed + rng.normal(0.0, noise_rad_s, len(time))
     channels = {"time_s": time, "motor_torque_ref_nm": torque, "motor_speed_rad_s": shown}
     return Recording(channels, Path(f"turning mass {seed}.csv"))
 

@@ -46,6 +46,8 @@ CONTRACT = {
     "tyre_slip": ("slip_stiffness_nm", "relaxation_length_m"),
     "dyno_lag": ("time_constant_s",),
     "running_resistance": ("rolling_nm", "aero_nms2_rad2"),
+    "load_coulomb_friction": ("torque_nm", "offset_nm"),
+    "load_viscous_drag": ("coefficient_nms_rad",),
     "sensor_gain": ("gain",),
     "sensor_offset": ("offset",),
     "channel_skew": ("delay_s",),

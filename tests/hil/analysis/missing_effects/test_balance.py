@@ -1,0 +1,58 @@
+"""Numbers and names read off momentum and impulse, without a search."""
+
+from __future__ import annotations
+
+import pytest
+
+from hil.analysis.missing_effects._balance import read_numbers, readings
+from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._series import series_of
+from hil.core.model import Model
+from tests.hil.analysis.missing_effects.turning_mass import base, recording
+
+
+def _inertia(hypothesis: Hypothesis) -> float:
+    numbers = hypothesis.numbers
+    return numbers["motor_inertia"] + numbers["vehicle_inertia"] / numbers["gear_ratio"] ** 2
+
+
+@pytest.mark.parametrize("model", [base(0.54, 2.17), base(0.27), base(1.62)])
+def test_any_base_gets_the_inertia_and_drag_of_the_data(model: Model) -> None:
+    found = read_numbers(model, series_of(model, [recording(0.54, 2.17, 1.39)]))
+    assert found is not None
+    assert _inertia(found) == pytest.approx(0.54, rel=0.02)
+    assert found.numbers["viscous_drag"] == pytest.approx(2.17, rel=0.02)
+
+
+def test_dry_friction_leaves_least_and_brings_its_size() -> None:
+    model = base(1.0)
+    series = series_of(model, [recording(0.54, 2.17, 1.39)])
+    alone, *others = readings(Hypothesis(model, model.parameters), series)
+    friction = next(one for one in others if one.hypothesis.names == ("coulomb_friction",))
+    assert friction.left < 0.1 * alone.left
+    assert friction.hypothesis.terms[0].values["torque_nm"] == pytest.approx(1.39, rel=0.02)
+
+
+def test_gravity_is_a_ripple_of_order_one_in_phase_with_a_half_turn() -> None:
+    model = base(0.54)
+    series = series_of(model, [recording(0.54, 1.0, 0.3, 4.0, torque_nm=6.0)])
+    best = readings(Hypothesis(model, model.parameters), series)[1].hypothesis
+    assert best.names == ("motor_order_ripple",)
+    values = best.terms[0].values
+    assert values["order"] == pytest.approx(1.0, abs=0.2)  # of a momentum balance: a fit goes on from here
+    assert values["amplitude_nm"] == pytest.approx(4.0, rel=0.2)
+
+
+def test_a_chain_with_shafts_is_not_read() -> None:
+    model = Model(
+        "two_inertia",
+        {
+            "motor_inertia": 0.02,
+            "gear_ratio": 8.0,
+            "shaft_stiffness": 6000.0,
+            "shaft_damping": 20.0,
+            "vehicle_inertia": 300.0,
+            "torque_delay": 0.0,
+        },
+    )
+    assert readings(Hypothesis(model, model.parameters), series_of(model, [recording(0.54, 2.17)])) == []

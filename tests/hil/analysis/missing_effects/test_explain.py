@@ -1,0 +1,58 @@
+"""The whole way, on a turning mass by formulas of its own."""
+
+from __future__ import annotations
+
+import pytest
+
+from hil.analysis.missing_effects import Outcome, explain_gap
+from hil.core.errors import BadInputError
+from hil.core.model import Model
+from hil.core.recording import Recording
+from tests.hil.analysis.missing_effects.turning_mass import base, recording
+
+pytestmark = pytest.mark.slow
+
+
+def _asked(model: Model, *truth: float, torque_nm: float = 20.0) -> Outcome:
+    fit, held = (recording(*truth, torque_nm=torque_nm, seed=seed) for seed in (0, 5))
+    return explain_gap(model, [fit], [held])
+
+
+@pytest.mark.parametrize("model", [base(0.54), base(0.54, 2.17), base(0.27), base(1.62)])
+def test_dry_friction_is_named_from_any_base(model: Model) -> None:
+    found = _asked(model, 0.54, 2.17, 1.39)
+    assert found.verdict == "named"
+    assert [one.id for one in found.effects] == ["coulomb_friction"]
+    friction = found.effects[0]
+    assert friction.confidence > 0.95
+    assert friction.use.values["torque_nm"] == pytest.approx(1.39, rel=0.005)
+    assert found.numbers["viscous_drag"][1] == pytest.approx(2.17, rel=0.005)
+    assert (
+        found.holdout_gap["motor_speed_rad_s"].after
+        < 1.1 * found.holdout_gap["motor_speed_rad_s"].noise_floor
+    )
+    assert found.model.effects[0].id == "coulomb_friction"
+
+
+def test_gravity_beside_dry_friction_is_a_ripple_once_a_turn() -> None:
+    found = _asked(base(1.6), 0.54, 1.0, 0.3, 4.0, torque_nm=6.0)
+    names = {one.id: one.use.values for one in found.effects}
+    assert names.keys() == {"coulomb_friction", "motor_order_ripple"}
+    assert names["motor_order_ripple"]["order"] == pytest.approx(1.0, abs=0.01)
+    assert names["motor_order_ripple"]["amplitude_nm"] == pytest.approx(4.0, rel=0.01)
+    assert names["coulomb_friction"]["torque_nm"] == pytest.approx(0.3, rel=0.05)
+
+
+def test_a_right_base_has_nothing_missing_and_a_wrong_number_is_named() -> None:
+    right = _asked(base(0.54, 2.17), 0.54, 2.17)
+    assert (right.verdict, right.effects) == ("none", ())
+    wrong = _asked(base(0.54, 2.0), 0.54, 2.17)
+    assert [one.use.values["parameter"] for one in wrong.effects] == ["viscous_drag"]
+    assert wrong.effects[0].use.values["value"] == pytest.approx(2.17, rel=0.001)
+
+
+def test_a_recording_without_outputs_is_refused() -> None:
+    whole = recording(0.54, 2.17, seconds=5.0)
+    channels = {name: whole[name] for name in ("time_s", "motor_torque_ref_nm")}
+    with pytest.raises(BadInputError, match="none of"):
+        explain_gap(base(0.54), [Recording(channels, whole.source)])

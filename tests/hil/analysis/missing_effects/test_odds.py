@@ -1,0 +1,34 @@
+"""Odds: Bayes' where every window agrees, modest where windows disagree."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hil.analysis.missing_effects._fit import Point
+from hil.analysis.missing_effects._hypothesis import Hypothesis
+from hil.analysis.missing_effects._odds import Candidate, weights_of
+from tests.hil.analysis.missing_effects.turning_mass import base
+
+_MODEL = base(0.5)
+_POINT = Point(Hypothesis(_MODEL, _MODEL.parameters), (), ())
+
+
+def _candidate(windows: list[float]) -> Candidate:
+    return Candidate(_POINT, np.array(windows), 3, 20)
+
+
+def test_windows_that_agree_give_the_odds_of_bayes() -> None:
+    weights = weights_of([_candidate([0.1] * 20), _candidate([0.0] * 20)], 1000.0)
+    assert weights[0] == pytest.approx(1.0 / (1.0 + np.exp(-2.0)), abs=0.01)
+
+
+def test_windows_that_disagree_make_large_differences_modest() -> None:
+    better_here_worse_there = [30.0, -20.0] * 10
+    weights = weights_of([_candidate(better_here_worse_there), _candidate([0.0] * 20)], 1000.0)
+    assert 0.6 < weights[0] < 0.97  # Bayes would have e^100 to 1
+
+
+def test_a_free_number_costs_half_the_logarithm_of_the_values() -> None:
+    small, large = _candidate([0.0]), Candidate(_POINT, np.zeros(1), 4, 20)
+    assert small.score(400.0) - large.score(400.0) == pytest.approx(0.5 * np.log(400.0))

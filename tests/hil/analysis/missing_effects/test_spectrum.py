@@ -1,0 +1,59 @@
+"""The likelihood of errors: as Whittle's near the noise, one value an octave far from it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hil.analysis.missing_effects._spectrum import Powers, powers_of, white
+
+RATE_HZ = 250.0
+
+
+def _white_noise(deviation: float, seed: int = 0) -> Powers:
+    errors = np.random.default_rng(seed).normal(0.0, deviation, (100_000, 3))
+    return powers_of([errors], RATE_HZ, np.full(3, 1e4))
+
+
+def test_power_of_white_noise_is_its_variance_in_every_octave() -> None:
+    powers = _white_noise(0.3)
+    mean = np.sum(powers.power * powers.bins, axis=0) / np.sum(powers.bins, axis=0)
+    assert mean[:, 3:] == pytest.approx(0.09, rel=0.2)
+
+
+def test_noise_holds_two_values_a_bin_and_a_large_misfit_two_an_octave() -> None:
+    errors = np.random.default_rng(1).normal(0.0, 1.0, (10_000, 3))
+    powers = powers_of([errors], RATE_HZ, np.full(3, 1e-9))
+    near, far = powers.values(np.full(3, 1.1)), powers.values(np.full(3, 1e-6))
+    bins = 2.0 * float(np.sum(powers.bins))
+    windows, octaves = len(powers.power), powers.power.shape[2]
+    assert near == pytest.approx(bins, rel=0.05)
+    assert far == pytest.approx(2.0 * 0.5 * windows * 3 * octaves, rel=0.1)
+
+
+def test_slope_is_the_derivative_of_the_likelihood_by_power() -> None:
+    noise = np.full(3, 0.1)
+    one, more = _white_noise(0.3), _white_noise(0.3)
+    more = Powers(more.edges_hz, more.power * 1.0001, more.bins, more.signal)
+    grown = np.sum(more.log_likelihood(noise)) - np.sum(one.log_likelihood(noise))
+    weights = 1.0 / one.spectrum(noise).variance
+    change = np.sum(one.bins * (more.power - one.power) * weights)
+    assert grown == pytest.approx(-change, rel=1e-3)
+
+
+def test_halving_a_misfit_far_from_noise_gains_what_its_octaves_gain() -> None:
+    noise = np.full(3, 1e-6)
+    large, small = _white_noise(30.0), _white_noise(15.0)
+    small = Powers(large.edges_hz, large.power / 4.0, large.bins, np.full(3, 1e-9))
+    large = Powers(large.edges_hz, large.power, large.bins, np.full(3, 1e-9))
+    gain = np.sum(small.log_likelihood(noise)) - np.sum(large.log_likelihood(noise))
+    windows, octaves = len(large.power), large.power.shape[2]
+    assert gain == pytest.approx(0.5 * windows * 3 * octaves * np.log(4.0), rel=0.01)
+
+
+def test_squares_of_weighed_transforms_add_to_those_of_the_samples() -> None:
+    errors = np.random.default_rng(2).normal(0.0, 1.0, 1000)
+    weights = white(np.full(3, 0.5), RATE_HZ).weights(1000, RATE_HZ)[:, 0]
+    transform = np.fft.rfft(errors) * weights
+    # one-sided: the last bin of an even length counts twice
+    assert np.sum(np.abs(transform) ** 2) == pytest.approx(np.sum(errors**2) / 0.25, rel=0.01)
