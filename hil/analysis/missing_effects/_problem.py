@@ -25,8 +25,8 @@ _RANK = 1e-7  # smallest singular value of a start's sensitivities that counts, 
 class Problem:
     """What is to be explained: a base model and recordings.
 
-    `noise` (3,) is a standard deviation, `signal` (3,) a mean square of each channel, `spectrum` that by which
-    errors are weighed; `scales` has sizes of numbers that may be zero, `held` numbers that no channel shows.
+    `noise` (3,) is a standard deviation, `signal` (3,) a mean square of each channel, `spectrum` is what
+    errors are weighed by; `scales` are sizes of numbers that may be zero, `held` numbers without effect.
     """
 
     model: Model

@@ -132,7 +132,9 @@ def _suggested(done: Search, best: Candidate) -> list[tuple[Hypothesis, float]]:
     promise more than they cost, best first.
     """
     read = readings(best.point.hypothesis, done.problem.series)
-    found = [(one.hypothesis, math.inf) for one in read[1 : 1 + _READ]]
+    by_name = {one.hypothesis.names: one.hypothesis for one in reversed(read[1:])}
+    order = dict.fromkeys(one.hypothesis.names for one in read[1:])
+    found = [(by_name[names], math.inf) for names in [*order][:_READ]]
     promised = promises(done.problem, linearised(done.problem, best.point))
     cost = done.cost_of_a_number(best)
     promised = [one for one in promised if one.gain > cost]

@@ -62,8 +62,11 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
         (effects if named.confidence >= HALF else doubtful).append(named)
     numbers = _numbers(at)
     far = _is_far(numbers, done)
-    if not best.names and not far:
-        effects += _mismatches(done, numbers, float(weights[candidates.index(best)]))
+    if not far:
+        sure = sum(
+            float(w) for one, w in zip(candidates, weights, strict=True) if {*one.names} >= {*best.names}
+        )
+        effects += _mismatches(done, numbers, sure)
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
     verdict: Verdict = "unknown"
     if effects:

@@ -1,6 +1,6 @@
 """Dry friction on the load side: on the wheel, or on the load where a model has no wheel of its own.
 
-Coulomb's law against the motion of the wheel. Below 0.05 rad/s it fades, so that it holds nothing at standstill;
+Coulomb's law against the motion of the wheel. Below 0.05 rad/s it fades, so it holds nothing at standstill;
 what holds an axle at rest is `coulomb_friction`, rotor side.
 """
 
@@ -27,6 +27,7 @@ EFFECT = Effect(
     summary="Dry friction on the wheel (on the load, where the model has two inertias), wheel side.",
     signature="A constant torque against the wheel's motion that the shafts carry.",
     shown_by="Speed reversals with the shaft torque recorded.",
+    needs=("two_inertia", "three_inertia"),
     needs_reversals=True,
     source="C. A. Coulomb (1785); H. Olsson et al., European Journal of Control 4 (1998) 176-195",
     parameters=(

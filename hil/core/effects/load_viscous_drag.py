@@ -21,6 +21,7 @@ EFFECT = Effect(
     parameters=(
         Parameter("coefficient_nms_rad", "N m s/rad", 0.0, 1e4, "drag torque per wheel speed", typical=0.1),
     ),
+    needs=("two_inertia", "three_inertia"),
     # brakes the vehicle and takes as much from the wheel in its place: together it acts on the wheel alone
     law=Law(load=_brakes, tyre=_brakes),
 )
