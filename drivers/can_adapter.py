@@ -13,7 +13,7 @@ from typing import Any
 import can
 
 from hil.core.errors import BenchError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _LOG = logging.getLogger(__name__)
 

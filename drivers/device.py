@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.samples import SampleSource
+from hil.core.can.signals import Payloads
 from hil.core.controller import Controller
-from hil.core.signals import Payloads
 from hil.core.vehicle import VehicleAndRoad
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import NamedTuple
 
-from hil.core.frames import SENT_BY_HOST, FrameBlock
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock
 
 _MOST = 4096  # frames; who fetches none for seconds wants none
 

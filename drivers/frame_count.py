@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers.sample_clock import Array, Numbers, SampleClock
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 
 _AWAITED_S = 0.2  # a frame that is late by more than a turn may be followed, for so long, by one that is not
 _KEPT = 500  # counted frames that followers may still be asked about

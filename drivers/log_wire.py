@@ -7,8 +7,8 @@ from typing import cast
 import can
 
 from drivers.listening_wire import ListeningWire
-from hil.core.clock import Clock
-from hil.core.frames import FrameBlock, empty_block
+from hil.core.can.frames import FrameBlock, empty_block
+from hil.core.runtime.clock import Clock
 
 
 class LogWire(ListeningWire):

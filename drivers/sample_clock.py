@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 
 Array = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.int64]

@@ -12,9 +12,7 @@ import numpy.typing as npt
 
 from drivers.bus_health import BusHealth
 from drivers.echoes import Echoes
-from hil.core.clock import Clock
-from hil.core.errors import BenchError
-from hil.core.frames import (
+from hil.core.can.frames import (
     ERROR_FRAME,
     EXTENDED,
     FRAME,
@@ -25,8 +23,10 @@ from hil.core.frames import (
     inserted,
     joined,
 )
-from hil.core.printable import printable
-from hil.core.signals import Payloads
+from hil.core.can.signals import Payloads
+from hil.core.errors import BenchError
+from hil.core.errors.wording import printable
+from hil.core.runtime.clock import Clock
 
 _LOG = logging.getLogger(__name__)
 
@@ -63,7 +63,7 @@ _FULL_WORDS = ("buffer full", "queue full", "queue is full", "buffer overflow", 
 class Wire:
     """One bus, used from one thread, without a receive thread that could die unseen.
 
-    A bus that has a `recv_block` of its own (see `hil.core.frames`) is drained with it, or with
+    A bus that has a `recv_block` of its own (see `hil.core.can.frames`) is drained with it, or with
     `recv_epoch_block`, whose stamps count from 1970; any other message by message. A bus that has
     `send_frame(id, data)` is given no message object. The result is the same.
 

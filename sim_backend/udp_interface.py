@@ -16,7 +16,7 @@ from typing import Any
 import can
 import numpy as np
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FRAME, SENT_BY_HOST, FrameBlock, empty_block, joined
 from sim_backend.datagrams import (
     LARGEST,
     Incoming,

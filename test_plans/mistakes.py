@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterable, Iterator
 
 from hil.core.errors import BadInputError
-from hil.core.finding_list import listed
+from hil.core.errors.wording import listed
 
 
 class PlanError(BadInputError):

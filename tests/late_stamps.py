@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from can.interfaces import BACKENDS
 
-from hil.core.frames import FrameBlock
+from hil.core.can.frames import FrameBlock
 from sim_backend.can_interface import SimulatedBus
 from sim_backend.udp_interface import LoopbackBus
 from tests.benches_for_tests import sim_bench

@@ -9,9 +9,9 @@ from drivers.dyno._node import ENABLED, FAULT, STATE_MASK, DynoNode
 from drivers.examination import Examined, Finding
 from drivers.loop import BusLoop
 from drivers.wire import Wire
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock, standard
 from hil.core.errors import DeviceError
-from hil.core.frames import SENT_BY_HOST, FrameBlock, standard
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _HIGHEST_NODE = 127
 _ANSWERS_WITHIN_S = 0.3

@@ -10,7 +10,7 @@ from drivers.panel._returning_line import ReturningLine
 from drivers.samples import SampleSource
 from hil.core.ak import BUSY, OFFLINE, UNKNOWN, Answer, Request, Telegrams, answer_of
 from hil.core.errors import BenchError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.core.vehicle import VehicleAndRoad
 
 REMOTE, STATE, ALARMS, RESET = "SREM", "ASTZ", "ASTF", "SRES"

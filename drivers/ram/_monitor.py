@@ -15,10 +15,9 @@ from drivers.ram._packing import packed
 from drivers.ram._setup import Setup
 from drivers.samples import Counting, Samples, Stream
 from drivers.wire import Wire
-from hil.core.errors import BenchError, DeviceError
-from hil.core.frames import SENT_BY_HOST, FrameBlock, standard
-from hil.core.symbols import Symbol, Symbols
-from hil.core.xcp import (
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock, standard
+from hil.core.can.symbols import Symbol, Symbols
+from hil.core.can.xcp import (
     DAQ_RUNNING,
     ERROR,
     LARGEST_ODT_NUMBER,
@@ -28,6 +27,7 @@ from hil.core.xcp import (
     TimeStamps,
     in_words,
 )
+from hil.core.errors import BenchError, DeviceError
 
 _FIRST_SAMPLE_S = 0.5
 _UNANSWERED_S = 1.8  # three beats and a little

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hil.agent._kept_runs import KeptRun
 from hil.core.errors import HilError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.benches import Bench
 from hil.execution.run_execution import RunExecution

@@ -29,7 +29,7 @@ from hil.campaign import (
     load_setting,
     write_begun,
 )
-from hil.campaign import carry_out as simulate
+from hil.campaign import execute as simulate
 from hil.engine import StopRequest
 from reports import HTML, PDF
 from reports.campaign_report import campaign_page

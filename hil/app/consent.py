@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hil.app.feedback import Feedback
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine import BenchFile
 from hil.engine.prediction.envelope import Envelope
 from hil.engine.run.preflight import Rehearsal
@@ -65,6 +65,6 @@ def _question(plans: tuple[Plan, ...], bench: BenchFile, envelope: Envelope) -> 
             lines.append(f"The plan {plan.name} is hazardous{why}")
         rehearsal = Rehearsal(bench)
         for step in (*plan.steps, *plan.finally_):
-            step.carry_out(rehearsal)
+            step.execute(rehearsal)
         lines += [f"Confirmed in advance for each run of {plan.name}: {text}" for text in rehearsal.prompts]
     return "\n".join(lines)

@@ -17,8 +17,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import printable
 from hil.core.files import of_the_system, refuse_special
-from hil.core.printable import printable
 
 _PACKAGES = ("hil", "drivers", "sim_backend", "test_plans", "reports")
 _HEAD = "# log of hil"

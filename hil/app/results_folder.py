@@ -13,7 +13,7 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, read_text, refuse_special, replacing
-from hil.core.locks import HeldError, lock_on
+from hil.core.files.locks import HeldError, lock_on
 
 logger = logging.getLogger(__name__)
 

@@ -10,9 +10,9 @@ from typing import Any
 import yaml
 
 from hil.core.errors import BadInputError
+from hil.core.files.toml_file import parse_toml
 from hil.core.recording import Recording
 from hil.core.result import RunResult
-from hil.core.toml_file import parse_toml
 
 PLAN, BENCH, MODEL = "plan.yaml", "bench.toml", "model.toml"
 

@@ -89,7 +89,7 @@ def run_series(
         default=f"{plans[0].name}-series",
     ) as place:
         for number, (group, plan, bench) in enumerate(_each(plans, benches), 1):
-            with settings.carry_out(plan, bench, place.folder / f"{number:03d}") as run:
+            with settings.execute(plan, bench, place.folder / f"{number:03d}") as run:
                 done.append((group, run))
                 write_atomically(place.folder / SUMMARY, to_json(_summary(done)) + "\n")
                 report_run(run)

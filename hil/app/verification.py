@@ -9,9 +9,15 @@ from pathlib import Path
 from hil.app.result_file import RESULT, text_of
 from hil.core.errors import BadInputError
 from hil.core.files import read_bytes, sha256_of
+from hil.core.files.signatures import (
+    BrokenSignatureError,
+    fingerprint,
+    hashes_of,
+    read_signature,
+    signatures_in,
+)
 from hil.core.recording import RUN, Recording, read_recording, run_of
 from hil.core.result import RunResult
-from hil.core.signatures import BrokenSignatureError, fingerprint, hashes_of, read_signature, signatures_in
 from hil.engine import RECORDING
 from reports import HTML, PDF, claim_of
 from reports.provenance import stored_files

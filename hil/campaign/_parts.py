@@ -16,8 +16,8 @@ from hil.analysis.campaigns import column_units
 from hil.campaign._batches import Batch, Row
 from hil.campaign._setting import Setting
 from hil.core.errors import BadInputError
-from hil.core.file_format import FORMAT
 from hil.core.files import read_text, replacing, write_atomically
+from hil.core.files.kinds import FORMAT
 
 BEGUN, FOLDER = "begun.json", "simulations"
 _NOT_THIS = "name another place with --out, or begin it anew with --overwrite"

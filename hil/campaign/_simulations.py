@@ -16,7 +16,7 @@ from hil.campaign._setting import Setting
 from hil.core.channels import CHANNELS
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import HilError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.core.result import CriterionResult, verdict_of
 from hil.engine.prediction.batch_prediction import BatchPrediction
 from test_plans import Choices, Plan, judge, plan_from_text

@@ -20,7 +20,7 @@ from hil.campaign._batches import Batch, Done, MakeRows, Row
 from hil.campaign._setting import Setting, load_setting
 from hil.campaign._simulations import Simulations
 from hil.core.errors import BadInputError, BenchError, HilError
-from hil.core.extras import not_installed
+from hil.core.errors.extras import not_installed
 from hil.engine.stop.stopping import held_back
 
 try:

@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 
 _LONGEST = 40
 _SIGNS = str.maketrans(

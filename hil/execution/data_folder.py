@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hil.core.errors import BadInputError
 from hil.core.files import make_directory, read_text, write_atomically
-from hil.core.locks import HeldError, lock_on
+from hil.core.files.locks import HeldError, lock_on
 
 _LONGEST = 40
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hil.app.worker.served_run import RUNNER
 from hil.core.errors import BenchError
-from hil.core.locks import HeldError, lock_on
+from hil.core.files.locks import HeldError, lock_on
 from hil.core.result import RunResult
 from hil.engine.ipc.ipc_messages import EmergencyAsked, Message, RunAsked, Typed, from_line, to_line
 from hil.engine.run.operator import END, PAUSE, RESUME

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hil.core.controller import Controller
-from hil.core.extras import need
+from hil.core.errors.extras import need
 from hil.core.files import replacing
 from hil.core.model import Model, model_to_toml
 from hil.fmu.axle import Axle

@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.chain import Chain
-from hil.core.compiled import compiled, compiled_without_lock, inlined
 from hil.core.model import TransferFunction
-from hil.core.thread_map import map_on_threads, threads
+from hil.core.runtime.compiled import compiled, compiled_without_lock, inlined
+from hil.core.runtime.thread_map import map_on_threads, threads
 from hil.plant import _forces as F
 from hil.plant import _laws as L
 from hil.plant import _slots as P

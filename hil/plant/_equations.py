@@ -7,7 +7,7 @@ Wheel-side quantities are sums of both sides.
 
 from __future__ import annotations
 
-from hil.core.compiled import inlined
+from hil.core.runtime.compiled import inlined
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X

@@ -7,7 +7,7 @@ Source: B. Armstrong-Hélouvry, P. Dupont, C. Canudas de Wit, Automatica 30 (199
 
 from __future__ import annotations
 
-from hil.core.compiled import compiled
+from hil.core.runtime.compiled import compiled
 
 
 @compiled

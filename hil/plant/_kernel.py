@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba.np.unsafe.ndarray import to_fixed_tuple
 
-from hil.core.compiled import compiled, inlined
+from hil.core.runtime.compiled import compiled, inlined
 from hil.plant import _equations as E
 from hil.plant import _laws as L
 from hil.plant import _slots as P

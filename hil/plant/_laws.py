@@ -28,8 +28,8 @@ from typing import Any, NamedTuple
 
 from numba import njit
 
-from hil.core.compiled import depends_on
 from hil.core.effects import STRANGERS, Effect
+from hil.core.runtime.compiled import depends_on
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._tuples import put

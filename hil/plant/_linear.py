@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.compiled import compiled, inlined
 from hil.core.errors import BadInputError
 from hil.core.model import Model
+from hil.core.runtime.compiled import compiled, inlined
 from hil.plant import _slots as P
 from hil.plant import _states as X
 from hil.plant._table import Table

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from hil.core.chain import Chain
-from hil.core.compiled import inlined
 from hil.core.effects import Motion
+from hil.core.runtime.compiled import inlined
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X

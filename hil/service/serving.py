@@ -17,7 +17,7 @@ import uvicorn
 from sqlalchemy import Engine
 
 from hil.core.errors import BadInputError, BenchError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine import StopRequest
 from hil.execution.benches import benches_of
 from hil.execution.daemon_thread import going_on

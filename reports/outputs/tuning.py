@@ -10,7 +10,7 @@ import numpy as np
 
 from hil.analysis.tuning import RefinedRun, Standing, Tuning, front_of, metrics_of, point_of, values_of
 from hil.core.controller import Controller, controller_to_toml
-from hil.core.digits import share
+from hil.core.errors.digits import share
 from hil.core.result import Segment
 from reports import drawings
 

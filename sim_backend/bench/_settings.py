@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hil.core.dbc import Names
+from hil.core.can.dbc import Names
 from hil.core.model import Model
 from sim_backend.rmcu import RamSettings
 

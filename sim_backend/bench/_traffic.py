@@ -7,11 +7,11 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from hil.core.checksum import crc8_of
-from hil.core.compiled import compiled
+from hil.core.can.checksum import crc8_of
+from hil.core.can.frames import FRAME, FrameBlock, longest_frame_s
+from hil.core.can.signals import FrameLayout, payload_with
 from hil.core.conventions import TICK_S
-from hil.core.frames import FRAME, FrameBlock, longest_frame_s
-from hil.core.signals import FrameLayout, payload_with
+from hil.core.runtime.compiled import compiled
 
 #: A frame with the column of a bench row that each of its signals shows.
 Shown = tuple[FrameLayout, dict[str, int]]

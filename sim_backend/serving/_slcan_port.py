@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.frames import EXTENDED, FrameBlock
+from hil.core.can.frames import EXTENDED, FrameBlock
 
 _BELL, _OK = b"\a", b"\r"
 _MOST_WAITING = 1 << 18  # bytes; some seconds of a full bus

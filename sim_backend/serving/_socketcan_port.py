@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from hil.core.frames import ERROR_FRAME, EXTENDED, FrameBlock
+from hil.core.can.frames import ERROR_FRAME, EXTENDED, FrameBlock
 
 _FRAME = struct.Struct("=IB3x8s")  # linux/can.h: struct can_frame
 _STAMP = struct.Struct("=qq")  # struct timespec

@@ -19,9 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hil.core.compiled import compiled
 from hil.core.recording import Recording
 from hil.core.result import Segment
+from hil.core.runtime.compiled import compiled
 from test_plans.conductor import Array
 
 #: A channel with noise that repeats for longer than this is frozen, and one whose witness moves, s.

@@ -46,7 +46,7 @@ class Step(Strict, ABC):
         return not type(self).__module__.startswith("test_plans.")
 
     @abstractmethod
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Do it on the bench; returns when done."""
 
     @abstractmethod

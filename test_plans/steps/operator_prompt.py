@@ -23,7 +23,7 @@ class OperatorPrompt(Step):
         description="time for an answer, s; without one the run ends; default: 600",
     )
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         """Ask."""
         conductor.prompt(self.text, self.timeout_s)
 

@@ -199,11 +199,11 @@ def test_the_commands_of_a_page_work_one_after_the_other(page, stage, served):
         elif name == "bench agent":
             assert _interrupted(line.arguments) == 130
         else:
-            _carry_out(name, arguments)
+            _execute(name, arguments)
         print(f"{time.monotonic() - began:6.1f} s  {line}")
 
 
-def _carry_out(name: str, arguments: list[str]) -> None:
+def _execute(name: str, arguments: list[str]) -> None:
     done = subprocess.run(
         [HIL, *name.split(), *arguments],
         capture_output=True,

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from hil.core.can.frames import FrameBlock
 from hil.core.controller import load_controller
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
 from sim_backend.bench import DYNO_BUS, RMCU_BUS, Fault
 from sim_backend.can_interface import attached
 from test_plans import load_plan

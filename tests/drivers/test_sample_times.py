@@ -11,8 +11,8 @@ from hypothesis import assume, event, given, note, settings
 from hypothesis import strategies as st
 
 from drivers import SampleAssembler
+from hil.core.can.frames import FrameBlock
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
 from tests.drivers.wires import (
     BEGIN,
     CONTROL,

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from drivers import Wire
+from hil.core.can.frames import FrameBlock, frames
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock, frames
 from tests.clocks import SteppedClock
 
 

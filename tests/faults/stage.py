@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.frames import FrameBlock
 from hil.core.conventions import TICK_S
-from hil.core.frames import FrameBlock
 from hil.plant.closed_loop import tick as T
 from sim_backend.bench import RMCU_BUS, SimulatedBench
 from sim_backend.can_interface import prepare

@@ -144,7 +144,7 @@ def packages(place: Path) -> Iterator[None]:
         yield
 
 
-def carry_out(fault: Fault, phase: str, folder: Path) -> Outcome | None:
+def execute(fault: Fault, phase: str, folder: Path) -> Outcome | None:
     """The cell's outcome; None if the run did not come as far as its phase, or its disk stood still.
 
     What is missing was measured, and not written: a disk that keeps another file waiting as long is no

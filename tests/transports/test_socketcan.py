@@ -13,9 +13,9 @@ import can
 import pytest
 
 from drivers import BusHealth, BusLoop, CanSettings, Wire, open_can
-from hil.core.clock import WallClock
+from hil.core.can.frames import EXTENDED, FrameBlock
 from hil.core.errors import BenchError
-from hil.core.frames import EXTENDED, FrameBlock
+from hil.core.runtime.clock import WallClock
 from tests.can_vm.interfaces import ip, plugged_in, unplugged, up
 from tests.transports import contract, far_ends
 

@@ -10,7 +10,7 @@ import yaml
 
 from hil.analysis.comparison._runs import CONTROLLERS, PLAN, ComparedRun, loaded_in_turn
 from hil.core.errors import BadInputError
-from hil.core.toml_file import parse_toml
+from hil.core.files.toml_file import parse_toml
 
 Kind = Literal["controller", "model", "bench", "plan"]
 _NOTHING = "–"

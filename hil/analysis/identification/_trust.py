@@ -16,8 +16,8 @@ from hil.analysis.frequency_response import FrequencyResponse, check_coherence
 from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.analysis.identification._order import Candidate
 from hil.core.conventions import COMFORT_BAND_HZ
-from hil.core.digits import share
 from hil.core.errors import BadInputError
+from hil.core.errors.digits import share
 
 Array = npt.NDArray[np.float64]
 Trust = Literal["linear", "doubtful"]

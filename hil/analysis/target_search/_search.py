@@ -83,7 +83,7 @@ class Search:
                 break
         return kept
 
-    def carry_out(self, every: Set) -> None:
+    def execute(self, every: Set) -> None:
         """Search; ends early when somebody asks to stop, and keeps what is known."""
         try:
             self._alone(every)

@@ -11,10 +11,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from hil.core.channels import OUTPUTS
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import did_you_mean
+from hil.core.files.shipped import shipped_file
+from hil.core.files.toml_file import parse_toml, toml_text
 from hil.core.model import Model, load_model
-from hil.core.shipped import shipped_file
-from hil.core.suggestion import did_you_mean
-from hil.core.toml_file import parse_toml, toml_text
 from test_plans import Plan, load_plan
 
 Range = tuple[float, float]

@@ -124,8 +124,8 @@ def _cost(share: float) -> float:
 class Trial:
     """Carries guesses out; of the plan's criteria, only those that are asked for are judged."""
 
-    def __init__(self, base: Model, carry_out: CarryOut, targets: Targets) -> None:
-        self.base, self.targets, self._carry_out = base, targets, carry_out
+    def __init__(self, base: Model, execute: CarryOut, targets: Targets) -> None:
+        self.base, self.targets, self._execute = base, targets, execute
         wanted = [c for c in targets.plan.criteria if c.id in targets.values or c.below]
         self.plan = targets.plan.model_copy(update={"criteria": tuple(wanted)})
 
@@ -145,7 +145,7 @@ class Trial:
         Raises:
             HilError: the run would fail.
         """
-        return self._carry_out(plan, guess.model(self.base), guess.held)
+        return self._execute(plan, guess.model(self.base), guess.held)
 
     def _outcome(self, found: Predicted, model: Model) -> Outcome:
         criteria = judge(self.plan, found.recording, found.segments, measured=False, device=False)

@@ -13,7 +13,7 @@ from types import TracebackType
 
 from hil.analysis.tuning._trial import Trial, Tried
 from hil.core.conventions import ENDING_SIGNALS
-from hil.core.other_process import end_with_parent
+from hil.core.runtime.other_process import end_with_parent
 
 Work = tuple[Mapping[str, float], int]
 _trial: Trial | None = None  # of this process, where it is one of a pool's

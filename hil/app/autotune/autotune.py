@@ -70,7 +70,7 @@ def autotune(
             report_decision(closing.decisions[-1])
 
         loop = AutotuneLoop(settings, place.folder, closing, keep)
-        code = loop.carry_out()
+        code = loop.execute()
         with feedback.progress("the report"):
             summary = _write(loop, settings, place)
     return Outcome(Autotuned(closing, code), summary, place.folder)

@@ -15,8 +15,8 @@ from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 from hil.app.tuning.bench_runs import WireBench
 from hil.app.tuning.refinement import Refined
 from hil.app.tuning.search import Search
-from hil.core.digits import share
 from hil.core.errors import HilError
+from hil.core.errors.digits import share
 from hil.engine import RECORDING
 from reports.outputs.autotune import Closing, Decision, Stage, effects_in_words
 from reports.tuning_report import Shown
@@ -38,7 +38,7 @@ class AutotuneLoop:
         self.shown: list[Shown] = []
         self.model = settings.given
 
-    def carry_out(self) -> int:
+    def execute(self) -> int:
         """All stages; the exit code. What ended it stands in `closing`."""
         code = 0
         try:

@@ -101,7 +101,7 @@ class Stages:
         if made is not None:
             self._spent_s += made.bench_time_s
             return StageOutcome(folder, 0, tuple(made.segments), made.criteria)
-        with settings.runs.carry_out(plan, bench, folder) as run:
+        with settings.runs.execute(plan, bench, folder) as run:
             result, code, error = run.result, run.exit_code, run.outcome.error
         self._spent_s += result.bench_time_s
         if code == EXIT_CODE:

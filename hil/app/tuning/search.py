@@ -27,8 +27,8 @@ from hil.app.tuning.confirmation import Ran, as_json
 from hil.app.tuning.refinement import Refined
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BadInputError
+from hil.core.files.toml_file import toml_text
 from hil.core.model import load_model
-from hil.core.toml_file import toml_text
 from hil.engine import BenchFile, load_bench
 from hil.engine.prediction.batch_prediction import BatchPrediction
 from reports import HTML, PDF
@@ -120,7 +120,7 @@ def write_results(
     """Write all results of a search, and of runs that confirmed or refined it; the content of tune.json."""
     shown = []
     for one in found.shown:
-        predicted = search.trial.carry_out(found.trial.draws[0].model, one.controller, 0.0, 0, whole=True)
+        predicted = search.trial.execute(found.trial.draws[0].model, one.controller, 0.0, 0, whole=True)
         shown.append(Shown(one.name, predicted.recording, predicted.segments))
     if ran is not None:
         shown.insert(1, ran.shown)

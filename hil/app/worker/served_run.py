@@ -122,7 +122,7 @@ def main() -> None:
     try:
         request = service.request()
         if request is not None:
-            code = _carry_out(request, service, pipe)
+            code = _execute(request, service, pipe)
     except HilError as error:
         code = error.exit_code
         pipe.send(Refused(error=ErrorData.of(error)))
@@ -151,7 +151,7 @@ def _stop_line() -> IpcPipe | None:
     return IpcPipe(line, line)
 
 
-def _carry_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
+def _execute(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
     from hil.app.log import LOG
     from hil.app.run import RunSettings
     from hil.engine.ipc.ipc_data import ended_of, request_of
@@ -170,7 +170,7 @@ def _carry_out(asked: RunAsked, service: _Service, pipe: IpcPipe) -> int:
         feedback=service,
         stops=request.stops,
     )
-    with settings.carry_out(request.plan, request.bench, out) as run:
+    with settings.execute(request.plan, request.bench, out) as run:
         outcome = run.outcome
         outcome.result = run.result
         pipe.send(ended_of(outcome))

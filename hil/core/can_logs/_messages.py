@@ -14,6 +14,7 @@ from typing import Any, TextIO
 
 import can
 
+from hil.core.can.frames import FrameBlock
 from hil.core.can_logs._log import (
     IMPOSSIBLE,
     LONG,
@@ -28,9 +29,8 @@ from hil.core.can_logs._log import (
     ordered,
 )
 from hil.core.errors import BadInputError
+from hil.core.errors.wording import printable
 from hil.core.files import of_the_system
-from hil.core.frames import FrameBlock
-from hil.core.printable import printable
 
 _KINDS = {".asc": "an ASC log", ".blf": "a BLF log", ".trc": "a TRC log", ".log": "a candump log (-l or -L)"}
 _SINCE_1970_S = 1e8  # stamps below are none of wall-clock time: a log's own begin, an adapter's clock

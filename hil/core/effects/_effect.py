@@ -12,8 +12,8 @@ from hil.core.channels import OUTPUTS
 from hil.core.effects._law import Law
 from hil.core.effects._probe import Probes
 from hil.core.errors import BadInputError
-from hil.core.mistakes import Mistakes
-from hil.core.suggestion import closest, did_you_mean
+from hil.core.errors.mistakes import Mistakes
+from hil.core.errors.wording import closest, did_you_mean
 
 #: What a model gives, and so what a sensor effect can bend.
 SENSED = ("motor_torque_nm", *OUTPUTS)

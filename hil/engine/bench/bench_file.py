@@ -12,13 +12,12 @@ from pydantic import ValidationError
 
 from drivers import DeviceTable
 from hil.core.errors import BadInputError
-from hil.core.file_kind import refuse_other_kind
-from hil.core.mistakes import keyed, refuse
-from hil.core.printable import is_printable, printable
-from hil.core.shipped import shipped_file
-from hil.core.suggestion import did_you_mean
-from hil.core.table_mistakes import mistakes_of
-from hil.core.toml_file import parse_toml, toml_text
+from hil.core.errors.mistakes import keyed, refuse
+from hil.core.errors.table_mistakes import mistakes_of
+from hil.core.errors.wording import did_you_mean, is_printable, printable
+from hil.core.files.kinds import refuse_other_kind
+from hil.core.files.shipped import shipped_file
+from hil.core.files.toml_file import parse_toml, toml_text
 from hil.engine.bench._bench_checks import contradictions, device_mistakes, file_mistakes, unprintable
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.device_kinds import device_tables

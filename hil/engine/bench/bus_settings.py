@@ -8,7 +8,7 @@ from typing import Any
 import can
 
 from drivers import CanSettings
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.engine.bench.bench_tables import Bus, Timing
 
 # python-can's own interfaces by what their classes take; others swallow it in silence.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 
 from hil.core.errors import BadInputError
-from hil.core.printable import printable
+from hil.core.errors.wording import printable
 from hil.core.result import AcceptedExpiry
 from hil.engine.bench.bench_tables import BenchFile
 

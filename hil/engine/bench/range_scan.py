@@ -8,8 +8,8 @@ import numpy as np
 
 from drivers import Samples, Stream
 from hil.core.channels import CHANNELS
-from hil.core.compiled import compiled
 from hil.core.result import LimitResult
+from hil.core.runtime.compiled import compiled
 from hil.engine.bench.ranges import Range, slope_unit
 from test_plans import Array
 

@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.core.errors import BadInputError
+from hil.core.errors.mistakes import line_of
 from hil.core.recording import Recording, read_recording
 from hil.core.result import Segment
-from hil.core.toml_lines import line_of
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.ipc.ipc import Progress, RunOutcome, RunRequest, Terminal
 from hil.engine.run.run import run_plan

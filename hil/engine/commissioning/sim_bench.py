@@ -13,8 +13,8 @@ import tomli_w
 from drivers import PanelTable, RamTable, RmcuTable
 from hil.core.effects import EFFECTS
 from hil.core.errors import BadInputError, BenchError
+from hil.core.errors.wording import printable
 from hil.core.model import Model, load_model, model_from_dict, model_to_toml
-from hil.core.printable import printable
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.simulable import dyno_of, ram_of, rmcu_of, simulated
 from hil.engine.stop.stopping import StopRequest

@@ -13,9 +13,9 @@ from typing import Protocol
 
 from hil.core.errors import HilError
 from hil.core.model import Model
-from hil.core.other_process import OtherProcess
 from hil.core.recording import Recording
 from hil.core.result import RunResult
+from hil.core.runtime.other_process import OtherProcess
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.engine.stop.stopping import StopRequest

@@ -83,7 +83,7 @@ def predict(
         run = PredictedRun(
             PredictedBench(bench, model, noise, longest_step_s, wire), Path(directory), channels, controllers
         )
-        run.carry_out((*plan.steps, *plan.finally_))
+        run.execute((*plan.steps, *plan.finally_))
         return run.ended()
 
 
@@ -115,14 +115,14 @@ class PredictedRun:
         if not keeps_rows:
             bench.loop.after_block = self._forget_what_is_over
 
-    def carry_out(self, steps: Iterable[Step]) -> None:
+    def execute(self, steps: Iterable[Step]) -> None:
         """Carry steps out, from where the run stands.
 
         Raises:
             HilError: the run would fail.
         """
         for step in steps:
-            step.carry_out(self._conductor)
+            step.execute(self._conductor)
 
     def continued(self, room: Array, out: Path, controllers: Mapping[Path, Controller]) -> PredictedRun:
         """A run of its own that goes on from here, in folder `out`; its rows stand in `room`."""

@@ -54,7 +54,7 @@ _FIX = "cut the drives' power before you approach the bench"
 logger = logging.getLogger(__name__)
 
 
-def carry_out(request: RunRequest, command: Sequence[str], keeps: Sequence[int] = ()) -> RunOutcome:
+def execute(request: RunRequest, command: Sequence[str], keeps: Sequence[int] = ()) -> RunOutcome:
     """Carry out a plan: on hardware in a process of its own, else in this one.
 
     Args:

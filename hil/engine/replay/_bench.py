@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from drivers import TICK_S, BusLoop, Device, LogWire, Samples, SampleSource, Stream
+from hil.core.can.frames import FrameBlock
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import FrameBlock
 from hil.engine.bench.bench import connections_of
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import known_identifiers

@@ -14,9 +14,9 @@ from drivers import TICK_S, SetsSlip, SetsVehicle
 from hil.core.controller import Controller, load_controller
 from hil.core.errors import BenchError
 from hil.core.files import write_atomically
+from hil.core.files.toml_file import toml_text
 from hil.core.recording import SEGMENT, VEHICLE
 from hil.core.result import RunResult, Segment
-from hil.core.toml_file import toml_text
 from hil.core.vehicle import VehicleAndRoad
 from hil.engine.bench.bench import Bench
 from hil.engine.bench.request_timing import Periodic

@@ -7,8 +7,8 @@ import contextlib
 import numpy as np
 
 from drivers import TICK_S, FrameSource, NewestFrames, SampleAssembler, Samples, Stream
+from hil.core.can.frames import EXTENDED, FRAME, inserted
 from hil.core.errors import BenchError
-from hil.core.frames import EXTENDED, FRAME, inserted
 from hil.engine.bench.bench import Bench
 from hil.engine.run.limits import LimitWatch
 

@@ -62,7 +62,7 @@ def rehearsed(plan: Plan, bench: BenchFile) -> Rehearsal:
     """
     rehearsal = Rehearsal(bench)
     for step in (*plan.steps, *plan.finally_):
-        step.carry_out(rehearsal)
+        step.execute(rehearsal)
     return rehearsal
 
 

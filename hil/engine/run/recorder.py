@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers import SampleAssembler, Samples, Stream
+from hil.core.can.frames import FrameBlock
 from hil.core.channels import TIME
-from hil.core.clock import utc
 from hil.core.errors import BenchError
-from hil.core.frames import FrameBlock
 from hil.core.recording import Event, Recording, RecordingWriter, read_as_written
 from hil.core.result import StreamClock
+from hil.core.runtime.clock import utc
 
 _FLUSH_S = 0.5
 #: How often `keep` is to be called, s: with what it waits for all is on the disk within 0.25 s.

@@ -8,7 +8,6 @@ import time
 from functools import partial
 
 from drivers import TICK_S, SaysDamage
-from hil.core.clock import utc
 from hil.core.errors import (
     BadInputError,
     BenchError,
@@ -17,8 +16,8 @@ from hil.core.errors import (
     LimitTripError,
     OrderlyEndError,
 )
+from hil.core.errors.wording import LONGEST_REASON, refuse_long
 from hil.core.files import make_directory
-from hil.core.printable import LONGEST_REASON, refuse_long
 from hil.core.recording import Recording
 from hil.core.result import (
     AcceptedExpiry,
@@ -28,6 +27,7 @@ from hil.core.result import (
     Timing,
     verdict_of,
 )
+from hil.core.runtime.clock import utc
 from hil.engine.bench.bench import Bench, open_bench, refuse_needs
 from hil.engine.bench.bus_loads import BusLoads
 from hil.engine.bench.calibration_dates import accepted_expiry
@@ -77,7 +77,7 @@ def run_plan(request: RunRequest) -> RunOutcome:
             for path in request.replaces:
                 path.unlink(missing_ok=True)
             with request.stop.telling(partial(setattr, bench.loop, "stop_requested", True)):
-                return _Run(request, bench, expired).carry_out()
+                return _Run(request, bench, expired).execute()
 
 
 class _Run:
@@ -87,7 +87,7 @@ class _Run:
         self._unwatched = False
         self._end_steps = ""
 
-    def carry_out(self) -> RunOutcome:
+    def execute(self) -> RunOutcome:
         self._prepare()
         bench = self._bench
         started = time.perf_counter()
@@ -190,7 +190,7 @@ class _Run:
         plan, conductor = self._request.plan, self._conductor
         try:
             for step in plan.steps:
-                step.carry_out(conductor)
+                step.execute(conductor)
             self._watch.hold.refuse_end()
         except (InterruptError, BadInputError, OrderlyEndError) as error:
             self._end_early(error)
@@ -202,7 +202,7 @@ class _Run:
         self._watch.hold.active = False
         self._end_steps = "started, but not completed"
         for step in plan.finally_:
-            step.carry_out(conductor)
+            step.execute(conductor)
         self._end_steps = self._read_back()
         self._event("end_steps", self._end_steps)
         self._watch.hold.refuse_end()

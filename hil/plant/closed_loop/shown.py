@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from hil.core.can.signals import Signal
 from hil.core.channels import TIME
-from hil.core.signals import Signal
 from hil.plant.closed_loop import tick as T
 
 Array = npt.NDArray[np.float64]

@@ -6,8 +6,7 @@ from fastapi import Request
 from fastapi.dependencies.models import Dependant
 from fastapi.routing import APIRoute
 
-from hil.core.printable import printable
-from hil.core.suggestion import did_you_mean
+from hil.core.errors.wording import did_you_mean, printable
 from hil.service.api._problems import RefusedError
 
 

@@ -21,7 +21,7 @@ from typing import Any
 from hil.app.requests import CampaignRequest
 from hil.core.errors import BenchError, HilError
 from hil.core.files import make_directory
-from hil.core.locks import HeldError, lock_on
+from hil.core.files.locks import HeldError, lock_on
 from hil.messages.campaign import (
     TABLE,
     CampaignData,
@@ -99,7 +99,7 @@ class Campaigns(Jobs[CampaignData]):
             state = "cancelled" if stopped else "waiting"
             self._records.change(campaign.id, state=state, reason="cancelled" if stopped else "")
             if not stopped:
-                self._begin(campaign.id, self._carry_out(campaign.id))
+                self._begin(campaign.id, self._execute(campaign.id))
 
     async def examples(self) -> list[CampaignExample]:
         """The built-in ones."""
@@ -137,7 +137,7 @@ class Campaigns(Jobs[CampaignData]):
             **found,
         )
         self._records.keep(campaign)
-        self._begin(number, self._carry_out(number))
+        self._begin(number, self._execute(number))
         return campaign
 
     async def cancel(self, number: int) -> bool:
@@ -164,10 +164,10 @@ class Campaigns(Jobs[CampaignData]):
             return False
         self._refuse_too_many()
         self._records.change(number, state="waiting", reason="", ended_at=None)
-        self._begin(number, self._carry_out(number))
+        self._begin(number, self._execute(number))
         return True
 
-    async def _carry_out(self, number: int) -> None:
+    async def _execute(self, number: int) -> None:
         pace = self._paces[number] = _Pace()
         try:
             make_directory(self.results(number))

@@ -71,7 +71,7 @@ class Studies(Jobs[StudyData]):
         )
         self._records.keep(study)
         placed = replace(request, out=self.results(number).resolve())
-        self._begin(number, self._carry_out(number, placed, within_s))
+        self._begin(number, self._execute(number, placed, within_s))
         return study
 
     async def cancel(self, number: int) -> bool:
@@ -82,7 +82,7 @@ class Studies(Jobs[StudyData]):
             self._end(number, "cancelled", "cancelled")
         return found
 
-    async def _carry_out(
+    async def _execute(
         self, number: int, request: IdentifyRequest | DiagnoseRequest, within_s: float
     ) -> None:
         try:

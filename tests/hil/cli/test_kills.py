@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 
 from drivers import read_rmcu
-from hil.core.frames import SENT_BY_HOST, FrameBlock, joined
+from hil.core.can.frames import SENT_BY_HOST, FrameBlock, joined
 from hil.core.recording import Recording, read_recording, run_of
 from tests.benches_for_tests import SIM
 from tests.hil.cli.test_commands import HIL, hil

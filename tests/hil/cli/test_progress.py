@@ -9,14 +9,14 @@ import sys
 
 import pytest
 
-from hil.cli._output import time_left
+from hil.cli.output import time_left
 
 _WAITS = """
 import logging, time
-from hil.cli._output import progress
+from hil.cli.output import progress
 logging.getLogger("hil").setLevel(logging.DEBUG)
 with progress("plan"):
-    logging.getLogger("hil.core.compiled").info("compiling %s.%s", "module", "function")
+    logging.getLogger("hil.core.runtime.compiled").info("compiling %s.%s", "module", "function")
     time.sleep(0.3)
 """
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from hil.cli._timing import times_in_words, timing_in_words
+from hil.cli.run_output import times_in_words, timing_in_words
 from hil.core.result import Lateness, PeriodicRequests, Timing
 
 

@@ -10,7 +10,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from hil.core import compiled
+from hil.core.runtime import compiled
 from hil.engine import RunRequest, load_bench, run_plan
 from hil.engine.bench.bench import Bench
 from hil.engine.bench.request_timing import RequestTiming

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from drivers import BusLoop, Connections, Device, Examinable, Finding, Wire
+from hil.core.can.frames import FrameBlock
 from hil.core.channels import CHANNELS
 from hil.core.errors import BadInputError, BenchError
-from hil.core.frames import FrameBlock
 from hil.core.model import load_model
-from hil.core.real_time import undisturbed
-from hil.core.versions import versions
+from hil.core.runtime.real_time import undisturbed
+from hil.core.runtime.versions import versions
 from hil.engine.bench.bench import bench_clock, connections_of, open_wire
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.bench.bus_tally import Tally, known_identifiers

@@ -18,7 +18,7 @@ import pytest
 from mcap.records import Message
 from mcap.stream_reader import StreamReader
 
-from hil.core.frames import FRAME
+from hil.core.can.frames import FRAME
 from hil.core.recording import RecordingWriter, read_frames, read_recording
 from hil.core.recording._growing_file import GrowingFile
 

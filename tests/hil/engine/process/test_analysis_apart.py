@@ -27,7 +27,7 @@ class Ponder(Step):
     kind: ClassVar[str] = "ponder"
     for_s: float
 
-    def carry_out(self, conductor: Conductor) -> None:
+    def execute(self, conductor: Conductor) -> None:
         conductor.analyse("ponder", self._work, ("pid.txt",))
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:

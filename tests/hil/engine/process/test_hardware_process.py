@@ -33,7 +33,7 @@ from hil.engine.ipc.ipc_messages import (
 )
 from hil.engine.ipc.ipc_pipe import IpcPipe
 from hil.engine.process.hardware_process import LAST_WORDS_S
-from hil.engine.process.supervisor import carry_out
+from hil.engine.process.supervisor import execute
 from hil.engine.run.arming import TURNED_S
 from hil.engine.stop.stopping import held_back
 from test_plans import Plan, plan_from_text
@@ -64,7 +64,7 @@ def test_a_run_with_a_prompt_passes_and_its_recording_is_there(tmp_path: Path):
     operator, shown = Answering("yes"), []
     request = RunRequest(asked(), own_process(), tmp_path, terminal=operator, operator="A")
     request.progress = lambda share, text: shown.append(text)
-    outcome = carry_out(request, HOLDER)
+    outcome = execute(request, HOLDER)
     assert (outcome.error, outcome.result.safe_state) == (None, "confirmed")
     recording = read_recording(outcome.recording)
     assert recording.metadata["run"]["operator"] == "A"
@@ -75,7 +75,7 @@ def test_a_run_with_a_prompt_passes_and_its_recording_is_there(tmp_path: Path):
 def test_what_cannot_be_carried_out_is_refused_as_here(tmp_path: Path):
     request = RunRequest(asked().model_copy(update={"text": "name: x\nsteps: []\n"}), own_process(), tmp_path)
     with pytest.raises(BadInputError, match="a plan needs at least one step"):
-        carry_out(request, HOLDER)
+        execute(request, HOLDER)
 
 
 @contextlib.contextmanager

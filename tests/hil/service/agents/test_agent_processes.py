@@ -12,9 +12,10 @@ from typing import Any
 import pytest
 
 from hil.cli._app import guarded
-from hil.cli.commands.bench_agent import BenchAgent
+from hil.cli.commands.bench_agent import execute
+from hil.cli.options.bench_agent import BenchAgent
 from hil.core.errors import BadInputError
-from hil.core.locks import lock_on
+from hil.core.files.locks import lock_on
 from tests.hil.service.served import ASKING, HIL, SHORT, RefusedError, Served, environment_of, served
 from tests.hil.service.working import Working, begun, bench_called, working
 
@@ -217,9 +218,9 @@ def test_what_an_agent_cannot_use_is_said(tmp_path: Path) -> None:
         (["sim"], "", 0.0, "--for is 0"),
     ):
         with pytest.raises(BadInputError, match=said):
-            BenchAgent(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual).carry_out()
+            execute(BenchAgent(data=tmp_path / "a", bench=bench, name=name, for_s=for_s, **usual))
     with lock_on(tmp_path), pytest.raises(BadInputError, match="another agent keeps its data here"):
-        BenchAgent(data=tmp_path, bench=["sim"], name="", for_s=None, **usual).carry_out()
+        execute(BenchAgent(data=tmp_path, bench=["sim"], name="", for_s=None, **usual))
 
 
 def test_a_service_has_benches_of_its_own_or_says_that_it_has_none(
