@@ -124,7 +124,7 @@ def rectangles(cost: Budget, random: np.random.Generator, runs: int) -> None:
 
 
 def covariance(cost: Budget, random: np.random.Generator, runs: int) -> None:
-    """CMA-ES from the start, begun anew with more members where it has converged."""
+    """CMA-ES from the start, started again with more members where it has converged."""
     cma = importlib.import_module("cma")
     settings = {"bounds": [0, 1], "seed": int(random.integers(1, 2**31)), "verbose": -9, "maxfevals": runs}
     cma.fmin2(cost, cost.start, 0.25, settings, restarts=9, bipop=True)

@@ -22,7 +22,7 @@ class Echoes:
     """Tells own frames that come back from those of others, and keeps them until they are fetched.
 
     SocketCAN marks every frame of a process of this machine, and a simulated bench may be one: an echo is
-    what was sent and has not come back yet. Bounded: what nobody fetches is forgotten.
+    what was sent and has not come back yet. Bounded: what no one fetches is forgotten.
     """
 
     def __init__(self) -> None:

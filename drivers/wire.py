@@ -67,7 +67,7 @@ class Wire:
     `recv_epoch_block`, whose stamps count from 1970; any other message by message. A bus that has
     `send_frame(id, data)` is given no message object. The result is the same.
 
-    Frames that no device of a bench sends are left out, and told in the log: remote frames, and CAN FD frames
+    Frames that no device of a bench sends are left out and logged: remote frames, and CAN FD frames
     of more than 8 bytes.
 
     Args:
@@ -157,7 +157,7 @@ class Wire:
         """Frames with the stamps that they would have had if the adapter's clock had not jumped.
 
         An old frame must not be taken for news, nor news for an old frame: the way to the safe state is read
-        back by them. That it jumped is told by `check`.
+        back by them. `check` reports that it jumped.
         """
         now_s = self._clock.now_s()
         if self._jumped_s:
@@ -271,10 +271,10 @@ class Wire:
             _LOG.warning("bus '%s': %s are left out", self.name, what)
 
     def _failed(self, doing: str, error: Exception) -> BenchError:
-        said = printable(str(error).strip(), 200)
+        library_text = printable(str(error).strip(), 200)
         reason = _reason(error)
         return BenchError(
-            f"{doing} failed: {reason} ({said})" if reason else f"{doing} failed: {said}",
+            f"{doing} failed: {reason} ({library_text})" if reason else f"{doing} failed: {library_text}",
             where=f"bus '{self.name}'",
             fix=_FIX,
         )

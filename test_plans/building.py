@@ -79,7 +79,7 @@ def key_names(model: type[BaseModel]) -> list[str]:
 
 
 def _refuse(model: type[BaseModel], error: ValidationError, document: Document, path: KeyPath) -> NoReturn:
-    # An unknown key is often the misspelling of one that is missing, which then need not be told.
+    # An unknown key is often the misspelling of one that is missing, which then need not be reported.
     unknown = [mistake for mistake in error.errors() if mistake["type"] == "extra_forbidden"]
     meant = {closest(str(mistake["loc"][-1]), key_names(model)) for mistake in unknown}
     others = [mistake for mistake in error.errors() if mistake["type"] != "extra_forbidden"]

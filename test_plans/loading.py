@@ -46,7 +46,7 @@ def library_controllers() -> dict[str, Path]:
 def load_plan(name_or_path: str | Path, choices: Choices | None = None) -> Plan:
     """Read a plan from a file, or a built-in one by its name.
 
-    With `choices` the plan's text is the one that was chosen: what is carried out, recorded and reported.
+    With `choices` the plan's text is the one that was chosen: what is executed, recorded and reported.
 
     Raises:
         BadInputError: no such plan, or all that is wrong with it: file, line, key, and what to do.
@@ -68,7 +68,7 @@ def plan_from_text(
     """Check the text of a plan; `where` names it in messages.
 
     Relative controller files are looked for in `base_dir`, then among the built-in ones. With
-    `files_required` false they are not looked for: for a plan that was carried out long ago. With
+    `files_required` false they are not looked for: for a plan that was executed long ago. With
     `to_execute` it is refused, too, if it asks for driving torque before there is a controller.
 
     Raises:
@@ -179,7 +179,7 @@ class _Reader:
         return build(step_class, values | nested, document, here, self._files)
 
     def _criteria(self, value: object, steps: tuple[Step, ...] | None) -> tuple[Criterion, ...]:
-        """The criteria; where the steps have mistakes, nobody knows which segments there will be."""
+        """The criteria; where the steps have mistakes, no one knows which segments there will be."""
         segments = None if steps is None else {one.id: one for step in steps for one in step.segments()}
         mistakes, seen = PlanMistakes(), dict[str, int]()
         criteria = []
@@ -242,7 +242,7 @@ class _Reader:
         duration = estimate_duration_s(plan)
         if duration > LONGEST_PLAN_S:
             raise BadInputError(
-                f"would take {duration / 3600:.1f} h, at most {LONGEST_PLAN_S / 3600:g} h are carried out",
+                f"would take {duration / 3600:.1f} h, at most {LONGEST_PLAN_S / 3600:g} h are executed",
                 where=self._document.place(("steps",)),
                 fix="split the plan",
             )

@@ -1,4 +1,4 @@
-"""All that is wrong with a plan, told at once."""
+"""All that is wrong with a plan, reported at once."""
 
 from __future__ import annotations
 

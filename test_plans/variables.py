@@ -92,7 +92,7 @@ def with_values(document: Document) -> Document:
 
 
 def _default(entry: object) -> object:
-    """What a variable that is not sound yet stands for is told where the variable stands."""
+    """What a variable that is not sound yet stands for is reported where the variable stands."""
     return entry.get("default", 0) if isinstance(entry, dict) else 0
 
 

@@ -152,7 +152,7 @@ def _missing(node: DynoNode, bus: str, strangers: Collection[int], *, used: bool
 
 
 def _strangers(loop: BusLoop, wire: Wire, known: Collection[int], *, ask: bool) -> set[int]:
-    """Nodes that nobody expects: by their heartbeats, and by asking every other id for its device type."""
+    """Nodes that no one expects: by their heartbeats, and by asking every other id for its device type."""
     heard: set[int] = set()
 
     def take(bus: str, block: FrameBlock) -> None:

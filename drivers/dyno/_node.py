@@ -149,7 +149,7 @@ class DynoNode:
 
     @property
     def nmt_state(self) -> str:
-        """What its last heartbeat said, in words."""
+        """The state in its last heartbeat, in words."""
         return str(self._node.nmt.state).lower()
 
     def in_state(self, bits: int) -> bool:

@@ -23,7 +23,7 @@ class Master:
 
     Attributes:
         order: "<" or ">", as the slave counts.
-        events: what the slave told unasked, by its code, and how often.
+        events: what the slave sent unasked, by its code, and how often.
     """
 
     def __init__(self, name: str, loop: BusLoop, wire: Wire, request_id: int, within_s: float) -> None:

@@ -1,4 +1,4 @@
-"""Sets a slave's DAQ list up: what it is asked, told, and has to say back before its samples are believed."""
+"""Sets a slave's DAQ list up: what is requested, written and read back before its samples are believed."""
 
 from __future__ import annotations
 

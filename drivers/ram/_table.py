@@ -37,7 +37,7 @@ class RamTable(DeviceTable):
         """The file, the symbol of each channel, and the identifiers of commands and answers.
 
         Raises:
-            BadInputError: the file cannot be used or lacks a symbol, or nobody gives identifiers.
+            BadInputError: the file cannot be used or lacks a symbol, or no one gives identifiers.
         """
         file = read_symbols(self.symbols)
         found = {

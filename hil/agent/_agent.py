@@ -102,7 +102,7 @@ class _Agent:
             await asyncio.sleep(_LOOK_S)
         await self._close()
         self._over = True
-        await reports  # what ended it is told, and none comes after the last
+        await reports  # what ended it is reported, and none comes after the last
         if not self._service.away:
             with contextlib.suppress(AwayError, RefusedError):
                 await self._reported(leaving=True)
@@ -134,7 +134,7 @@ class _Agent:
                 if not self._heard:
                     fix = _TOKEN_FIX if error.status in (401, 403) else _URL_FIX
                     raise BadInputError(error.what, where=self._service.url, fix=fix) from error
-                logger.warning("the service refuses what is told: %s", error.what)
+                logger.warning("the service refuses what is reported: %s", error.what)
                 await asyncio.sleep(_AGAIN_S)
                 continue
             self._refuse(orders)
@@ -202,7 +202,7 @@ class _Agent:
         try:
             run = self._runs.begin(taken)
         except (HilError, OSError) as error:  # it is the same run that is given the next time
-            logger.error("run %d cannot be begun: %s", taken.data.id, error)
+            logger.error("run %d cannot be started: %s", taken.data.id, error)
             return
         bench.kept = run
         try:

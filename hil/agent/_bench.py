@@ -44,7 +44,7 @@ class DrivenBench:
         return self.bench.name
 
     def report(self) -> AgentBench:
-        """What the service is told of it."""
+        """What the service gets to know of it."""
         bench, running = self.bench, self.running
         facts = AgentBench(
             name=bench.name,
@@ -58,7 +58,7 @@ class DrivenBench:
         stopped = bench.stopped()
         if running is not None:
             facts.share = None if running.share is None else min(max(running.share, 0.0), 1.0)
-            facts.doing, facts.told = _short(running.doing), _short(running.told)
+            facts.doing, facts.message = _short(running.doing), _short(running.message)
         elif self.left:
             facts.doing = "the run is being ended, because its agent was killed"
         elif self.kept is not None:

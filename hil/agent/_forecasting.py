@@ -36,8 +36,8 @@ class Forecasting:
             return AgentsForecast(forecast=await self._forecast(plan, bench))
         except (HilError, OSError) as error:
             refused = isinstance(error, BadInputError)
-            told = error if isinstance(error, HilError) else BenchError(str(error), where="forecast")
-            problem = Problem(what=told.what, where=told.where, fix=told.fix)
+            shown = error if isinstance(error, HilError) else BenchError(str(error), where="forecast")
+            problem = Problem(what=shown.what, where=shown.where, fix=shown.fix)
             return AgentsForecast(problem=problem, refused=refused)
 
     async def _forecast(self, sent: PlanSent, bench: Bench) -> ForecastData:

@@ -1,6 +1,6 @@
 """The log of a command: nothing unless it is asked for, or unless something unexpected happens.
 
-Modules log to loggers of their own names; this is the one place where it is said what becomes of that.
+Modules log to loggers of their own names; this is the one place where it is stated what becomes of that.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ logger = logging.getLogger(__name__)
 class Log:
     """What a command did, to a file and to standard error as asked; the last lines are kept in any case.
 
-    What is logged as an error with its traceback is a mistake of the program: nobody expected it.
+    What is logged as an error with its traceback is a mistake of the program: no one expected it.
     """
 
     def __init__(self) -> None:

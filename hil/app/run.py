@@ -129,7 +129,7 @@ class _Conclusion:
         show("writing the result")
         path = self._outcome.recording
         recording = self._try(lambda: read_recording(path, least_samples=0, allow_missing=True))
-        recording = recording or Recording({}, path)  # the verdicts are told all the same
+        recording = recording or Recording({}, path)  # the verdicts are reported all the same
         self._add(lambda: {"junit": write_junit(recording, self._outcome.result, self._path(JUNIT))})
         result = self._store(recording)
         if not self._asked_again():

@@ -46,7 +46,7 @@ def announce_series(plans: Sequence[Plan], repeat: int, out: Path | None, feedba
     if runs > LARGEST_SERIES:
         raise BadInputError(
             f"{len(plans)} combinations, {repeat} times each, are {runs} runs: at most {LARGEST_SERIES} are "
-            "carried out",
+            "executed",
             where="--repeat",
             fix="repeat fewer times, or simulate them with `hil campaign`",
         )
@@ -74,7 +74,7 @@ def run_series(
 ) -> SeriesOutcome:
     """Carry every plan out on every bench, each in a numbered folder.
 
-    A run that did not come to its end ends the series; what was carried out so far is kept and summed up.
+    A run that did not come to its end ends the series; what was executed so far is kept and summed up.
 
     Args:
         report_run: called after each run.

@@ -2,15 +2,15 @@
 
 from hil.campaign._batches import BATCH_S, Batch, Carriers, Here, Kept, MakeRows, Row, batch_size
 from hil.campaign._execute import Progress, execute
-from hil.campaign._parts import BEGUN, FOLDER, Parts, begun_batch, write_begun
+from hil.campaign._parts import FOLDER, STARTED, Parts, begun_batch, write_begun
 from hil.campaign._setting import Setting, Source, load_setting
 from hil.campaign._simulations import Simulations
 from hil.campaign._table import Tally, write_table
 
 __all__ = [
     "BATCH_S",
-    "BEGUN",
     "FOLDER",
+    "STARTED",
     "Batch",
     "Carriers",
     "Here",

@@ -1,4 +1,4 @@
-"""A campaign carried out: what is missing is handed out, what comes back is put on disk."""
+"""A campaign executed: what is missing is handed out, what comes back is put on disk."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def execute(
     show: Callable[[Progress], None] = lambda progress: None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> bool:
-    """Carry out what is missing; once `stopped`, only what is under way is awaited.
+    """Execute what is missing; once `stopped`, only what is under way is awaited.
 
     Args:
         failed: makes the row of one that ends whatever process carries it out.
@@ -49,7 +49,7 @@ def execute(
         whether every simulation is on disk.
 
     Raises:
-        HilError: nobody can carry them out, or the disk is full; what was done is on disk.
+        HilError: no one can execute them, or the disk is full; what was done is on disk.
     """
     missing = deque(parts.missing())
     total = sum(len(batch) for batch in parts)

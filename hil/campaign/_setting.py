@@ -1,4 +1,4 @@
-"""A campaign with everything that it names: read, checked, and told apart from any other by a digest."""
+"""A campaign with everything that it names: read, checked, and distinguished from any other by a digest."""
 
 from __future__ import annotations
 

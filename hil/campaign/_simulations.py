@@ -65,7 +65,7 @@ class Simulations:
         return {**row, "processor_s": time.process_time() - begun_s}
 
     def failed(self, number: int, words: str) -> Row:
-        """The row of a simulation that could not be carried out."""
+        """The row of a simulation that could not be executed."""
         asked = self._asked(self.setting.cases[number])
         return {**asked, "verdict": "error", "error": printable(words, _LONGEST_ERROR)}
 

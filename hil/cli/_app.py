@@ -35,7 +35,7 @@ logger = logging.getLogger(__name__)
 
 
 def run_command_line() -> int:
-    """Carry out this process's command line; its exit code.
+    """Execute this process's command line; its exit code.
 
     Errors become one message on standard error. A standard output that could not be written is a failure
     of its own; one whose reader has gone is not.
@@ -156,7 +156,7 @@ def _with_exit_code(name: str, command: type[Any]) -> Callable[..., None]:
 
 
 def guarded(arguments: list[str]) -> int:
-    """The exit code of a command line; every error is told in one message, none as a traceback."""
+    """The exit code of a command line; every error is reported in one message, none as a traceback."""
     LOG.begin(arguments)
     try:
         code = _execute(arguments)

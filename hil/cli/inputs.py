@@ -93,7 +93,7 @@ def all_choices(values: list[str] | None, controller: list[str] | None) -> Itera
     runs = math.prod(len(numbers) for numbers in several.values())
     if runs > LARGEST_SERIES:
         raise BadInputError(
-            f"the values make {runs} combinations, at most {LARGEST_SERIES} runs are carried out",
+            f"the values make {runs} combinations, at most {LARGEST_SERIES} runs are executed",
             where=_OPTION,
             fix="give fewer values, or simulate them with `hil campaign`",
         )

@@ -1,4 +1,4 @@
-"""`hil --server URL campaign`: a campaign that a bench service carries out, its results brought here."""
+"""`hil --server URL campaign`: a campaign that a bench service executes, its results brought here."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from hil.analysis.campaigns import CampaignFile, Share, load_campaign_file
 from hil.app.interrupts import EXIT_CODE
 from hil.app.results_folder import ResultsFolder, results_in
-from hil.campaign import BEGUN, FOLDER
+from hil.campaign import FOLDER, STARTED
 from hil.cli.output import print_json, progress
 from hil.cli.remote_run import TOKEN
 from hil.cli.streams import complain
@@ -48,10 +48,10 @@ class RemoteCampaign:
     overwrite: bool
 
     def execute(self, out: Path | None, *, as_json: bool) -> int:
-        """Have it carried out and bring its files here; its exit code."""
+        """Have it executed and bring its files here; its exit code."""
         client, stop = Client(self.server, os.environ.get(TOKEN, "")), StopRequest()
         wanted = _wanted(load_campaign_file(self.campaign))
-        names = (BEGUN, SUMMARY, HTML, PDF)
+        names = (STARTED, SUMMARY, HTML, PDF)
         overwrite = self.overwrite or self.resume
         with (
             results_in(out, names, overwrite=overwrite, default="campaign", summary=SUMMARY) as place,
@@ -184,10 +184,10 @@ def _brought(client: Client, campaign: CampaignData, place: ResultsFolder) -> di
         path.unlink()
     part = f"part-{0:07d}-{campaign.simulations - 1:07d}.parquet"
     client.download_of_campaign(campaign.id, TABLE, table / part)
-    for name in (BEGUN, HTML, PDF, SUMMARY):
+    for name in (STARTED, HTML, PDF, SUMMARY):
         client.download_of_campaign(campaign.id, name, place.folder / name)
-    content = json.loads(read_text(place.folder / BEGUN)) | {"batch": campaign.simulations}
-    write_atomically(place.folder / BEGUN, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+    content = json.loads(read_text(place.folder / STARTED)) | {"batch": campaign.simulations}
+    write_atomically(place.folder / STARTED, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
     found: dict[str, Any] = json.loads(read_text(place.folder / SUMMARY))
     place.remove_stale(found["files"])
     return found

@@ -1,4 +1,4 @@
-"""`hil --server URL run`: a run that a bench service carries out; progress and exit codes as of one here."""
+"""`hil --server URL run`: a run that a bench service executes; progress and exit codes as of one here."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class RemoteRun:
     overwrite: bool
 
     def execute(self, out: Path | None, tell: Tell) -> int:
-        """Have it carried out and bring its files here; its exit code."""
+        """Have it executed and bring its files here; its exit code."""
         client = Client(self.server, os.environ.get(TOKEN, ""))
         stop = StopRequest()
         with (
@@ -99,7 +99,7 @@ class _Watching:
     run: RunData
     stop: StopRequest
     told_stop: bool = False
-    said: str = ""
+    shown: str = ""
     terminal: StandardTerminal | None = field(default_factory=operators_terminal)
     typed: queue.SimpleQueue[str] = field(default_factory=queue.SimpleQueue)
 
@@ -135,9 +135,9 @@ class _Watching:
             self.told_stop = True
         if self.terminal is None:
             return
-        if self.run.told and self.run.told != self.said:
-            self.said = self.run.told
-            self.terminal.tell(self.said)
+        if self.run.message and self.run.message != self.shown:
+            self.shown = self.run.message
+            self.terminal.tell(self.shown)
         while not self.typed.empty():
             self._ask(self.typed.get())
 

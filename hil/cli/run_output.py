@@ -43,9 +43,9 @@ def print_series(summary: dict[str, Any], folder: Path) -> None:
         for number, (name, spread) in enumerate(group["criteria"].items()):
             numbers = (spread[key] for key in ("mean", "standard_deviation", "lowest", "highest"))
             cells = ("-" if value is None else f"{value:.4g}" for value in numbers)
-            said = (name, limit_in_words(spread), spread["verdict"].replace("_", " "), str(spread["count"]))
+            facts = (name, limit_in_words(spread), spread["verdict"].replace("_", " "), str(spread["count"]))
             first = (values if number == 0 else "",) if varied else ()
-            table.add_row(*first, *said, *cells, spread["unit"])
+            table.add_row(*first, *facts, *cells, spread["unit"])
     page = console()
     page.print()
     page.print(table)
@@ -80,7 +80,7 @@ logger = logging.getLogger(__name__)
 
 
 def show_in_browser(page: Path) -> None:
-    """Ask for a browser and do not wait for it; nothing is said where there is none.
+    """Ask for a browser and do not wait for it; nothing is stated where there is none.
 
     In a process of its own: some browsers write to the terminal, and some last as long as their window.
     """

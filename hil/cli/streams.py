@@ -11,7 +11,7 @@ from typing import TextIO
 
 from hil.core.errors.wording import printable
 
-#: The reader has gone: nobody is left to complain to, and the command's outcome is its own.
+#: The reader has gone: no one is left to complain to, and the command's outcome is its own.
 _READER_GONE = (errno.EPIPE, errno.EIO, errno.EBADF)
 _LONGEST_LINE = 2000
 _PLAIN = {

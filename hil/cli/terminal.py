@@ -42,7 +42,7 @@ class StandardTerminal:
 
 
 def operators_terminal() -> StandardTerminal | None:
-    """Who sits at standard input; None if nobody does, or the system has no such terminals."""
+    """Who sits at standard input; None if no one does, or the system has no such terminals."""
     if not sys.stdin.isatty() or not hasattr(os, "tcgetpgrp"):
         return None
     return StandardTerminal()

@@ -72,7 +72,7 @@ class Client(Requests):
 
     Args:
         url: where it is, as `hil serve` says: `http://127.0.0.1:8080`.
-        token: who asks; a service without tokens asks nobody.
+        token: who asks; a service without tokens asks no one.
     """
 
     _stop_url = ""
@@ -284,7 +284,7 @@ class Client(Requests):
         return self._several(CampaignExample, "/campaign-examples")
 
     def add_campaign(self, wanted: CampaignWanted) -> CampaignData:
-        """Have a campaign carried out; `campaign` tells how it goes."""
+        """Have a campaign executed; `campaign` tells how it goes."""
         return self._one(CampaignData, "POST", "/campaigns", wanted, within_s=_FORECAST_WITHIN_S)
 
     def campaigns(self) -> list[CampaignData]:
@@ -359,7 +359,7 @@ class Client(Requests):
         return self._several(TokenData, "/tokens")
 
     def make_token(self, name: str, role: Role, for_days: float = 365.0) -> TokenMade:
-        """Make a token that is valid for so many days; its secret is told this once."""
+        """Make a token that is valid for so many days; its secret is reported this once."""
         return self._one(TokenMade, "POST", "/tokens", TokenWanted(name=name, role=role, for_days=for_days))
 
     def audit(self, most: int = 100) -> list[AuditEntry]:

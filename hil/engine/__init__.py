@@ -1,4 +1,4 @@
-"""A run: pre-flight, arm, carry out, safe state, record."""
+"""A run: pre-flight, arm, execute, safe state, record."""
 
 from hil.engine.bench.bench_file import DEFAULT_BENCH, load_bench
 from hil.engine.bench.bench_tables import BenchFile

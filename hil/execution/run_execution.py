@@ -43,14 +43,14 @@ class Steered(Protocol):
 
 @dataclass
 class RunningRun:
-    """A run under way. `told`: the last text for its operator."""
+    """A run under way. `message`: the last text for its operator."""
 
     data: RunData
     folder: Path
     process: Steered
     share: float | None = None
     doing: str = "beginning"
-    told: str = ""
+    message: str = ""
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class RunExecution(RunningRun):
                 self.share = message.share if message.share >= 0 else self.share
                 self.doing = message.text
             elif isinstance(message, OperatorText):
-                self.told = message.text
+                self.message = message.text
             elif isinstance(message, Refused):
                 refused = message.error.as_error()
             changed()
@@ -121,7 +121,7 @@ class RunExecution(RunningRun):
         return RunEnd("interrupted" if closing() else "ended", code, result, reason, dut)
 
     def _asks_no_more(self) -> None:
-        self.told = ""
+        self.message = ""
 
 
 def end_of_left(folder: Path, who: str) -> RunEnd:
@@ -134,7 +134,7 @@ def end_of_left(folder: Path, who: str) -> RunEnd:
 
 
 def _request_of(taken: TakenRun, bench: Bench, folder: Path) -> RunAsked:
-    """What the process of a run is told.
+    """What the process of a run gets to know.
 
     Raises:
         BadInputError: the bench's file cannot be used any more.

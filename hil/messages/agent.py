@@ -31,7 +31,7 @@ class _Data(BaseModel):
 
 
 class TakenRun(_Data):
-    """A run that was taken from the queue, with what its process is told.
+    """A run that was taken from the queue, with what its process needs to know.
 
     `plan_text` has its variables as chosen; `files`: content of what the plan loads, by name.
     """
@@ -59,7 +59,7 @@ class PlanSent(_Data):
 
 
 class Order(_Data):
-    """A request to an agent's bench; repeated until the agent has carried it out."""
+    """A request to an agent's bench; repeated until the agent has executed it."""
 
     id: str = Field(max_length=40)
     bench: BenchName
@@ -85,7 +85,7 @@ class AgentBench(_Data):
     running: RunId | None = Field(None, description="also while its files are being uploaded")
     share: Annotated[Number, Field(ge=0, le=1)] | None = None
     doing: Text = ""
-    told: Text = ""
+    message: Text = ""
 
 
 class AgentReport(_Data):

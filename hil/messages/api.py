@@ -17,7 +17,7 @@ PlanName = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_.-]{0,63}$")]
 PersonName = Annotated[str, Field(min_length=1, max_length=100, pattern=r"^[^\x00-\x1f\x7f-\x9f]+$")]
 Number = Annotated[float, Field(allow_inf_nan=False)]
 
-#: `waiting_approval`: hazardous, and nobody has approved it. `interrupted`: the service ended meanwhile.
+#: `waiting_approval`: hazardous, and no one has approved it. `interrupted`: the service ended meanwhile.
 RunState = Literal["waiting_approval", "queued", "running", "ended", "interrupted", "cancelled"]
 RunVerdict = Literal["pass", "fail", "error", "done"]
 OVER: tuple[RunState, ...] = ("ended", "interrupted", "cancelled")
@@ -116,7 +116,7 @@ class RunData(_Data):
     ended_at: datetime.datetime | None = None
     share: float | None = Field(None, description="progress, 0 to 1, while it is running")
     doing: str = Field("", description="present activity, while it is running")
-    told: str = Field("", description="last message to the operator, while it is running")
+    message: str = Field("", description="last message to the operator, while it is running")
     exit_code: int | None = Field(None, description="exit code, as of `hil run`")
     verdict: RunVerdict | None = None
     safe_state: Literal["confirmed", "not_confirmed", "not_needed"] | None = None

@@ -1,4 +1,4 @@
-"""Two runs side by side, as they pass over the API; differences are told from the first to the other."""
+"""Two runs side by side, as they pass over the API; differences are listed from the first to the other."""
 
 from __future__ import annotations
 

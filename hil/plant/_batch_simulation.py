@@ -171,7 +171,7 @@ def _shown(acting, ends, dt, whole, p, out):  # type: ignore[no-untyped-def]
 @compiled
 def _first_state(p, start, acting):  # type: ignore[no-untyped-def]
     """State and memories that show a start."""
-    memories, twist = L.begun(start[SHAFT], chain_of(p), p)
+    memories, twist = L.initial(start[SHAFT], chain_of(p), p)
     memories = L.turned(start[SPEED], chain_of(p), memories, p)
     x = put(put(X.LINEAR_AT_REST, X.LAGGED, acting), X.ROTOR_SPEED, start[SPEED])
     if p[P.KIND] == P.RIGID:

@@ -20,7 +20,7 @@ _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel 
 
 @inlined
 def motion(x, chain, memories, p):  # type: ignore[no-untyped-def]
-    """What laws are told of a state with its own angles."""
+    """What laws get to know of a state with its own angles."""
     rotor_angle = chain.gear_ratio * (x[X.TWIST] + x[X.WHEEL_ANGLE] - x[X.HOUSING_ANGLE])
     return motion_of(x, chain, memories, x[X.WHEEL_ANGLE], rotor_angle, p)
 

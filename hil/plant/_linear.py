@@ -1,7 +1,7 @@
 """The driveline as a linear system, for all who need one: many replays, identification, design, orders.
 
 x' = A·x + B·u, y = C·x + D·u. Nonlinear effects stand as inputs: what the shafts carry beside stiffness and
-damping, what the rotor loses beside drag, what loads the vehicle. The dead time is told, not in the matrices.
+damping, what the rotor loses beside drag, what loads the vehicle. The dead time stands beside the matrices.
 """
 
 from __future__ import annotations

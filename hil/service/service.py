@@ -141,8 +141,8 @@ class Service:
         self.deferred_audit = DeferredAudit(self.log)
 
     async def _share(self) -> str:
-        said = await self.studies.share(), await self.campaigns.share()
-        return "; ".join(filter(None, said))
+        problems = await self.studies.share(), await self.campaigns.share()
+        return "; ".join(filter(None, problems))
 
     @property
     def benches(self) -> Mapping[str, Bench | RemoteBench]:
@@ -216,7 +216,7 @@ class Service:
         running = self.running_run(run.id)
         if running is not None:
             away = f"; {self.database.away}" if self.database.away else ""
-            doing = {"share": running.share, "doing": running.doing + away, "told": running.told}
+            doing = {"share": running.share, "doing": running.doing + away, "message": running.message}
             return run.model_copy(update=doing)
         return run
 

@@ -196,7 +196,7 @@ async def _served(request: ServeRequest, service: Service, listening: socket.soc
     await asyncio.wait([posting], timeout=_LAST_ANSWERS_S)
     for task in done:
         if not task.cancelled():
-            task.result()  # a mistake of ours in one of them is told
+            task.result()  # a mistake of ours in one of them is reported
     await in_turns(service.leave())
 
 

@@ -62,7 +62,7 @@ def _front_picture(found: Tuning) -> dict[str, bytes] | None:
 def summary_of(
     found: Tuning, segments: tuple[Segment, ...], asked: Mapping[str, Any], files: list[str]
 ) -> dict[str, Any]:
-    """The content of `tune.json`; `asked` is what the command was told."""
+    """The content of `tune.json`; `asked` are the options of the command."""
     trial, worst = found.trial, found.chosen.worst
     return {
         **asked,

@@ -33,11 +33,11 @@ class EventSlots:
         """When the next frame of an event in a sample has crossed, in a later one where that is full."""
         frame_s = longest_frame_s(8, self.bit_rate)
         free_s = max(sample * TICK_S + self.begin_s, self._last_s)
-        begun = math.floor(free_s / TICK_S + 1e-9) * TICK_S
-        if free_s < begun + self.begin_s:  # the next sample's own frames come first
-            free_s = begun + self.begin_s
-        if free_s + frame_s > begun + TICK_S and self.begin_s + frame_s <= TICK_S:
-            free_s = begun + TICK_S + self.begin_s
+        started = math.floor(free_s / TICK_S + 1e-9) * TICK_S
+        if free_s < started + self.begin_s:  # the next sample's own frames come first
+            free_s = started + self.begin_s
+        if free_s + frame_s > started + TICK_S and self.begin_s + frame_s <= TICK_S:
+            free_s = started + TICK_S + self.begin_s
         self._last_s = free_s + frame_s
         return self._last_s
 

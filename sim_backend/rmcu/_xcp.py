@@ -84,7 +84,7 @@ class XcpSlave:
         self.reset()
 
     def reset(self) -> None:
-        """As after power on: nobody is connected, nothing is sent."""
+        """As after power on: no one is connected, nothing is sent."""
         self.connected = False
         self.lists: list[DaqList] = []
         if self._static:

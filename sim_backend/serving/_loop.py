@@ -50,7 +50,7 @@ class BusServer(Protocol):
 
 @dataclass
 class Pace:
-    """How well the wall clock was kept; seconds of the wall clock where nothing else is said.
+    """How well the wall clock was kept; seconds of the wall clock where nothing else is stated.
 
     Attributes:
         turns: looks at the wires, one each millisecond of bench time.

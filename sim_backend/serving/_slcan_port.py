@@ -33,7 +33,7 @@ class SlcanPort:
         import tty
 
         self._ours, self._theirs = pty.openpty()
-        tty.setraw(self._theirs)  # or it would say back what it is told
+        tty.setraw(self._theirs)  # or it would echo what it is sent
         os.set_blocking(self._ours, False)
         self._bit_rate, self._set_rate = bit_rate, 0
         self._open = False

@@ -1,4 +1,4 @@
-"""Values that repeat bit for bit although their own noise or a neighbour moves: nobody measures there.
+"""Values that repeat bit for bit although their own noise or a neighbour moves: no one measures there.
 
 The last digits of a measured value change from sample to sample, unless its resolution is coarser than its
 noise and nothing moves. Two things show that a live channel could not have stood still:

@@ -27,6 +27,6 @@ class OperatorPrompt(Step):
         """Ask."""
         conductor.prompt(self.text, self.timeout_s)
 
-    def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:  # noqa: ARG002 - nobody knows
+    def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:  # noqa: ARG002 - no one knows
         """People take as long as they take: counted as none."""
         return Outlook(0.0, speed_m_s)

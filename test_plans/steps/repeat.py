@@ -45,7 +45,7 @@ class Repeat(Step):
             step.execute(conductor)
 
     def outlook(self, speed_m_s: float, pace: Pace) -> Outlook:
-        """Sum over the passes, each begun at the speed that the one before left."""
+        """Sum over the passes, each started at the speed that the one before left."""
         total = 0.0
         for _ in range(self.times):
             for step in self.steps:

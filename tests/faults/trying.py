@@ -1,4 +1,4 @@
-"""Carries out one cell of the matrix: `hil run` in a process forked for it, which nothing outlives."""
+"""Executes one cell of the matrix: `hil run` in a process forked for it, which nothing outlives."""
 
 from __future__ import annotations
 

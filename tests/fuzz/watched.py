@@ -14,7 +14,7 @@ _KEPT = ("hil.core.recording._mcap_walk",)
 
 
 def left_alone() -> list[str]:
-    """Modules that are not to be watched: what numba compiles, and the floors that nobody watches.
+    """Modules that are not to be watched: what numba compiles, and the floors that no one watches.
 
     atheris watches the whole of a top-level package, but for the modules that it gets by name.
     """

@@ -136,7 +136,7 @@ def choose_chain(
         gear_ratio: known gear ratio; estimated when None.
         torque_delay_s: known dead time; estimated when None. A chain that is too simple abuses the dead
             time to make up for the poles that it lacks, so the one of a rational fit is the better guess.
-        progress: told what is being done.
+        progress: called with what is being done.
     """
     fits = []
     for kind in CHAINS:

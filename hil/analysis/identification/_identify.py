@@ -70,7 +70,7 @@ def identify(
         method: see `estimate`.
         order: order of the denominator; None lets the data choose.
         gear_ratio: known gear ratio of the chain.
-        progress: told what is being done.
+        progress: called with what is being done.
 
     Raises:
         UnfitDataError: the data cannot give a frequency response.

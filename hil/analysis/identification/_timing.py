@@ -4,7 +4,7 @@ Two devices have clocks and filters of their own. A chain ties its outputs to ea
 that is late by τ, or averaged (or held) over w, shows against the others: its response is multiplied by
 sinc(ω w/2) e^(-jωτ). A clock that runs at another rate makes τ grow with the moment at which a chirp passes
 each frequency. What all channels have in common is the torque's dead time or the inverter's lag and cannot
-be told from it.
+be distinguished from it.
 """
 
 from __future__ import annotations

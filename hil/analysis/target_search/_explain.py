@@ -18,7 +18,7 @@ from hil.core.errors import BadInputError
 from hil.core.errors.wording import did_you_mean
 from hil.core.model import Model, model_to_toml
 
-#: Rivals that are told.
+#: Rivals that are reported.
 RIVALS = 4
 #: Guesses of each that are tried on all conditions until one holds them.
 _CHECKED = 24

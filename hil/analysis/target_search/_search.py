@@ -50,7 +50,7 @@ class _StoppedError(Exception):
 
 
 class Search:
-    """Guesses carried out so far; `best` has the best of each set."""
+    """Guesses executed so far; `best` has the best of each set."""
 
     def __init__(
         self,

@@ -47,7 +47,7 @@ class Separating:
 
 
 def separating(one: Guess, two: Guess, trial: Trial, names: tuple[str, str]) -> Separating | None:
-    """The best of the plans; None if neither can be carried out on both guesses."""
+    """The best of the plans; None if neither can be executed on both guesses."""
     best: Separating | None = None
     for words, steps in _plans(trial.targets.plan):
         plan, text = _plan(steps, words, names)

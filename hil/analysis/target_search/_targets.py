@@ -66,7 +66,7 @@ class Targets:
         values: criterion id: figure, in the criterion's unit.
         first_seconds: the figures must be reached within these seconds after the step; None: any time.
         settles: segment: seconds after which T_s stays within 5 % of the step around its mean, until 4 s.
-        open: RMCU parameter: range, for numbers of the controller that nobody has given.
+        open: RMCU parameter: range, for numbers of the controller that no one has given.
         response: None: no identification is asked for.
     """
 

@@ -1,4 +1,4 @@
-"""One guess at what an axle is, carried out on the predicted bench, and what comes of it."""
+"""One guess at what an axle is, executed on the predicted bench, and what comes of it."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Outcome:
         ratios: of each criterion that compares two segments: value over the value that it must be below.
         unsettled: by segment, largest deviation of T_s from its mean over the step's size.
         misfit: by output, rms over frequency of the linear response against the target's, dB and degrees.
-        prediction: None where the guess could not be carried out.
+        prediction: None where the guess could not be executed.
     """
 
     figures: Mapping[str, float | None]
@@ -140,7 +140,7 @@ class Trial:
         return self._outcome(found, model)
 
     def run(self, plan: Plan, guess: Guess) -> Predicted:
-        """A plan carried out on a guess.
+        """A plan executed on a guess.
 
         Raises:
             HilError: the run would fail.

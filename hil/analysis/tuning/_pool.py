@@ -55,7 +55,7 @@ class Pool:
         ask()
         found: list[Tried] = []
         with contextlib.closing(self._results(work)) as results:
-            for one in results:  # those that are not begun are taken back where `ask` raises
+            for one in results:  # those that are not started are taken back where `ask` raises
                 self.runs += 1
                 found.append(one)
                 if len(found) < len(work):

@@ -62,7 +62,7 @@ class Search:
         start: point to begin with.
         seed: of everything random.
         stopped: asked before each batch.
-        show: told what is being done, and how much of it is done.
+        show: called with what is being done, and how much of it is done.
     """
 
     def __init__(

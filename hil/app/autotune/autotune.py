@@ -51,7 +51,7 @@ def autotune(
         report_decision: called with each decision that was taken.
 
     Raises:
-        BadInputError: something cannot be used, a plan leaves the envelope, or nobody consents.
+        BadInputError: something cannot be used, a plan leaves the envelope, or no one consents.
     """
     settings = _settings(request, load_sequence(request.sequence), feedback)
     inputs = settings.runs.inputs

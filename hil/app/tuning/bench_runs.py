@@ -29,7 +29,7 @@ FOLDER = "bench"
 
 @dataclass(frozen=True)
 class Allowed:
-    """A bench, what may be done on it, and who said so."""
+    """A bench, what may be done on it, and who consented."""
 
     bench: BenchFile
     envelope: Envelope
@@ -85,7 +85,7 @@ def allowed_on(
         confirm: name of who consents; '' if the person at the terminal is asked.
 
     Raises:
-        BadInputError: the envelope makes no sense or leaves no room, or nobody consents.
+        BadInputError: the envelope makes no sense or leaves no room, or no one consents.
     """
     refuse_nobody(trial.plan, bench, confirm, feedback)
     predicted = predicted_run(trial, model, None)

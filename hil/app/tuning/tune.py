@@ -62,7 +62,7 @@ def tune_controller(
     """Search, and write controller, summary and report; then run and refine as asked for.
 
     Raises:
-        BadInputError: something cannot be used, nobody consents, or no controller keeps the hard limits.
+        BadInputError: something cannot be used, no one consents, or no controller keeps the hard limits.
         InterruptError: it was interrupted before anything worth keeping was found.
     """
     search = load_search(request.search)

@@ -39,7 +39,7 @@ def write_request(folder: Path, request: object) -> None:
 
 
 def main() -> None:
-    """Carry out what is asked for, and exit."""
+    """Execute what is asked for, and exit."""
     INTERRUPTS.raise_from_now_on()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.setdefault("PYTHONWARNINGS", "ignore")

@@ -90,7 +90,7 @@ class _Service(LoggedFeedback):
         logger.warning(text)
 
     def ask_name(self, question: str, given: str) -> str:
-        """Nobody is asked here."""
+        """No one is asked here."""
         del question
         return given
 
@@ -100,10 +100,12 @@ class _Service(LoggedFeedback):
 
 
 def main() -> None:
-    """Carry out the run that is asked for on standard input, and exit with the code that `hil run` has."""
+    """Execute the run that is asked for on standard input, and exit with the code that `hil run` has."""
     INTERRUPTS.raise_from_now_on()
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    os.environ.setdefault("PYTHONWARNINGS", "ignore")  # of processes begun by this one; here the log has them
+    os.environ.setdefault(
+        "PYTHONWARNINGS", "ignore"
+    )  # of processes started by this one; here the log has them
     reading, writing = os.dup(0), os.dup(1)
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     os.dup2(2, 1)  # what a library prints is no message
@@ -141,7 +143,7 @@ def main() -> None:
 
 
 def _stop_line() -> IpcPipe | None:
-    """Only read from; nobody else has this end of it."""
+    """Only read from; no one else has this end of it."""
     from hil.engine.ipc.ipc_pipe import IpcPipe
 
     if len(sys.argv) < 3:

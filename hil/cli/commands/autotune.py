@@ -17,7 +17,7 @@ from reports.outputs.autotune import Closing, Decision, closing_verdict
 
 
 def execute(options: Autotune) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     if options.resume and options.out is None:
         raise BadInputError(
             "--resume goes with --out", where="--resume", fix="name the directory to continue with --out"

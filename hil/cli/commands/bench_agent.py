@@ -18,7 +18,7 @@ from hil.engine import StopRequest
 
 
 def execute(options: BenchAgent) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     server = options.server
     data = options.data
     bench = options.bench or ["sim"]

@@ -22,7 +22,7 @@ _COUNTERS = {"state": "", "transmit_errors": "transmit errors ", "receive_errors
 
 
 def execute(options: BenchDoctor) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     file = load_bench(bench_or_own(options.bench))
     with progress(f"checking {file.name}") as show:
         request = DoctorRequest(file, options.for_s, stop=StopRequest())
@@ -111,7 +111,9 @@ def _by_part(facts: dict[str, str]) -> list[str]:
     for name, value in facts.items():
         part, _, what = name.rpartition(": ")
         parts.setdefault(part, []).append(f"{what} {value}")
-    return [f"{part}: {', '.join(told)}" if part else ", ".join(told) for part, told in parts.items()]
+    return [
+        f"{part}: {', '.join(texts_of)}" if part else ", ".join(texts_of) for part, texts_of in parts.items()
+    ]
 
 
 def _clocks(found: Examination) -> Table:

@@ -1,4 +1,4 @@
-"""`hil bench jog`: what every sensor said when the axle was turned."""
+"""`hil bench jog`: what every sensor reads when the axle was turned."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _STYLES = {"right": "green", "wrong": "bold red", "not_seen": "bold red", "not_t
 
 
 def execute(options: BenchJog) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     file, stop = load_bench(options.bench), StopRequest()
     request = JogRequest(
         file, Path(), options.torque, operator=options.operator, confirmed_by=options.yes, stop=stop
@@ -43,10 +43,10 @@ def execute(options: BenchJog) -> int:
         with progress(f"jog on {file.name}") as show:
             request.progress = lambda share, text: show(text, share)
             outcome = jog(request)
-        told = _as_dict(outcome)
-        write_atomically(place.folder / JOG, to_json(told) + "\n")
+        found = _as_dict(outcome)
+        write_atomically(place.folder / JOG, to_json(found) + "\n")
         if options.as_json:
-            print_json(told)
+            print_json(found)
         else:
             _tell(outcome, place.folder)
     return _exit_code(outcome)

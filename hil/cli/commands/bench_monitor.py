@@ -23,7 +23,7 @@ _EVERY_S = {True: 0.2, False: 1.0}  # on a terminal, and elsewhere
 
 
 def execute(options: BenchMonitor) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     file = load_bench(options.bench)
     terminal = sys.stdout.isatty() and not options.as_json
     stop = StopRequest()

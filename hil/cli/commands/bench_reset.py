@@ -12,7 +12,7 @@ from hil.engine.stop.emergency_stop import reset
 
 
 def execute(options: BenchReset) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     refuse_long(options.by, "--by")
     name = options.by.strip()
     if not name or not is_printable(name):

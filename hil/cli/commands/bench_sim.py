@@ -24,7 +24,7 @@ from hil.engine.commissioning.sim_bench import (
 
 
 def execute(options: BenchSim) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     hide = tuple(options.hide or ())
     transport = options.transport
     interface = tuple(options.interface or ())

@@ -18,7 +18,7 @@ from reports.outputs.campaign import passed, text_of
 
 
 def execute(options: Campaign) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     if options.server:
         _refuse_here_only(workers=options.workers, scheduler=options.scheduler, dry_run=options.dry_run)
         from hil.cli.remote_campaign import RemoteCampaign  # costs a campaign here nothing

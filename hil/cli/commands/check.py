@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def execute(options: Check) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     choices = choices_of(options.values, options.controller)
     bench = bench_or_own(options.bench, options.plan)
     checked = check_plan(request_of(CheckRequest, options, choices=choices, bench=bench), TERMINAL)

@@ -14,7 +14,7 @@ from reports.comparison import lead, value_text
 
 
 def execute(options: Compare) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     outcome = compare_runs(request_of(CompareRequest, options), TERMINAL)
     if options.as_json:
         print_json(outcome.summary)

@@ -15,7 +15,7 @@ from reports.outputs.control_design import text_of
 
 
 def execute(options: Design) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     outcome = design_controller(request_of(DesignRequest, options, spec=_spec(options)), TERMINAL)
     if options.json_:
         print_json(outcome.summary)

@@ -19,7 +19,7 @@ _MOST_WORSE = 3
 
 
 def execute(options: Diagnose) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     noise = named_numbers(options.noise or [], "--noise")
     least = named_numbers(options.least or [], "--least")
     outcome = diagnose_recordings(request_of(DiagnoseRequest, options, noise=noise, least=least), TERMINAL)

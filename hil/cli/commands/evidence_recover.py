@@ -19,7 +19,7 @@ _RECOVERED = ".recovered.mcap"
 
 
 def execute(options: EvidenceRecover) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     path = options.source / RECORDING if options.source.is_dir() else options.source
     refuse_missing(path)
     if path.suffix.lower() != ".mcap":

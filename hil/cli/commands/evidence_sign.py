@@ -18,7 +18,7 @@ from hil.core.files.signatures import fingerprint, private_key, sign_folder
 
 
 def execute(options: EvidenceSign) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     refuse_long(options.by, "--by")
     refuse_missing(options.folder)
     if not options.folder.is_dir():

@@ -23,7 +23,7 @@ from hil.core.files.signatures import public_key
 
 
 def execute(options: EvidenceVerify) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     for source in options.sources:
         refuse_missing(source)
         if not source.is_dir() and source.suffix.lower() not in (*RECORDINGS, *REPORTS):
@@ -59,8 +59,8 @@ def _of_audit_log(folder: Path) -> Finding:
     from hil.service.audit import checked
 
     found = checked(folder, os.environ.get("HIL_DATABASE", ""))
-    said = found.problem or f"its {found.rows} rows form an unbroken chain up to row {found.head.id}"
-    return Finding(not found.problem, folder, f"audit log: {said}")
+    words = found.problem or f"its {found.rows} rows form an unbroken chain up to row {found.head.id}"
+    return Finding(not found.problem, folder, f"audit log: {words}")
 
 
 def _findings(sources: list[Path], key: bytes | None) -> Iterator[Finding]:

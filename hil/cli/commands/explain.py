@@ -15,7 +15,7 @@ from reports.target_search import caution
 
 
 def execute(options: Explain) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     request = request_of(
         ExplainRequest,
         options,

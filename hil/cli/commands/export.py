@@ -26,7 +26,7 @@ from hil.fmu import export_fmu
 
 
 def execute(options: Export) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     out = options.out
     if out.suffix.lower() == ".fmu":
         return _fmu(options)

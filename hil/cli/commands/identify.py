@@ -11,7 +11,7 @@ from reports.outputs.identification import text_of
 
 
 def execute(options: Identify) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     outcome = identify_recordings(request_of(IdentifyRequest, options), TERMINAL)
     if options.json_:
         print_json(outcome.summary)

@@ -20,7 +20,7 @@ _SHIPPED_MODEL = "three_inertia.toml"
 
 
 def execute(options: Init) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     folder = options.folder
     _refuse_used(folder)
     files = _files()

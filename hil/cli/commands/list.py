@@ -27,7 +27,7 @@ Row = dict[str, Any]
 
 
 def execute(options: List) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     what = options.what
     if what not in _LISTS:
         raise BadInputError(f"there is no list of '{printable(what, 60)}'", fix=did_you_mean(what, _LISTS))

@@ -19,7 +19,7 @@ from test_plans import load_plan
 
 
 def execute(options: Replay) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     outcome = replay_logs(_request(options), options.out, TERMINAL, overwrite=options.overwrite)
     replayed, result = outcome.replayed, outcome.result
     if options.as_json:

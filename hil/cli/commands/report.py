@@ -11,7 +11,7 @@ from hil.cli.streams import complain
 
 
 def execute(options: Report) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     renewed = renew_report(request_of(ReportRequest, options), TERMINAL)
     result, page = renewed.result, renewed.folder / renewed.files["html"]
     if result is None:

@@ -29,7 +29,7 @@ from test_plans import Plan, load_plan
 
 
 def execute(options: Run) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     choices = list(all_choices(options.values, options.controller))
     if options.server:
         _refuse_here_only(
@@ -125,7 +125,7 @@ def _asked_for_name(plan: Plan) -> str:
     if not plan.hazardous or not sys.stdin.isatty():
         return ""
     why = f": {printable(plan.hazardous, 500)}" if isinstance(plan.hazardous, str) else ""
-    print(f"The plan {plan.name} is hazardous{why}\nYour name, to carry it out:", file=sys.stderr)
+    print(f"The plan {plan.name} is hazardous{why}\nYour name, to execute it:", file=sys.stderr)
     return sys.stdin.readline().strip()
 
 
@@ -157,8 +157,8 @@ def _print_result(result: RunResult, folder: Path) -> None:
         warn(text)
     if result.accepted_expired:
         warn(expiry_in_words(result.accepted_expired))
-    said = identities_in_words(result.identities)
-    if said:
-        page.print(f"devices: {said}", highlight=False, markup=False, soft_wrap=True)
+    devices = identities_in_words(result.identities)
+    if devices:
+        page.print(f"devices: {devices}", highlight=False, markup=False, soft_wrap=True)
     shown = "html" if "html" in result.files else "recording"
     page.print(f"{'report' if shown == 'html' else shown}: {folder / result.files[shown]}", highlight=False)

@@ -33,7 +33,7 @@ _SCHEMAS: dict[str, Callable[[], dict[str, Any]]] = {
 
 
 def execute(options: Schema) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     kind = options.kind
     if kind not in _SCHEMAS:
         raise BadInputError(

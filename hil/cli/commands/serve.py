@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def execute(options: Serve) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     data = options.data
     bench = options.bench or []
     trusted_proxy = options.trusted_proxy or []

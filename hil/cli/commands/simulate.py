@@ -12,7 +12,7 @@ from hil.plant import replay
 
 
 def execute(options: Simulate) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     out = options.out
     refuse_file(out, [options.source, options.model], overwrite=options.overwrite)
     chosen = load_model(options.model)

@@ -24,7 +24,7 @@ from reports.outputs.tuning import text_of
 
 
 def execute(options: Tune) -> int:
-    """Carry the command out; its exit code."""
+    """Execute the command; its exit code."""
     _refuse_together(options)
     bench = options.on_bench or bench_or_own(options.bench, options.plan, drives=options.then_run)
     request = request_of(

@@ -15,7 +15,7 @@ from hil.cli.options._shared import BenchArgument, JsonObject
 class BenchReset:
     """Reset an emergency stop, so that the bench can be armed again. Nothing moves.
 
-    First make sure that nobody is in danger and that the cause of the stop is removed.
+    First make sure that no one is in danger and that the cause of the stop is removed.
     """
 
     bench: BenchArgument

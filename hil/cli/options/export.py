@@ -15,7 +15,7 @@ from hil.cli.options._shared import JsonObject, OverwriteFile
 class Export:
     """Write a recording's channels as CSV, Parquet, MDF4 or MAT, or its frames as BLF, ASC, candump or MDF4.
 
-    With --inputs: the files with which the run can be carried out again. What was lost is said.
+    With --inputs: the files with which the run can be executed again. What was lost is stated.
 
     A model, with its controller, is written as an FMI 2 co-simulation unit (FMU). The unit computes with this
     package: where it is used, Python with eaxle-hil has to be installed.

@@ -16,7 +16,7 @@ class Replay:
     """Decode CAN logs to a recording and report on it: recording.mcap, report.html, report.pdf.
 
     With --plan the criteria are judged: result.json and junit.xml too. Several logs are put on one clock by
-    their absolute stamps. What is left out of a log is said.
+    their absolute stamps. What is left out of a log is stated.
     """
 
     logs: Annotated[

@@ -135,7 +135,7 @@ def _measurement(block: _Block, conversions: dict[str, _Block], where: str) -> S
         unusable = "has a byte order of its own that is not MSB_FIRST or MSB_LAST"
     elif any(block.after(key, 1, 8) for key in ("ARRAY_SIZE", "MATRIX_DIM", "BIT_MASK")):
         unusable = "is an array or some bits of a word"
-    scale, offset, unit, said = _conversion(method, conversions)
+    scale, offset, unit, problem = _conversion(method, conversions)
     units = block.after("PHYS_UNIT", 1, 8)
     extension = block.after("ECU_ADDRESS_EXTENSION", 1, 8)
     return Symbol(
@@ -147,7 +147,7 @@ def _measurement(block: _Block, conversions: dict[str, _Block], where: str) -> S
         offset,
         (_integer(extension[0]) or 0) & 0xFF if extension else 0,
         order,
-        unusable or said,
+        unusable or problem,
     )
 
 

@@ -214,7 +214,7 @@ def described(path: Path) -> Described:
     """
     text = prepared(read_device_text(path, "check [rmcu] dbc"))
     try:
-        # Not strict: what is wrong with messages that nobody needs is no reason to refuse the file.
+        # Not strict: what is wrong with messages that no one needs is no reason to refuse the file.
         database = cantools.database.load_string(text.text, "dbc", strict=False)
     except Exception as error:  # the parser raises whatever it stumbles over
         words = " ".join(str(error).removeprefix("DBC: ").strip('"').split())
@@ -272,7 +272,7 @@ def signal_mistakes(signal: DbcSignal, message: Message) -> Iterator[str]:
     if signal.length < 1:
         yield f"has {signal.length} bits"
     if scale == 0 or not math.isfinite(scale) or not math.isfinite(offset):
-        yield f"has the factor {scale:g} and the offset {offset:g}: no value can be told from its bits"
+        yield f"has the factor {scale:g} and the offset {offset:g}: its bits give no value"
     if signal.is_float and signal.length not in (32, 64):
         yield f"is a float of {signal.length} bits; IEEE 754 has 32 or 64"
     if not signal.is_float and signal.length > _LONGEST_COUNT:

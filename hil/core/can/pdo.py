@@ -49,9 +49,9 @@ def read_eds(
     try:
         dictionary = import_eds(io.StringIO(_without_leading_zeros(text)), node_id)
     except Exception as error:  # the parser raises whatever it stumbles over
-        said = str(error).partition("\n")[0]
+        words = str(error).partition("\n")[0]
         raise BadInputError(
-            f"not an EDS file: {printable(said, 200)}", where=str(path), fix="give the dynos' EDS"
+            f"not an EDS file: {printable(words, 200)}", where=str(path), fix="give the dynos' EDS"
         ) from error
     if not len(dictionary):
         raise BadInputError("not an EDS file: has no objects", where=str(path), fix="give the dynos' EDS")
@@ -134,8 +134,8 @@ def mapping_of(dictionary: ObjectDictionary, mapping_index: int, where: str) -> 
         place = f"{where} sub {subindex}"
         entry = _number(subindices.get(subindex), place, what="a mapped object")
         if not entry:
-            said = "is 0 and maps nothing" if entry == 0 else "has no value"
-            raise BadInputError(said, where=place, fix=f"{_FIX}; sub 0 says how many objects are mapped")
+            words = "is 0 and maps nothing" if entry == 0 else "has no value"
+            raise BadInputError(words, where=place, fix=f"{_FIX}; sub 0 says how many objects are mapped")
         entries.append(entry)
     return entries
 
@@ -180,8 +180,8 @@ def _number(variable: Any, where: str, *, what: str) -> int | None:
             continue
         number = getattr(variable, value, None)
         if not isinstance(number, int):
-            said = f"{what} is '{printable(str(text), 40)}', no whole number"
-            raise BadInputError(said, where=where, fix=_FIX)
+            words = f"{what} is '{printable(str(text), 40)}', no whole number"
+            raise BadInputError(words, where=where, fix=_FIX)
         return number
     found = getattr(variable, "default", None)
     return found if isinstance(found, int) else None
@@ -198,7 +198,7 @@ def _signal(mapped: Any, shift: int, length: int, where: str) -> Signal:
         )
     if factor == 0 or not math.isfinite(factor):
         raise BadInputError(
-            f"'{name}' has the factor {factor:g}: no value can be told from its bits", where=where, fix=_FIX
+            f"'{name}' has the factor {factor:g}: its bits give no value", where=where, fix=_FIX
         )
     return Signal(
         name,

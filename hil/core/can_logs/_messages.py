@@ -46,7 +46,7 @@ _TRIGGER_BLOCK = re.compile(r"^\s*begin\s+triggerblock", re.IGNORECASE | re.MULT
 _STAMP = re.compile(r"\s*(\d+\.\d+)(?=\s)")
 
 _BLF_HEADER = 16  # bytes that every object of a BLF has: signature, sizes, type
-# What the readers find odd they also log; what matters of it is told here.
+# What the readers find odd they also log; what matters of it is reported here.
 logging.getLogger("can").addHandler(logging.NullHandler())
 
 

@@ -63,7 +63,7 @@ class LimitTripError(BenchError):
 
 
 class OrderlyEndError(BenchError):
-    """The run was ended though every device is well: its end steps can be carried out (exit code 3)."""
+    """The run was ended though every device is well: its end steps can be executed (exit code 3)."""
 
 
 class EmergencyStopError(BenchError):

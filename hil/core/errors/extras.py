@@ -1,4 +1,4 @@
-"""What a base install leaves out: a missing library is told with the extra that brings it."""
+"""What a base install leaves out: a missing library is reported with the extra that brings it."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def not_installed(error: ModuleNotFoundError, instead: str = "") -> BadInputErro
 
 
 def need(module: str, instead: str = "") -> None:
-    """Refuse what cannot work without a library, before anything is begun.
+    """Refuse what cannot work without a library, before anything is started.
 
     Args:
         instead: what can be done without it.

@@ -1,4 +1,4 @@
-"""All that is wrong with a file, told at once: each mistake with its line, key and what would be right."""
+"""All that is wrong with a file, reported at once: each mistake with its line, key and remedy."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Mistake:
     fix: str = ""
 
 
-def keyed(told: str) -> Mistake:
+def keyed(mistake: str) -> Mistake:
     """A mistake whose words begin with its key: `limits.shaft_torque_nm = 'x': ...`."""
-    return Mistake(told.partition(": ")[0].partition(" = ")[0], told)
+    return Mistake(mistake.partition(": ")[0].partition(" = ")[0], mistake)
 
 
 class MistakesError(BadInputError):

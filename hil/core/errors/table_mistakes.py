@@ -19,7 +19,7 @@ def mistakes_of(
     Args:
         model: what the table should be.
         key: of the table that was checked.
-        known: mistakes that were told; what is told of the same table again is left out.
+        known: mistakes that were reported; what concerns the same table again is left out.
     """
     tables = {keyed(mistake).key for mistake in known or ()}
     found, meant = [], _meant(error, model)
@@ -44,7 +44,7 @@ def _in_words(name: str, mistake: dict[str, Any], model: type[BaseModel]) -> str
 
 
 def _meant(error: ValidationError, model: type[BaseModel]) -> set[tuple[int | str, ...]]:
-    """Keys whose misspelling is told: that they are missing need not be."""
+    """Keys whose misspelling is reported: that they are missing need not be."""
     unknown = [one["loc"] for one in error.errors() if one["type"] == "extra_forbidden"]
     return {(*place[:-1], _closest(place, model)) for place in unknown}
 

@@ -52,7 +52,7 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f"{hint}known: {', '.join(choices) or 'none'}"
 
 
-#: Some two screens; the first line is told whatever its length.
+#: Some two screens; the first line is reported whatever its length.
 MOST_CHARACTERS = 4000
 
 

@@ -57,7 +57,7 @@ def lock_on(path: Path, *, shared: bool = False) -> Iterator[int]:
 def lock_named(name: str, *, shared: bool = False) -> Iterator[None]:
     """Hold a lock on something that is no file, for all processes of this machine.
 
-    A file named by it is locked. It stays after a kill, and where it is shared, and holds nobody up: only the
+    A file named by it is locked. It stays after a kill, and where it is shared, and holds no one up: only the
     lock counts.
 
     Args:

@@ -76,8 +76,8 @@ def sign_folder(
     files = hashes_of(folder)
     if not files:
         raise BadInputError("there is no file to sign", where=str(folder), fix="name a run's folder")
-    told = _Manifest(signed_by=by, signed_at=at, public_key=_ssh_line(raw), files=files)
-    text = told.model_dump_json(indent=1).encode() + b"\n"
+    manifested = _Manifest(signed_by=by, signed_at=at, public_key=_ssh_line(raw), files=files)
+    text = manifested.model_dump_json(indent=1).encode() + b"\n"
     with replacing(manifest) as one, replacing(signature) as other:
         one.write_bytes(text)
         other.write_bytes(key.sign(text))
@@ -101,8 +101,8 @@ def read_signature(manifest: Path) -> Signature:
     try:
         text = read_bytes(manifest)
         signature = read_bytes(manifest.with_suffix(_SIGNATURE))
-        told = _Manifest.model_validate_json(text)
-        key = _public(told.public_key.encode())
+        manifested = _Manifest.model_validate_json(text)
+        key = _public(manifested.public_key.encode())
     except BadInputError as error:
         what = error.what if Path(error.where).exists() else "is missing"
         raise BrokenSignatureError(f"{Path(error.where).name} {what}") from error
@@ -114,7 +114,12 @@ def read_signature(manifest: Path) -> Signature:
     except InvalidSignature:
         intact = False
     return Signature(
-        manifest, told.signed_by, told.signed_at, key.public_bytes_raw(), dict(told.files), intact
+        manifest,
+        manifested.signed_by,
+        manifested.signed_at,
+        key.public_bytes_raw(),
+        dict(manifested.files),
+        intact,
     )
 
 

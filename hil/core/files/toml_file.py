@@ -1,4 +1,4 @@
-"""TOML files as people write them: whatever is wrong with one is told, and none is too large to be read."""
+"""TOML files as people write them: what is wrong with one is reported, and none is too large."""
 
 from __future__ import annotations
 

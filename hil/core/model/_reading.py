@@ -1,4 +1,4 @@
-"""Checks the contents of a model file; every mistake is told, each with its line and its key."""
+"""Checks the contents of a model file; every mistake is reported, each with its line and its key."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def _parameters(given: Any, kind: str, mistakes: Mistakes) -> dict[str, float]:
     meant = {closest(key, names) for key in table if key not in names}
     checked = {}
     for name in names:
-        if name not in table and name in meant:  # its misspelling has been told
+        if name not in table and name in meant:  # its misspelling has been reported
             continue
         key = f"parameters.{name}"
         with mistakes.of(key):

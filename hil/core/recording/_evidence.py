@@ -97,7 +97,7 @@ def evidence_of(recording: Recording, table_sha256: str = "") -> str:
 
 
 def take_evidence(recording: Recording, text: str | bytes, where: str, table_sha256: str = "") -> None:
-    """Give a recording what `evidence_of` wrote of it; what does not fit is left out, and said in `damage`.
+    """Give a recording what `evidence_of` wrote of it; what does not fit is left out, and listed in `damage`.
 
     Args:
         where: name of the place the text comes from.

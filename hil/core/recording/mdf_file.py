@@ -17,7 +17,7 @@ def open_mdf(path: Path) -> Any:
     from asammdf import MDF  # slow to import, and seldom needed
     from asammdf.blocks.mdf_v4 import MDF4
 
-    # What it finds odd in a file it also prints, with a traceback; what matters of it is said here.
+    # What it finds odd in a file it also prints, with a traceback; what matters of it is stated here.
     logging.getLogger("asammdf").setLevel(logging.CRITICAL + 1)
     MDF4.__del__ = _close
     return MDF(path)

@@ -71,7 +71,7 @@ def uncounted(typing: Any, array: Any) -> Any:  # noqa: ARG001
 
 
 def depends_on(digest: str) -> None:
-    """Keep functions compiled with another package's laws, told by a digest, apart from those without."""
+    """Keep functions compiled with another package's laws, named by a digest, apart from those without."""
     global _outside
     _outside = digest
 

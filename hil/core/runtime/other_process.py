@@ -1,4 +1,4 @@
-"""A call carried out by a process of its own, which can be killed and takes no time of this one's threads.
+"""A call executed by a process of its own, which can be killed and takes no time of this one's threads.
 
 `python -m hil.core.runtime.other_process` is that process: it reads a call from its standard input, and
 writes what the call gave, or the error that it raised, to its standard output, both pickled.
@@ -24,7 +24,7 @@ _LOOK_S = 1.0
 
 
 class OtherProcess:
-    """A call that is being carried out; the function and its arguments must be picklable."""
+    """A call that is being executed; the function and its arguments must be picklable."""
 
     def __init__(self, function: Callable[..., Any], *arguments: object) -> None:
         self._process = subprocess.Popen(
@@ -72,14 +72,14 @@ class OtherProcess:
             try:
                 with contextlib.suppress(BrokenPipeError):  # then its standard error says why
                     pickle.dump(call, process.stdin, protocol=5)
-                out, said = process.communicate()
-                self._answer = pickle.loads(out) if out else self._gone(said)
+                out, complaint = process.communicate()
+                self._answer = pickle.loads(out) if out else self._gone(complaint)
             except Exception as error:
                 self._failure = error
                 process.kill()
 
-    def _gone(self, said: bytes) -> tuple[bool, HilError]:
-        words = said.decode(errors="replace").strip()[-_LAST_WORDS:]
+    def _gone(self, complaint: bytes) -> tuple[bool, HilError]:
+        words = complaint.decode(errors="replace").strip()[-_LAST_WORDS:]
         what = f"the process ended with code {self._process.returncode}"
         what = f"{what}: {words}" if words else what
         return False, BenchError(what, where="analysis", fix="is there enough memory?")
@@ -97,7 +97,7 @@ def _carried_out() -> tuple[bool, Any]:
 
 
 def end_with_parent(parent: int) -> None:
-    """Nobody waits for an answer any more once the process that asked has ended, however it did."""
+    """No one waits for an answer any more once the process that asked has ended, however it did."""
     while os.getppid() == parent:
         time.sleep(_LOOK_S)
     os._exit(1)

@@ -1,7 +1,7 @@
 """One function of many things at once, on as many threads as numba may use.
 
 For compiled functions and numpy, which let other threads run meanwhile. The calling thread works too, and
-does alone what no other thread has begun: so one call may stand within another, whoever runs it.
+does alone what no other thread has started: so one call may stand within another, whoever runs it.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def map_on_threads(function: Callable[[_Thing], _Result], things: Sequence[_Thin
     """`function` of each of `things`, in their order.
 
     Raises:
-        Exception: the first thing's whose function raises, once what has been begun is over.
+        Exception: the first thing's whose function raises, once what has been started is over.
     """
     if threads() < 2 or len(things) < 2:
         return [function(thing) for thing in things]
@@ -75,6 +75,6 @@ class _Work(Generic[_Thing, _Result]):
                 return
             try:
                 self._results[index] = self._function(self._things[index])
-            except Exception as error:  # told to who asked
+            except Exception as error:  # raised where it was asked for
                 self._errors[index] = error
                 self._waiting = iter(())

@@ -108,7 +108,7 @@ class ShaftTwist:
 class TorqueError:
     """What the inverter says that it gives, less what it was asked for, of the same sample.
 
-    It is told late by the inverter's own lag: a limit of it needs a persistence longer than that.
+    It is reported late by the inverter's own lag: a limit of it needs a persistence longer than that.
     """
 
     def __init__(self) -> None:

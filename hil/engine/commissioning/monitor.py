@@ -79,7 +79,7 @@ def monitor(request: MonitorRequest) -> View:
     """Listen until the time is over or somebody asks to stop; the view of the whole time.
 
     Raises:
-        BadInputError: a bench that computes its buses: nobody is on them but who computes them.
+        BadInputError: a bench that computes its buses: no one is on them but who computes them.
         BenchError: no bus can be opened, or one fails.
     """
     file = request.bench

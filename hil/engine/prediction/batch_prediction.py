@@ -112,7 +112,7 @@ class _Here:
     """What a process knows of its trials.
 
     Steps `before` one loads the file that is tried, or analyses, are the same for every controller; the rest
-    are `after`. `begun` are runs that have carried the first of them out, with their models, by car; `room`
+    are `after`. `started` are runs that have executed the first of them, with their models, by car; `room`
     is for what is measured, the same for every run.
     """
 

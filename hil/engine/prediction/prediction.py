@@ -1,4 +1,4 @@
-"""A plan carried out on a bench that is computed, not talked to: what a run would record, in a fraction of
+"""A plan executed on a bench that is computed, not talked to: what a run would record, in a fraction of
 its time.
 
 The engine's own conductor does it, with a predicted bench in place of drivers and wire.
@@ -66,7 +66,7 @@ def predict(
 ) -> Prediction:
     """Carry `plan` out on the simulated bench of `bench` and `model`, without its wire and its noise.
 
-    Nobody is asked at operator prompts, and no limit on measured values trips.
+    No one is asked at operator prompts, and no limit on measured values trips.
 
     Args:
         controllers: what is loaded in place of files that the plan loads.

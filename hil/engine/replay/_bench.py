@@ -87,7 +87,7 @@ class BenchDecoder:
                     recorder.take(samples)
                 except (
                     BenchError
-                ) as error:  # its clocks have parted: told, the channels are as good as they are
+                ) as error:  # its clocks have parted: reported, the channels are as good as they are
                     self.remarks.append(f"{error.where}: {error.what}")
         return recorder
 
@@ -124,7 +124,7 @@ class _LogClock:
         return self.time_s
 
     def sleep_until(self, time_s: float) -> None:
-        """Nobody waits for what has been."""
+        """No one waits for what has been."""
         self.time_s = max(self.time_s, time_s)
 
 

@@ -1,4 +1,4 @@
-"""Carries out what a plan's steps ask for, tick by tick, on an open bench."""
+"""Executes what a plan's steps ask for, tick by tick, on an open bench."""
 
 from __future__ import annotations
 
@@ -203,11 +203,11 @@ class BenchConductor:
                 self._release(began_rad_s * radius_m)
 
     def _keep_what_was_held(self) -> None:
-        """A segment that was cut off by a hold gets a name of its own: it is begun again under its own."""
+        """A segment that was cut off by a hold gets a name of its own: it is started again under its own."""
         if self.segments and not self.segments[-1].complete:
-            begun = self.segments[-1]
-            count = sum(segment.id.startswith(f"{begun.id}_held_") for segment in self.segments)
-            self.segments[-1] = begun.model_copy(update={"id": f"{begun.id}_held_{count + 1}"})
+            started = self.segments[-1]
+            count = sum(segment.id.startswith(f"{started.id}_held_") for segment in self.segments)
+            self.segments[-1] = started.model_copy(update={"id": f"{started.id}_held_{count + 1}"})
             self._store_segment()
 
     def coast(self, duration_s: float) -> None:
@@ -303,13 +303,13 @@ class BenchConductor:
         return known.limits.twist.gear_ratio if known.limits.twist else None
 
     def _end(self, clock_s: float, *, complete: bool) -> None:
-        """A segment ends where it was stopped, and only one that was carried out whole can be judged."""
-        begun = self.segments[-1]
-        end_s = begun.end_s if complete else min(begun.end_s, self._recorder.recording_time(clock_s))
-        self.segments[-1] = begun.model_copy(update={"end_s": end_s, "complete": complete})
+        """A segment ends where it was stopped, and only one that was executed whole can be judged."""
+        started = self.segments[-1]
+        end_s = started.end_s if complete else min(started.end_s, self._recorder.recording_time(clock_s))
+        self.segments[-1] = started.model_copy(update={"end_s": end_s, "complete": complete})
         with contextlib.suppress(BenchError):  # a full disk is already being reported
             self._store_segment()
-            self._event("segment", f"{begun.id} {'ends' if complete else 'was stopped'}")
+            self._event("segment", f"{started.id} {'ends' if complete else 'was stopped'}")
 
     def _store_segment(self) -> None:
         segment = self.segments[-1]

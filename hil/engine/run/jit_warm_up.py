@@ -38,7 +38,7 @@ def _warm_up_frames(bench: Bench) -> None:
     """Blocks of one frame are compiled for by themselves: their columns lie without gaps."""
     blocks = [np.zeros(count, FRAME) for count in (1, 2)]
     for block in blocks:
-        block["flags"] = EXTENDED  # nobody listens to those
+        block["flags"] = EXTENDED  # no one listens to those
         NewestFrames({0: ()}).of(block)
         for other in blocks:
             inserted(block, other)

@@ -49,7 +49,7 @@ _PROGRESS_S = 0.5
 
 
 def run_plan(request: RunRequest) -> RunOutcome:
-    """Carry out a plan on a bench and write its recording.
+    """Execute a plan on a bench and write its recording.
 
     The order of events is described in docs/reference/order-of-events.md.
 
@@ -101,7 +101,7 @@ class _Run:
         except Exception as error:  # also a fault of ours must leave a safe bench and say what it was
             self._failures.take(error)
         finally:
-            # Also when the interpreter itself is going down: nobody may be left with torque on.
+            # Also when the interpreter itself is going down: no one may be left with torque on.
             bench.loop.shielded = True
             self._watch.end()
             self._unsafe = reach_safe_state(bench, self._failures.note) if self._arming.armed else []
@@ -164,7 +164,7 @@ class _Run:
         self._expected_s = estimate_duration_s(self._request.plan)
 
     def _turned(self) -> None:
-        """Tell who watches this process that the loop turns; nobody may drive a bench unwatched."""
+        """Tell who watches this process that the loop turns; no one may drive a bench unwatched."""
         gone = self._request.watched.turned() if self._request.watched is not None else ""
         if not gone:
             return
@@ -195,7 +195,7 @@ class _Run:
         except (InterruptError, BadInputError, OrderlyEndError) as error:
             self._end_early(error)
         except HilError:
-            self._end_steps = "not carried out: nothing may move on a bench that has failed"
+            self._end_steps = "not executed: nothing may move on a bench that has failed"
             raise
         except Exception as error:  # a mistake in a step's code: the bench is well
             self._end_early(error)
@@ -217,13 +217,13 @@ class _Run:
         """What the end steps have left, as the devices say."""
         names = ", ".join(step.kind for step in self._request.plan.finally_) or "none"
         speed, state = self._bench.dyno.wheel_speed_rad_s, self._bench.rmcu.state
-        return f"carried out: {names}; the wheels turn at {abs(speed):.2f} rad/s, the RMCU is in '{state}'"
+        return f"executed: {names}; the wheels turn at {abs(speed):.2f} rad/s, the RMCU is in '{state}'"
 
     def _show_progress(self) -> None:
         passed_s = self._bench.loop.clock.now_s() - self._begin_s
         segments = self._conductor.segments
         text = segments[-1].id if segments else "coming up"
-        text = f"held: {self._watch.hold.said}" if self._watch.hold.said else text
+        text = f"held: {self._watch.hold.causes_shown}" if self._watch.hold.causes_shown else text
         self._request.progress(min(1.0, passed_s / max(self._expected_s, 1e-9)), text)
 
     def _blame(self) -> str:
@@ -293,7 +293,7 @@ class _Run:
         )
         try:
             store_result(self._recorder, self._inputs, self._conductor, result)
-        except Exception as error:  # the result is to be told all the same
+        except Exception as error:  # the result is reported all the same
             failures.take(error)
         largest = dict(self._watch.limits.largest)
         at_fault = (

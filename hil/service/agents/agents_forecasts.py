@@ -1,4 +1,4 @@
-"""What agents predict of plans on their benches: `hil check`, carried out where the bench is."""
+"""What agents predict of plans on their benches: `hil check`, executed where the bench is."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class AgentsForecasts:
         raise kind(problem.what, where=problem.where, fix=problem.fix)
 
     def answer(self, order: str, answer: AgentsForecast) -> bool:
-        """Take an agent's answer; false if nobody waits for it."""
+        """Take an agent's answer; false if no one waits for it."""
         asked = self._asked.get(order)
         if asked is None or asked.done():
             return False

@@ -1,4 +1,4 @@
-"""A bench of an agent on another machine: what it is, what its agent told last, what that has to do."""
+"""A bench of an agent on another machine: what it is, what its agent reported last, what that has to do."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Agent:
 
 
 class RemoteBench:
-    """A bench of an agent: what it is, and what its agent told last."""
+    """A bench of an agent: what it is, and what its agent reported last."""
 
     def __init__(self, agent: Agent, report: AgentBench) -> None:
         self.agent, self.report = agent, report
@@ -90,7 +90,7 @@ class RemoteBench:
         origin: str = "",
         way: StopWay = "",
     ) -> Order:
-        """Have the agent told."""
+        """Notify the agent."""
         of_run = kind not in ("reset", "forecast")
         order = Order(
             id=secrets.token_hex(8),

@@ -22,7 +22,7 @@ from hil.service.store import RunStore
 
 
 class RunUploads:
-    """Takes files of runs that agents carry out.
+    """Takes files of runs that agents execute.
 
     Args:
         service: whose the files are from then on, by its name in the database.

@@ -34,7 +34,7 @@ def who(
     header: Annotated[HTTPAuthorizationCredentials | None, Depends(_bearer)],
     cookie: Annotated[str | None, Depends(_cookie)],
 ) -> Me:
-    """Who asks. A service without tokens is reached from its own machine only, and asks nobody.
+    """Who asks. A service without tokens is reached from its own machine only, and asks no one.
 
     Raises:
         RefusedError: no token, or none that is valid.

@@ -145,20 +145,20 @@ def _chosen(service: Service, wanted: DraftWanted) -> dict[str, Any]:
     return {**wanted.model_dump(), "model": str(path.resolve())}
 
 
-def _readable(catalogue: Catalogue[Any], told: Callable[[Catalogue[Any], str, Path], T]) -> Iterator[T]:
-    """What is told of all that can still be read."""
+def _readable(catalogue: Catalogue[Any], describe: Callable[[Catalogue[Any], str, Path], T]) -> Iterator[T]:
+    """The description of all that can still be read."""
     for name, path in catalogue.paths().items():
         with contextlib.suppress(BadInputError):
-            yield told(catalogue, name, path)
+            yield describe(catalogue, name, path)
 
 
 def _there(
-    catalogue: Catalogue[Any], told: Callable[[Catalogue[Any], str, Path], T], kind: str, name: str
+    catalogue: Catalogue[Any], describe: Callable[[Catalogue[Any], str, Path], T], kind: str, name: str
 ) -> T:
     path = catalogue.path(name)
     if path is None:
         raise missing(kind, name)
-    return told(catalogue, name, path)
+    return describe(catalogue, name, path)
 
 
 def _text(catalogue: Catalogue[Any], kind: str, name: str) -> Response:

@@ -28,7 +28,7 @@ def controller_catalogue(given: Uploads) -> Catalogue[Controller]:
 
 
 def model_data(catalogue: Catalogue[Model], name: str, path: Path) -> ModelData:
-    """What is told of a model that lies there.
+    """What is shown of a model that lies there.
 
     Raises:
         BadInputError: it cannot be read any more.
@@ -44,7 +44,7 @@ def model_data(catalogue: Catalogue[Model], name: str, path: Path) -> ModelData:
 
 
 def controller_data(catalogue: Catalogue[Controller], name: str, path: Path) -> ControllerData:
-    """What is told of a controller that lies there.
+    """What is shown of a controller that lies there.
 
     Raises:
         BadInputError: it cannot be read any more.

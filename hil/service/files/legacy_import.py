@@ -1,7 +1,7 @@
 """Folders in which earlier versions kept what was given: taken into the database when a service begins.
 
 A file goes once the database has its text under its name, so that a service that is killed goes on with the
-next one. What another service has given under the same name with another content stays, and is told.
+next one. What another service has given under the same name with another content stays, and is reported.
 """
 
 from __future__ import annotations

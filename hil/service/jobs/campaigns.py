@@ -107,7 +107,7 @@ class Campaigns(Jobs[CampaignData]):
         return [CampaignExample(**one) for one in found["examples"]]
 
     async def add(self, wanted: CampaignWanted, places: Places, by: str) -> CampaignData:
-        """Have one carried out in its turn.
+        """Have one executed in its turn.
 
         Raises:
             BadInputError: something is wrong with it, or too many wait already.
@@ -146,7 +146,7 @@ class Campaigns(Jobs[CampaignData]):
         if process is None:
             cancelled = await super().cancel(number)
             found = self._records.get(number)
-            if cancelled and found is not None and not self.is_over(found):  # it had not begun
+            if cancelled and found is not None and not self.is_over(found):  # it had not started
                 self._end(number, _INTERRUPTED)
             return cancelled
         self._records.change(number, state="stopping")
@@ -186,7 +186,7 @@ class Campaigns(Jobs[CampaignData]):
             self._paces.pop(number, None)
 
     async def _free(self, number: int) -> None:
-        """Wait until nobody writes there: processes that a killed service has left may still be ending.
+        """Wait until no one writes there: processes that a killed service has left may still be ending.
 
         Raises:
             BenchError: somebody still does.

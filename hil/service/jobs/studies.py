@@ -49,7 +49,7 @@ class Studies(Jobs[StudyData]):
         request: IdentifyRequest | DiagnoseRequest,
         within_s: float,
     ) -> StudyData:
-        """Have one carried out in its turn.
+        """Have one executed in its turn.
 
         Args:
             request: without the place for the results.
@@ -78,7 +78,7 @@ class Studies(Jobs[StudyData]):
         """End one; what a diagnosis knows by then it writes down. False if it is over."""
         found = await super().cancel(number)
         study = self._records.get(number)
-        if found and study is not None and not self.is_over(study):  # it had not begun
+        if found and study is not None and not self.is_over(study):  # it had not started
             self._end(number, "cancelled", "cancelled")
         return found
 

@@ -64,5 +64,5 @@ class FileStore:
 
 
 def _waiting(service: str) -> tuple[ColumnElement[bool], ...]:
-    begun = RunRow.state.in_(OVER), RunRow.started_at.is_not(None)
-    return (*begun, RunRow.kept_at.is_(None), RunRow.service.in_((service, "")))
+    started = RunRow.state.in_(OVER), RunRow.started_at.is_not(None)
+    return (*started, RunRow.kept_at.is_(None), RunRow.service.in_((service, "")))

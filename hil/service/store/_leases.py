@@ -38,7 +38,7 @@ class LeaseStore:
         return LeaseData(bench=bench, holder=holder, until=until) if taken else None
 
     def give_back(self, bench: str) -> None:
-        """Nobody has it any more."""
+        """No one has it any more."""
         with self._transaction() as session:
             session.execute(delete(LeaseRow).where(LeaseRow.bench == bench))
 

@@ -1,4 +1,4 @@
-"""Reads what people give before the service takes it: whatever it is, it holds nobody up here."""
+"""Reads what people give before the service takes it: whatever it is, it holds no one up here."""
 
 from __future__ import annotations
 

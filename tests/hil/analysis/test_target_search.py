@@ -1,4 +1,4 @@
-"""What brings a predicted run to target figures: sizes, targets, search, conditions and what is told."""
+"""What brings a predicted run to target figures: sizes, targets, search, conditions and what is reported."""
 
 import itertools
 from dataclasses import replace

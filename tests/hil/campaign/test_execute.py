@@ -9,8 +9,8 @@ import pytest
 from distributed import LocalCluster
 
 from hil.campaign import (
-    BEGUN,
     FOLDER,
+    STARTED,
     Batch,
     Here,
     Parts,
@@ -87,7 +87,7 @@ def test_another_campaign_is_not_gone_on_with(tmp_path, changed):
 def test_what_was_begun_may_be_nothing_or_damaged(tmp_path, simulations):
     assert begun_batch(tmp_path, simulations.setting) == 0
     for content in ("{", "[]", json.dumps({"batch": 0, "identity": {}})):
-        (tmp_path / BEGUN).write_text(content)
+        (tmp_path / STARTED).write_text(content)
         with pytest.raises(BadInputError, match="cannot be read"):
             begun_batch(tmp_path, simulations.setting)
 
@@ -164,8 +164,8 @@ def test_a_worker_with_other_files_is_refused(parts, simulations, cluster):
 def test_stopped_only_what_is_under_way_is_awaited(parts, simulations, cluster):
     setting = simulations.setting
     with Workers(rows_of(setting), 0, cluster.scheduler_address) as workers:
-        begun = iter([False])
-        assert not execute(parts, workers, simulations.failed, stopped=lambda: next(begun, True))
+        started = iter([False])
+        assert not execute(parts, workers, simulations.failed, stopped=lambda: next(started, True))
         assert workers.under_way == 0
     assert 3 <= len(parts.table()) < 16
     assert parts.folder.name == FOLDER

@@ -1,4 +1,4 @@
-"""On a terminal somebody is waiting, and is told for what."""
+"""On a terminal somebody is waiting, and is reported for what."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_a_terminal_is_told_that_the_simulation_is_being_compiled() -> None:
     while True:
         try:
             piece = os.read(terminal, 4096)
-        except OSError:  # Linux says so when nobody is at the other end any more
+        except OSError:  # Linux says so when no one is at the other end any more
             break
         if not piece:
             break

@@ -56,7 +56,7 @@ def test_ascii_output_is_readable_and_json_stays_json() -> None:
 def test_a_file_opened_with_a_closed_stdout_does_not_become_it(tmp_path: Path) -> None:
     program = (
         "from hil.cli.streams import tolerate_outputs; tolerate_outputs(); "
-        f"f = open({str(tmp_path / 'f')!r}, 'w'); print('to nobody'); f.write('content')"
+        f"f = open({str(tmp_path / 'f')!r}, 'w'); print('to no one'); f.write('content')"
     )
     assert shell(f'{sys.executable} -c "{program}" >&-').returncode == 0
     assert (tmp_path / "f").read_text() == "content"

@@ -1,4 +1,4 @@
-"""Trends: scatter from neighbours, distance to the nearer limit, and only what can be said."""
+"""Trends: scatter from neighbours, distance to the nearer limit, and only what can be stated."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ class DoctorRequest:
 
     Attributes:
         listen_s: seconds of the bench clock to listen before anybody is asked.
-        progress: told the share that is done and what is going on.
+        progress: called with the share that is done and what is going on.
     """
 
     bench: BenchFile
@@ -126,7 +126,7 @@ class _Visit:
             self._found.devices[key] = DeviceFacts(table.kind, answers=False)
             bus = getattr(table, "bus", None)
             if isinstance(bus, str) and bus not in connections.wires:
-                continue  # told with the bus
+                continue  # reported with the bus
             try:
                 devices[key] = table.open(key.removeprefix("devices."), connections)
                 self._opened.callback(devices[key].close)
@@ -148,7 +148,7 @@ class _Visit:
     def _listen(self, loop: BusLoop, listener: Listener) -> float:
         """Let time pass, seconds of the bench clock.
 
-        A bus that fails is told once and does not keep the others from being heard.
+        A bus that fails is reported once and does not keep the others from being heard.
         """
         loop.on_drained(listener.take)
         loop.on_block(self._count)

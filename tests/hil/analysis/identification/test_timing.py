@@ -1,6 +1,6 @@
 """Channels out of step are found, told and put right, or the model is marked; on data of another formula.
 
-The axle here is a state space of its own, carried out by scipy.
+The axle here is a state space of its own, executed by scipy.
 """
 
 from __future__ import annotations

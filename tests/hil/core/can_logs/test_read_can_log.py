@@ -1,4 +1,4 @@
-"""Logs as others write them: every frame, its stamp and its kind; what is broken is said."""
+"""Logs as others write them: every frame, its stamp and its kind; what is broken is stated."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pydantic finds is said in the bench's own words."""
+"""What pydantic finds is stated in the bench's own words."""
 
 from typing import Literal
 

@@ -1,4 +1,4 @@
-"""Lists of findings that end where nobody reads any more."""
+"""Lists of findings that end where no one reads any more."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All that is wrong with a file is told at once, each mistake with its line and what was meant."""
+"""All that is wrong with a file is reported at once, each mistake with its line and what was meant."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ criteria:
         "steps[2].repeat.steps[1].wiat",
         "steps[2].repeat.steps[2].wait.duration_s",
     ]
-    assert places[-1] == "criteria[1].metric"  # which segments there would be nobody knows
+    assert places[-1] == "criteria[1].metric"  # which segments there would be no one knows
 
 
 def test_of_several_files() -> None:

@@ -74,7 +74,7 @@ def test_it_ends_with_the_process_that_asked_for_it() -> None:
     with subprocess.Popen([sys.executable, "-c", text], stdout=subprocess.PIPE, text=True) as asking:
         assert asking.stdout is not None
         number = int(asking.stdout.readline())
-        time.sleep(1.0)  # it has begun
+        time.sleep(1.0)  # it has started
         assert Path(f"/proc/{number}").exists()
         asking.kill()
     for _ in range(200):

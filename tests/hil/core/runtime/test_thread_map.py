@@ -52,20 +52,20 @@ def failing_at(*numbers: int) -> Callable[[int], int]:
 
 
 def test_an_error_is_told_and_what_waits_is_not_begun() -> None:
-    begun: list[int] = []
+    started: list[int] = []
 
     def function(number: int) -> None:
-        begun.append(number)
+        started.append(number)
         if number == 0:
             raise ValueError("first")
         time.sleep(0.001)
 
     with pytest.raises(ValueError, match="first"):
         map_on_threads(function, range(1000))
-    known = len(begun)
+    known = len(started)
     assert known < 1000
     time.sleep(0.05)
-    assert len(begun) == known  # nothing goes on behind the caller's back
+    assert len(started) == known  # nothing goes on behind the caller's back
 
 
 def test_of_several_errors_the_first_thing_s_is_told() -> None:

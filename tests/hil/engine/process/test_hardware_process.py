@@ -102,7 +102,7 @@ def held(request: RunRequest) -> Iterator[tuple[subprocess.Popen[bytes], IpcPipe
 
 
 def heard_until(pipe: IpcPipe, kind: type[Message], *, here: bool = True) -> list[Message]:
-    """What is said until something of a kind comes."""
+    """What is stated until something of a kind comes."""
     found: list[Message] = []
     until_s = time.monotonic() + 120
     while not any(isinstance(message, kind) for message in found):
@@ -147,7 +147,7 @@ def test_asked_to_stop_from_either_side_it_ends_safe_once(
     assert isinstance(ended, Ended)
     assert isinstance(ended.error.as_error(), InterruptError)
     assert ended.result.safe_state == "confirmed"
-    assert ended.result.end_steps.startswith("carried out: ramp_down")
+    assert ended.result.end_steps.startswith("executed: ramp_down")
     assert sum(isinstance(message, Concluded) for message in heard) == 1
 
 
@@ -162,7 +162,7 @@ def test_a_command_that_is_gone_or_frozen_ends_the_run_in_the_normal_way(how: st
     result = run_of(read_recording(tmp_path / "recording.mcap"))
     assert result is not None
     assert (result.verdict, result.safe_state) == ("error", "confirmed")
-    assert result.end_steps.startswith("carried out: ramp_down")
+    assert result.end_steps.startswith("executed: ramp_down")
     words = "the command of this run has ended" if how == "gone" else "the command has been silent for"
     assert words in result.reason
     assert b"Traceback" not in said

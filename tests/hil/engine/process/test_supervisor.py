@@ -26,12 +26,12 @@ RESULT = (
 )
 ENDED = f'{{"kind": "ended", "result": {RESULT}, "recording": "r"}}'
 REFUSED = '{"kind": "refused", "error": {"kind": "BadInputError", "what": "not this"}}'
-TOLD = '{"kind": "told", "text": "hello"}'
+TOLD = '{"kind": "message", "text": "hello"}'
 HUNG_AFTER_S = 0.5
 
 
 def watched_bench(name: str = "watched", **changes: Any) -> BenchFile:
-    """A simulated bench that is held by a process of its own: nobody needs to be asked whether it is safe."""
+    """A simulated bench that is held by a process of its own: no one needs to be asked whether it is safe."""
     bench = sim_bench(name, **changes)
     settings = bench.supervision.model_copy(update={"own_process": True, "hung_after_s": HUNG_AFTER_S})
     return bench.model_copy(update={"supervision": settings})

@@ -1,4 +1,4 @@
-"""What steps ask for, carried out on the simulated bench: torque, speed, segments, prompts, analyses."""
+"""What steps ask for, executed on the simulated bench: torque, speed, segments, prompts, analyses."""
 
 from __future__ import annotations
 
