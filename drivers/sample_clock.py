@@ -120,7 +120,7 @@ class SampleClock:
 
     @property
     def disorder(self) -> float:
-        """How badly numbers and arrival times agree: a stretch's offset from the bench's clock, in samples."""
+        """How badly numbers and arrival times agree: offset of a stretch from the bench's clock, samples."""
         return abs(self._slope) / self.period_s * _STRETCH + self.spread_s / self.period_s
 
     def parted_from(self, base: SampleClock | None) -> str:
