@@ -23,7 +23,6 @@ from hil.cli._commands import (
     execute,
     group_help,
     help_text,
-    options_module,
     options_of,
     taken_apart,
 )
@@ -70,7 +69,7 @@ def _dispatch(arguments: list[str]) -> int:
         return 0
     if arguments[0] in RENAMED:
         complain("note", f"'hil {arguments[0]}' is now 'hil {name}'; the old name goes with the next release")
-    several = getattr(options_module(name), "SEVERAL", ())
+    several = getattr(options_of(name), "SEVERAL", ())
     app_of(name)(list(each_with_its_option(rest, several)), prog_name=f"hil {name}")
     return 0
 

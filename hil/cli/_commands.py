@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import difflib
 import importlib
-from types import ModuleType
 from typing import Any
 
 from hil.app.worker.lean_imports import import_python_can
+from hil.cli import options
 from hil.core.errors import BadInputError
 
 #: Name and line of each command, by the topic under which `hil --help` has it. Its options
-#: are the module hil.cli.options.NAME (_ for - and for a blank), what it does hil.cli.commands.NAME.
+#: are the class NAME of hil.cli.options; what it does is the module hil.cli.commands.NAME (_ for a blank).
 TOPICS: dict[str, dict[str, str]] = {
     "Runs": {
         "run": "Run a test plan on a bench and write its report.",
@@ -81,21 +81,16 @@ def command_names() -> list[str]:
     return [*top, *(f"{group} {name}" for group, commands in GROUPS.items() for name in commands)]
 
 
-def options_module(name: str) -> ModuleType:
-    """The module with the options of a command; light, so that `--help` answers at once."""
-    return importlib.import_module(f"hil.cli.options.{_module_name(name)}")
-
-
 def options_of(name: str) -> type[Any]:
     """The class of a command's options, named as it is (BenchDoctor); `--help` shows its docstring."""
-    found: type[Any] = getattr(options_module(name), name.title().replace("-", "").replace(" ", ""))
+    found: type[Any] = getattr(options, name.title().replace("-", "").replace(" ", ""))
     return found
 
 
-def execute(name: str, options: object) -> int:
+def execute(name: str, chosen: object) -> int:
     """Execute a command; its exit code."""
     import_python_can()
-    code: int = importlib.import_module(f"hil.cli.commands.{_module_name(name)}").execute(options)
+    code: int = importlib.import_module(f"hil.cli.commands.{_module_name(name)}").execute(chosen)
     return code
 
 
