@@ -29,9 +29,9 @@ import psutil
 
 from benchmarks.requests import requests_of
 from benchmarks.standstills import Standstills, looking
+from hil.api_schemas.api import OVER
 from hil.core.conventions import TICK_S
 from hil.core.result import PeriodicRequests, RunResult
-from hil.messages.api import OVER
 from tests.hil.cli.test_sim_bench import serving
 from tests.hil.service.served import Served, served
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from drivers.dyno._canopen import SDO_TIMEOUT_S, BrokenOffError, LoopNetwork, LoopNode, abort_in_words
 from drivers.frame_source import Binding
 from drivers.newest_frames import NewestFrames
-from hil.core.can.pdo import identifier_of, layout_of_pdo, mapping_of, read_eds
+from hil.core.can.eds import identifier_of, layout_of_pdo, mapping_of, read_eds
 from hil.core.can.signals import FrameLayout, in_units
 from hil.core.errors import DeviceError
 

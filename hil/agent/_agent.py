@@ -18,6 +18,7 @@ from hil.agent._deliveries import Deliveries
 from hil.agent._forecasting import Forecasting
 from hil.agent._kept_runs import KeptRun, KeptRuns
 from hil.agent._service import AwayError, TheService
+from hil.api_schemas.agent import AgentOrders, AgentReport, RunEnding, TakenRun
 from hil.client import RefusedError
 from hil.core.errors import BadInputError, BenchError, HilError
 from hil.engine import StopRequest
@@ -25,7 +26,6 @@ from hil.execution.benches import benches_of
 from hil.execution.data_folder import alone_in, name_in
 from hil.execution.run_execution import RunEnd, RunExecution, end_of_left
 from hil.execution.run_process import alive_in
-from hil.messages.agent import AgentOrders, AgentReport, RunEnding, TakenRun
 
 _LOOK_S = 0.1
 _REPORT_S = 0.2  # at least; the service holds a report for up to half a second

@@ -8,12 +8,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hil.agent._kept_runs import KeptRun
+from hil.api_schemas.agent import AgentBench, Order
 from hil.core.errors import HilError
 from hil.core.errors.wording import printable
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.benches import Bench
 from hil.execution.run_execution import RunExecution
-from hil.messages.agent import AgentBench, Order
 
 _LONGEST = 2000
 _USED_S = 1.0

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
+from hil.api_schemas.agent import FileMade, RunEnding, TakenRun
 from hil.core.files import make_directory, sha256_of, write_atomically
-from hil.execution.run_files import files_in, folder_of
-from hil.messages.agent import FileMade, RunEnding, TakenRun
+from hil.execution.files import files_in, folder_of
 
 _TAKEN, _ENDING, _INPUTS = ".taken.json", ".ending.json", ".inputs"
 _DELIVERED, _REFUSED = ".delivered", ".refused"

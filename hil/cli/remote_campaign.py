@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from hil.analysis.campaigns import CampaignFile, Share, load_campaign_file
+from hil.api_schemas.campaign import CAMPAIGN_OVER, TABLE, CampaignData, CampaignWanted
 from hil.app.interrupts import EXIT_CODE
 from hil.app.results_folder import ResultsFolder, results_in
 from hil.campaign import FOLDER, STARTED
@@ -24,8 +25,7 @@ from hil.client.retry import OURS, Retry
 from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.files import is_file, make_directory, read_text, write_atomically
 from hil.engine import StopRequest
-from hil.execution.plan_files import files_of
-from hil.messages.campaign import CAMPAIGN_OVER, TABLE, CampaignData, CampaignWanted
+from hil.execution.files import files_of
 from reports import HTML, PDF
 from reports.outputs.campaign import OWN, share_in_words
 from test_plans import load_plan

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hil.api_schemas.api import OVER, RunData, RunWanted
 from hil.app.result_file import RESULT
 from hil.app.results_folder import ResultsFolder, results_in
 from hil.app.run import NAMES
@@ -25,7 +26,6 @@ from hil.core.errors import BadInputError, BenchError, InterruptError
 from hil.core.result import RunResult
 from hil.engine import StopRequest
 from hil.engine.run.operator import EMERGENCY
-from hil.messages.api import OVER, RunData, RunWanted
 from test_plans import load_plan
 
 _LOOK_S = 0.3

@@ -7,9 +7,7 @@ import urllib.parse
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from hil.client._requests import WITHIN_S, Requests, first_of, part
-from hil.core.errors import BenchError
-from hil.messages.agent import (
+from hil.api_schemas.agent import (
     AgentData,
     AgentOrders,
     AgentReport,
@@ -19,7 +17,7 @@ from hil.messages.agent import (
     RunEnding,
     Taken,
 )
-from hil.messages.api import (
+from hil.api_schemas.api import (
     OVER,
     Answer,
     AuditEntry,
@@ -40,9 +38,9 @@ from hil.messages.api import (
     TokenWanted,
     TrendData,
 )
-from hil.messages.campaign import CampaignData, CampaignExample, CampaignWanted
-from hil.messages.comparison import ComparisonData, TracesData
-from hil.messages.design import (
+from hil.api_schemas.campaign import CampaignData, CampaignExample, CampaignWanted
+from hil.api_schemas.comparison import ComparisonData, TracesData
+from hil.api_schemas.design import (
     ControllerData,
     DesignData,
     DraftData,
@@ -50,14 +48,16 @@ from hil.messages.design import (
     ModelData,
     PlanCopyWanted,
 )
-from hil.messages.study import (
+from hil.api_schemas.study import (
     DiagnosisData,
     DiagnosisWanted,
     IdentificationData,
     IdentificationWanted,
     StudyData,
 )
-from hil.messages.upload import KeptApart
+from hil.api_schemas.upload import KeptApart
+from hil.client._requests import WITHIN_S, Requests, first_of, part
+from hil.core.errors import BenchError
 
 _FORECAST_WITHIN_S = 300.0
 _REPORTED_WITHIN_S = 5.0

@@ -17,9 +17,9 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, TypeAdapter, ValidationError
 
+from hil.api_schemas.api import Problem
 from hil.core.errors import BenchError
 from hil.core.files import replacing
-from hil.messages.api import Problem
 
 A = TypeVar("A")
 T = TypeVar("T", bound=BaseModel)

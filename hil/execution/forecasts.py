@@ -9,14 +9,14 @@ import tempfile
 from collections import OrderedDict
 from pathlib import Path
 
+from hil.api_schemas.api import ForecastData
 from hil.app.requests import CheckRequest
 from hil.app.worker.job import JOB, write_request
 from hil.core.errors import BadInputError, BenchError
 from hil.core.files import read_bytes
 from hil.engine import BenchFile
 from hil.execution.background import FORECAST_BYTES, start_process
-from hil.execution.plan_files import files_of
-from hil.messages.api import ForecastData
+from hil.execution.files import files_of
 from test_plans import Plan
 
 _AT_ONCE = 1  # a run needs the other processor

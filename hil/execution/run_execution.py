@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, Protocol
 
+from hil.api_schemas.agent import TakenRun
+from hil.api_schemas.api import RunData
 from hil.core.errors import HilError
 from hil.core.files import make_directory, write_atomically
 from hil.core.result import RunResult
@@ -14,8 +16,6 @@ from hil.engine import RECORDING
 from hil.engine.ipc.ipc_messages import EmergencyAsked, OperatorText, Progressed, Refused, RunAsked
 from hil.execution.benches import Bench
 from hil.execution.run_process import RunProcess, result_in
-from hil.messages.agent import TakenRun
-from hil.messages.api import RunData
 
 PLAN = "plan.yaml"
 _NOTHING = "the {who} ended before the recording started; the run can be queued again"

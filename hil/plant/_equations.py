@@ -11,8 +11,8 @@ from hil.core.runtime.compiled import inlined
 from hil.plant import _laws as L
 from hil.plant import _slots as P
 from hil.plant import _states as X
-from hil.plant._friction import friction_torque
 from hil.plant._motion import chain_of, motion_of, relative_speed
+from hil.plant._stick_slip import friction_torque
 from hil.plant._tuples import put
 
 _TRACKING_RATE_1_S = 100.0  # how fast the idle vehicle model follows the wheel while the dyno leads

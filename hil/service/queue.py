@@ -15,13 +15,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from hil.api_schemas.agent import TakenRun
+from hil.api_schemas.api import BenchState, RunData
 from hil.core.errors import BenchError, HilError
 from hil.execution.benches import Bench
+from hil.execution.files import folder_of
 from hil.execution.run_execution import RunEnd, RunExecution, RunningRun, end_of_left
-from hil.execution.run_files import folder_of
 from hil.execution.run_process import alive_in
-from hil.messages.agent import TakenRun
-from hil.messages.api import BenchState, RunData
 from hil.service.stop_post import StopPost
 from hil.service.store import BenchStore, DatabaseAwayError, LeaseStore, RunStore, in_turns
 

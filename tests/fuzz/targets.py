@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from drivers import read_rmcu
+from hil.core.can.eds import read_eds
 from hil.core.can.frames import FRAME
-from hil.core.can.pdo import read_eds
 from hil.core.can_logs import read_can_log
 from hil.core.controller import load_controller
 from hil.core.model import load_model

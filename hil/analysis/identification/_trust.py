@@ -13,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from hil.analysis.frequency_response import FrequencyResponse, check_coherence
-from hil.analysis.identification._fit import Fit, expected_deviation, fit
 from hil.analysis.identification._order import Candidate
+from hil.analysis.identification._rational_fit import Fit, expected_deviation, fit
 from hil.core.conventions import COMFORT_BAND_HZ
 from hil.core.errors import BadInputError
 from hil.core.errors.digits import share

@@ -15,7 +15,7 @@ from hil.app.result_file import Outcome, json_file
 from hil.app.results_folder import ResultsFolder, results_in
 from hil.app.run import RunSettings
 from hil.app.tuning.bench_runs import Allowed, predicted_run
-from hil.app.tuning.search import Search
+from hil.app.tuning.search_files import Search
 from hil.core.controller import controller_to_toml
 from hil.core.errors import BadInputError
 from hil.core.model import Model

@@ -14,7 +14,7 @@ from hil.app.autotune.stages import MODEL, EndedError, LoopSettings, Recorded, S
 from hil.app.interrupts import EXIT_CODE, INTERRUPTS
 from hil.app.tuning.bench_runs import WireBench
 from hil.app.tuning.refinement import Refined
-from hil.app.tuning.search import Search
+from hil.app.tuning.search_files import Search
 from hil.core.errors import HilError
 from hil.core.errors.digits import share
 from hil.engine import RECORDING

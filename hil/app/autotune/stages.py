@@ -18,9 +18,9 @@ from hil.app.results_folder import results_in
 from hil.app.run import RunSettings
 from hil.app.tuning.bench_runs import FOLDER, Allowed, StageOutcome, WireBench
 from hil.app.tuning.refinement import Refined, refine_on
-from hil.app.tuning.search import NAMES as TUNING_NAMES
-from hil.app.tuning.search import SUMMARY as TUNING_SUMMARY
-from hil.app.tuning.search import Search, load_search, write_results
+from hil.app.tuning.search_files import NAMES as TUNING_NAMES
+from hil.app.tuning.search_files import SUMMARY as TUNING_SUMMARY
+from hil.app.tuning.search_files import Search, load_search, write_results
 from hil.core.errors import HilError
 from hil.core.model import load_model
 from hil.core.recording import Recording, read_recording

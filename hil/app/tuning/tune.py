@@ -19,7 +19,7 @@ from hil.app.run import RunSettings
 from hil.app.tuning.bench_runs import FOLDER, Allowed, WireBench, allowed_on
 from hil.app.tuning.confirmation import OnTheWire, Ran, refuse_unasked, run_tuned
 from hil.app.tuning.refinement import Refined, refine_on
-from hil.app.tuning.search import NAMES, SUMMARY, Search, load_search, write_results
+from hil.app.tuning.search_files import NAMES, SUMMARY, Search, load_search, write_results
 from hil.core.errors import BadInputError, InterruptError
 from hil.engine import StopRequest
 

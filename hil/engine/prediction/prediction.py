@@ -25,8 +25,8 @@ from hil.engine.bench.bench import Bench
 from hil.engine.bench.bench_tables import BenchFile
 from hil.engine.prediction._predicted_bench import PredictedBench
 from hil.engine.prediction._predicted_wire import PredictedWire
-from hil.engine.run.conductor import BenchConductor, release_from
 from hil.engine.run.recorder import Recorder
+from hil.engine.run.step_execution import BenchConductor, release_from
 from hil.plant import LONGEST_STEP_S
 from hil.plant.closed_loop import TICK_S, Noise
 from test_plans import Array, Plan, PlannedSegment, Quantity, Step

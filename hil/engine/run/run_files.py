@@ -13,9 +13,9 @@ from hil.core.runtime.versions import versions
 from hil.engine.bench.bench import Bench
 from hil.engine.bench.device_kinds import descriptions_of
 from hil.engine.ipc.ipc import RunRequest
-from hil.engine.run.conductor import BenchConductor
 from hil.engine.run.provenance import hashes
 from hil.engine.run.recorder import Recorder
+from hil.engine.run.step_execution import BenchConductor
 
 
 def store_inputs(recorder: Recorder, request: RunRequest, bench: Bench, started_at: str) -> dict[str, bytes]:

@@ -16,13 +16,12 @@ from pathlib import Path
 
 from sqlalchemy import Engine
 
+from hil.api_schemas.agent import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
 from hil.core.errors import HilError
 from hil.core.files import make_directory, read_text, write_atomically
 from hil.engine.ipc.ipc_messages import EmergencyAsked
-from hil.execution.plan_files import files_of
+from hil.execution.files import files_of, folder_of
 from hil.execution.run_execution import PLAN, RunningRun
-from hil.execution.run_files import folder_of
-from hil.messages.agent import AgentBench, AgentData, AgentOrders, AgentReport, PlanSent, TakenRun
 from hil.service.agents.remote_bench import Agent, AgentsRun, RemoteBench
 from hil.service.store import AgentStore, BenchStore, DatabaseAwayError, LeaseStore, RunStore
 from test_plans import Plan, plan_from_text

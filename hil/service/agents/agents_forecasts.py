@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import asyncio
 
+from hil.api_schemas.agent import AgentsForecast
+from hil.api_schemas.api import ForecastData, Problem
 from hil.core.errors import BadInputError, BenchError
-from hil.messages.agent import AgentsForecast
-from hil.messages.api import ForecastData, Problem
 from hil.service.agents.agents import sent
 from hil.service.agents.remote_bench import RemoteBench
 from test_plans import Plan

@@ -8,11 +8,11 @@ import secrets
 import time
 from dataclasses import dataclass, field
 
+from hil.api_schemas.agent import AgentBench, Order, OrderKind, PlanSent
+from hil.api_schemas.api import BenchState
 from hil.core.errors import StopWay
 from hil.engine.ipc.ipc_messages import EmergencyAsked
 from hil.execution.run_execution import RunningRun
-from hil.messages.agent import AgentBench, Order, OrderKind, PlanSent
-from hil.messages.api import BenchState
 from hil.service.store import BenchStore
 
 AWAY_S = 10.0

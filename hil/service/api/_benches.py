@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
+from hil.api_schemas.api import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.core.errors import StopWay
 from hil.engine.ipc.ipc_messages import EmergencyAsked
-from hil.messages.api import BenchData, BenchName, LeaseData, LeaseWanted
 from hil.service.api._access import Engineer, Operator, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.service import Service

@@ -9,10 +9,8 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import APIRouter, Body, Request, Response
 
-from hil.core.errors import BadInputError
-from hil.core.files import read_text
-from hil.messages.api import PlanData, PlanName
-from hil.messages.design import (
+from hil.api_schemas.api import PlanData, PlanName
+from hil.api_schemas.design import (
     ControllerData,
     DesignData,
     DraftData,
@@ -21,6 +19,8 @@ from hil.messages.design import (
     ModelData,
     PlanCopyWanted,
 )
+from hil.core.errors import BadInputError
+from hil.core.files import read_text
 from hil.service.api._access import Engineer, TheService, Viewer
 from hil.service.api._problems import RefusedError, missing
 from hil.service.files.catalogue import Catalogue

@@ -5,12 +5,12 @@ from __future__ import annotations
 import contextlib
 from pathlib import Path
 
+from hil.api_schemas.design import ControllerData, ModelData
 from hil.core.controller import Controller, controller_from_toml
 from hil.core.errors import BadInputError
 from hil.core.files.toml_file import parse_toml
 from hil.core.model import Model, load_model, model_from_dict
 from hil.engine.bench.bench_file import shipped
-from hil.messages.design import ControllerData, ModelData
 from hil.plant import refuse_too_stiff
 from hil.service.files.catalogue import Catalogue
 from hil.service.files.uploads import Uploads

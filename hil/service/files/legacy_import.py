@@ -14,12 +14,12 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from hil.api_schemas.api import PlanName
+from hil.api_schemas.design import FileName
+from hil.api_schemas.upload import GivenKind, KeptApart
 from hil.core.errors import BadInputError
 from hil.core.files import read_text
-from hil.execution.plan_files import files_of
-from hil.messages.api import PlanName
-from hil.messages.design import FileName
-from hil.messages.upload import GivenKind, KeptApart
+from hil.execution.files import files_of
 from hil.service.files.catalogue import Catalogue
 from hil.service.files.plans import Plans
 from hil.service.store import GivenStore, LogStore

@@ -18,17 +18,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hil.app.requests import CampaignRequest
-from hil.core.errors import BenchError, HilError
-from hil.core.files import make_directory
-from hil.core.files.locks import HeldError, lock_on
-from hil.messages.campaign import (
+from hil.api_schemas.campaign import (
     TABLE,
     CampaignData,
     CampaignExample,
     CampaignWanted,
     PassedShare,
 )
+from hil.app.requests import CampaignRequest
+from hil.core.errors import BenchError, HilError
+from hil.core.files import make_directory
+from hil.core.files.locks import HeldError, lock_on
 from hil.service.jobs.job_process import kill_left
 from hil.service.jobs.jobs import Jobs
 from hil.service.jobs.shared_results import SharedResults

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from sqlalchemy import ColumnElement, Engine, func, select, update
 from sqlalchemy.orm import sessionmaker
 
-from hil.messages.api import OVER
+from hil.api_schemas.api import OVER
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import now
 from hil.service.store._tables import FileRow, RunRow

@@ -11,9 +11,9 @@ from sqlalchemy import ColumnElement, Engine, func, select, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session, sessionmaker
 
+from hil.api_schemas.agent import TakenRun
+from hil.api_schemas.api import RunData, RunState, TrendPoint
 from hil.core.result import CriterionResult, RunResult
-from hil.messages.agent import TakenRun
-from hil.messages.api import RunData, RunState, TrendPoint
 from hil.service.store._benches import HELD_S
 from hil.service.store._books import asked_apart
 from hil.service.store._opening import aware, now, now_there

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from hil.api_schemas.api import PlanData, VariableData
 from hil.core.errors import BadInputError
 from hil.core.errors.wording import printable
-from hil.execution.plan_files import files_of
-from hil.messages.api import PlanData, VariableData
+from hil.execution.files import files_of
 from test_plans import Plan, plan_from_text
 
 

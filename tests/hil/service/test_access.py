@@ -12,7 +12,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from hil.messages.api import LADDER, ROLES
+from hil.api_schemas.api import LADDER, ROLES
 from hil.service.api import openapi_text
 from tests.hil.service.served import HIL, SHORT, RefusedError, Served, environment_of, served
 

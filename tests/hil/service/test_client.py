@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from hil.api_schemas.api import RunWanted
 from hil.client import Client, RefusedError
 from hil.core.errors import BenchError
 from hil.core.recording import read_recording
-from hil.messages.api import RunWanted
 from test_plans import library_controllers
 from tests.hil.service.served import HIL, SHORT, Served
 

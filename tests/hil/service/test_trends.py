@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hil.api_schemas.api import RunState, TrendPoint
 from hil.core.result import CriterionResult, RunResult
-from hil.messages.api import RunState, TrendPoint
 from hil.service.store import BenchStore, NewRun, RunStore, open_database
 from hil.service.trends import LEAST_POINTS, trends
 

@@ -16,9 +16,9 @@ import pytest
 
 from hil.agent._kept_runs import KeptRuns
 from hil.agent._service import AwayError, TheService
+from hil.api_schemas.agent import RunEnding, TakenRun
+from hil.api_schemas.api import RunData
 from hil.client import RefusedError
-from hil.messages.agent import RunEnding, TakenRun
-from hil.messages.api import RunData
 from tests.hil.service.served import SHORT, Served
 from tests.hil.service.working import bench_called, working
 

@@ -15,9 +15,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sqlalchemy import Engine, create_engine, text
 
+from hil.api_schemas.agent import AgentBench, AgentReport, FileMade, RunEnding
 from hil.core.errors import BadInputError, BenchError
 from hil.engine.ipc.ipc_messages import EmergencyAsked
-from hil.messages.agent import AgentBench, AgentReport, FileMade, RunEnding
 from hil.service.agents.agents import Agents
 from hil.service.agents.remote_bench import AWAY_S
 from hil.service.agents.run_upload import RunUploads

@@ -11,8 +11,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from hil.api_schemas.campaign import CAMPAIGN_OVER, CampaignData, CampaignWanted
 from hil.client import Client, RefusedError
-from hil.messages.campaign import CAMPAIGN_OVER, CampaignData, CampaignWanted
 from tests.hil.analysis.tuning.trials import PLAN
 from tests.hil.campaign.short import CAMPAIGN
 from tests.hil.service.served import Served, served

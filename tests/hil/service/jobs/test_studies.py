@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from hil.api_schemas.api import RunWanted
+from hil.api_schemas.study import STUDY_OVER, DiagnosisWanted, IdentificationWanted, StudyData
 from hil.client import Client, RefusedError
-from hil.messages.api import RunWanted
-from hil.messages.study import STUDY_OVER, DiagnosisWanted, IdentificationWanted, StudyData
 from tests.hil.service.served import Served, served
 
 #: A chirp of some seconds: enough for a fit, not for a good one.

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from hil.api_schemas.api import RunData
 from hil.core.result import CriterionVerdict
-from hil.messages.api import RunData
 
 ChannelName = Annotated[str, Field(min_length=1, max_length=100)]
 SegmentName = Annotated[str, Field(min_length=1, max_length=200)]

@@ -14,8 +14,8 @@ import pytest
 from hil.core.errors import BadInputError, BenchError
 from hil.core.recording import Recording, read_recording
 from hil.core.result import Segment
-from hil.engine.run.conductor import RELEASE_S, BenchConductor, release_from
 from hil.engine.run.recorder import Recorder
+from hil.engine.run.step_execution import RELEASE_S, BenchConductor, release_from
 from sim_backend.bench import Fault
 from sim_backend.can_interface import attached
 from test_plans import PlannedSegment

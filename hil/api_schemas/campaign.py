@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from hil.messages.api import Record
+from hil.api_schemas.api import Record
 
 #: `stopping`: what is under way is awaited and kept. A campaign whose service ended waits for the next one.
 CampaignState = Literal["waiting", "running", "stopping", "ended", "failed", "cancelled"]

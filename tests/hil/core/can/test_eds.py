@@ -9,7 +9,7 @@ from canopen.objectdictionary import ObjectDictionary, ODRecord, ODVariable
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hil.core.can.pdo import identifier_of, layout_of_pdo, read_eds
+from hil.core.can.eds import identifier_of, layout_of_pdo, read_eds
 from hil.core.errors import BadInputError
 
 BENCHES = Path(__file__).parents[4] / "benches"

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from hil.messages.api import Record, RunId
-from hil.messages.design import FileName, Numbers
+from hil.api_schemas.api import Record, RunId
+from hil.api_schemas.design import FileName, Numbers
 
 StudyKind = Literal["identification", "diagnosis"]
 StudyState = Literal["waiting", "running", "ended", "failed", "cancelled", "interrupted"]

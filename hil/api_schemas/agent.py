@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from hil.api_schemas.api import BenchName, ForecastData, Number, PersonName, Problem, RunData, RunId
 from hil.core.errors import StopWay
-from hil.messages.api import BenchName, ForecastData, Number, PersonName, Problem, RunData, RunId
 
 AgentId = Annotated[str, Field(pattern=r"^[0-9a-f]{32}$")]
 #: A file that a run has left; what is hidden is not for others.
