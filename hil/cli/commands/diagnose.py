@@ -9,7 +9,7 @@ from hil.app.diagnose import FILES, diagnose_recordings
 from hil.app.interrupts import EXIT_CODE
 from hil.app.requests import DiagnoseRequest
 from hil.cli.inputs import named_numbers, request_of
-from hil.cli.options import Diagnose
+from hil.cli.options.models import Diagnose
 from hil.cli.output import TERMINAL, print_json
 from hil.core.errors.digits import factor, share
 from reports.diagnosis_content import MOST_WORSE
