@@ -78,7 +78,7 @@ _FUNCTIONS = "Coefficients of s, the highest power first; one denominator and on
 def _method(summary: Mapping[str, Any]) -> str:
     response = summary["frequency_response"]
     low, high = (quantities.number(response[key], significant=3) for key in ("from_hz", "to_hz"))
-    holds = {e["input_hold_s"] for e in summary["experiments"]}
+    holds = {round(e["input_hold_s"], 6) for e in summary["experiments"]}  # sample times differ by rounding
     hold = " and ".join(quantities.quantity(h * 1e3, "ms", significant=3) for h in sorted(holds))
     return (
         f"{response['points']} frequencies from {low} to {high} Hz by the {response['method']} method. "
@@ -209,9 +209,9 @@ def _functions(summary: Mapping[str, Any], *, linear: bool) -> Table:
         values = polynomial["values"]
         errors = polynomial["standard_errors"] if linear else [None] * len(values)
         for place, (value, error) in enumerate(zip(values, errors, strict=True)):
-            told = quantities.number(error, significant=2) if error is not None else quantities.DASH
+            shown = quantities.number(error, significant=2) if error is not None else quantities.DASH
             power = f"s^{len(values) - 1 - place}"
-            rows.append((name if place == 0 else "", power, quantities.number(value), told))
+            rows.append((name if place == 0 else "", power, quantities.number(value), shown))
     return Table(("polynomial", "power", "coefficient", "standard error"), tuple(rows), 2)
 
 
