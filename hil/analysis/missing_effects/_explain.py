@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hil.analysis.missing_effects._fit import Point, begun, with_better_starts
+from hil.analysis.missing_effects._fit import Point, point_at, with_better_starts
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._noise import proven_noise
 from hil.analysis.missing_effects._odds import Candidate
@@ -40,7 +40,7 @@ def explain_gap(
         model: a chain; its numbers are a prior, so that any base of the same kind gets the same answer.
         holdout: recordings that no fit sees: what is left is judged by them.
         noise: standard deviation of a sample that a channel's sensor is known to have, by channel.
-        show: told what is being fitted.
+        show: called with what is being fitted.
 
     Raises:
         BadInputError: the recordings have none of the model's channels, or are too short.
@@ -80,7 +80,7 @@ class _Shown:
         for one in self.done.found.values():
             if problem is self.problem and one.point.hypothesis is hypothesis:
                 return one.point
-        return with_better_starts(problem, begun(problem, hypothesis))
+        return with_better_starts(problem, point_at(problem, hypothesis))
 
     def left(self, candidate: Candidate) -> Array:
         """Mean square of errors in each channel on data not fitted, (3,); NaN if not recorded."""

@@ -60,7 +60,7 @@ class Linearised:
         return float("nan")
 
 
-def begun(problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] | None = None) -> Point:
+def point_at(problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] | None = None) -> Point:
     """A hypothesis as it is, from given starts or from a first guess of them."""
     states = tuple(starts or problem.first_states())
     return Point(hypothesis, states, tuple(problem.errors(hypothesis, states)))
@@ -69,7 +69,7 @@ def begun(problem: Problem, hypothesis: Hypothesis, starts: Sequence[Array] | No
 def with_better_starts(problem: Problem, point: Point) -> Point:
     """The same hypothesis from the starts that suit the data best."""
     for _ in range(_START_ROUNDS):
-        point = begun(problem, point.hypothesis, _better_starts(problem, point.hypothesis, point.starts))
+        point = point_at(problem, point.hypothesis, _better_starts(problem, point.hypothesis, point.starts))
     return point
 
 
@@ -99,7 +99,7 @@ def fit(
         max_nfev=evaluations,
     )
     hypothesis = hypothesis.moved(coordinates, found.x)
-    return begun(problem, hypothesis, _better_starts(problem, hypothesis, point.starts))
+    return point_at(problem, hypothesis, _better_starts(problem, hypothesis, point.starts))
 
 
 def linearised(problem: Problem, point: Point, *, free: bool = True) -> Linearised:

@@ -31,9 +31,9 @@ def proven_noise(series: Sequence[Series], stated: Mapping[str, float]) -> Array
             continue
         white = np.median([_white(one.samples[:, column]) / np.sqrt(one.block) for one in have])
         step = rounding_step(np.concatenate([one.samples[:, column] for one in have]))
-        told = stated.get(name, 0.0) / np.sqrt(have[0].block)
+        maker = stated.get(name, 0.0) / np.sqrt(have[0].block)
         digits = _DIGITS * np.sqrt(np.mean([np.mean(one.samples[:, column] ** 2) for one in have]))
-        levels[column] = max(float(white), step / np.sqrt(12.0), told, float(digits), 1e-12)
+        levels[column] = max(float(white), step / np.sqrt(12.0), maker, float(digits), 1e-12)
     return levels
 
 

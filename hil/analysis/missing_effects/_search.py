@@ -9,10 +9,18 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from hil.analysis.missing_effects._balance import read_numbers, readings
-from hil.analysis.missing_effects._fit import EVALUATIONS, Point, begun, fit, linearised
+from hil.analysis.missing_effects._fit import (
+    EVALUATIONS,
+    Point,
+    fit,
+    linearised,
+    point_at,
+    with_better_starts,
+)
 from hil.analysis.missing_effects._hypothesis import Hypothesis
 from hil.analysis.missing_effects._odds import Candidate
 from hil.analysis.missing_effects._problem import Problem
+from hil.analysis.missing_effects._response import numbers_by_response
 from hil.analysis.missing_effects._screen import (
     best_by_name,
     may_join,
@@ -28,7 +36,7 @@ _SHORT = 2  # rounds that tell which start or size is worth more of them
 _READ = 4  # names that are taken from the latent torque at each step
 _TRIED = 6  # names that are fitted at each step, the most promising ones
 _SIZES = 2  # from which an abrupt one starts
-_CARED_FOR = 2  # of these are fitted to their end
+_FITTED_OUT = 2  # of these are fitted to their end
 _ROUNDS = 6
 _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
 _MOST_NAMES = 4
@@ -63,7 +71,7 @@ class Search:
 
     def fitted(self, hypothesis: Hypothesis, near: Candidate | None, rounds: int = _ROUNDS) -> Candidate:
         """Fit a hypothesis, weighed by the spectrum that it leaves itself; the best of its names is kept."""
-        point = begun(self.problem, hypothesis, near.point.starts if near else None)
+        point = point_at(self.problem, hypothesis, near.point.starts if near else None)
         best = before = self._candidate(point)
         problem = self.problem
         for number in range(rounds):
@@ -91,8 +99,7 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
     """Fit the numbers alone, then grow and prune sets of effects."""
     done = Search(problem)
     show("numbers alone")
-    read = read_numbers(problem.model, problem.series)
-    starts = [Hypothesis(problem.model, dict(problem.model.parameters)), *([read] if read else [])]
+    starts = _starts(problem)
     tried = [done.fitted(one, None, _SHORT) for one in starts]
     best = max([done.fitted(one.point.hypothesis, one) for one in tried], key=done.score)
     done.go_on_from(best)
@@ -103,6 +110,21 @@ def search(problem: Problem, show: Callable[[str], None]) -> Search:
         best = _pruned(done, grown)
         done.go_on_from(best)
     return done
+
+
+def _starts(problem: Problem) -> list[Hypothesis]:
+    """The base as it came, and numbers by the data; of a chain with shafts the likelier of the two."""
+    base = Hypothesis(problem.model, dict(problem.model.parameters))
+    read = read_numbers(problem.model, problem.series)
+    if read is not None:
+        return [base, read]
+    shown = numbers_by_response(problem.model, problem.series)
+
+    def likelihood(one: Hypothesis) -> float:
+        point = with_better_starts(problem, point_at(problem, one))
+        return float(np.sum(point.powers(problem).log_likelihood(problem.noise)))
+
+    return [base] if shown is None else [max((base, shown), key=likelihood)]
 
 
 def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate | None:
@@ -120,7 +142,7 @@ def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candid
     for candidate in tried:
         if candidate.names not in [other.names for other in ended]:
             ended.append(_opened(done, done.fitted(candidate.point.hypothesis, candidate), show))
-        if len(ended) == _CARED_FOR:
+        if len(ended) == _FITTED_OUT:
             break
     return max(ended, key=done.score, default=None)
 

@@ -28,7 +28,7 @@ Array = npt.NDArray[np.float64]
 
 HALF = 0.5
 _SLOW_NOISE = 1.2
-"""A sensor's error may be so many times its white noise where nobody proved how slow its noise is."""
+"""A sensor's error may be so many times its white noise where its slow noise is not proven."""
 _TOLERANCE = 0.02
 """A number that is off by less is calibrated, where the model file states no tolerance."""
 _ALIKE = np.log(20.0)
