@@ -220,6 +220,38 @@ def _read(mass: _Mass, hypothesis: Hypothesis) -> Reading | None:
     )
 
 
+def latent_torque(hypothesis: Hypothesis, series: Sequence[Series]) -> tuple[Array, Array, Array] | None:
+    """What a hypothesis with its numbers leaves of the torque in N m, rotor side, with speed and angle there.
+
+    One value a window: (windows,) each. None for chains with shafts, or without a speed.
+    """
+    turning = tuple(one for one in series if one.has[:2].any())
+    if hypothesis.kind != "rigid" or not turning:
+        return None
+    mass = _Mass(turning, hypothesis.numbers["gear_ratio"])
+    columns, change, places = _regression(mass, hypothesis)
+    numbers = hypothesis.numbers
+    inertia = numbers["motor_inertia"] + numbers["vehicle_inertia"] / numbers["gear_ratio"] ** 2
+    explained = columns[:, 0] + numbers["viscous_drag"] * columns[:, 1] - inertia * change
+    for column, (index, name, phase) in zip(columns[:, 2:].T, places, strict=True):
+        values = hypothesis.terms[index].values
+        size = float(values[name])
+        if "phase_rad" in values:
+            size *= np.cos(float(values["phase_rad"]) - phase)
+        explained = explained + size * column
+    means = [
+        np.concatenate([_window_means(one, track(one)) for one in turning])
+        for track in (mass.speed, mass.angle)
+    ]
+    return explained / _WINDOW_S, means[0], means[1]
+
+
+def _window_means(one: Series, values: Array) -> Array:
+    reach = max(1, round(_WINDOW_S * one.rate_hz))
+    whole, hop = np.cumsum(values), max(1, reach // 2)
+    return np.asarray((whole[reach::hop] - whole[:-reach:hop]) / reach)
+
+
 def read_numbers(model: Model, series: Sequence[Series]) -> Hypothesis | None:
     """The numbers alone as the balance reads them beside dry friction and an offset."""
     alone = Hypothesis(model, dict(model.parameters))

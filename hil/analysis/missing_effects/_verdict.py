@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, linearised
 from hil.analysis.missing_effects._odds import Candidate, weights_of
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Verdict
@@ -76,7 +77,8 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     others = _others(best, candidates, weights)
     return Outcome(
         verdict, tuple(effects), tuple([*doubtful, *others][:_SHOWN]), something_else, numbers, far,
-        *of.gaps(best), best.point.hypothesis.model(), (), notes, seconds,
+        *of.gaps(best), best.point.hypothesis.model(),
+        curves_of(best.point.hypothesis, done.problem.series), notes, seconds,
     )  # fmt: skip
 
 
