@@ -19,9 +19,11 @@ import numpy.typing as npt
 
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, linearised
+from hil.analysis.missing_effects._noise import rounding_step
 from hil.analysis.missing_effects._odds import Candidate, weights_of
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Verdict
 from hil.analysis.missing_effects._search import Search
+from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
@@ -68,6 +70,8 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
             float(w) for one, w in zip(candidates, weights, strict=True) if {*one.names} >= {*best.names}
         )
         effects += _mismatches(done, numbers, sure)
+    if not best.names and _is_noise(done, best):
+        effects += _roundings(done, float(weights[candidates.index(best)]))
     something_else = _remains(of, done.found[()], best) if best.names else 0.0
     verdict: Verdict = "unknown"
     if effects:
@@ -150,6 +154,21 @@ def _is_noise(done: Search, best: Candidate) -> bool:
         if len(seen) and np.mean(seen**2) > _slow_noise(done) * level**2:
             return False
     return True
+
+
+def _roundings(done: Search, weight: float) -> list[Named]:
+    """Channels whose noise is the distance of their readings, where nothing else is missing."""
+    known = {
+        use.values.get("channel") for use in done.problem.model.effects if use.id == "sensor_quantization"
+    }
+    found = []
+    for column, name in enumerate(OUTPUTS):
+        have = [one.samples[:, column] for one in done.problem.series if one.has[column]]
+        step = rounding_step(np.concatenate(have)) if have and name not in known else 0.0
+        if step > 0.0 and step / np.sqrt(12.0) >= done.problem.noise[column]:
+            use = EffectUse("sensor_quantization", {"channel": name, "step": step})
+            found.append(Named(use, weight, {}))
+    return found
 
 
 def _alike(done: Search, best: Candidate, candidates: Sequence[Candidate]) -> dict[str, tuple[str, ...]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from hil.analysis.missing_effects import Outcome, explain_gap
@@ -56,3 +57,13 @@ def test_a_recording_without_outputs_is_refused() -> None:
     channels = {name: whole[name] for name in ("time_s", "motor_torque_ref_nm")}
     with pytest.raises(BadInputError, match="none of"):
         explain_gap(base(0.54), [Recording(channels, whole.source)])
+
+
+def test_a_right_base_with_rounded_readings_has_rounding_alone() -> None:
+    fit = recording(0.54, 2.17, noise_rad_s=0.002)
+    fit.channels["motor_speed_rad_s"] = np.round(fit["motor_speed_rad_s"] / 0.05) * 0.05
+    found = explain_gap(base(0.54, 2.17), [fit])
+    assert [(one.id, one.use.values["channel"]) for one in found.effects] == [
+        ("sensor_quantization", "motor_speed_rad_s")
+    ]
+    assert found.effects[0].use.values["step"] == pytest.approx(0.05)
