@@ -121,10 +121,11 @@ def _cell(who: str, case: Case, answer: dict[str, Any], took: float, tally: Tall
     named = []
     for effect in answer["effects"]:
         label = _label(effect)
-        named.append(f"{label} {effect['confidence']:.2f}")
+        alike = effect.get("class", [])
+        named.append(f"{'~'.join([label, *alike])} {effect['confidence']:.2f}")
         # bases other than the blind set's have wrong numbers on purpose
         if case.base == "blind" or effect["id"] != "parameter_mismatch":
-            tally.named.append((float(effect["confidence"]), label in case.truth))
+            tally.named.append((float(effect["confidence"]), bool({label, *alike} & {*case.truth})))
     gaps = answer.get("holdout_gap") or answer.get("gap") or {}
     left = max((100.0 * float(gap["after"]) for gap in gaps.values()), default=float("nan"))
     text = " + ".join(named) or str(answer["verdict"])
@@ -157,8 +158,10 @@ def _exactly(truth: Sequence[str]) -> Callable[[dict[str, Any]], bool]:
     """The names alone; where there is none, `none` or `unknown`, numbers apart."""
 
     def right(answer: dict[str, Any]) -> bool:
-        named = [_label(e) for e in answer["effects"] if e["id"] != "parameter_mismatch"]
-        return sorted(named) == sorted(truth)
+        named = [
+            {_label(e), *e.get("class", [])} for e in answer["effects"] if e["id"] != "parameter_mismatch"
+        ]
+        return len(named) == len(truth) and all(any(name in one for one in named) for name in truth)
 
     return right
 

@@ -36,9 +36,10 @@ _SHORT = 2  # rounds that tell which start or size is worth more of them
 _READ = 4  # names that are taken from the latent torque at each step
 _TRIED = 6  # names that are fitted at each step, the most promising ones
 _SIZES = 2  # from which an abrupt one starts
-_FITTED_OUT = 2  # of these are fitted to their end
+_FITTED_OUT = 3  # of these are fitted to their end
 _ROUNDS = 6
 _SETTLED = 0.1  # growth of log likelihood between rounds that ends them
+_BESIDE = 0.3  # of an effect's first number: where an optional one in the same unit begins
 _MOST_NAMES = 4
 
 
@@ -139,8 +140,11 @@ def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candid
         reached = max(reached, tried[-1].log_likelihood - best.log_likelihood)
     tried.sort(key=done.score, reverse=True)
     ended: list[Candidate] = []
+    shapes = set()
     for candidate in tried:
-        if candidate.names not in [other.names for other in ended]:
+        shape = (candidate.names, candidate.free)
+        if shape not in shapes:
+            shapes.add(shape)
             ended.append(_opened(done, done.fitted(candidate.point.hypothesis, candidate), show))
         if len(ended) == _FITTED_OUT:
             break
@@ -177,7 +181,8 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
         if not parameter.opens or parameter.name in opened or beside:
             continue
         use = hypothesis.terms[index]
-        size = parameter.typical or 0.0
+        first = EFFECTS[use.id].parameters[0]
+        size = _BESIDE * abs(float(use.values[first.name])) if parameter.unit == first.unit else 0.0
         wider = [
             hypothesis.without(index).with_term(
                 EffectUse(use.id, {**use.values, parameter.name: value}), opened | {parameter.name}
@@ -190,7 +195,11 @@ def _opened(done: Search, best: Candidate, show: Callable[[str], None]) -> Candi
         if max(gains) <= done.cost_of_a_number(best):
             continue
         show(f"{best.names[index]}: {parameter.name}")
-        tried = done.fitted(wider[int(np.argmax(gains))], best)
+        begins = wider[int(np.argmax(gains))]
+        if 0.0 in parameter.opens:  # where it does nothing: a fit goes on from what is settled
+            rest = EffectUse(use.id, {**use.values, parameter.name: 0.0})
+            begins = hypothesis.without(index).with_term(rest, opened | {parameter.name})
+        tried = done.fitted(begins, best)
         best = max(best, tried, key=done.score)
     return best
 

@@ -36,6 +36,7 @@ _TOLERANCE = 0.02
 """A number that is off by less is calibrated, where the model file states no tolerance."""
 _ALIKE = np.log(20.0)
 """Two hypotheses are alike where the data would give the right one odds below 20:1."""
+_RIVALS = 3  # names that may take the place of another
 _SHOWN = 5  # alternatives
 
 
@@ -52,6 +53,7 @@ def judged(of: Judged, notes: tuple[str, ...], seconds: float) -> Outcome:
     """The outcome of a search."""
     done = of.done
     best, shares = _worth_telling(of, done.best)
+    _swapped(done, best)
     candidates = list(done.found.values())
     weights = weights_of(candidates, done.values)
     at = linearised(
@@ -97,6 +99,25 @@ def _worth_telling(of: Judged, best: Candidate) -> tuple[Candidate, list[float]]
             return best, shares
         best = _without(of.done, best, least)
     return best, []
+
+
+def _swapped(done: Search, best: Candidate) -> None:
+    """Far from noise, fit the best hypothesis with each name in turn replaced by others.
+
+    A forward search finds a name beside those before it; names that could stand in its place must be given
+    the chance, or the data would seem to tell them apart.
+    """
+    if _is_noise(done, best):
+        return
+    pool = sorted(done.found.values(), key=done.score, reverse=True)
+    uses = {label: one for one in pool for label in one.names}
+    for index in range(len(best.names)):
+        rivals = [label for label in uses if label not in best.names][:_RIVALS]
+        fewer = best.point.hypothesis.without(index)
+        for label in rivals:
+            other = uses[label].point.hypothesis
+            at = other.names.index(label)
+            done.fitted(fewer.with_term(other.terms[at], other.opened[at]), best)
 
 
 def _without(done: Search, best: Candidate, index: int) -> Candidate:
