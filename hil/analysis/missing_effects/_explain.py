@@ -84,8 +84,7 @@ class _Shown:
 
     def left(self, candidate: Candidate) -> Array:
         """Mean square of errors in each channel on data not fitted, (3,); NaN if not recorded."""
-        errors = np.concatenate(self.point(self.unseen, candidate.point.hypothesis).errors)
-        return _mean(errors**2)
+        return self.unseen.mean_square(self.point(self.unseen, candidate.point.hypothesis).errors)
 
     def gaps(self, problem: Problem, best: Candidate) -> dict[str, Gap]:
         """Of the base, the numbers alone and the best hypothesis."""

@@ -49,6 +49,24 @@ class Candidate:
         return self.log_likelihood - 0.5 * self.free * log(max(values, 2.0)) - log(comb(self.known, names))
 
 
+def remains(had: Array, has: Array, noise: Array, slow: float) -> float:
+    """Share of the variance beyond noise that stays, mean of the channels; those near their noise count less.
+
+    Args:
+        had: mean square of errors before, (3,); NaN where a channel was not recorded.
+        has: the same after.
+        noise: variance of proven noise, (3,).
+        slow: how many times that may be slow noise, and is not counted as what stays.
+    """
+    before, after = had - noise, np.maximum(has - slow * noise, 0.0)
+    there = np.isfinite(before) & (before > 0.0)
+    if not there.any():
+        return 1.0
+    weight = np.minimum(before[there] / noise[there], 1.0)
+    share = np.minimum(after[there] / before[there], 2.0)
+    return float(min(np.sum(weight * share) / np.sum(weight), 1.0))
+
+
 def weights_of(candidates: Sequence[Candidate], values: float) -> Array:
     """Posterior weight of each candidate, (candidates,), where the data hold so many independent values."""
     windows = np.stack([one.windows for one in candidates])

@@ -18,6 +18,7 @@ Array = npt.NDArray[np.float64]
 
 STATES = 5  # of a start: motor speed, wheel speed, shaft torque, and two of a motion inside the tyre
 _FAR = 1e9  # a simulation that runs away is so many standard deviations off, not infinitely many
+_SLOW_NOISE = 1.2  # times its white noise may a sensor's error be where its slow noise is not proven
 _RANK = 1e-7  # smallest singular value of a start's sensitivities that counts, of the largest
 
 
@@ -52,6 +53,19 @@ class Problem:
     def rate_hz(self) -> float:
         """Of errors."""
         return self.series[0].rate_hz
+
+    @property
+    def slow_noise(self) -> float:
+        """Largest variance of block means that may be noise, in that of white noise."""
+        return 1.0 + self.series[0].block * (_SLOW_NOISE**2 - 1.0)
+
+    def mean_square(self, errors: Sequence[Array]) -> Array:
+        """Of each channel over all recordings, (3,); NaN where it was not recorded."""
+        whole = np.concatenate(errors)
+        there = np.isfinite(whole)
+        count = there.sum(axis=0)
+        sums = np.where(there, whole, 0.0) ** 2
+        return np.asarray(np.where(count > 0, sums.sum(axis=0) / np.maximum(count, 1), np.nan), dtype=float)
 
     def first_states(self) -> list[Array]:
         """A first guess of each recording's start."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -18,7 +18,7 @@ from hil.analysis.missing_effects._fit import (
     with_better_starts,
 )
 from hil.analysis.missing_effects._hypothesis import Hypothesis
-from hil.analysis.missing_effects._odds import Candidate
+from hil.analysis.missing_effects._odds import Candidate, remains
 from hil.analysis.missing_effects._problem import Problem
 from hil.analysis.missing_effects._response import numbers_by_response
 from hil.analysis.missing_effects._screen import (
@@ -30,6 +30,7 @@ from hil.analysis.missing_effects._screen import (
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
+HALF = 0.5  # of what stays without it a name must take off
 _HOPELESS = 0.5  # of what another name has reached: what promises less is not tried
 _FEW = 6  # evaluations of a short round
 _SHORT = 2  # rounds that tell which start or size is worth more of them
@@ -129,10 +130,37 @@ def _starts(problem: Problem) -> list[Hypothesis]:
 
 
 def _grown(done: Search, best: Candidate, show: Callable[[str], None]) -> Candidate | None:
-    """The best hypothesis with one more effect; None where no effect promises more than it costs."""
+    """The best hypothesis with one more effect; None where no effect promises more than it costs.
+
+    Losses (friction, drag, resistance), which every driveline has, are tried before rarer names: these are
+    not looked at where a loss takes off half of what stays or more.
+    """
+    suggested = _suggested(done, best)
+    losses = [one for one in suggested if _is_loss(one[0])]
+    grown = _best_of(done, best, losses, show)
+    if grown is not None and done.score(grown) > done.score(best):
+        had, has = (done.problem.mean_square(one.point.errors) for one in (best, grown))
+        if remains(had, has, done.problem.noise**2, 1.0) <= HALF:
+            return grown
+    others = _best_of(done, best, [one for one in suggested if not _is_loss(one[0])], show)
+    return max((one for one in (grown, others) if one is not None), key=done.score, default=None)
+
+
+def _is_loss(hypothesis: Hypothesis) -> bool:
+    law = EFFECTS[hypothesis.terms[-1].id].law
+    return law.follows is None and any(one is not None for one in (law.dry, law.loss, law.load))
+
+
+def _best_of(
+    done: Search,
+    best: Candidate,
+    suggested: Sequence[tuple[Hypothesis, float]],
+    show: Callable[[str], None],
+) -> Candidate | None:
+    """The likeliest of suggested hypotheses, the first few fitted to their end."""
     tried: list[Candidate] = []
     reached = 0.0
-    for hypothesis, gain in _suggested(done, best):
+    for hypothesis, gain in suggested:
         if gain < _HOPELESS * reached:
             continue
         show(" + ".join(hypothesis.names))

@@ -20,18 +20,15 @@ import numpy.typing as npt
 from hil.analysis.missing_effects._curve import curves_of
 from hil.analysis.missing_effects._fit import Linearised, linearised
 from hil.analysis.missing_effects._noise import rounding_step
-from hil.analysis.missing_effects._odds import Candidate, weights_of
+from hil.analysis.missing_effects._odds import Candidate, remains, weights_of
 from hil.analysis.missing_effects._outcome import Gap, Named, Outcome, Verdict
-from hil.analysis.missing_effects._search import Search
+from hil.analysis.missing_effects._search import HALF, Search
 from hil.core.channels import OUTPUTS
 from hil.core.effects import EFFECTS
 from hil.core.model import EffectUse
 
 Array = npt.NDArray[np.float64]
 
-HALF = 0.5
-_SLOW_NOISE = 1.2
-"""A sensor's error may be so many times its white noise where its slow noise is not proven."""
 _TOLERANCE = 0.02
 """A number that is off by less is calibrated, where the model file states no tolerance."""
 _ALIKE = np.log(20.0)
@@ -148,23 +145,9 @@ def _named(
 
 
 def _remains(of: Judged, before: Candidate, after: Candidate) -> float:
-    """Share of the variance beyond noise that stays; channels near their noise count less.
-
-    What may be slow noise is none of it.
-    """
-    noise = of.done.problem.noise**2
-    had = of.left(before) - noise
-    has = np.maximum(of.left(after) - _slow_noise(of.done) * noise, 0.0)
-    there = np.isfinite(had) & (had > 0.0)
-    if not there.any():
-        return 1.0
-    weight = np.minimum(had[there] / noise[there], 1.0)
-    return float(min(np.sum(weight * np.minimum(has[there] / had[there], 2.0)) / np.sum(weight), 1.0))
-
-
-def _slow_noise(done: Search) -> float:
-    """Largest variance of block means that may be noise, in that of white noise."""
-    return float(1.0 + done.problem.series[0].block * (_SLOW_NOISE**2 - 1.0))
+    """Share of the variance beyond noise that stays on data not fitted."""
+    problem = of.done.problem
+    return remains(of.left(before), of.left(after), problem.noise**2, problem.slow_noise)
 
 
 def _is_noise(done: Search, best: Candidate) -> bool:
@@ -172,7 +155,7 @@ def _is_noise(done: Search, best: Candidate) -> bool:
     errors = np.concatenate(best.point.errors)
     for column, level in enumerate(done.problem.noise):
         seen = errors[np.isfinite(errors[:, column]), column]
-        if len(seen) and np.mean(seen**2) > _slow_noise(done) * level**2:
+        if len(seen) and np.mean(seen**2) > done.problem.slow_noise * level**2:
             return False
     return True
 
