@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -117,7 +118,8 @@ def test_scipy_filters_the_same_dose():
 
     rng = np.random.default_rng(3)
     speed = np.cumsum(0.001 * rng.standard_normal(21_001)) * 0.1
-    b, a = [1.0], [1.0]
+    b: Any = [1.0]
+    a: Any = [1.0]
     low, high, middle = 2 * np.pi * 0.4, 2 * np.pi * 100, 2 * np.pi * 2.0
     for above, below in (
         ([1, 0, 0], [1, np.sqrt(2) * low, low**2]),
@@ -125,7 +127,7 @@ def test_scipy_filters_the_same_dose():
         ([middle, middle**2], [1, middle / 0.63, middle**2]),
     ):
         b, a = np.polymul(b, above), np.polymul(a, below)
-    zpk = signal.bilinear_zpk(*signal.tf2zpk(b, a), fs=1000)
+    zpk: Any = signal.bilinear_zpk(*signal.tf2zpk(b, a), fs=1000)
     segment = Segment(id="s", start_s=0.0, step_s=0.0, end_s=21.0)
     weighted = signal.sosfilt(signal.zpk2sos(*zpk), speed - speed[0])
     wanted = (np.sum(weighted**4) / 1000) ** 0.25
