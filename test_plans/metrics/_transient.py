@@ -29,10 +29,11 @@ _REQUESTS = {"driving_torque": "driving_torque_ref_nm", "motor_torque": "motor_t
 
 
 def transient_end_s(recording: Recording, segment: Segment) -> float:
-    """When the first transient is over, on the recording's time.
+    """When the first transient has been over for half a second, on the recording's time.
 
-    From then on the torque that was asked for, low-pass filtered at 50 Hz and without declared orders of the
-    wheel, keeps within ±5 % of the step's size for half a second.
+    The torque that was asked for, low-pass filtered at 50 Hz and without declared orders of the wheel, has
+    kept within ±5 % of the step's size for that long. The window holds that time as well: what follows the
+    orders takes a little of a transient with them, and the last swing must not be cut off.
 
     Raises:
         NoValueError: no step, no transient, one that does not end within the segment, or missing samples.
@@ -54,7 +55,7 @@ def transient_end_s(recording: Recording, segment: Segment) -> float:
             f"the first transient is not over within the segment: {channel} never keeps within "
             f"±{BAND_PERCENT:g} % of the step's size for {HOLD_S:g} s"
         )
-    return float(segment.step_s + (first + calm) * spacing_s)
+    return float(segment.step_s + (first + calm) * spacing_s + HOLD_S)
 
 
 def refuse_reversal(recording: Recording, segment: Segment) -> None:
@@ -109,8 +110,8 @@ def _calm(values, width, length):  # type: ignore[no-untyped-def]
 
 def transient_in_words() -> str:
     """The end of such a window."""
-    calm = f"within ±{BAND_PERCENT:g} % of the step's size for {HOLD_S:g} s"
+    calm = f"has kept within ±{BAND_PERCENT:g} % of the step's size for {HOLD_S:g} s"
     return (
         f"the end of the first transient (the step's torque, low-pass filtered at {_LOW_PASS_HZ:g} Hz and "
-        f"without declared orders, from then on {calm})"
+        f"without declared orders, {calm})"
     )

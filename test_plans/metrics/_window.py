@@ -25,7 +25,8 @@ class WindowMetric(Metric):
         default=None, gt=0, description="end of the window, s after the step; default: the segment's end"
     )
     until: Literal["end", "transient"] = Field(
-        default="end", description="transient: the window ends when the first transient is over"
+        default="end",
+        description="transient: the window ends when the first transient has been over for 0.5 s",
     )
 
     @model_validator(mode="after")

@@ -137,7 +137,7 @@ class Clunk(_InPlay):
     """Largest rate of T_s as a flank is met: what is heard and felt as a blow."""
 
     name: ClassVar[str] = "clunk"
-    over_s: float = Field(default=0.002, gt=0, le=0.02, description="time over which the rate is taken, s")
+    over_s: float = Field(default=0.004, gt=0, le=0.02, description="time over which the rate is taken, s")
 
     @property
     def unit(self) -> str:

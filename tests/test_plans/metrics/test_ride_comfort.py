@@ -127,7 +127,8 @@ def test_scipy_filters_the_same_dose():
         ([middle, middle**2], [1, middle / 0.63, middle**2]),
     ):
         b, a = np.polymul(b, above), np.polymul(a, below)
-    zpk: Any = signal.bilinear_zpk(*signal.tf2zpk(b, a), fs=1000)
+    analogue: Any = signal.tf2zpk(b, a)
+    zpk: Any = signal.bilinear_zpk(*analogue, fs=1000)
     segment = Segment(id="s", start_s=0.0, step_s=0.0, end_s=21.0)
     weighted = signal.sosfilt(signal.zpk2sos(*zpk), speed - speed[0])
     wanted = (np.sum(weighted**4) / 1000) ** 0.25

@@ -32,8 +32,8 @@ def test_a_slow_rise_is_over_when_less_than_the_band_is_left(sign: float) -> Non
     tau = 0.4
     segment = STEP.model_copy(update={"reference_after": sign * 326.0, "quantity": "driving_torque"})
     rise = sign * 326.0 * (1 - np.exp(-SINCE / tau))
-    # Half a second minus one sample time lies between the first and the last sample of the stretch.
-    wanted = tau * np.log((1 - np.exp(-0.499 / tau)) / 0.1)
+    # The stretch's first and last sample are half a second less one sample time apart.
+    wanted = 0.5 + tau * np.log((1 - np.exp(-0.499 / tau)) / 0.1)
     found = transient_end_s(recording_of(TIME, shaft_torque_nm=rise), segment) - STEP.step_s
     assert found == pytest.approx(wanted, abs=1.5e-3)
 

@@ -4,6 +4,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from hil.core.errors import BadInputError
+from test_plans.steps import Stairs
 from tests.test_plans.note_taker import NoteTaker
 from tests.test_plans.writing import step_of
 
@@ -35,4 +36,5 @@ def test_a_driver_who_changes_their_mind_holds_the_middle_level_shortly() -> Non
     assert segment is not None
     assert (segment.step_s, segment.end_s) == pytest.approx((2.2, 5.2))
     assert (segment.reference_before, segment.reference_after) == (-150.0, 300.0)
+    assert isinstance(stairs, Stairs)
     assert stairs.mean_nm == pytest.approx((300 * 2 - 150 * 0.2 + 300 * 3) / 5.2)
